@@ -1,0 +1,59 @@
+#pragma once
+
+#include <frontlux/ray.hpp>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace frontlux {
+
+/// The voxel lattice of an OctoMap of one resolution: keys from points and points from keys, in OctoMap's own
+/// arithmetic, so that both agree to the last bit (ray contract, rule 1).
+class Lattice {
+ public:
+  static constexpr int kOrigin = 32768;  ///< key of the voxel whose lower face lies at 0
+  static constexpr int kKeysPerAxis = 65536;
+
+  /// @param resolution edge length of a voxel [m]
+  /// @throws std::invalid_argument unless it is finite, positive and has a finite inverse
+  explicit Lattice(double resolution);
+
+  [[nodiscard]] double resolution() const { return resolution_; }
+
+  /// Key along one axis of a coordinate [m]; nothing outside the key range or if it is not finite.
+  [[nodiscard]] std::optional<std::uint16_t> key(double coordinate) const {
+    const double cell = std::floor(factor_ * coordinate);
+    if (!(cell >= -kOrigin && cell < kKeysPerAxis - kOrigin)) return std::nullopt;
+    return static_cast<std::uint16_t>(static_cast<int>(cell) + kOrigin);
+  }
+
+  /// Key of the voxel that holds a point [m]. Cells are half-open: a point on a face belongs to the upper
+  /// one.
+  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3f& point) const {
+    const auto x = key(static_cast<double>(point.x()));
+    const auto y = key(static_cast<double>(point.y()));
+    const auto z = key(static_cast<double>(point.z()));
+    if (!x || !y || !z) return std::nullopt;
+    return VoxelKey{*x, *y, *z};
+  }
+
+  /// Centre along one axis [m].
+  [[nodiscard]] double center(std::uint16_t key) const {
+    return (static_cast<double>(static_cast<int>(key) - kOrigin) + 0.5) * resolution_;
+  }
+
+  /// Centre of a voxel [m].
+  [[nodiscard]] Eigen::Vector3f center(const VoxelKey& key) const {
+    return {static_cast<float>(center(key.x)), static_cast<float>(center(key.y)),
+            static_cast<float>(center(key.z))};
+  }
+
+ private:
+  double resolution_;
+  double factor_;
+};
+
+}  // namespace frontlux

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <frontlux/ray.hpp>
+#include <frontlux/ray_caster.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <variant>
+
+// Forward declarations only: include <octomap/OcTree.h> or <octomap/ColorOcTree.h> where you make your trees.
+namespace octomath {
+class Vector3;
+}
+namespace octomap {
+class OcTree;
+class ColorOcTree;
+using point3d = octomath::Vector3;
+}  // namespace octomap
+
+namespace frontlux {
+
+/// A tree read from a file, of the kind the file holds.
+using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<octomap::ColorOcTree>>;
+
+/// Reads an OctoMap file, `.bt` or `.ot`, by its header and not by its name. The file is checked from end to
+/// end before OctoMap's own reader, which trusts its input, sees it.
+/// @throws std::runtime_error naming the file, what is wrong with it and where
+[[nodiscard]] Octree read_octree(const std::filesystem::path& file);
+
+/// The ternary mirror of a tree: occupied, free and unknown as the tree's own `search` and `isNodeOccupied`
+/// tell. A pruned leaf is one entry, however large.
+[[nodiscard]] VoxelGrid make_voxel_grid(const octomap::OcTree& tree);
+[[nodiscard]] VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
+
+/// Keeps a VoxelGrid in step with one tree.
+///
+/// OctoMap's change detection reports the keys that updates and scan insertions changed, but not what
+/// `setOccupancyThres`, `clear`, `deleteNode`, `setNodeValue`, a file read into the tree or direct
+/// writes to nodes changed (docs/ray_contract.md). After any of those call `rebuild`.
+class OctreeMirror {
+ public:
+  /// @param tree  watched by reference: must outlive the mirror. For `update` to be incremental, call
+  ///              `tree.enableChangeDetection(true)` and `tree.resetChangeDetection()` before.
+  explicit OctreeMirror(const octomap::OcTree& tree);
+  explicit OctreeMirror(const octomap::ColorOcTree& tree);
+  ~OctreeMirror();
+  OctreeMirror(OctreeMirror&&) noexcept;
+  OctreeMirror& operator=(OctreeMirror&&) noexcept;
+
+  [[nodiscard]] const VoxelGrid& grid() const;
+
+  /// Reads the keys that the tree reports as changed; call `tree.resetChangeDetection()` afterwards. Rebuilds
+  /// instead where those keys cannot be complete: change detection was off at the last look, or the tree has
+  /// been cleared or replaced, or its occupancy threshold has changed since.
+  /// @return true if it was incremental, false if it rebuilt
+  bool update();
+
+  /// Reads the whole tree.
+  void rebuild();
+
+ private:
+  struct Watch;
+  std::unique_ptr<Watch> watch_;
+};
+
+/// OctoMap's own castRay, unchanged, behind the common interface: the baseline. `visible` asks castRay for
+/// the ray between the two points; between voxel centres its answer depends on rounding, so that in rare
+/// cases it differs from the other casters' integer rule.
+/// @param tree  queried by reference: must outlive the caster and not change during a query. `update` does
+/// nothing.
+[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
+[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree);
+
+/// A drop-in for `tree.castRay(...)`: the same signature, the same results bit for bit, many times faster.
+///
+///     frontlux::OctreeRayCaster fast(tree);
+///     bool hit = fast.castRay(origin, direction, end);
+///
+/// It answers from a snapshot of the tree, taken at construction and by `refresh`. It prints none of
+/// OctoMap's warnings. Thread safety: const members may run at the same time as each other.
+class OctreeRayCaster {
+ public:
+  /// @param tree  read now and by `refresh`: must outlive this object
+  explicit OctreeRayCaster(const octomap::OcTree& tree);
+  explicit OctreeRayCaster(const octomap::ColorOcTree& tree);
+  ~OctreeRayCaster();
+  OctreeRayCaster(OctreeRayCaster&&) noexcept;
+  OctreeRayCaster& operator=(OctreeRayCaster&&) noexcept;
+
+  /// As `octomap::OcTree::castRay`: true if the ray ends in an occupied voxel. `end` becomes the centre of
+  /// the voxel in which it ended, and stays as it was where castRay leaves it untouched.
+  /// @param maxRange [m] no limit if <= 0
+  bool castRay(const octomap::point3d& origin, const octomap::point3d& direction, octomap::point3d& end,
+               bool ignoreUnknownCells = false, double maxRange = -1.0) const;
+
+  /// The same for many rays, spread over all cores: `hits[i]` belongs to `rays[i]`.
+  /// @throws std::invalid_argument if the spans differ in size
+  void castRays(std::span<const Ray> rays, std::span<Hit> hits, bool ignoreUnknownCells = false) const;
+
+  /// Takes a new snapshot after the tree has changed, in whatever way. Not while another thread casts.
+  void refresh();
+
+  /// The queries beyond castRay's: visibility between points and between voxels.
+  [[nodiscard]] const RayCaster& caster() const;
+
+ private:
+  struct Snapshot;
+  std::unique_ptr<Snapshot> snapshot_;
+};
+
+}  // namespace frontlux

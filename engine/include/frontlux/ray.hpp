@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <compare>
+#include <cstdint>
+
+namespace frontlux {
+
+/// What a map knows about a voxel.
+enum class Occupancy : std::uint8_t { kUnknown = 0, kFree = 1, kOccupied = 2 };
+
+/// Whether unknown voxels stop a ray. `kBlock` is `castRay(..., ignoreUnknownCells = false)`.
+enum class UnknownPolicy : std::uint8_t { kBlock, kPass };
+
+/// Discrete address of a voxel: OctoMap's `OcTreeKey`. Voxel (32768, 32768, 32768) has its lower corner at
+/// the world's origin.
+struct VoxelKey {
+  std::uint16_t x = 0, y = 0, z = 0;
+  friend constexpr auto operator<=>(const VoxelKey&, const VoxelKey&) = default;
+};
+
+/// A half line, in metres, in the frame of the map.
+struct Ray {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();     ///< [m]
+  Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< any length; normalised as OctoMap does, in float
+  double max_range =
+      -1.0;  ///< [m] limit on the distance from origin to voxel *centres*; <= 0 or NaN: no limit
+};
+
+/// The straight way from one point to another, in metres, in the frame of the map.
+struct Segment {
+  Eigen::Vector3f from = Eigen::Vector3f::Zero();  ///< [m]
+  Eigen::Vector3f to = Eigen::Vector3f::Zero();    ///< [m]
+};
+
+/// The straight way from the centre of one voxel to the centre of another.
+struct KeySegment {
+  VoxelKey from, to;
+};
+
+/// Why a ray ended.
+enum class RayStop : std::uint8_t {
+  kInvalid,     ///< no ray: origin outside the key range or not finite, or a direction without length
+  kOccupied,    ///< in an occupied voxel; the only case in which castRay returns true
+  kUnknown,     ///< in an unknown voxel, under `UnknownPolicy::kBlock`
+  kOutOfRange,  ///< in the first voxel whose centre lies beyond `Ray::max_range`
+  kLeftMap,     ///< in the last voxel before the key range (0..65535) ends
+};
+
+/// Where a ray ended. With `kInvalid` every other field keeps its default.
+struct Hit {
+  RayStop stop = RayStop::kInvalid;
+  Occupancy state = Occupancy::kUnknown;          ///< of the voxel in which the ray ended
+  VoxelKey key;                                   ///< of that voxel
+  Eigen::Vector3f end = Eigen::Vector3f::Zero();  ///< [m] its centre: castRay's `end`, bit for bit
+  Eigen::Vector3f entry =
+      Eigen::Vector3f::Zero();  ///< [m] where the ray enters it (the origin, if it starts inside)
+  float distance = 0.0F;        ///< [m] from origin to `entry`
+
+  /// What castRay returns.
+  [[nodiscard]] bool occupied() const { return stop == RayStop::kOccupied; }
+};
+
+}  // namespace frontlux

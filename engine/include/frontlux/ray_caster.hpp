@@ -1,0 +1,84 @@
+#pragma once
+
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace frontlux {
+
+/// Answers ray queries on a snapshot of a map, exactly as `octomap::OcTree::castRay` would
+/// (docs/ray_contract.md).
+///
+/// Every query is a batch: spans in, spans out, `results[i]` belongs to input `i` and depends on nothing
+/// else, not on its neighbours, not on the number of threads. Batches are spread over TBB's current arena:
+/// call inside a `tbb::task_arena` to choose the number of threads.
+///
+/// Rays that cannot be cast (not finite, outside the key range, without direction) are answered, not thrown:
+/// `RayStop::kInvalid`, or not visible.
+///
+/// Thread safety: const members may run at the same time as each other and as `update`; a query answers
+/// from the map as it was when the query began. Calls of `update` must not overlap.
+class RayCaster {
+ public:
+  virtual ~RayCaster() = default;
+  RayCaster(const RayCaster&) = delete;
+  RayCaster& operator=(const RayCaster&) = delete;
+
+  /// The closest blocker along each ray, or where the ray ended without one.
+  /// @throws std::invalid_argument if the spans differ in size
+  void cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const;
+
+  /// One ray, on the calling thread.
+  [[nodiscard]] Hit cast(const Ray& ray, UnknownPolicy unknown) const;
+
+  /// For each segment 1 if castRay's path from `from` towards `to` reaches the voxel of `to` and no voxel
+  /// strictly between the two blocks, else 0. The voxels that hold `from` and `to` never block.
+  /// @throws std::invalid_argument if the spans differ in size
+  void visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
+               UnknownPolicy unknown) const;
+
+  /// The same between voxel centres, in exact integer arithmetic: a path through an edge or corner steps
+  /// along z before y before x. The answer depends only on the offset between the keys and on the voxels
+  /// between them.
+  /// @throws std::invalid_argument if the spans differ in size
+  void visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
+               UnknownPolicy unknown) const;
+
+  /// Follows a map that has changed. What changed is found by comparing `grid` with the snapshot held, which passes
+  /// over the parts they share: cheap for an edited copy, right for any grid.
+  /// @throws std::invalid_argument if the resolution differs from the one this caster was made with
+  void update(const VoxelGrid& grid);
+
+  /// Bytes this caster holds beside the grid's own (acceleration structure; 0 for a caster without one).
+  [[nodiscard]] virtual std::size_t memory_bytes() const { return 0; }
+
+ protected:
+  explicit RayCaster(const Lattice& lattice) : lattice_(lattice) {}
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+
+ private:
+  // Spans are of equal size and not empty; rays and segments are unchecked.
+  virtual void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const = 0;
+  virtual void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
+                          UnknownPolicy unknown) const = 0;
+  virtual void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
+                          UnknownPolicy unknown) const = 0;
+  virtual void do_update(const VoxelGrid& grid) = 0;
+
+  Lattice lattice_;
+};
+
+/// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The oracle,
+/// and the fastest where rays end within a few voxels. Costs nothing to build: it shares the grid's memory.
+[[nodiscard]] std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
+
+/// Casts through a BVH of boxes in Embree and settles by the grid's walk what rounding could decide either
+/// way.
+/// @throws std::runtime_error if Embree cannot make its device
+[[nodiscard]] std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
+
+}  // namespace frontlux

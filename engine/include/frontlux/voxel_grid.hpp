@@ -1,0 +1,98 @@
+#pragma once
+
+#include <frontlux/lattice.hpp>
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_tree.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace frontlux {
+
+/// 8 x 8 x 8 voxels as bit planes.
+using Brick = detail::Brick;
+
+/// An aligned cube of voxels.
+struct Block {
+  VoxelKey corner;    ///< its lowest voxel; every coordinate is a multiple of the edge
+  int log2_edge = 0;  ///< the edge is 2^log2_edge voxels
+};
+
+/// An axis-aligned box of voxels, both ends included.
+struct KeyBox {
+  VoxelKey min, max;
+  [[nodiscard]] bool contains(const VoxelKey& k) const {
+    return min.x <= k.x && k.x <= max.x && min.y <= k.y && k.y <= max.y && min.z <= k.z && k.z <= max.z;
+  }
+  friend bool operator==(const KeyBox&, const KeyBox&) = default;
+};
+
+/// Which voxels of a map are unknown, free and occupied: a sparse, ternary mirror of an octree in bricks of 8
+/// x 8 x 8 voxels, over the whole key range. Large uniform regions are one entry, so memory follows what is
+/// mapped in detail.
+///
+/// A copy costs nothing and is a snapshot: copies share their bricks until one of them is written to.
+///
+/// Thread safety: as a standard container. Copies in different threads are independent.
+class VoxelGrid {
+ public:
+  /// A grid of unknown voxels.
+  /// @param resolution edge length of a voxel [m]
+  /// @throws std::invalid_argument unless it is finite and positive
+  explicit VoxelGrid(double resolution);
+
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] double resolution() const { return lattice_.resolution(); }
+
+  [[nodiscard]] Occupancy at(const VoxelKey& key) const { return brick(key).at(key); }
+
+  /// The brick that holds a voxel.
+  [[nodiscard]] const Brick& brick(const VoxelKey& key) const { return tile(key).brick(key); }
+
+  /// Changes one voxel.
+  void set(const VoxelKey& key, Occupancy state) { fill({key, 0}, state); }
+
+  /// Changes all voxels of a block, in time that does not grow with its volume.
+  /// @throws std::invalid_argument if the block is not aligned or larger than the key range
+  void fill(const Block& block, Occupancy state);
+
+  /// Calls `visit` for every largest block of the storage that is not entirely unknown: with the brick if the
+  /// block is a brick of mixed states (`log2_edge` 3), else with null and the one state of all its voxels. In
+  /// order of storage.
+  void for_each_block(const std::function<void(const Block&, const Brick*, Occupancy)>& visit) const;
+
+  /// The smallest box that holds every voxel that is free or occupied; nothing if there is none.
+  [[nodiscard]] std::optional<KeyBox> known_bounds() const;
+
+  /// Number of voxels by state, indexed by `Occupancy`, over the whole key range.
+  [[nodiscard]] std::array<std::uint64_t, 3> count() const;
+
+  /// Bytes of the bricks and tables that this grid holds; parts shared with copies count in full.
+  [[nodiscard]] std::size_t memory_bytes() const;
+
+  /// True if every voxel has the same state in both, and the resolutions are equal.
+  friend bool operator==(const VoxelGrid& a, const VoxelGrid& b);
+
+  /// Storage node of 64 x 64 x 64 voxels. For the casters' inner loops.
+  [[nodiscard]] const detail::Tile& tile(const VoxelKey& key) const {
+    return *world_->child(key)->child(key)->child(key);
+  }
+
+  friend void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
+                              const std::function<void(const Block&)>& visit);
+
+ private:
+  Lattice lattice_;
+  detail::Shared<detail::World> world_;
+};
+
+/// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
+/// became or were uniform. Parts that two grids share are passed over unread, so between a grid and its
+/// edited copy this costs as much as the edit did.
+void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
+                     const std::function<void(const Block&)>& visit);
+
+}  // namespace frontlux

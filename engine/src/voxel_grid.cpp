@@ -1,0 +1,189 @@
+#include <frontlux/voxel_grid.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux {
+namespace {
+
+using detail::Shared;
+using detail::Tile;
+using detail::uniform_node;
+
+constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
+
+// Corner of the child with number `index` in a node whose children, 2^kBits a side, have edge 2^kChildLog2.
+template <int kChildLog2, int kBits>
+VoxelKey child_corner(const VoxelKey& corner, int index) {
+  constexpr int kMask = (1 << kBits) - 1;
+  const auto along = [](std::uint16_t base, int i) {
+    return static_cast<std::uint16_t>(base + (i << kChildLog2));
+  };
+  return {along(corner.x, index & kMask), along(corner.y, (index >> kBits) & kMask),
+          along(corner.z, index >> (2 * kBits))};
+}
+
+template <class Visit>
+void visit_blocks(const Tile& tile, const VoxelKey& corner, const Visit& visit) {
+  for (int i = 0; i < 512; ++i) {
+    const auto slot = tile.slots[static_cast<std::size_t>(i)];
+    if (slot == 0) continue;
+    const Block block{child_corner<Brick::kLog2, 3>(corner, i), Brick::kLog2};
+    if (slot < kStates.size())
+      visit(block, nullptr, kStates[slot]);
+    else
+      visit(block, &tile.bricks[slot], Occupancy::kUnknown);
+  }
+}
+
+template <class Node, class Visit>
+void visit_blocks(const Node& node, const VoxelKey& corner, const Visit& visit) {
+  using Child = typename Node::Child;
+  for (int i = 0; i < Node::kChildren; ++i) {
+    const Shared<Child>& child = node.children[static_cast<std::size_t>(i)];
+    if (child == uniform_node<Child>(Occupancy::kUnknown)) continue;
+    const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
+    const auto uniform = std::find_if(kStates.begin() + 1, kStates.end(),
+                                      [&](Occupancy s) { return child == uniform_node<Child>(s); });
+    if (uniform != kStates.end())
+      visit(Block{at, Child::kLog2}, nullptr, *uniform);
+    else
+      visit_blocks(*child, at, visit);
+  }
+}
+
+template <class Visit>
+void visit_changes(const Tile& before, const Tile& after, const VoxelKey& corner, const Visit& visit) {
+  for (int i = 0; i < 512; ++i) {
+    const auto a = before.slots[static_cast<std::size_t>(i)], b = after.slots[static_cast<std::size_t>(i)];
+    if (a == b && a < kStates.size()) continue;
+    if (before.bricks[a] != after.bricks[b])
+      visit(Block{child_corner<Brick::kLog2, 3>(corner, i), Brick::kLog2});
+  }
+}
+
+template <class Node, class Visit>
+void visit_changes(const Node& before, const Node& after, const VoxelKey& corner, const Visit& visit) {
+  using Child = typename Node::Child;
+  const auto is_uniform = [](const Shared<Child>& node) {
+    return std::any_of(kStates.begin(), kStates.end(),
+                       [&](Occupancy s) { return node == uniform_node<Child>(s); });
+  };
+  for (int i = 0; i < Node::kChildren; ++i) {
+    const auto &a = before.children[static_cast<std::size_t>(i)],
+               &b = after.children[static_cast<std::size_t>(i)];
+    if (a == b) continue;
+    const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
+    if (is_uniform(a) && is_uniform(b))
+      visit(Block{at, Child::kLog2});
+    else
+      visit_changes(*a, *b, at, visit);
+  }
+}
+
+std::size_t bytes(const Tile& tile) {
+  return sizeof(Tile) + tile.bricks.capacity() * sizeof(Brick) +
+         tile.unused.capacity() * sizeof(std::uint16_t);
+}
+
+template <class Node>
+std::size_t bytes(const Node& node) {
+  std::size_t sum = sizeof(Node) + node.children.capacity() * sizeof(node.children[0]);
+  using Child = typename Node::Child;
+  for (const auto& child : node.children)
+    if (std::none_of(kStates.begin(), kStates.end(),
+                     [&](Occupancy s) { return child == uniform_node<Child>(s); }))
+      sum += bytes(*child);
+  return sum;
+}
+
+int low(std::uint64_t bits) { return std::countr_zero(bits); }
+int high(std::uint64_t bits) { return 63 - std::countl_zero(bits); }
+
+}  // namespace
+
+VoxelGrid::VoxelGrid(double resolution)
+    : lattice_(resolution), world_(uniform_node<detail::World>(Occupancy::kUnknown)) {}
+
+void VoxelGrid::fill(const Block& block, Occupancy state) {
+  const int mask = (1 << block.log2_edge) - 1;
+  if (block.log2_edge < 0 || block.log2_edge > 16 ||
+      ((block.corner.x | block.corner.y | block.corner.z) & mask) != 0)
+    throw std::invalid_argument("block of edge 2^" + std::to_string(block.log2_edge) + " at key (" +
+                                std::to_string(block.corner.x) + ", " + std::to_string(block.corner.y) +
+                                ", " + std::to_string(block.corner.z) + ") is not aligned to its edge");
+  const auto& all = uniform_node<detail::World>(state);
+  if (world_ == all) return;
+  if (world_.own().fill(block.corner, block.log2_edge, state)) world_ = all;
+}
+
+void VoxelGrid::for_each_block(
+    const std::function<void(const Block&, const Brick*, Occupancy)>& visit) const {
+  visit_blocks(*world_, {}, visit);
+}
+
+std::optional<KeyBox> VoxelGrid::known_bounds() const {
+  KeyBox box{{0xFFFF, 0xFFFF, 0xFFFF}, {0, 0, 0}};
+  bool any = false;
+  const auto grow = [&](const VoxelKey& corner, int x0, int y0, int z0, int x1, int y1, int z1) {
+    const auto along = [](std::uint16_t base, int i) { return static_cast<std::uint16_t>(base + i); };
+    any = true;
+    box.min = {std::min(box.min.x, along(corner.x, x0)), std::min(box.min.y, along(corner.y, y0)),
+               std::min(box.min.z, along(corner.z, z0))};
+    box.max = {std::max(box.max.x, along(corner.x, x1)), std::max(box.max.y, along(corner.y, y1)),
+               std::max(box.max.z, along(corner.z, z1))};
+  };
+  for_each_block([&](const Block& block, const Brick* brick, Occupancy) {
+    if (brick == nullptr) {
+      const int last = (1 << block.log2_edge) - 1;
+      grow(block.corner, 0, 0, 0, last, last, last);
+      return;
+    }
+    std::uint64_t square = 0, layers = 0,
+                  row = 0;  // what is known, projected along z, on z, and along z and y
+    for (std::size_t z = 0; z < 8; ++z) {
+      const std::uint64_t known = brick->free[z] | brick->occupied[z];
+      square |= known;
+      if (known != 0) layers |= std::uint64_t{1} << z;
+    }
+    for (int y = 0; y < 8; ++y) row |= (square >> (8 * y)) & 0xFF;
+    grow(block.corner, low(row), low(square) / 8, low(layers), high(row), high(square) / 8, high(layers));
+  });
+  if (!any) return std::nullopt;
+  return box;
+}
+
+std::array<std::uint64_t, 3> VoxelGrid::count() const {
+  std::array<std::uint64_t, 3> voxels{};
+  for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    if (brick == nullptr) {
+      voxels[static_cast<std::size_t>(state)] += std::uint64_t{1} << (3 * block.log2_edge);
+      return;
+    }
+    for (std::size_t z = 0; z < 8; ++z) {
+      voxels[1] += static_cast<std::uint64_t>(std::popcount(brick->free[z]));
+      voxels[2] += static_cast<std::uint64_t>(std::popcount(brick->occupied[z]));
+    }
+  });
+  voxels[0] = (std::uint64_t{1} << 48) - voxels[1] - voxels[2];
+  return voxels;
+}
+
+std::size_t VoxelGrid::memory_bytes() const { return sizeof(*this) + bytes(*world_); }
+
+bool operator==(const VoxelGrid& a, const VoxelGrid& b) {
+  if (a.resolution() != b.resolution()) return false;
+  bool equal = true;
+  for_each_change(a, b, [&](const Block&) { equal = false; });
+  return equal;
+}
+
+void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
+                     const std::function<void(const Block&)>& visit) {
+  if (before.world_ == after.world_) return;
+  visit_changes(*before.world_, *after.world_, {}, visit);
+}
+
+}  // namespace frontlux
