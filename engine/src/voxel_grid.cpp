@@ -8,22 +8,12 @@
 namespace frontlux {
 namespace {
 
+using detail::child_corner;
 using detail::Shared;
 using detail::Tile;
 using detail::uniform_node;
 
 constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
-
-// Corner of the child with number `index` in a node whose children, 2^kBits a side, have edge 2^kChildLog2.
-template <int kChildLog2, int kBits>
-VoxelKey child_corner(const VoxelKey& corner, int index) {
-  constexpr int kMask = (1 << kBits) - 1;
-  const auto along = [](std::uint16_t base, int i) {
-    return static_cast<std::uint16_t>(base + (i << kChildLog2));
-  };
-  return {along(corner.x, index & kMask), along(corner.y, (index >> kBits) & kMask),
-          along(corner.z, index >> (2 * kBits))};
-}
 
 template <class Visit>
 void visit_blocks(const Tile& tile, const VoxelKey& corner, const Visit& visit) {

@@ -48,8 +48,8 @@ class RayCaster {
   void visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                UnknownPolicy unknown) const;
 
-  /// Follows a map that has changed. What changed is found by comparing `grid` with the snapshot held, which passes
-  /// over the parts they share: cheap for an edited copy, right for any grid.
+  /// Follows a map that has changed. What changed is found by comparing `grid` with the snapshot held, which
+  /// passes over the parts they share: cheap for an edited copy, right for any grid.
   /// @throws std::invalid_argument if the resolution differs from the one this caster was made with
   void update(const VoxelGrid& grid);
 

@@ -76,10 +76,11 @@ class VoxelGrid {
   /// True if every voxel has the same state in both, and the resolutions are equal.
   friend bool operator==(const VoxelGrid& a, const VoxelGrid& b);
 
-  /// Storage node of 64 x 64 x 64 voxels. For the casters' inner loops.
+  /// The storage behind the grid, for the casters' inner loops.
   [[nodiscard]] const detail::Tile& tile(const VoxelKey& key) const {
     return *world_->child(key)->child(key)->child(key);
   }
+  [[nodiscard]] const detail::Shared<detail::World>& storage() const { return world_; }
 
   friend void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
                               const std::function<void(const Block&)>& visit);

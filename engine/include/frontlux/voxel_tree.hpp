@@ -72,6 +72,17 @@ template <int kChildLog2, int kBits>
          ((key.x >> kChildLog2) & kMask);
 }
 
+/// Corner of the child with number `index` in a node whose children, 2^kBits a side, have edge 2^kChildLog2.
+template <int kChildLog2, int kBits>
+[[nodiscard]] constexpr VoxelKey child_corner(const VoxelKey& corner, int index) {
+  constexpr int kMask = (1 << kBits) - 1;
+  const auto along = [](std::uint16_t base, int i) {
+    return static_cast<std::uint16_t>(base + (i << kChildLog2));
+  };
+  return {along(corner.x, index & kMask), along(corner.y, (index >> kBits) & kMask),
+          along(corner.z, index >> (2 * kBits))};
+}
+
 /// 8 x 8 x 8 bricks. A slot below 3 names one of the three uniform bricks, which every tile keeps in front,
 /// so that a look-up needs no branch.
 struct Tile {

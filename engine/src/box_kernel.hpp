@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+namespace frontlux::detail {
+
+/// A box, by its centre and half its edges [voxels]; both are exact in float.
+struct LocalBox {
+  float center[3];
+  float half[3];
+};
+
+/// The test of one box against a packet of `size` rays in Embree's layout: arrays of `size` floats after each
+/// other, in the order of RTCRayN's and RTCHitN's fields. Lanes whose `valid` is 0 are left alone.
+struct BoxKernel {
+  /// A ray that surely passes through the box ends (t_far = -inf); one that comes within the tolerance of it
+  /// without surely passing through gets `too_close[id] = 1`.
+  void (*occluded)(const LocalBox& box, float tolerance, const int* valid, float* rays, unsigned size,
+                   std::uint8_t* too_close);
+  /// A ray that comes within the tolerance of the box takes it as its hit if it enters it before its t_far.
+  void (*intersect)(const LocalBox& box, float tolerance, const int* valid, float* ray_hits, unsigned size,
+                    unsigned primitive, unsigned geometry);
+};
+
+/// The version for this machine's instruction set, chosen once.
+const BoxKernel& box_kernel();
+
+}  // namespace frontlux::detail
