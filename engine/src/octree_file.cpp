@@ -29,7 +29,7 @@ constexpr const char* kCheckHeader =
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what,
                        const std::string& advice) {
-  throw std::runtime_error(file.string() + ": " + what + "; " + advice);
+  throw std::runtime_error((file.empty() ? "''" : file.string()) + ": " + what + "; " + advice);
 }
 
 [[noreturn]] void fail_at(const std::filesystem::path& file, std::size_t byte, const std::string& what,

@@ -3,12 +3,24 @@
 #include <algorithm>
 
 namespace frontlux::detail {
+namespace {
+
+// Of a direction as castRay walks along it: what is not a number acts as 0, and beside an infinite component the
+// others do too.
+Eigen::Vector3d unit_vector(const Eigen::Vector3f& direction) {
+  Eigen::Array3d d = direction.cast<double>().array();
+  d = d.isNaN().select(0.0, d);
+  if (d.isInf().any()) d = d.isInf().select(d.sign(), 0.0);
+  return d.matrix().normalized();
+}
+
+}  // namespace
 
 Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
              const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key) {
   Hit hit{stop, state, key, lattice.center(key), ray.origin, 0.0F};
   if (key == origin_key) return hit;
-  const Eigen::Vector3d unit = direction.cast<double>().normalized();
+  const Eigen::Vector3d unit = unit_vector(direction);
   const Eigen::Vector3d origin = ray.origin.cast<double>();
   const std::array<int, 3> cell = as_array(key);
   double distance = 0.0;

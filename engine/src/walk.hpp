@@ -112,7 +112,9 @@ inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& e
 inline double time_surely_in_range(double max_range, double resolution, const Eigen::Vector3f& direction) {
   if (!(max_range > 0.0)) return std::numeric_limits<double>::infinity();
   if (!(std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F)) return -std::numeric_limits<double>::infinity();
-  return (max_range - resolution) * 0.999;
+  // An origin on a face can make the first crossings come at times far below zero: then time tells nothing.
+  const double time = (max_range - resolution) * 0.999;
+  return time > 0.0 ? time : -std::numeric_limits<double>::infinity();
 }
 
 /// Completes a hit with what follows from the voxel it ended in. One function for all casters, so that entry

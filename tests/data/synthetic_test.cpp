@@ -1,0 +1,284 @@
+#include <frontlux/synthetic/box_set.hpp>
+#include <frontlux/synthetic/cache.hpp>
+#include <frontlux/synthetic/maps.hpp>
+#include <frontlux/synthetic/random.hpp>
+#include <frontlux/synthetic/scanner.hpp>
+#include <frontlux/synthetic/scene.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontlux::synthetic {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  EXPECT_TRUE(stream) << file;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class SyntheticFiles : public testing::Test {
+ protected:
+  SyntheticFiles() {
+    folder_ /= std::string("frontlux_") + testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~SyntheticFiles() override { fs::remove_all(folder_); }
+
+  std::string make(const MapRecipe& recipe, std::uint64_t seed) {
+    write_map(recipe, seed, folder_ / recipe.file_name());
+    return bytes_of(folder_ / recipe.file_name());
+  }
+
+  fs::path folder_ = testing::TempDir();
+};
+
+std::optional<BoxSet::Hit> first_of_all(const std::vector<BoxSet>& single, const Eigen::Vector3d& origin,
+                                        const Eigen::Vector3d& direction) {
+  std::optional<BoxSet::Hit> best;
+  for (std::size_t i = 0; i < single.size(); ++i) {
+    const auto hit = single[i].first_hit(origin, direction);
+    if (hit && (!best || hit->distance < best->distance)) best = {hit->distance, i};
+  }
+  return best;
+}
+
+TEST(BoxSet, MeasuresTheDistanceToASolid) {
+  const BoxSet set({Box(Eigen::Vector3d(2, -1, -1), Eigen::Vector3d(3, 1, 1)),
+                    Box(Eigen::Vector3d(5, -1, -1), Eigen::Vector3d(6, 1, 1))});
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(set.first_hit({0, 0, 0}, x), (BoxSet::Hit{2.0, 0}));
+  EXPECT_EQ(set.first_hit({0, 1, 1}, x), (BoxSet::Hit{2.0, 0}));  // along an edge
+  EXPECT_EQ(set.first_hit({4, 0, 0}, x), (BoxSet::Hit{1.0, 1}));
+  EXPECT_EQ(set.first_hit({4, 0, 0}, -x), (BoxSet::Hit{1.0, 0}));
+  EXPECT_EQ(set.first_hit({2.5, 0, 0}, x), (BoxSet::Hit{0.0, 0}));
+  EXPECT_EQ(set.first_hit({0, 1.5, 0}, x), std::nullopt);
+  EXPECT_EQ(set.first_hit({7, 0, 0}, x), std::nullopt);
+  const auto slanted = set.first_hit({0, -1, 0}, Eigen::Vector3d(4, 3, 0) / 5.0);
+  ASSERT_TRUE(slanted);
+  EXPECT_DOUBLE_EQ(slanted->distance, 2.5);
+  EXPECT_EQ(BoxSet({}).first_hit({0, 0, 0}, x), std::nullopt);
+}
+
+TEST(BoxSet, FirstHitEqualsTestingEveryBox) {
+  Random random(7);
+  std::vector<Box> boxes;
+  std::vector<BoxSet> single;
+  for (int i = 0; i < 300; ++i) {
+    // Whole coordinates: boxes share faces, edges and corners, and rays run along them.
+    const Eigen::Vector3d low(random.whole(-12, 12), random.whole(-12, 12), random.whole(-6, 6));
+    const Eigen::Vector3d size(random.whole(0, 3), random.whole(0, 3), random.whole(0, 3));
+    boxes.emplace_back(low, low + size);
+    single.emplace_back(std::vector<Box>{boxes.back()});
+  }
+  const BoxSet set(boxes);
+  int hits = 0;
+  constexpr int kRays = 20'000;
+  for (int i = 0; i < kRays; ++i) {
+    Eigen::Vector3d origin(random.between(-14, 14), random.between(-14, 14), random.between(-8, 8));
+    Eigen::Vector3d direction(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    if (i % 4 == 1) origin = origin.array().round().matrix().eval();
+    if (i % 4 >= 2) {
+      direction = Eigen::Vector3d::Unit(random.whole(0, 2)) * (random.one_in(2) ? 1.0 : -1.0);
+      if (i % 4 == 3) origin = origin.array().round().matrix().eval();
+    }
+    direction.normalize();
+    const auto hit = set.first_hit(origin, direction);
+    ASSERT_EQ(hit, first_of_all(single, origin, direction))
+        << origin.transpose() << ", " << direction.transpose();
+    hits += hit ? 1 : 0;
+  }
+  EXPECT_GT(hits, kRays / 4);
+  EXPECT_LT(hits, kRays);
+}
+
+TEST(BoxSet, RefusesBoxesWithoutExtent) {
+  EXPECT_THROW(BoxSet({Box()}), std::invalid_argument);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(BoxSet({Box(Eigen::Vector3d(0, 0, nan), Eigen::Vector3d(1, 1, 1))}), std::invalid_argument);
+}
+
+TEST(Scenes, KeepTheirFacesOffTheVoxelFaces) {
+  for (const Scene& scene :
+       {make_building_scene(1), make_room_scene(1), make_corridor_scene(1), make_hall_scene(1)}) {
+    for (const Box& box : scene.solids.boxes()) {
+      for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const double cells = corner[axis] / 0.05;
+          ASSERT_GT(std::abs(cells - std::round(cells)), 0.3) << corner.transpose();
+        }
+      }
+    }
+  }
+}
+
+constexpr double kStep = 0.2;  // [m]
+
+// Floods a storey with a body 0.6 m wide and 1.7 m high, from the first place.
+std::set<std::pair<int, int>> reachable_cells(const Scene& scene, const Eigen::Vector3d& from) {
+  const auto fits = [&](int i, int j) {
+    const Eigen::Vector3d at(from.x() + kStep * i, from.y() + kStep * j, from.z());
+    return !scene.solids.overlaps(
+        Box(at - Eigen::Vector3d(0.3, 0.3, 1.1), at + Eigen::Vector3d(0.3, 0.3, 0.6)));
+  };
+  std::set<std::pair<int, int>> seen{{0, 0}};
+  std::vector<std::pair<int, int>> open{{0, 0}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    for (const auto& next : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
+      if (!seen.contains(next) && fits(next.first, next.second)) {
+        seen.insert(next);
+        open.push_back(next);
+      }
+    }
+  }
+  return seen;
+}
+
+TEST(Scenes, DoorsJoinAllRoomsOfAStoreyOfTheBuilding) {
+  const Scene scene = make_building_scene(1);
+  ASSERT_EQ(scene.floors.size(), 2U);
+  const auto places = draw_places(scene, 100, 3.0, 1);
+  ASSERT_EQ(places.size(), 100U);
+  for (const double floor : scene.floors) {
+    std::vector<Eigen::Vector3d> storey;
+    for (const Eigen::Vector3d& place : places) {
+      if (std::abs(place.z() - floor - 1.2) < 1e-9) storey.push_back(place);
+    }
+    ASSERT_GT(storey.size(), 20U);
+    const auto cells = reachable_cells(scene, storey.front());
+    for (const Eigen::Vector3d& place : storey) {
+      const Eigen::Vector3d offset = (place - storey.front()) / kStep;
+      // Beside furniture the body does not fit; two bodies on both sides of a wall are 0.8 m apart.
+      const bool reached = std::any_of(cells.begin(), cells.end(), [&](const std::pair<int, int>& cell) {
+        return std::hypot(cell.first - offset.x(), cell.second - offset.y()) * kStep < 0.75;
+      });
+      EXPECT_TRUE(reached) << place.transpose();
+    }
+  }
+}
+
+TEST(Scanner, RefusesWhatItCannotScan) {
+  const Scene scene = make_room_scene(1);
+  const std::vector<Eigen::Vector3d> places = draw_places(scene, 1, 1.0, 1);
+  EXPECT_THROW((void)scan(scene, places, {.resolution = 0.0}), std::invalid_argument);
+  EXPECT_THROW((void)scan(scene, places, {.max_range = -1.0}), std::invalid_argument);
+  EXPECT_THROW((void)scan(scene, places, {.rays = 0}), std::invalid_argument);
+  EXPECT_THROW((void)scan(scene, {scene.solids.boxes().front().center()}, {}), std::invalid_argument);
+  EXPECT_THROW((void)make_building(0.0), std::invalid_argument);
+}
+
+TEST(Scanner, FreesNothingBeyondTheOuterWalls) {
+  const double resolution = 0.3;
+  const auto tree = make_building(resolution);
+  const Box room = make_building_scene(1).room;
+  std::size_t free = 0;
+  for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
+    if (tree->isNodeOccupied(*leaf)) continue;
+    ++free;
+    const Eigen::Vector3d center(leaf.getX(), leaf.getY(), leaf.getZ());
+    const double reach = leaf.getSize() / 2.0;
+    ASSERT_TRUE(((center.array() + reach) < room.max().array() + resolution).all()) << center.transpose();
+    ASSERT_TRUE(((center.array() - reach) > room.min().array() - resolution).all()) << center.transpose();
+  }
+  EXPECT_GT(free, 100'000U);
+}
+
+TEST(Scanner, MapsHoldEveryKindOfLeaf) {
+  for (const auto make_scene : {make_room_scene, make_corridor_scene, make_hall_scene}) {
+    const Scene scene = make_scene(1);
+    const auto places = draw_places(scene, 4, 1.0, 1);
+    const auto tree = scan(scene, places, {.resolution = 0.2, .max_range = 8.0, .rays = 20'000});
+    for (const Eigen::Vector3d& place : places) {
+      const auto* node = tree->search(place.x(), place.y(), place.z());
+      ASSERT_NE(node, nullptr);
+      EXPECT_FALSE(tree->isNodeOccupied(*node));
+    }
+    tree->toMaxLikelihood();
+    tree->prune();
+    std::array<std::size_t, 2> leaves{};
+    std::size_t pruned = 0;
+    double known = 0.0;
+    for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
+      ++leaves[tree->isNodeOccupied(*leaf) ? 1 : 0];
+      pruned += leaf.getDepth() < tree->getTreeDepth() ? 1U : 0U;
+      known += std::pow(leaf.getSize(), 3);
+    }
+    Eigen::Vector3d size;
+    tree->getMetricSize(size.x(), size.y(), size.z());
+    EXPECT_GT(leaves[0], 1'000U);
+    EXPECT_GT(leaves[1], 1'000U);
+    EXPECT_GT(pruned, 100U);
+    EXPECT_LT(known, 0.97 * size.prod());
+  }
+}
+
+TEST(MapRecipes, NamesAreKnown) {
+  for (const MapRecipe& recipe : map_recipes()) EXPECT_EQ(&find_map_recipe(recipe.name), &recipe);
+  EXPECT_THROW((void)find_map_recipe("attic_0.1m"), std::invalid_argument);
+}
+
+TEST_F(SyntheticFiles, SeedDecidesTheBytes) {
+  for (const std::string_view name : {"room_0.1m", "color_room_0.2m", "hall_0.3m"}) {
+    const MapRecipe& recipe = find_map_recipe(name);
+    const std::string once = make(recipe, 5);
+    EXPECT_EQ(once, make(recipe, 5)) << name;
+    EXPECT_NE(once, make(recipe, 6)) << name;
+  }
+}
+
+TEST_F(SyntheticFiles, KeptMapsAreWhatIsMadeNow) {
+  std::size_t kept = 0;
+  for (const MapRecipe& recipe : map_recipes()) {
+    if (recipe.scene == SceneKind::kBuilding) continue;
+    const fs::path file = fs::path(FRONTLUX_DATA_DIR) / "maps" / recipe.file_name();
+    EXPECT_TRUE(bytes_of(file) == make(recipe, 1)) << file;
+    EXPECT_LT(fs::file_size(file), 500'000U) << file;
+    ++kept;
+  }
+  EXPECT_EQ(kept, 7U);
+}
+
+TEST_F(SyntheticFiles, EnsureMapMakesAMapOnce) {
+  int told = 0;
+  const auto tell = [&](std::string_view) { ++told; };
+  const fs::path file = ensure_map("hall_0.3m", folder_ / "new" / "folder", tell);
+  EXPECT_GT(told, 0);
+  EXPECT_TRUE(bytes_of(file) == make(find_map_recipe("hall_0.3m"), 1));
+  told = 0;
+  const auto written = fs::last_write_time(file);
+  EXPECT_EQ(ensure_map("hall_0.3m", folder_ / "new" / "folder", tell), file);
+  EXPECT_EQ(told, 0);
+  EXPECT_EQ(fs::last_write_time(file), written);
+  EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()), 1);
+  EXPECT_THROW((void)ensure_map("attic_0.1m", folder_), std::invalid_argument);
+}
+
+TEST_F(SyntheticFiles, LeavesNothingWhereItCannotWrite) {
+  const MapRecipe& recipe = find_map_recipe("hall_0.3m");
+  EXPECT_THROW(write_map(recipe, 1, folder_ / "missing" / "map.bt"), std::runtime_error);
+  fs::create_directories(folder_ / "taken.bt" / "inside");
+  EXPECT_THROW(write_map(recipe, 1, folder_ / "taken.bt"), std::runtime_error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+}  // namespace
+}  // namespace frontlux::synthetic

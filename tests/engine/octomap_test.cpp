@@ -1,0 +1,199 @@
+// The mirror of a tree, kept in step or rebuilt; the drop-in; files.
+
+#include "support/maps.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/octomap.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+octomap::OcTreeKey tree_key(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+
+template <class Tree>
+Occupancy state_by_search(const Tree& tree, const VoxelKey& key) {
+  const auto* node = tree.search(tree_key(key));
+  if (node == nullptr) return Occupancy::kUnknown;
+  return tree.isNodeOccupied(node) ? Occupancy::kOccupied : Occupancy::kFree;
+}
+
+template <class Tree>
+void expect_mirrors(const VoxelGrid& grid, const Tree& tree, int reach) {
+  for (int z = -reach; z < reach; ++z)
+    for (int y = -reach; y < reach; ++y)
+      for (int x = -reach; x < reach; ++x) {
+        const auto at = [](int offset) { return static_cast<std::uint16_t>(32768 + offset); };
+        const VoxelKey key{at(x), at(y), at(z)};
+        ASSERT_EQ(grid.at(key), state_by_search(tree, key)) << x << ' ' << y << ' ' << z;
+      }
+}
+
+octomap::Pointcloud random_cloud(Random& random, int points) {
+  octomap::Pointcloud cloud;
+  for (int i = 0; i < points; ++i)
+    cloud.push_back(static_cast<float>(random.uniform(-2, 2)), static_cast<float>(random.uniform(-2, 2)),
+                    static_cast<float>(random.uniform(-2, 2)));
+  return cloud;
+}
+
+TEST(VoxelGridOfATree, EqualsSearch) {
+  for (const NamedMap& map : small_maps()) {
+    SCOPED_TRACE(map.name);
+    expect_mirrors(make_voxel_grid(*map.tree), *map.tree, 60);
+  }
+  octomap::ColorOcTree color(0.2);
+  Random random(3);
+  for (int i = 0; i < 500; ++i)
+    color.updateNode(
+        octomap::point3d(static_cast<float>(random.uniform(-3, 3)), static_cast<float>(random.uniform(-3, 3)),
+                         static_cast<float>(random.uniform(-3, 3))),
+        random.one_in(2));
+  expect_mirrors(make_voxel_grid(color), color, 20);
+  EXPECT_TRUE(make_voxel_grid(octomap::OcTree(0.1)) == VoxelGrid(0.1));
+}
+
+TEST(VoxelGridOfATree, ARootWithoutChildrenFillsTheWorld) {
+  octomap::OcTree tree(0.1);
+  std::stringstream one_node;  // its log-odds, and no children
+  const float log_odds = 1.0F;
+  one_node.write(reinterpret_cast<const char*>(&log_odds), sizeof log_odds);
+  one_node.put('\0');
+  tree.readData(one_node);
+  VoxelGrid world(0.1);
+  world.fill({{}, 16}, Occupancy::kOccupied);
+  EXPECT_TRUE(make_voxel_grid(tree) == world);
+}
+
+// Insertions, deletions of what was seen, with and without the change list reset in between: always equal to
+// a rebuild.
+TEST(OctreeMirror, FollowsChangesExactly) {
+  for (const bool reset : {true, false}) {
+    octomap::OcTree tree(0.1);
+    Random random(5);
+    tree.insertPointCloud(random_cloud(random, 50), {0, 0, 0});
+    tree.enableChangeDetection(true);
+    OctreeMirror mirror(tree);
+    for (int round = 0; round < 30; ++round) {
+      const octomap::point3d origin(static_cast<float>(random.uniform(-1, 1)), 0.05F, 0.05F);
+      tree.insertPointCloud(random_cloud(random, 30), origin);
+      if (round % 7 == 3) tree.prune();
+      if (round % 7 == 5) tree.expand();
+      EXPECT_TRUE(mirror.update());
+      if (reset) tree.resetChangeDetection();
+      ASSERT_TRUE(mirror.grid() == make_voxel_grid(tree)) << round;
+    }
+  }
+}
+
+// A voxel that flips and flips back vanishes from OctoMap's list of changes.
+TEST(OctreeMirror, NoticesChangesThatUndoThemselves) {
+  octomap::OcTree tree(0.1);
+  tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
+  tree.enableChangeDetection(true);
+  OctreeMirror mirror(tree);
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 8; ++k) tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), i % 2 == 1);
+    EXPECT_TRUE(mirror.update());
+    ASSERT_TRUE(mirror.grid() == make_voxel_grid(tree)) << i;
+  }
+}
+
+TEST(OctreeMirror, RebuildsWhereChangeDetectionCannotBeTrusted) {
+  octomap::OcTree tree(0.1);
+  Random random(6);
+  tree.insertPointCloud(random_cloud(random, 50), {0, 0, 0});
+  OctreeMirror mirror(tree);
+
+  tree.insertPointCloud(random_cloud(random, 50), {0, 0, 0});  // not watched
+  EXPECT_FALSE(mirror.update());
+  EXPECT_TRUE(mirror.grid() == make_voxel_grid(tree));
+
+  tree.enableChangeDetection(true);
+  EXPECT_FALSE(mirror.update());  // it may have changed before it was watched
+  EXPECT_TRUE(mirror.update());
+
+  tree.setOccupancyThres(0.9);
+  EXPECT_FALSE(mirror.update());
+  EXPECT_TRUE(mirror.grid() == make_voxel_grid(tree));
+
+  tree.clear();
+  EXPECT_FALSE(mirror.update());
+  EXPECT_TRUE(mirror.grid() == VoxelGrid(0.1));
+
+  tree.insertPointCloud(random_cloud(random, 50), {0, 0, 0});
+  EXPECT_FALSE(mirror.update());
+  EXPECT_TRUE(mirror.grid() == make_voxel_grid(tree));
+
+  tree.setNodeValue(octomap::point3d(1.5F, 1.5F, 1.5F), 3.0F);  // told nobody
+  mirror.rebuild();
+  EXPECT_TRUE(mirror.grid() == make_voxel_grid(tree));
+}
+
+TEST(OctreeRayCaster, RefreshTakesANewSnapshot) {
+  octomap::OcTree tree(0.1);
+  tree.updateNode(octomap::point3d(1.05F, 0.05F, 0.05F), true);
+  OctreeRayCaster fast(tree);
+  const octomap::point3d origin(0.05F, 0.05F, 0.05F), east(1, 0, 0);
+  octomap::point3d end;
+  EXPECT_TRUE(fast.castRay(origin, east, end, true));
+  EXPECT_FLOAT_EQ(end.x(), 1.05F);
+  tree.updateNode(octomap::point3d(0.55F, 0.05F, 0.05F), true);
+  EXPECT_TRUE(fast.castRay(origin, east, end, true));
+  EXPECT_FLOAT_EQ(end.x(), 1.05F);  // still the snapshot
+  fast.refresh();
+  EXPECT_TRUE(fast.castRay(origin, east, end, true));
+  EXPECT_FLOAT_EQ(end.x(), 0.55F);
+
+  const std::vector<Ray> rays(2, Ray{{0.05F, 0.05F, 0.05F}, {1, 0, 0}, -1.0});
+  std::vector<Hit> hits(2);
+  fast.castRays(rays, hits, true);
+  EXPECT_FLOAT_EQ(hits[1].end.x(), 0.55F);
+}
+
+TEST(OctreeRayCaster, ServesColorTrees) {
+  octomap::ColorOcTree tree(0.2);
+  Random random(8);
+  for (int i = 0; i < 300; ++i)
+    tree.updateNode(
+        octomap::point3d(static_cast<float>(random.uniform(-2, 2)), static_cast<float>(random.uniform(-2, 2)),
+                         static_cast<float>(random.uniform(-2, 2))),
+        random.one_in(2));
+  const OctreeRayCaster fast(tree);
+  for (int i = 0; i < 2000; ++i) {
+    const auto any = [&] { return static_cast<float>(random.uniform(-2, 2)); };
+    const octomap::point3d origin(any(), any(), any()), direction(any(), any(), any());
+    octomap::point3d expected, end;
+    ASSERT_EQ(fast.castRay(origin, direction, end, true, 5.0),
+              tree.castRay(origin, direction, expected, true, 5.0));
+    ASSERT_EQ(end, expected);
+  }
+}
+
+TEST(ReadOctree, ReadsWhatOctomapWrote) {
+  const auto folder = std::filesystem::temp_directory_path() / "frontlux_read_octree_test";
+  std::filesystem::create_directories(folder);
+  const auto tree = make_random_tree(4, 0.25);
+  ASSERT_TRUE(tree->writeBinaryConst((folder / "tree.bt").string()));
+  ASSERT_TRUE(tree->write((folder / "tree.ot").string()));
+  for (const char* name : {"tree.bt", "tree.ot"}) {
+    const Octree read = read_octree(folder / name);
+    ASSERT_TRUE(std::holds_alternative<std::shared_ptr<octomap::OcTree>>(read));
+    EXPECT_TRUE(make_voxel_grid(*std::get<0>(read)) == make_voxel_grid(*tree)) << name;
+  }
+  octomap::ColorOcTree color(0.2);
+  color.updateNode(octomap::point3d(0.5F, 0.5F, 0.5F), true);
+  ASSERT_TRUE(color.write((folder / "color.ot").string()));
+  EXPECT_TRUE(
+      std::holds_alternative<std::shared_ptr<octomap::ColorOcTree>>(read_octree(folder / "color.ot")));
+  EXPECT_THROW((void)read_octree(folder / "missing.bt"), std::runtime_error);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace frontlux::test

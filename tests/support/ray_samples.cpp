@@ -1,0 +1,199 @@
+#include "support/ray_samples.hpp"
+
+#include "support/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontlux::test {
+namespace {
+
+class Sampler {
+ public:
+  Sampler(const VoxelGrid& grid, std::uint64_t seed) : grid_(grid), random_(seed) {
+    // The part that is mapped in detail: some trees also hold a few voxels kilometres away.
+    grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+      if (brick != nullptr || (state == Occupancy::kFree && block.log2_edge <= 6)) blocks_.push_back(block);
+    });
+    if (blocks_.empty()) blocks_.push_back({{32768, 32768, 32768}, 3});
+  }
+
+  Random& random() { return random_; }
+
+  VoxelKey any_key() {
+    const Block& block = blocks_[static_cast<std::size_t>(random_.bits() % blocks_.size())];
+    const auto along = [&](std::uint16_t base) {
+      const int edge = 1 << block.log2_edge;
+      return static_cast<std::uint16_t>(std::clamp(base + random_.below(edge + 4) - 2, 0, 65535));
+    };
+    return {along(block.corner.x), along(block.corner.y), along(block.corner.z)};
+  }
+  VoxelKey free_key() {
+    for (int attempt = 0; attempt < 64; ++attempt) {
+      const VoxelKey key = any_key();
+      if (grid_.at(key) == Occupancy::kFree) return key;
+    }
+    return any_key();
+  }
+  VoxelKey mostly_free_key() { return random_.one_in(8) ? any_key() : free_key(); }
+
+  // A point of a voxel along one axis, in half edges from its lower face: 0 face, 1 centre, 2 upper face; or
+  // anywhere.
+  float along(std::uint16_t key, int half_edges) {
+    const double low = (static_cast<int>(key) - Lattice::kOrigin) * grid_.resolution();
+    if (half_edges == 1) return static_cast<float>(grid_.lattice().center(key));
+    const double offset = half_edges >= 0 ? half_edges * 0.5 : random_.uniform(0.0, 1.0);
+    return static_cast<float>(low + offset * grid_.resolution());
+  }
+  Eigen::Vector3f point_in(const VoxelKey& key) {
+    switch (random_.below(4)) {
+      case 0:
+        return grid_.lattice().center(key);
+      case 1:
+        return {along(key.x, random_.below(3)), along(key.y, random_.below(3)),
+                along(key.z, random_.below(3))};
+      case 2:
+        return {along(key.x, random_.below(3)), along(key.y, -1), along(key.z, -1)};
+      default:
+        return {along(key.x, -1), along(key.y, -1), along(key.z, -1)};
+    }
+  }
+
+  Eigen::Vector3f origin() {
+    if (random_.one_in(400)) {
+      const float nan = std::numeric_limits<float>::quiet_NaN(),
+                  infinity = std::numeric_limits<float>::infinity();
+      const float edge = static_cast<float>(32768.0 * grid_.resolution());
+      const float odd[] = {nan, infinity, -infinity, 1e30F, edge, -edge, std::nextafter(edge, 0.0F), -0.0F};
+      Eigen::Vector3f p = point_in(any_key());
+      p[random_.below(3)] = odd[random_.below(8)];
+      return p;
+    }
+    if (random_.one_in(100)) {  // far outside everything mapped
+      const double reach = 32768.0 * grid_.resolution();
+      return Eigen::Vector3d(random_.uniform(-reach, reach), random_.uniform(-reach, reach),
+                             random_.uniform(-reach, reach))
+          .cast<float>();
+    }
+    return point_in(mostly_free_key());
+  }
+
+  Eigen::Vector3f direction(const Eigen::Vector3f& origin) {
+    const auto sign = [&] { return static_cast<float>(random_.below(3) - 1); };
+    const auto at_random = [&] { return static_cast<float>(random_.uniform(-1.0, 1.0)); };
+    const auto tiny = [&] {
+      return static_cast<float>(std::ldexp(random_.uniform(-1.0, 1.0), -random_.below(150)));
+    };
+    Eigen::Vector3f d;
+    switch (random_.below(10)) {
+      case 0:
+        d = {sign(), sign(), sign()};
+        break;  // axes, diagonals, zero
+      case 1:
+        d = Eigen::Vector3f::Zero();
+        d[random_.below(3)] = at_random();
+        break;  // along an axis
+      case 2:
+        d = {sign() * 2.0F, sign(), sign() * 3.0F};
+        break;  // through lattice points
+      case 3:
+        d = {sign(), sign(), tiny()};
+        break;  // all but parallel to a face
+      case 4:
+        d = {at_random(), tiny(), sign()};
+        break;
+      case 5:
+      case 6:
+        d = point_in(any_key()) - origin;
+        break;  // to corners, edges, centres
+      default:
+        d = {at_random(), at_random(), at_random()};
+        break;
+    }
+    if (random_.one_in(20))
+      d *= std::ldexp(1.0F, random_.below(250) - 130);  // overflows and denormals among them
+    if (random_.one_in(300)) {
+      const float odd[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                           std::numeric_limits<float>::denorm_min(), -0.0F};
+      d[random_.below(3)] = odd[random_.below(4)];
+    }
+    return d;
+  }
+
+  double range() {
+    const double voxel = grid_.resolution();
+    switch (random_.below(12)) {
+      case 0:
+        return random_.uniform(0.0, 2.0) * voxel;
+      case 1:
+        return random_.below(20) * voxel;  // exactly at centres of voxels along an axis
+      case 2:
+        return (random_.below(20) + 0.5) * voxel;
+      case 3:
+        return random_.uniform(0.0, 1e4) * voxel;
+      case 4: {
+        const double odd[] = {1e-300, 1e300, std::numeric_limits<double>::infinity(), 1e-9, -0.0};
+        if (!random_.one_in(100)) return 30.0 * voxel;
+        return odd[random_.below(5)];
+      }
+      default:
+        return random_.uniform(0.0, 100.0) * voxel;
+    }
+  }
+
+ private:
+  const VoxelGrid& grid_;
+  Random random_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace
+
+std::vector<Ray> adversarial_rays(const VoxelGrid& grid, std::size_t count, std::uint64_t seed) {
+  Sampler sample(grid, seed);
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays) {
+    ray.origin = sample.origin();
+    ray.direction = sample.direction(ray.origin);
+    ray.max_range = sample.random().one_in(500) ? -1.0 : sample.range();
+  }
+  return rays;
+}
+
+std::vector<KeySegment> adversarial_key_segments(const VoxelGrid& grid, std::size_t count,
+                                                 std::uint64_t seed) {
+  Sampler sample(grid, seed);
+  std::vector<KeySegment> segments(count);
+  for (KeySegment& segment : segments) {
+    segment.from = sample.mostly_free_key();
+    if (sample.random().one_in(4)) {
+      segment.to = sample.any_key();
+      continue;
+    }
+    const int reach = 1 << (1 + sample.random().below(7));
+    const int length = sample.random().below(reach);
+    const bool on_diagonal = sample.random().one_in(5);
+    const auto along = [&](std::uint16_t from) {
+      const int step = on_diagonal ? length * (sample.random().below(3) - 1)
+                                   : sample.random().below(2 * reach + 1) - reach;
+      return static_cast<std::uint16_t>(std::clamp(from + step, 0, 65535));
+    };
+    segment.to = {along(segment.from.x), along(segment.from.y), along(segment.from.z)};
+  }
+  return segments;
+}
+
+std::vector<Segment> adversarial_segments(const VoxelGrid& grid, std::size_t count, std::uint64_t seed) {
+  Sampler sample(grid, seed ^ 0x5EED);
+  std::vector<Segment> segments(count);
+  const auto keys = adversarial_key_segments(grid, count, seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    segments[i] = {sample.point_in(keys[i].from), sample.point_in(keys[i].to)};
+    if (sample.random().one_in(200)) segments[i].from = sample.origin();
+    if (sample.random().one_in(200)) segments[i].to = sample.origin();
+  }
+  return segments;
+}
+
+}  // namespace frontlux::test
