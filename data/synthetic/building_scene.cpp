@@ -1,0 +1,196 @@
+#include "solids.hpp"
+
+#include <frontlux/synthetic/scene.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace frontlux::synthetic {
+namespace {
+
+// All in decimetres.
+constexpr Rect kInside{-380, -380, 380, 380};
+constexpr int kStoreys = 2;
+constexpr int kPitch = 49;
+constexpr int kSlab = 3;
+constexpr int kHeight = kStoreys * kPitch - kSlab;
+constexpr int kCorridorWidth = 30;
+constexpr int kDoorHead = 22;
+
+enum class Use { kRoom, kCorridor, kHall };
+
+struct Space {
+  Rect rect;
+  Use use = Use::kRoom;
+  bool tall = false;  // as high as the house
+};
+
+// A stretch of wall line between two neighbouring spaces.
+struct Border {
+  WallLine line;
+  std::size_t a = 0, b = 0;
+};
+
+void split(const Rect& rect, bool tall, Random& random, std::vector<Space>& spaces) {
+  constexpr int kShortest = 60;
+  const bool across_x = rect.width() >= rect.depth();
+  const int length = across_x ? rect.width() : rect.depth();
+  if (length < 2 * kShortest + random.whole(0, 60)) {
+    spaces.push_back({rect, Use::kRoom, tall});
+    return;
+  }
+  const int cut = random.whole(kShortest, length - kShortest);
+  Rect first = rect;
+  Rect second = rect;
+  if (across_x) {
+    first.x1 = second.x0 = rect.x0 + cut;
+  } else {
+    first.y1 = second.y0 = rect.y0 + cut;
+  }
+  split(first, tall, random, spaces);
+  split(second, tall, random, spaces);
+}
+
+// The hall in the middle, a corridor around it, four more from there to the outer walls, rooms in between. On
+// the east side they are as high as the house, so that the upper storey has none there.
+std::vector<Space> plan_storey(int storey, const Rect& hall, Random& random) {
+  const Rect ring = hall.grown(kCorridorWidth);
+  const Rect& all = kInside;
+  const int west = random.whole(hall.y0, hall.y1 - kCorridorWidth);
+  const int east = random.whole(hall.y0, hall.y1 - kCorridorWidth);
+  const int south = random.whole(hall.x0 + 40, hall.x1 - kCorridorWidth - 40);
+  const int north = random.whole(hall.x0 + 40, hall.x1 - kCorridorWidth - 40);
+  std::vector<Space> spaces{{hall, Use::kHall},
+                            {{ring.x0, ring.y0, hall.x0, ring.y1}, Use::kCorridor},
+                            {{hall.x1, ring.y0, ring.x1, ring.y1}, Use::kCorridor},
+                            {{hall.x0, ring.y0, hall.x1, hall.y0}, Use::kCorridor},
+                            {{hall.x0, hall.y1, hall.x1, ring.y1}, Use::kCorridor},
+                            {{all.x0, west, ring.x0, west + kCorridorWidth}, Use::kCorridor},
+                            {{south, all.y0, south + kCorridorWidth, ring.y0}, Use::kCorridor},
+                            {{north, ring.y1, north + kCorridorWidth, all.y1}, Use::kCorridor}};
+  split({all.x0, all.y0, ring.x0, west}, false, random, spaces);
+  split({all.x0, west + kCorridorWidth, ring.x0, all.y1}, false, random, spaces);
+  split({ring.x0, all.y0, south, ring.y0}, false, random, spaces);
+  split({south + kCorridorWidth, all.y0, ring.x1, ring.y0}, false, random, spaces);
+  split({ring.x0, ring.y1, north, all.y1}, false, random, spaces);
+  split({north + kCorridorWidth, ring.y1, ring.x1, all.y1}, false, random, spaces);
+  if (storey == 0) {
+    spaces.push_back({{ring.x1, east, all.x1, east + kCorridorWidth}, Use::kCorridor, true});
+    split({ring.x1, all.y0, all.x1, east}, true, random, spaces);
+    split({ring.x1, east + kCorridorWidth, all.x1, all.y1}, true, random, spaces);
+  }
+  return spaces;
+}
+
+std::vector<Border> find_borders(const std::vector<Space>& spaces) {
+  std::vector<Border> borders;
+  for (std::size_t a = 0; a < spaces.size(); ++a) {
+    for (std::size_t b = 0; b < spaces.size(); ++b) {
+      const Rect& p = spaces[a].rect;
+      const Rect& q = spaces[b].rect;
+      const int y0 = std::max(p.y0, q.y0);
+      const int y1 = std::min(p.y1, q.y1);
+      const int x0 = std::max(p.x0, q.x0);
+      const int x1 = std::min(p.x1, q.x1);
+      if (p.x1 == q.x0 && y0 < y1) borders.push_back({{true, p.x1, y0, y1}, a, b});
+      if (p.y1 == q.y0 && x0 < x1) borders.push_back({{false, p.y1, x0, x1}, a, b});
+    }
+  }
+  return borders;
+}
+
+std::size_t root(const std::vector<std::size_t>& parent, std::size_t i) {
+  while (parent[i] != i) i = parent[i];
+  return i;
+}
+
+std::vector<Opening> door(const WallLine& line, Random& random) {
+  constexpr int kJamb = 4;
+  const int longest = line.to - line.from - 2 * kJamb;
+  const int width = random.whole(12, 20);
+  if (longest < width) return {};
+  const int from = line.from + kJamb + random.whole(0, longest - width);
+  return {{from, from + width, 0, kDoorHead}};
+}
+
+// Pillars with openings between them: gates below, balustrades above.
+std::vector<Opening> arcade(const WallLine& line, int sill) {
+  std::vector<Opening> openings;
+  for (int from = line.from + 10; from + 40 <= line.to - 10; from += 60) {
+    openings.push_back({from, from + 40, sill, 36});
+  }
+  return openings;
+}
+
+void build_storey(int storey, const Rect& hall, Random& random, Solids& solids) {
+  const std::vector<Space> spaces = plan_storey(storey, hall, random);
+  std::vector<Border> borders = find_borders(spaces);
+  for (std::size_t i = borders.size(); i > 1; --i) {
+    std::swap(borders[i - 1], borders[static_cast<std::size_t>(random.whole(0, static_cast<int>(i) - 1))]);
+  }
+  const int floor = storey * kPitch;
+  std::vector<std::size_t> parent(spaces.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  std::vector<Rect> passages;
+  for (const Border& border : borders) {
+    const Use a = spaces[border.a].use;
+    const Use b = spaces[border.b].use;
+    std::vector<Opening> openings;
+    if (a == Use::kHall || b == Use::kHall) {
+      openings = arcade(border.line, storey == 0 ? 0 : 11);
+    } else if (a == Use::kCorridor && b == Use::kCorridor) {
+      parent[root(parent, border.a)] = root(parent, border.b);
+      continue;
+    } else if (root(parent, border.a) != root(parent, border.b) || random.one_in(5)) {
+      openings = door(border.line, random);
+    }
+    if (!openings.empty()) parent[root(parent, border.a)] = root(parent, border.b);
+    for (const Opening& opening : openings) passages.push_back(passage(border.line, opening));
+    const bool tall = spaces[border.a].tall || spaces[border.b].tall;
+    solids.add_wall(border.line, {floor, tall ? kHeight : floor + kPitch - kSlab}, openings);
+  }
+  for (const Space& space : spaces) {
+    if (space.use == Use::kHall && storey > 0) continue;
+    const int area = space.rect.width() * space.rect.depth();  // [dm^2]
+    const int count = area / (space.use == Use::kRoom ? 350 : 900);
+    solids.add_furniture(space.rect, floor, count, passages, random);
+  }
+}
+
+}  // namespace
+
+Scene make_building_scene(std::uint64_t seed) {
+  Random random(seed);
+  const int half_x = random.whole(160, 190);
+  const int half_y = random.whole(190, 220);
+  const Rect hall{-half_x, -half_y, half_x, half_y};
+
+  Solids solids;
+  solids.add_shell(kInside, {0, kHeight});
+  std::vector<double> floors;
+  for (int storey = 0; storey < kStoreys; ++storey) {
+    const int floor = storey * kPitch;
+    floors.push_back(metres(floor));
+    build_storey(storey, hall, random, solids);
+    if (storey == 0) continue;
+    const Rise slab{floor - kSlab, floor};
+    const Rect opening = hall.grown(-Solids::kHalfWall);
+    const int end = hall.x1 + kCorridorWidth;
+    solids.add({kInside.x0, kInside.y0, opening.x0, kInside.y1}, slab);
+    solids.add({opening.x1, kInside.y0, end, kInside.y1}, slab);
+    solids.add({opening.x0, kInside.y0, opening.x1, opening.y0}, slab);
+    solids.add({opening.x0, opening.y1, opening.x1, kInside.y1}, slab);
+  }
+  for (int x = hall.x0 + 40; x < hall.x1 - 20; x += 70) {
+    for (int y = hall.y0 + 40; y < hall.y1 - 20; y += 70) {
+      solids.add({x, y, x + 5, y + 5}, {0, kHeight});
+    }
+  }
+  const Box room(Eigen::Vector3d(metres(kInside.x0), metres(kInside.y0), metres(0)),
+                 Eigen::Vector3d(metres(kInside.x1), metres(kInside.y1), metres(kHeight)));
+  return {BoxSet(std::move(solids.boxes)), room, std::move(floors)};
+}
+
+}  // namespace frontlux::synthetic

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <frontlux/synthetic/scanner.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace frontlux::synthetic {
+
+/// What a map shows: see `make_room_scene` and its like.
+enum class SceneKind : std::uint8_t { kRoom, kCorridor, kHall, kBuilding };
+
+/// A map that this project makes itself.
+struct MapRecipe {
+  std::string_view name;
+  std::string_view extension;  ///< ".bt", or ".ot" with probabilities
+  SceneKind scene = SceneKind::kRoom;
+  double resolution = 0.0;  ///< [m]
+  bool color = false;       ///< an `octomap::ColorOcTree`
+
+  [[nodiscard]] std::string file_name() const { return std::string(name) + std::string(extension); }
+};
+
+/// All of them: the small ones kept in `data/maps`, then the large ones made where they are needed.
+[[nodiscard]] std::span<const MapRecipe> map_recipes();
+
+/// @throws std::invalid_argument naming the known maps, if this is none of them
+[[nodiscard]] const MapRecipe& find_map_recipe(std::string_view name);
+
+/// Makes a map and writes it. The file appears complete or not at all; one that is there is replaced. The
+/// same recipe and seed give the same bytes.
+/// @throws std::runtime_error naming the file, if it cannot be written
+void write_map(const MapRecipe& recipe, std::uint64_t seed, const std::filesystem::path& file,
+               const ScanProgress& progress = {});
+
+/// `make_building_scene` seen up to 9 m from each of 100 places: 77 x 77 x 10 m, about a third of it unknown.
+/// Takes seconds at 0.3 m, the best part of a minute at 0.1 m. The tree holds probabilities; the file of the
+/// same map only their maximum likelihood.
+/// @param resolution [m]
+/// @throws std::invalid_argument unless it is from 0.02 to 2 m
+[[nodiscard]] std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed = 1,
+                                                             const ScanProgress& progress = {});
+
+}  // namespace frontlux::synthetic

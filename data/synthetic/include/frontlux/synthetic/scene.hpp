@@ -1,0 +1,34 @@
+#pragma once
+
+#include <frontlux/synthetic/box_set.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace frontlux::synthetic {
+
+/// A closed room full of solid boxes: the ground truth of a synthetic map. World frame, z up.
+///
+/// Every face lies 3 cm above a multiple of 0.1 m, so that it never coincides with a voxel face of a map
+/// whose resolution is a multiple of 0.05 m; the lowest floor's top is at z = -0.07 m.
+struct Scene {
+  BoxSet solids;
+  Box room;                    ///< inside of the outer walls, floor and roof [m]
+  std::vector<double> floors;  ///< heights of the storeys' floors [m]
+};
+
+/// 77 x 77 x 10 m: two storeys of rooms, corridors and furniture around a hall, which like the rooms on the
+/// east side is as high as the house. Doors join all rooms of a storey; galleries join both storeys with the
+/// hall.
+[[nodiscard]] Scene make_building_scene(std::uint64_t seed);
+
+/// 6 x 5 x 3 m: a furnished room and a side room behind a door.
+[[nodiscard]] Scene make_room_scene(std::uint64_t seed);
+
+/// 20 x 9 x 3 m: a corridor with pillars along one wall and side rooms, one of them without a door.
+[[nodiscard]] Scene make_corridor_scene(std::uint64_t seed);
+
+/// 18 x 14 x 7 m: a hall with columns, crates and a gallery.
+[[nodiscard]] Scene make_hall_scene(std::uint64_t seed);
+
+}  // namespace frontlux::synthetic

@@ -1,0 +1,122 @@
+#include <frontlux/synthetic/maps.hpp>
+
+#include <array>
+#include <cstddef>
+#include <fstream>
+#include <ios>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace frontlux::synthetic {
+namespace {
+
+constexpr std::array kRecipes{
+    MapRecipe{"room_0.05m", ".bt", SceneKind::kRoom, 0.05},
+    MapRecipe{"room_0.1m", ".bt", SceneKind::kRoom, 0.1},
+    MapRecipe{"room_0.2m", ".ot", SceneKind::kRoom, 0.2},
+    MapRecipe{"color_room_0.2m", ".ot", SceneKind::kRoom, 0.2, true},
+    MapRecipe{"corridor_0.1m", ".bt", SceneKind::kCorridor, 0.1},
+    MapRecipe{"hall_0.2m", ".bt", SceneKind::kHall, 0.2},
+    MapRecipe{"hall_0.3m", ".bt", SceneKind::kHall, 0.3},
+    MapRecipe{"building_0.3m", ".bt", SceneKind::kBuilding, 0.3},
+    MapRecipe{"building_0.1m", ".bt", SceneKind::kBuilding, 0.1},
+};
+
+struct Survey {
+  Scene scene;
+  std::vector<Eigen::Vector3d> places;
+  ScanOptions options;
+};
+
+Survey plan_survey(SceneKind kind, double resolution, std::uint64_t seed) {
+  const auto survey = [&](Scene scene, std::size_t places, double spacing, double range) {
+    // So many rays that neighbours are about a voxel apart where they are longest.
+    constexpr double kPi = 3.141592653589793;
+    const int rays = static_cast<int>(4.0 * kPi * range * range / (resolution * resolution));
+    auto drawn = draw_places(scene, places, spacing, seed);
+    return Survey{std::move(scene), std::move(drawn), {resolution, range, rays, seed}};
+  };
+  switch (kind) {
+    case SceneKind::kRoom:
+      return survey(make_room_scene(seed), 3, 1.0, 5.0);
+    case SceneKind::kCorridor:
+      return survey(make_corridor_scene(seed), 5, 2.0, 8.0);
+    case SceneKind::kHall:
+      return survey(make_hall_scene(seed), 4, 4.0, 9.0);
+    case SceneKind::kBuilding:
+      break;
+  }
+  return survey(make_building_scene(seed), 100, 3.0, 9.0);
+}
+
+void write_tree(const MapRecipe& recipe, std::uint64_t seed, const ScanProgress& progress,
+                std::ostream& stream) {
+  const Survey survey = plan_survey(recipe.scene, recipe.resolution, seed);
+  if (recipe.color) {
+    scan_in_color(survey.scene, survey.places, survey.options, progress)->write(stream);
+    return;
+  }
+  const auto tree = scan(survey.scene, survey.places, survey.options, progress);
+  if (recipe.extension == ".ot") {
+    tree->write(stream);
+    return;
+  }
+  // Voxels that differ only in their probability are one leaf in a .bt file.
+  tree->toMaxLikelihood();
+  tree->prune();
+  tree->writeBinaryConst(stream);
+}
+
+// Two processes may make the same map at once.
+std::filesystem::path temporary_beside(const std::filesystem::path& file) {
+  std::ostringstream name;
+  name << '.' << file.filename().string() << '.' << std::hex << std::random_device()() << ".tmp";
+  return file.parent_path() / name.str();
+}
+
+}  // namespace
+
+std::span<const MapRecipe> map_recipes() { return kRecipes; }
+
+const MapRecipe& find_map_recipe(std::string_view name) {
+  std::string known;
+  for (const MapRecipe& recipe : kRecipes) {
+    if (recipe.name == name) return recipe;
+    known.append(" ").append(recipe.name);
+  }
+  throw std::invalid_argument("no synthetic map is called '" + std::string(name) + "'; there are:" + known);
+}
+
+void write_map(const MapRecipe& recipe, std::uint64_t seed, const std::filesystem::path& file,
+               const ScanProgress& progress) {
+  const std::filesystem::path temporary = temporary_beside(file);
+  try {
+    std::ofstream stream(temporary, std::ios::binary);
+    if (!stream) throw std::runtime_error("cannot write " + temporary.string());
+    write_tree(recipe, seed, progress, stream);
+    stream.close();
+    if (!stream) throw std::runtime_error("cannot write " + temporary.string());
+    std::filesystem::rename(temporary, file);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed,
+                                               const ScanProgress& progress) {
+  if (!(resolution >= 0.02 && resolution <= 2.0)) {
+    throw std::invalid_argument("make_building: resolution is " + std::to_string(resolution) +
+                                " m, must be from 0.02 to 2 m");
+  }
+  const Survey survey = plan_survey(SceneKind::kBuilding, resolution, seed);
+  return scan(survey.scene, survey.places, survey.options, progress);
+}
+
+}  // namespace frontlux::synthetic
