@@ -1,0 +1,83 @@
+#include "nanovdb_peer.hpp"
+
+#include <nanovdb/util/GridBuilder.h>
+#include <nanovdb/util/HDDA.h>
+#include <nanovdb/util/Ray.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+namespace frontlux::bench {
+namespace {
+
+nanovdb::Coord coord(const VoxelKey& key) {
+  return {key.x - Lattice::kOrigin, key.y - Lattice::kOrigin, key.z - Lattice::kOrigin};
+}
+
+nanovdb::Vec3f center(const VoxelKey& key) {
+  const nanovdb::Coord c = coord(key);
+  return {static_cast<float>(c.x()) + 0.5F, static_cast<float>(c.y()) + 0.5F,
+          static_cast<float>(c.z()) + 0.5F};
+}
+
+/// The face neighbours of a voxel that are not free.
+template <class Visit>
+void for_each_blocking_neighbour(const VoxelGrid& grid, const VoxelKey& voxel, Visit&& visit) {
+  for (std::uint16_t VoxelKey::*axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
+    for (const int step : {-1, 1}) {
+      const int k = voxel.*axis + step;
+      if (k < 0 || k >= Lattice::kKeysPerAxis) continue;
+      VoxelKey neighbour = voxel;
+      neighbour.*axis = static_cast<std::uint16_t>(k);
+      if (grid.at(neighbour) != Occupancy::kFree) visit(neighbour);
+    }
+  }
+}
+
+nanovdb::GridHandle<> build(const VoxelGrid& grid) {
+  nanovdb::GridBuilder<float> builder(0.0F);
+  auto voxels = builder.getAccessor();
+  const auto activate = [&](const VoxelKey& key) { voxels.setValue(coord(key), 1.0F); };
+  for (const Occupancy state : {Occupancy::kOccupied, Occupancy::kUnknown}) {
+    for (const VoxelKey& key : voxels_beside_free(grid, state)) {
+      activate(key);
+      for_each_blocking_neighbour(grid, key, activate);
+    }
+  }
+  return builder.getHandle<>();
+}
+
+bool visible(const KeySegment& segment, nanovdb::DefaultReadAccessor<float>& voxels) {
+  if (segment.from == segment.to) return true;
+  const nanovdb::Vec3f from = center(segment.from);
+  nanovdb::Vec3f direction = center(segment.to) - from;
+  const float length = direction.length();
+  direction /= length;
+  nanovdb::Ray<float> ray(from, direction, 1e-6F, length);
+  nanovdb::Coord met;
+  float time = 0;
+  // The march may step over the target into the voxel behind: that is taken for the target.
+  return !nanovdb::firstActive(ray, voxels, met, time) || met == coord(segment.to) || time >= length;
+}
+
+}  // namespace
+
+Peer make_nanovdb_peer(const VoxelGrid& grid) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto handle = std::make_shared<nanovdb::GridHandle<>>(build(grid));
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const auto query = [handle](std::span<const KeySegment> segments, std::span<std::uint8_t> answers) {
+    const nanovdb::NanoGrid<float>& voxels = *handle->grid<float>();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, segments.size(), 256), [&](const auto& block) {
+      auto accessor = voxels.getAccessor();
+      for (std::size_t i = block.begin(); i != block.end(); ++i)
+        answers[i] = visible(segments[i], accessor) ? 1 : 0;
+    });
+  };
+  return {"nanovdb", seconds.count(), static_cast<std::size_t>(handle->size()), query};
+}
+
+}  // namespace frontlux::bench

@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Draws the speed-up over castRay from the JSON of bench_rays: plot.py RESULTS.json CHART.svg"""
+
+import argparse
+import json
+import re
+import statistics
+import sys
+from collections import defaultdict
+from html import escape
+from pathlib import Path
+
+BASELINE = "octomap"
+ROW = re.compile(r"(?P<query>[^/]+)/(?P<map>[^/]+)/(?P<caster>[^/]+)/threads:(?P<threads>\d+)")
+
+WHAT_IT_ASKS = {
+    "visible_ugv": "ground robot to frontiers, 6 m",
+    "visible_uav": "aerial robot to frontiers, 10 m",
+    "cast_lidar": "32-beam lidar, 30 m",
+    "cast_random": "all directions, 10 m",
+    "cast_single": "castRay drop-in, ray by ray",
+}
+
+# Okabe and Ito's colours, told apart with any colour vision; (light, dark) background.
+COLOURS = {
+    "grid": ("#e69f00", "#e69f00"),
+    "embree": ("#0072b2", "#56b4e9"),
+    "nanovdb": ("#009e73", "#2cc29a"),
+}
+OTHER = ("#cc79a7", "#cc79a7")
+
+WIDTH, MARGIN, LABELS, VALUES = 900, 28, 330, 140
+BAR, GAP, ROW_GAP, SECTION = 13, 2, 15, 34
+
+
+def read_results(document):
+    """By map, query, threads and caster, in the order of the file's families: median rays per second and the
+    share of answers that agree."""
+    samples = defaultdict(list)
+    runs = [r for r in document["benchmarks"] if r.get("run_type", "iteration") == "iteration"]
+    for run in sorted(runs, key=lambda r: r.get("family_index", 0)):
+        row = ROW.match(run["run_name"])
+        if row and "items_per_second" in run:
+            key = (row["map"], row["query"], int(row["threads"]), row["caster"])
+            samples[key].append((run["items_per_second"], run.get("agreement", 1.0)))
+    results = defaultdict(lambda: defaultdict(dict))
+    for (map_name, query, threads, caster), values in samples.items():
+        rate = statistics.median(rate for rate, _ in values)
+        results[map_name][query].setdefault(threads, {})[caster] = (rate, min(a for _, a in values))
+    return results
+
+
+def digits(value):
+    return f"{value:.2f}" if value < 9.995 else f"{value:.1f}" if value < 99.95 else f"{value:.0f}"
+
+
+def ratio_text(value):
+    return f"{value:.1f}×" if value < 19.95 else f"{value:.0f}×"
+
+
+def tick_step(largest):
+    """A round step that gives four to nine ticks."""
+    step = 1.0
+    while largest / step > 9:
+        step *= 2.5 if str(step).startswith("2") else 2
+    return step
+
+
+class Drawing:
+    """Lines of an SVG file."""
+
+    def __init__(self):
+        self.lines = []
+
+    def text(self, x, y, content, style="", anchor="start"):
+        self.lines.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" class="{style}">'
+                          f'{escape(content)}</text>')
+
+    def line(self, x1, y1, x2, y2, style):
+        self.lines.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" class="{style}"/>')
+
+    def bar(self, x, y, width, height, caster):
+        # Square at the baseline, rounded at the value.
+        r = min(2.5, width / 2)
+        top, side = f"h{width - r:.1f}a{r:.1f} {r:.1f} 0 0 1 {r:.1f} {r:.1f}", f"v{height - 2 * r:.1f}"
+        bottom = f"a{r:.1f} {r:.1f} 0 0 1 {-r:.1f} {r:.1f}h{r - width:.1f}z"
+        self.lines.append(f'<path class="fill-{caster}" d="M{x:.1f} {y:.1f}{top}{side}{bottom}"/>')
+
+
+STYLE = """
+text{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
+.title{font-size:19px;font-weight:600}
+.map{font-size:14px;font-weight:600}
+.query{font-weight:500}
+.faint{font-size:11px}
+.strong{font-weight:600}
+.value{font-variant-numeric:tabular-nums;paint-order:stroke;stroke-width:3px}
+.rule{stroke-width:1}
+.base{stroke-width:1;stroke-dasharray:3 3}
+"""
+
+
+def style_sheet(casters):
+    def theme(index, ink, faint, rule, paper):
+        fills = "".join(f".fill-{c}{{fill:{COLOURS.get(c, OTHER)[index]}}}" for c in casters)
+        return (f"text{{fill:{ink}}}.faint{{fill:{faint}}}.rule{{stroke:{rule}}}.base{{stroke:{faint}}}"
+                f".paper{{fill:{paper}}}.value{{stroke:{paper}}}{fills}")
+
+    light = theme(0, "#1f2328", "#59636e", "#e4e8ec", "#ffffff")
+    dark = theme(1, "#e6edf3", "#9198a1", "#2a3038", "#0d1117")
+    return f"<style>{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}</style>"
+
+
+def compare(results, threads):
+    """[(map, [(query, castRay's rate, [(caster, rate, ratio, share of wrong answers)])])]"""
+    charts = []
+    for map_name, queries in results.items():
+        rows = []
+        for query, by_threads in queries.items():
+            found = by_threads.get(threads, {})
+            if BASELINE in found:
+                baseline = found.pop(BASELINE)[0]
+                bars = [(c, rate, rate / baseline, 1 - agreement) for c, (rate, agreement) in found.items()]
+                rows.append((query, baseline, bars))
+        if rows:
+            charts.append((map_name, rows))
+    if not charts:
+        raise ValueError(f"no rows of {BASELINE} to compare with")
+    return charts
+
+
+def draw(results, context):
+    counts = {t for queries in results.values() for by_threads in queries.values() for t in by_threads}
+    threads = max(counts, default=1)
+    charts = compare(results, threads)
+    every_bar = [bar for _, rows in charts for _, _, bars in rows for bar in bars]
+    casters = list(dict.fromkeys(caster for caster, *_ in every_bar))
+    largest = max((ratio for _, _, ratio, _ in every_bar), default=1.0)
+
+    left, right = MARGIN + LABELS, WIDTH - MARGIN - VALUES
+    step = tick_step(largest)
+    scale = (right - left) / max(largest, 1.0)
+    drawing = Drawing()
+    drawing.text(MARGIN, 40, "How many times as fast as OctoMap's castRay", "title")
+    facts = [context.get("cpu_name", ""), f"{threads} threads" if threads > 1 else "1 thread",
+             context.get("date", "")[:10], "the same rays for all, medians"]
+    drawing.text(MARGIN, 61, " · ".join(f for f in facts if f), "faint")
+    x = MARGIN
+    for caster in casters:
+        drawing.bar(x, 76, 22, 11, caster)
+        drawing.text(x + 29, 86, caster)
+        x += 29 + 7 * len(caster) + 22
+    drawing.line(x + 6, 74, x + 6, 89, "base")
+    drawing.text(x + 14, 86, "castRay = 1×")
+
+    y = 104
+    for map_name, rows in charts:
+        y += SECTION
+        drawing.text(MARGIN, y - 10, map_name, "map")
+        heights = [max(2 * (BAR + GAP), len(bars) * (BAR + GAP)) + ROW_GAP for _, _, bars in rows]
+        bottom = y + sum(heights)
+        tick = 0.0
+        while tick <= largest:
+            drawing.line(left + tick * scale, y - 4, left + tick * scale, bottom - ROW_GAP + 6, "rule")
+            drawing.text(left + tick * scale, bottom + 4, f"{tick:g}×" if tick else "0", "faint", "middle")
+            tick += step
+        for (query, baseline, bars), height in zip(rows, heights):
+            drawing.text(MARGIN, y + 11, query, "query")
+            drawing.text(left - 14, y + 18, f"castRay {digits(baseline * 1e-6)} Mrays/s", "faint", "end")
+            drawing.text(MARGIN, y + 25, WHAT_IT_ASKS.get(query, ""), "faint")
+            for i, (caster, rate, ratio, wrong) in enumerate(bars):
+                remark = f", {100 * wrong:.2g} % of answers wrong" if wrong > 0 else ""
+                top = y + i * (BAR + GAP)
+                drawing.bar(left, top, ratio * scale, BAR, caster)
+                drawing.lines.append(
+                    f'<text x="{left + ratio * scale + 7:.1f}" y="{top + 11:.1f}" class="value">'
+                    f'<tspan class="strong">{ratio_text(ratio)}</tspan>'
+                    f'<tspan class="faint" dx="8">{digits(rate * 1e-6)} Mrays/s{remark}</tspan></text>')
+            y += height
+        drawing.line(left + scale, bottom - sum(heights) - 4, left + scale, bottom - ROW_GAP + 6, "base")
+        y += 12
+    height = y + MARGIN - 8
+
+    head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height:.0f}" width="{WIDTH}" '
+            f'height="{height:.0f}" role="img"><title>Speed-up over castRay</title>')
+    paper = f'<rect class="paper" width="{WIDTH}" height="{height:.0f}" rx="8"/>'
+    return "\n".join([head, style_sheet(casters), paper, *drawing.lines, "</svg>", ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", type=Path, metavar="RESULTS.json")
+    parser.add_argument("chart", type=Path, metavar="CHART.svg")
+    arguments = parser.parse_args()
+    try:
+        document = json.loads(arguments.results.read_text(encoding="utf-8"))
+        svg = draw(read_results(document), document.get("context", {}))
+        arguments.chart.write_text(svg, encoding="utf-8")
+    except (OSError, ValueError, KeyError) as error:
+        print(f"plot.py: {arguments.results}: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
