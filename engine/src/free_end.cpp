@@ -15,7 +15,7 @@ namespace {
 // the direction. 1e-9 leaves a factor of 50 and more.
 constexpr double kRelativeError = 1e-9;
 
-struct Crossings {
+struct KeyLine {
   std::array<double, 3> position;  // of the origin, in voxels from key 0
   std::array<double, 3> direction;
   std::array<int, 3> step;
@@ -34,7 +34,7 @@ struct Crossings {
 
 std::optional<FreeEnd> find_free_end(const Lattice& lattice, const Ray& ray, const VoxelKey& key,
                                      const Eigen::Vector3f& direction) {
-  Crossings line{};
+  KeyLine line{};
   std::array<int, 3> voxel = as_array(key);
   double last = std::numeric_limits<double>::infinity();  // when the ray leaves the key range
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,12 +1,16 @@
 #include "walk.hpp"
 
+#include "grid_path.hpp"
+
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 
 namespace frontlux::detail {
 namespace {
 
-// Of a direction as castRay walks along it: what is not a number acts as 0, and beside an infinite component the
-// others do too.
+// Of a direction as castRay walks along it: what is not a number acts as 0, and beside an infinite component
+// the others do too.
 Eigen::Vector3d unit_vector(const Eigen::Vector3f& direction) {
   Eigen::Array3d d = direction.cast<double>().array();
   d = d.isNaN().select(0.0, d);
@@ -39,55 +43,61 @@ Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
   const auto start = lattice.key(ray.origin);
   if (!start) return {};
   const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
-  const auto end_in = [&](RayStop stop, Occupancy state, const std::array<int, 3>& key) {
-    return make_hit(lattice, ray, *start, direction, stop, state, as_key(key));
+  const auto end_in = [&](RayStop stop, Occupancy state, const VoxelKey& key) {
+    return make_hit(lattice, ray, *start, direction, stop, state, key);
   };
 
-  GridCursor cursor(grid, unknown, *start);
-  Walk<double> walk = make_walk(lattice, ray.origin, *start, direction);
-  const Occupancy origin_state = cursor.state(walk.key);
-  if (blocks(origin_state, unknown)) return end_in(stop_in(origin_state), origin_state, walk.key);
-  if (walk.stands_still()) return {};
+  const Occupancy origin_state = grid.at(*start);
+  if (blocks(origin_state, unknown)) return end_in(stop_in(origin_state), origin_state, *start);
+  const Crossings<double> line = crossings_of(lattice, ray.origin, *start, direction);
+  if (line.none()) return {};
 
+  std::array<int, 3> to_border = as_array(*start);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (line.step[i] > 0) to_border[i] = Lattice::kKeysPerAxis - 1 - to_border[i];
+  GridPath<double> path(grid, unknown, *start, line, to_border);
   const double range_matters_from = time_surely_in_range(ray.max_range, lattice.resolution(), direction);
   while (true) {
-    const int axis = walk.next_axis();
-    const auto a = static_cast<std::size_t>(axis);
-    if (walk.at_last_key(axis)) return end_in(RayStop::kLeftMap, cursor.state(walk.key), walk.key);
-    const int before = walk.key[a];
-    const double t = walk.t_max[a];
-    walk.advance(axis);
-    cursor.moved(walk.key, before ^ walk.key[a]);
-    if (t >= range_matters_from && out_of_range(ray.origin, lattice.center(as_key(walk.key)), ray.max_range))
-      return end_in(RayStop::kOutOfRange, cursor.state(walk.key), walk.key);
-    if (cursor.blocked(walk.key)) {
-      const Occupancy state = cursor.state(walk.key);
-      return end_in(stop_in(state), state, walk.key);
-    }
+    const double t = path.advance();
+    if (path.overstepped()) break;
+    path.follow();
+    if (t >= range_matters_from && out_of_range(ray.origin, lattice.center(path.key()), ray.max_range))
+      return end_in(RayStop::kOutOfRange, path.state(), path.key());
+    if (path.blocked()) return end_in(stop_in(path.state()), path.state(), path.key());
   }
+  const VoxelKey last = path.key_before_overstep();
+  return end_in(RayStop::kLeftMap, grid.at(last), last);
 }
 
 namespace {
 
+// How far `to` lies along a line from `from`, per axis; nothing if it lies behind.
+template <class Time>
+std::optional<std::array<int, 3>> steps_to(const Crossings<Time>& line, const VoxelKey& from,
+                                           const VoxelKey& to) {
+  const auto a = as_array(from), b = as_array(to);
+  std::array<int, 3> steps{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    steps[i] = (b[i] - a[i]) * line.step[i];
+    if (steps[i] < 0 || (line.step[i] == 0 && a[i] != b[i])) return std::nullopt;
+  }
+  return steps;
+}
+
 // Whether the path reaches `to` before it meets a blocker or passes `to` by.
 template <class Time>
-bool reaches(Walk<Time> walk, const VoxelKey& to, GridCursor cursor) {
-  const auto target = as_array(to);
-  std::array<int, 3> left{};
-  int total = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    left[i] = (target[i] - walk.key[i]) * walk.step[i];
-    if (left[i] < 0 || (walk.step[i] == 0 && target[i] != walk.key[i])) return false;
-    total += left[i];
-  }
+bool reaches(const VoxelGrid& grid, UnknownPolicy unknown, const Crossings<Time>& line, const VoxelKey& from,
+             const VoxelKey& to) {
+  const auto steps = steps_to(line, from, to);
+  if (!steps) return false;
+  GridPath<Time> path(grid, unknown, from, line, *steps);
   while (true) {
-    const auto a = static_cast<std::size_t>(walk.next_axis());
-    if (--left[a] < 0) return false;
-    const int before = walk.key[a];
-    walk.advance(static_cast<int>(a));
-    if (--total == 0) return true;
-    cursor.moved(walk.key, before ^ walk.key[a]);
-    if (cursor.blocked(walk.key)) return false;
+    path.advance();
+    if (path.exhausted()) return true;
+    if constexpr (std::is_same_v<Time, double>)
+      if (path.overstepped()) return false;
+    path.follow();
+    if (path.blocked()) return false;
   }
 }
 
@@ -98,13 +108,12 @@ bool walk_visible(const VoxelGrid& grid, const Segment& segment, UnknownPolicy u
   if (!from || !to) return false;
   if (*from == *to) return true;
   const Eigen::Vector3f direction = normalized_as_octomap(segment.to - segment.from);
-  return reaches(make_walk(grid.lattice(), segment.from, *from, direction), *to,
-                 GridCursor(grid, unknown, *from));
+  return reaches(grid, unknown, crossings_of(grid.lattice(), segment.from, *from, direction), *from, *to);
 }
 
 bool walk_visible(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
   if (segment.from == segment.to) return true;
-  return reaches(make_walk(segment.from, segment.to), segment.to, GridCursor(grid, unknown, segment.from));
+  return reaches(grid, unknown, crossings_of(segment.from, segment.to), segment.from, segment.to);
 }
 
 }  // namespace frontlux::detail
