@@ -1,4 +1,4 @@
-#include "solids.hpp"
+#include "modules.hpp"
 
 #include <frontlux/synthetic/scene.hpp>
 
@@ -10,14 +10,14 @@
 namespace frontlux::synthetic {
 namespace {
 
-// All in decimetres.
-constexpr Rect kInside{-380, -380, 380, 380};
+// All in modules of 0.3 m. The walls on the lower lines lie within the outer walls.
+constexpr Rect kPlan{-127, -127, 126, 126};
 constexpr int kStoreys = 2;
-constexpr int kPitch = 49;
-constexpr int kSlab = 3;
+constexpr int kPitch = 16;
+constexpr int kSlab = 1;
 constexpr int kHeight = kStoreys * kPitch - kSlab;
-constexpr int kCorridorWidth = 30;
-constexpr int kDoorHead = 22;
+constexpr int kCorridorWidth = 10;
+constexpr int kDoorHead = 7;
 
 enum class Use { kRoom, kCorridor, kHall };
 
@@ -34,10 +34,10 @@ struct Border {
 };
 
 void split(const Rect& rect, bool tall, Random& random, std::vector<Space>& spaces) {
-  constexpr int kShortest = 60;
+  constexpr int kShortest = 28;
   const bool across_x = rect.width() >= rect.depth();
   const int length = across_x ? rect.width() : rect.depth();
-  if (length < 2 * kShortest + random.whole(0, 60)) {
+  if (length < 2 * kShortest + random.whole(0, 20)) {
     spaces.push_back({rect, Use::kRoom, tall});
     return;
   }
@@ -57,11 +57,11 @@ void split(const Rect& rect, bool tall, Random& random, std::vector<Space>& spac
 // the east side they are as high as the house, so that the upper storey has none there.
 std::vector<Space> plan_storey(int storey, const Rect& hall, Random& random) {
   const Rect ring = hall.grown(kCorridorWidth);
-  const Rect& all = kInside;
+  const Rect& all = kPlan;
   const int west = random.whole(hall.y0, hall.y1 - kCorridorWidth);
   const int east = random.whole(hall.y0, hall.y1 - kCorridorWidth);
-  const int south = random.whole(hall.x0 + 40, hall.x1 - kCorridorWidth - 40);
-  const int north = random.whole(hall.x0 + 40, hall.x1 - kCorridorWidth - 40);
+  const int south = random.whole(hall.x0 + 13, hall.x1 - kCorridorWidth - 13);
+  const int north = random.whole(hall.x0 + 13, hall.x1 - kCorridorWidth - 13);
   std::vector<Space> spaces{{hall, Use::kHall},
                             {{ring.x0, ring.y0, hall.x0, ring.y1}, Use::kCorridor},
                             {{hall.x1, ring.y0, ring.x1, ring.y1}, Use::kCorridor},
@@ -107,9 +107,9 @@ std::size_t root(const std::vector<std::size_t>& parent, std::size_t i) {
 }
 
 std::vector<Opening> door(const WallLine& line, Random& random) {
-  constexpr int kJamb = 4;
+  constexpr int kJamb = 2;
   const int longest = line.to - line.from - 2 * kJamb;
-  const int width = random.whole(12, 20);
+  const int width = random.whole(4, 6);
   if (longest < width) return {};
   const int from = line.from + kJamb + random.whole(0, longest - width);
   return {{from, from + width, 0, kDoorHead}};
@@ -118,13 +118,13 @@ std::vector<Opening> door(const WallLine& line, Random& random) {
 // Pillars with openings between them: gates below, balustrades above.
 std::vector<Opening> arcade(const WallLine& line, int sill) {
   std::vector<Opening> openings;
-  for (int from = line.from + 10; from + 40 <= line.to - 10; from += 60) {
-    openings.push_back({from, from + 40, sill, 36});
+  for (int from = line.from + 4; from + 13 <= line.to - 3; from += 20) {
+    openings.push_back({from, from + 13, sill, 12});
   }
   return openings;
 }
 
-void build_storey(int storey, const Rect& hall, Random& random, Solids& solids) {
+void build_storey(int storey, const Rect& hall, Random& random, Modules& solids) {
   const std::vector<Space> spaces = plan_storey(storey, hall, random);
   std::vector<Border> borders = find_borders(spaces);
   for (std::size_t i = borders.size(); i > 1; --i) {
@@ -139,7 +139,7 @@ void build_storey(int storey, const Rect& hall, Random& random, Solids& solids) 
     const Use b = spaces[border.b].use;
     std::vector<Opening> openings;
     if (a == Use::kHall || b == Use::kHall) {
-      openings = arcade(border.line, storey == 0 ? 0 : 11);
+      openings = arcade(border.line, storey == 0 ? 0 : 3);
     } else if (a == Use::kCorridor && b == Use::kCorridor) {
       parent[root(parent, border.a)] = root(parent, border.b);
       continue;
@@ -147,49 +147,55 @@ void build_storey(int storey, const Rect& hall, Random& random, Solids& solids) 
       openings = door(border.line, random);
     }
     if (!openings.empty()) parent[root(parent, border.a)] = root(parent, border.b);
-    for (const Opening& opening : openings) passages.push_back(passage(border.line, opening));
+    for (const Opening& opening : openings) passages.push_back(module_passage(border.line, opening));
     const bool tall = spaces[border.a].tall || spaces[border.b].tall;
     solids.add_wall(border.line, {floor, tall ? kHeight : floor + kPitch - kSlab}, openings);
   }
   for (const Space& space : spaces) {
     if (space.use == Use::kHall && storey > 0) continue;
-    const int area = space.rect.width() * space.rect.depth();  // [dm^2]
-    const int count = area / (space.use == Use::kRoom ? 350 : 900);
+    const int area = space.rect.width() * space.rect.depth();  // [modules^2]
+    const int count = area / (space.use == Use::kRoom ? 45 : 110);
     solids.add_furniture(space.rect, floor, count, passages, random);
   }
+}
+
+// The floor of the storey above the hall's, as far as that has one. Its pieces overlap by a module.
+void add_slab_around(const Rect& hall, const Rise& slab, Modules& solids) {
+  const Rect hole = between_walls(hall);
+  const int y1 = kPlan.y1 + 1;
+  const int x1 = hall.x1 + kCorridorWidth + 1;
+  solids.add({kPlan.x0, kPlan.y0, hole.x0, y1}, slab);
+  solids.add({hole.x1, kPlan.y0, x1, y1}, slab);
+  solids.add({hole.x0 - 1, kPlan.y0, hole.x1 + 1, hole.y0}, slab);
+  solids.add({hole.x0 - 1, hole.y1, hole.x1 + 1, y1}, slab);
 }
 
 }  // namespace
 
 Scene make_building_scene(std::uint64_t seed) {
   Random random(seed);
-  const int half_x = random.whole(160, 190);
-  const int half_y = random.whole(190, 220);
+  const int half_x = random.whole(53, 63);
+  const int half_y = random.whole(63, 73);
   const Rect hall{-half_x, -half_y, half_x, half_y};
 
-  Solids solids;
-  solids.add_shell(kInside, {0, kHeight});
+  Modules solids;
+  solids.add_shell(between_walls(kPlan), {0, kHeight});
   std::vector<double> floors;
   for (int storey = 0; storey < kStoreys; ++storey) {
     const int floor = storey * kPitch;
-    floors.push_back(metres(floor));
+    floors.push_back(Modules::kEdge * floor - Modules::kInset);
     build_storey(storey, hall, random, solids);
-    if (storey == 0) continue;
-    const Rise slab{floor - kSlab, floor};
-    const Rect opening = hall.grown(-Solids::kHalfWall);
-    const int end = hall.x1 + kCorridorWidth;
-    solids.add({kInside.x0, kInside.y0, opening.x0, kInside.y1}, slab);
-    solids.add({opening.x1, kInside.y0, end, kInside.y1}, slab);
-    solids.add({opening.x0, kInside.y0, opening.x1, opening.y0}, slab);
-    solids.add({opening.x0, opening.y1, opening.x1, kInside.y1}, slab);
+    if (storey > 0) add_slab_around(hall, {floor - kSlab, floor}, solids);
   }
-  for (int x = hall.x0 + 40; x < hall.x1 - 20; x += 70) {
-    for (int y = hall.y0 + 40; y < hall.y1 - 20; y += 70) {
-      solids.add({x, y, x + 5, y + 5}, {0, kHeight});
+  for (int x = hall.x0 + 13; x < hall.x1 - 7; x += 23) {
+    for (int y = hall.y0 + 13; y < hall.y1 - 7; y += 23) {
+      solids.add({x, y, x + 2, y + 2}, {-1, kHeight + 1});
     }
   }
-  const Box room(Eigen::Vector3d(metres(kInside.x0), metres(kInside.y0), metres(0)),
-                 Eigen::Vector3d(metres(kInside.x1), metres(kInside.y1), metres(kHeight)));
+  const Rect inside = between_walls(kPlan);
+  const Eigen::Vector3d inset = Eigen::Vector3d::Constant(Modules::kInset);
+  const Box room(Modules::kEdge * Eigen::Vector3d(inside.x0, inside.y0, 0) - inset,
+                 Modules::kEdge * Eigen::Vector3d(inside.x1, inside.y1, kHeight) + inset);
   return {BoxSet(std::move(solids.boxes)), room, std::move(floors)};
 }
 

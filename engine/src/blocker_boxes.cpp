@@ -1,145 +1,25 @@
 #include "blocker_boxes.hpp"
 
 #include "batch.hpp"
+#include "unit_boxes.hpp"
 #include "walk.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
+#include <numeric>
+#include <set>
+#include <type_traits>
 
 namespace frontlux::detail {
 namespace {
 
-// A cube of voxels with one layer of neighbours around it: word [z][y], bit x; voxel 0 of the cube has
-// index 1.
-constexpr int kPadded = kUnitEdge + 2;
-using Row = std::uint32_t;
-using Rows = std::array<std::array<Row, kPadded>, kPadded>;
-constexpr Row kInside = ((Row{1} << kUnitEdge) - 1) << 1;
+constexpr int kUnitsPerSide = 64 / Blockers::kUnitEdge;
 
-using Cell = std::array<int, 3>;  // index into Rows: x, y, z
-
-// Whether the voxels of an aligned row of eight block, as eight bits. Beyond the key range nothing is free,
-// so a ray never comes from there: what lies outside counts as blocker.
-Row blocked_row_of_eight(const VoxelGrid& grid, UnknownPolicy unknown, int x, int y, int z) {
-  constexpr int kEnd = Lattice::kKeysPerAxis;
-  if (x < 0 || y < 0 || z < 0 || x >= kEnd || y >= kEnd || z >= kEnd) return 0xFF;
-  const Brick& brick = grid.brick(as_key({x, y, z}));
-  const auto layer = static_cast<std::size_t>(z & 7);
-  const std::uint64_t word = unknown == UnknownPolicy::kBlock ? ~brick.free[layer] : brick.occupied[layer];
-  return static_cast<Row>((word >> ((y & 7) * 8)) & 0xFF);
-}
-
-Rows load_blocked(const VoxelGrid& grid, UnknownPolicy unknown, const VoxelKey& corner) {
-  Rows rows{};
-  for (int z = 0; z < kPadded; ++z)
-    for (int y = 0; y < kPadded; ++y) {
-      const bool edge_z = z == 0 || z == kPadded - 1, edge_y = y == 0 || y == kPadded - 1;
-      if (edge_z && edge_y) continue;
-      const auto eight = [&](int dx) {
-        return blocked_row_of_eight(grid, unknown, corner.x + dx, corner.y + y - 1, corner.z + z - 1);
-      };
-      Row row = 0;
-      for (int dx = 0; dx < kUnitEdge; dx += 8) row |= eight(dx) << (dx + 1);
-      if (!edge_z && !edge_y) row |= (eight(-8) >> 7) | ((eight(kUnitEdge) & 1U) << (kUnitEdge + 1));
-      rows[static_cast<std::size_t>(z)][static_cast<std::size_t>(y)] = row;
-    }
-  return rows;
-}
-
-// Blockers inside the cube with a neighbour that does not block.
-Rows shell_of(const Rows& blocked) {
-  Rows shell{};
-  for (std::size_t z = 1; z <= kUnitEdge; ++z)
-    for (std::size_t y = 1; y <= kUnitEdge; ++y) {
-      const Row row = blocked[z][y];
-      const Row buried = (row << 1) & (row >> 1) & blocked[z][y - 1] & blocked[z][y + 1] & blocked[z - 1][y] &
-                         blocked[z + 1][y];
-      shell[z][y] = row & ~buried & kInside;
-    }
-  return shell;
-}
-
-// Grows boxes through blockers, from uncovered shell voxels, by the face that covers most of them; a face
-// that covers no new one is not worth its larger box.
-class Grower {
- public:
-  Grower(const Rows& blocked, Rows& uncovered) : blocked_(blocked), uncovered_(uncovered) {}
-
-  void grow_from(const Cell& seed) {
-    low_ = high_ = seed;
-    while (grow_best_face()) {
-    }
-    for_each_row(low_, high_, [&](std::size_t z, std::size_t y, Row mask) { uncovered_[z][y] &= ~mask; });
-  }
-  [[nodiscard]] const Cell& low() const { return low_; }
-  [[nodiscard]] const Cell& high() const { return high_; }
-
- private:
-  static Row mask(int x_low, int x_high) { return ((Row{1} << (x_high - x_low + 1)) - 1) << x_low; }
-
-  template <class Visit>
-  static void for_each_row(const Cell& low, const Cell& high, const Visit& visit) {
-    const Row bits = mask(low[0], high[0]);
-    for (int z = low[2]; z <= high[2]; ++z)
-      for (int y = low[1]; y <= high[1]; ++y)
-        visit(static_cast<std::size_t>(z), static_cast<std::size_t>(y), bits);
-  }
-
-  // Number of uncovered shell voxels in a slab; 0 if any voxel of it does not block.
-  [[nodiscard]] int gain(const Cell& low, const Cell& high) const {
-    int sum = 0;
-    bool all_block = true;
-    for_each_row(low, high, [&](std::size_t z, std::size_t y, Row bits) {
-      all_block = all_block && (blocked_[z][y] & bits) == bits;
-      sum += std::popcount(uncovered_[z][y] & bits);
-    });
-    return all_block ? sum : 0;
-  }
-
-  bool grow_best_face() {
-    int best = 0;
-    Cell best_low = low_, best_high = high_;
-    for (const int side : {-1, 1})
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        Cell slab_low = low_, slab_high = high_, grown_low = low_, grown_high = high_;
-        int& face = side < 0 ? grown_low[axis] : grown_high[axis];
-        face += side;
-        if (face < 1 || face > kUnitEdge) continue;
-        slab_low[axis] = slab_high[axis] = face;
-        const int covered = gain(slab_low, slab_high);
-        if (covered <= best) continue;
-        best = covered;
-        best_low = grown_low;
-        best_high = grown_high;
-      }
-    low_ = best_low;
-    high_ = best_high;
-    return best > 0;
-  }
-
-  const Rows& blocked_;
-  Rows& uncovered_;
-  Cell low_{}, high_{};
-};
-
-void append_unit_boxes(const VoxelGrid& grid, UnknownPolicy unknown, const VoxelKey& corner,
-                       std::vector<KeyBox>& boxes) {
-  const Rows blocked = load_blocked(grid, unknown, corner);
-  Rows uncovered = shell_of(blocked);
-  const auto key = [&](const Cell& c) {
-    return as_key({corner.x + c[0] - 1, corner.y + c[1] - 1, corner.z + c[2] - 1});
+VoxelKey unit_corner(const VoxelKey& tile, int unit) {
+  const auto along = [](std::uint16_t base, int i) {
+    return static_cast<std::uint16_t>(base + i * Blockers::kUnitEdge);
   };
-  Grower grower(blocked, uncovered);
-  for (int z = 1; z <= kUnitEdge; ++z)
-    for (int y = 1; y <= kUnitEdge; ++y) {
-      Row& row = uncovered[static_cast<std::size_t>(z)][static_cast<std::size_t>(y)];
-      while (row != 0) {
-        grower.grow_from({std::countr_zero(row), y, z});
-        boxes.push_back({key(grower.low()), key(grower.high())});
-      }
-    }
+  return {along(tile.x, unit % kUnitsPerSide), along(tile.y, unit / kUnitsPerSide % kUnitsPerSide),
+          along(tile.z, unit / kUnitsPerSide / kUnitsPerSide)};
 }
 
 // Storage nodes seen by the edge of their children.
@@ -153,13 +33,16 @@ const Shared<Tile>& node_at(const VoxelGrid& grid, const VoxelKey& key, const Ti
   return grid.storage()->child(key)->child(key)->child(key);
 }
 
-class Units {
+// Finds where the shell can be: in tiles of mixed states, and in whole nodes of blockers beside anything
+// else.
+class Survey {
  public:
-  Units(const VoxelGrid& grid, UnknownPolicy unknown) : grid_(grid), unknown_(unknown) {
+  Survey(const VoxelGrid& grid, UnknownPolicy unknown) : grid_(grid), unknown_(unknown) {
+    whole_nodes.log2_cell = Tile::kLog2;
     descend(*grid.storage(), {});
   }
 
-  std::vector<KeyBox> whole_nodes;
+  BoxGroup whole_nodes;
   std::vector<VoxelKey> mixed_tiles;
 
  private:
@@ -190,9 +73,11 @@ class Units {
       const auto& child = node.children[static_cast<std::size_t>(i)];
       const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
       if (blocks_everywhere(child)) {
-        constexpr int kLast = (1 << Child::kLog2) - 1;
-        if (is_shell<Child>(at))
-          whole_nodes.push_back({at, as_key({at.x + kLast, at.y + kLast, at.z + kLast})});
+        if (!is_shell<Child>(at)) continue;
+        constexpr int kCells = 1 << (Child::kLog2 - Tile::kLog2);
+        const std::array first{at.x >> Tile::kLog2, at.y >> Tile::kLog2, at.z >> Tile::kLog2};
+        whole_nodes.boxes.push_back(
+            pack(first, {first[0] + kCells - 1, first[1] + kCells - 1, first[2] + kCells - 1}));
       } else if (child == uniform_node<Child>(Occupancy::kFree) ||
                  child == uniform_node<Child>(Occupancy::kUnknown)) {
         continue;
@@ -208,23 +93,137 @@ class Units {
   UnknownPolicy unknown_;
 };
 
+// The units at and beside the changes between two grids, by their lower corners; nothing if it is simpler to
+// start anew.
+class StaleUnits {
+ public:
+  StaleUnits(const VoxelGrid& before, const VoxelGrid& after) {
+    for_each_change(before, after, [&](const Block& block) {
+      if (block.log2_edge > Tile::kLog2) {
+        everything_ = true;
+        return;
+      }
+      const int edge = 1 << block.log2_edge;
+      add({block.corner.x, block.corner.y, block.corner.z}, {edge, edge, edge});
+      const auto corner = as_array(block.corner);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int offset : {-1, edge}) {
+          std::array<int, 3> face = corner, size{edge, edge, edge};
+          face[axis] += offset;
+          size[axis] = 1;
+          if (face[axis] >= 0 && face[axis] < Lattice::kKeysPerAxis) add(face, size);
+        }
+    });
+  }
+  [[nodiscard]] bool everything() const { return everything_; }
+  [[nodiscard]] bool contains(const VoxelKey& unit) const { return units_.contains(unit); }
+  /// Whether any unit of a tile is stale.
+  [[nodiscard]] bool touches(const VoxelKey& tile) const { return tiles_.contains(tile); }
+
+ private:
+  void add(const std::array<int, 3>& low, const std::array<int, 3>& size) {
+    constexpr int kEdge = Blockers::kUnitEdge;
+    for (int z = low[2] / kEdge * kEdge; z < low[2] + size[2]; z += kEdge)
+      for (int y = low[1] / kEdge * kEdge; y < low[1] + size[1]; y += kEdge)
+        for (int x = low[0] / kEdge * kEdge; x < low[0] + size[0]; x += kEdge) {
+          units_.insert(as_key({x, y, z}));
+          tiles_.insert(as_key({x & ~63, y & ~63, z & ~63}));
+        }
+  }
+
+  bool everything_ = false;
+  std::set<VoxelKey> units_, tiles_;
+};
+
+// Sets the bounds of a group that is otherwise complete.
+void finish(BoxGroup& group) {
+  group.boxes.shrink_to_fit();
+  group.bounds = {{0xFFFF, 0xFFFF, 0xFFFF}, {0, 0, 0}};
+  for (std::size_t i = 0; i < group.boxes.size(); ++i) {
+    const KeyBox box = group.box(i);
+    auto& [min, max] = group.bounds;
+    min = {std::min(min.x, box.min.x), std::min(min.y, box.min.y), std::min(min.z, box.min.z)};
+    max = {std::max(max.x, box.max.x), std::max(max.y, box.max.y), std::max(max.z, box.max.z)};
+  }
+}
+
+// The boxes of a tile; those of its units that `reusable` has and `stale` does not name are copied.
+std::shared_ptr<const BoxGroup> make_tile_group(const VoxelGrid& grid, UnknownPolicy unknown,
+                                                const VoxelKey& tile, const BoxGroup* reusable,
+                                                const StaleUnits* stale) {
+  auto group = std::make_shared<BoxGroup>();
+  group->corner = tile;
+  for (int unit = 0; unit < Blockers::kUnitsPerTile; ++unit) {
+    const VoxelKey corner = unit_corner(tile, unit);
+    if (reusable != nullptr && !stale->contains(corner)) {
+      const auto u = static_cast<std::size_t>(unit);
+      const auto begin = reusable->boxes.begin() + (u == 0 ? 0 : reusable->unit_end[u - 1]);
+      group->boxes.insert(group->boxes.end(), begin, reusable->boxes.begin() + reusable->unit_end[u]);
+    } else {
+      append_unit_boxes(grid, unknown, corner, group->boxes);
+    }
+    group->unit_end.push_back(static_cast<std::uint32_t>(group->boxes.size()));
+  }
+  finish(*group);
+  return group;
+}
+
 }  // namespace
 
-std::vector<KeyBox> make_blocker_boxes(const VoxelGrid& grid, UnknownPolicy unknown) {
-  Units units(grid, unknown);
-  std::vector<std::vector<KeyBox>> per_tile(units.mixed_tiles.size());
-  for_each_piece(per_tile.size(), 1, [&](std::size_t begin, std::size_t end) {
+KeyBox BoxGroup::box(std::size_t index) const {
+  const auto key = [&](int cell, std::uint16_t base, int last) {
+    return static_cast<std::uint16_t>(base + ((cell + last) << log2_cell) - last);
+  };
+  const PackedBox b = boxes[index];
+  return {{key(first_cell(b, 0), corner.x, 0), key(first_cell(b, 1), corner.y, 0),
+           key(first_cell(b, 2), corner.z, 0)},
+          {key(last_cell(b, 0), corner.x, 1), key(last_cell(b, 1), corner.y, 1),
+           key(last_cell(b, 2), corner.z, 1)}};
+}
+
+std::size_t Blockers::box_count() const {
+  return std::accumulate(groups.begin(), groups.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& group) { return sum + group->boxes.size(); });
+}
+
+namespace {
+
+Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* old,
+                  const StaleUnits* stale) {
+  Survey survey(grid, unknown);
+  Blockers blockers;
+  blockers.groups.resize(1 + survey.mixed_tiles.size());
+  finish(survey.whole_nodes);
+  blockers.groups[0] = std::make_shared<BoxGroup>(std::move(survey.whole_nodes));
+  for_each_piece(survey.mixed_tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const VoxelKey& tile = units.mixed_tiles[i];
-      for (int z = 0; z < 64; z += kUnitEdge)
-        for (int y = 0; y < 64; y += kUnitEdge)
-          for (int x = 0; x < 64; x += kUnitEdge)
-            append_unit_boxes(grid, unknown, as_key({tile.x + x, tile.y + y, tile.z + z}), per_tile[i]);
+      const VoxelKey& tile = survey.mixed_tiles[i];
+      std::shared_ptr<const BoxGroup> known;
+      if (old != nullptr) {
+        const auto found =
+            std::lower_bound(old->groups.begin() + 1, old->groups.end(), tile,
+                             [](const auto& group, const VoxelKey& key) { return group->corner < key; });
+        if (found != old->groups.end() && (*found)->corner == tile) known = *found;
+      }
+      const bool fresh = known && !stale->touches(tile);
+      blockers.groups[i + 1] = fresh ? known : make_tile_group(grid, unknown, tile, known.get(), stale);
     }
   });
-  std::vector<KeyBox> boxes = std::move(units.whole_nodes);
-  for (const auto& tile : per_tile) boxes.insert(boxes.end(), tile.begin(), tile.end());
-  return boxes;
+  std::sort(blockers.groups.begin() + 1, blockers.groups.end(),
+            [](const auto& a, const auto& b) { return a->corner < b->corner; });
+  return blockers;
+}
+
+}  // namespace
+
+Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown) {
+  return assemble(grid, unknown, nullptr, nullptr);
+}
+
+Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
+                         UnknownPolicy unknown) {
+  const StaleUnits stale(before, after);
+  return stale.everything() ? make_blockers(after, unknown) : assemble(after, unknown, &blockers, &stale);
 }
 
 }  // namespace frontlux::detail

@@ -3,21 +3,62 @@
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
+#include <array>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace frontlux::detail {
 
-/// Boxes that contain nothing but blockers and together cover every blocker that a ray from free space can
-/// meet first: the shell, which is every blocker with a face neighbour that does not block.
-///
-/// Boxes may overlap, and each keeps inside its unit, so that a change makes only the units at and beside it
-/// stale. A unit is a cube of kUnitEdge voxels, or a whole node of the grid's storage (64 voxels a side or
-/// more) in which every voxel blocks.
-///
-/// A box is entered where a blocker is entered. So the box that a ray enters first gives the first blocker.
-inline constexpr int kUnitEdge = 16;
+/// A box of cells in a BoxGroup: six fields of ten bits, the first and the last cell along x, y and z.
+enum class PackedBox : std::uint64_t {};
 
-/// The boxes of a grid, in order of storage. @param unknown whether unknown voxels are blockers
-std::vector<KeyBox> make_blocker_boxes(const VoxelGrid& grid, UnknownPolicy unknown);
+[[nodiscard]] constexpr PackedBox pack(const std::array<int, 3>& first, const std::array<int, 3>& last) {
+  std::uint64_t bits = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    bits |= (static_cast<std::uint64_t>(first[i]) | static_cast<std::uint64_t>(last[i]) << 10) << (20 * i);
+  return PackedBox{bits};
+}
+[[nodiscard]] constexpr int first_cell(PackedBox box, unsigned axis) {
+  return static_cast<int>((static_cast<std::uint64_t>(box) >> (20 * axis)) & 1023);
+}
+[[nodiscard]] constexpr int last_cell(PackedBox box, unsigned axis) {
+  return static_cast<int>((static_cast<std::uint64_t>(box) >> (20 * axis + 10)) & 1023);
+}
+
+/// The boxes of one storage tile, or of all storage nodes in which every voxel blocks. Never changed once
+/// made.
+struct BoxGroup {
+  VoxelKey corner;    ///< of cell (0, 0, 0)
+  int log2_cell = 0;  ///< edge of a cell in voxels: 2^log2_cell
+  std::vector<PackedBox> boxes;
+  std::vector<std::uint32_t> unit_end;  ///< of a tile: where the boxes of each of its units end
+  KeyBox bounds;                        ///< around all boxes, if there are any
+
+  [[nodiscard]] KeyBox box(std::size_t index) const;
+};
+
+/// Boxes that contain nothing but blockers and together cover every blocker that a ray from free space can
+/// meet first: the shell, which is every blocker with a face neighbour that does not block. A box is entered
+/// where a blocker is entered, so the box that a ray enters first gives the first blocker.
+///
+/// Boxes may overlap, and each keeps inside its unit: a cube of kUnitEdge voxels, or a whole storage node. So
+/// a change makes only the units at and beside it stale, and all other groups go on being shared.
+struct Blockers {
+  static constexpr int kUnitEdge = 16;
+  static constexpr int kUnitsPerTile = 64;
+
+  std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes first, then tiles by corner
+
+  [[nodiscard]] std::size_t box_count() const;
+};
+
+/// @param unknown whether unknown voxels are blockers
+[[nodiscard]] Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown);
+
+/// The same as `make_blockers(after, unknown)`, from those of an earlier grid: only stale units are made
+/// anew.
+[[nodiscard]] Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before,
+                                       const VoxelGrid& after, UnknownPolicy unknown);
 
 }  // namespace frontlux::detail

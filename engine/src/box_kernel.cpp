@@ -92,8 +92,7 @@ template <unsigned kSize>
         max3(x.center - x.half - x.error, y.center - y.half - y.error, z.center - z.half - z.error);
     const float grown_out =
         min3(x.center + x.half + x.error, y.center + y.half + y.error, z.center + z.half + z.error);
-    const float in = max3(x.center - x.half, y.center - y.half, z.center - z.half);
-    const float t = in > t_near ? in : t_near;
+    const float t = grown_in > t_near ? grown_in : t_near;
     const bool take =
         static_cast<bool>(static_cast<int>(grown_in <= grown_out) & static_cast<int>(t < t_far) &
                           static_cast<int>(grown_out >= t_near) & static_cast<int>(valid[i] != 0));

@@ -11,6 +11,9 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 #include <xmmintrin.h>
 
 namespace frontlux::detail {
@@ -35,136 +38,54 @@ struct QueryContext {
   std::uint8_t* too_close = nullptr;
 };
 
-}  // namespace
+// A group of boxes as the callbacks see it.
+struct View {
+  std::shared_ptr<const BoxGroup> group;
+  std::array<float, 3> corner;  // in the scene's frame
+  float cell, tolerance;
 
-struct BoxScene::Embree {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  std::atomic<std::ptrdiff_t> bytes{0};
-  std::vector<LocalBox> boxes;
-  float tolerance = 0.0F;
-
-  explicit Embree(std::vector<LocalBox> local_boxes, float error_bound)
-      : boxes(std::move(local_boxes)), tolerance(error_bound) {
-    device = rtcNewDevice(nullptr);
-    if (device == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
-    rtcSetDeviceMemoryMonitorFunction(
-        device,
-        [](void* counter, ssize_t bytes_more, bool) {
-          static_cast<std::atomic<std::ptrdiff_t>*>(counter)->fetch_add(bytes_more,
-                                                                        std::memory_order_relaxed);
-          return true;
-        },
-        &bytes);
-    scene = rtcNewScene(device);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(boxes.size()));
-    rtcSetGeometryUserData(geometry, this);
-    rtcSetGeometryBoundsFunction(geometry, &bounds_callback, nullptr);
-    rtcSetGeometryOccludedFunction(geometry, &occluded_callback);
-    rtcSetGeometryIntersectFunction(geometry, &intersect_callback);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-    const RTCError error = rtcGetDeviceError(device);
-    if (error != RTC_ERROR_NONE) {
-      release();
-      throw std::runtime_error("Embree cannot build a scene of " + std::to_string(boxes.size()) +
-                               " boxes (error " + std::to_string(error) + ")");
+  [[nodiscard]] LocalBox box(unsigned index) const {
+    const PackedBox packed = group->boxes[index];
+    LocalBox box{};
+    for (unsigned i = 0; i < 3; ++i) {
+      const int first = first_cell(packed, i), end = last_cell(packed, i) + 1;
+      box.center[i] = corner[i] + 0.5F * cell * static_cast<float>(first + end);
+      box.half[i] = 0.5F * cell * static_cast<float>(end - first);
     }
-  }
-  ~Embree() { release(); }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
-
-  void release() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-
-  static void bounds_callback(const RTCBoundsFunctionArguments* args) {
-    const auto* self = static_cast<const Embree*>(args->geometryUserPtr);
-    const LocalBox& box = self->boxes[args->primID];
-    // Padded beyond the tolerance, since the traversal rounds too: what the box test would call too close
-    // must be reached.
-    const float pad = 2.0F * self->tolerance;
-    RTCBounds& bounds = *args->bounds_o;
-    bounds.lower_x = box.center[0] - box.half[0] - pad;
-    bounds.lower_y = box.center[1] - box.half[1] - pad;
-    bounds.lower_z = box.center[2] - box.half[2] - pad;
-    bounds.upper_x = box.center[0] + box.half[0] + pad;
-    bounds.upper_y = box.center[1] + box.half[1] + pad;
-    bounds.upper_z = box.center[2] + box.half[2] + pad;
-  }
-
-  static void occluded_callback(const RTCOccludedFunctionNArguments* args) {
-    const auto* self = static_cast<const Embree*>(args->geometryUserPtr);
-    auto* context = reinterpret_cast<QueryContext*>(args->context);
-    box_kernel().occluded(self->boxes[args->primID], self->tolerance, args->valid,
-                          reinterpret_cast<float*>(args->ray), args->N, context->too_close);
-  }
-
-  static void intersect_callback(const RTCIntersectFunctionNArguments* args) {
-    const auto* self = static_cast<const Embree*>(args->geometryUserPtr);
-    box_kernel().intersect(self->boxes[args->primID], self->tolerance, args->valid,
-                           reinterpret_cast<float*>(args->rayhit), args->N, args->primID, args->geomID);
+    return box;
   }
 };
 
-BoxScene::BoxScene(std::vector<KeyBox> boxes) : boxes_(std::move(boxes)) {
-  if (boxes_.empty()) return;
-  std::array<int, 3> low{65536, 65536, 65536}, high{0, 0, 0};
-  const auto grow = [](int& lower, int& upper, int min, int max) {
-    lower = std::min(lower, min);
-    upper = std::max(upper, max + 1);
-  };
-  for (const KeyBox& box : boxes_) {
-    grow(low[0], high[0], box.min.x, box.max.x);
-    grow(low[1], high[1], box.min.y, box.max.y);
-    grow(low[2], high[2], box.min.z, box.max.z);
-  }
-  // In the middle of the boxes coordinates, and with them rounding errors, are smallest. All bounds are
-  // integers.
-  const auto middle = [&](std::size_t i) { return static_cast<std::uint16_t>((low[i] + high[i]) / 2); };
-  origin_ = {middle(0), middle(1), middle(2)};
-  double reach = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<int>(i);
-    bounds_.min()[axis] = low[i] - middle(i);
-    bounds_.max()[axis] = high[i] - middle(i);
-    reach = std::max({reach, -bounds_.min()[axis], bounds_.max()[axis]});
-  }
-  // A coordinate of at most `reach` voxels is off by reach * 2^-24. The dozen operations between a probe and
-  // its answer each add a few of those; 2^-19 leaves room for 32. The constant covers the double precision of
-  // castRay's own path.
-  tolerance_ = std::max(1e-4, std::ldexp(reach + 2.0, -19));
-
-  std::vector<LocalBox> local;
-  local.reserve(boxes_.size());
-  for (const KeyBox& box : boxes_) {
-    const auto half = [](int min, int max) { return static_cast<float>(max + 1 - min) * 0.5F; };
-    const auto center = [](int min, int max, int origin) {
-      return static_cast<float>(min + max + 1 - 2 * origin) * 0.5F;
-    };
-    local.push_back({{center(box.min.x, box.max.x, origin_.x), center(box.min.y, box.max.y, origin_.y),
-                      center(box.min.z, box.max.z, origin_.z)},
-                     {half(box.min.x, box.max.x), half(box.min.y, box.max.y), half(box.min.z, box.max.z)}});
-  }
-  embree_ = std::make_unique<Embree>(std::move(local), static_cast<float>(tolerance_));
+void bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const auto& view = *static_cast<const View*>(args->geometryUserPtr);
+  const LocalBox box = view.box(args->primID);
+  // Padded beyond the tolerance, since the traversal rounds too: what the box test would call too close must
+  // be reached.
+  const float pad = 2.0F * view.tolerance;
+  RTCBounds& bounds = *args->bounds_o;
+  bounds.lower_x = box.center[0] - box.half[0] - pad;
+  bounds.lower_y = box.center[1] - box.half[1] - pad;
+  bounds.lower_z = box.center[2] - box.half[2] - pad;
+  bounds.upper_x = box.center[0] + box.half[0] + pad;
+  bounds.upper_y = box.center[1] + box.half[1] + pad;
+  bounds.upper_z = box.center[2] + box.half[2] + pad;
 }
 
-BoxScene::~BoxScene() = default;
-
-std::size_t BoxScene::memory_bytes() const {
-  if (!embree_) return sizeof(*this);
-  return sizeof(*this) + boxes_.capacity() * sizeof(KeyBox) + embree_->boxes.capacity() * sizeof(LocalBox) +
-         static_cast<std::size_t>(embree_->bytes.load());
+void occluded_callback(const RTCOccludedFunctionNArguments* args) {
+  const auto& view = *static_cast<const View*>(args->geometryUserPtr);
+  const auto* context = reinterpret_cast<const QueryContext*>(args->context);
+  box_kernel().occluded(view.box(args->primID), view.tolerance, args->valid,
+                        reinterpret_cast<float*>(args->ray), args->N, context->too_close);
 }
 
-namespace {
+void intersect_callback(const RTCIntersectFunctionNArguments* args) {
+  const auto& view = *static_cast<const View*>(args->geometryUserPtr);
+  box_kernel().intersect(view.box(args->primID), view.tolerance, args->valid,
+                         reinterpret_cast<float*>(args->rayhit), args->N, args->primID, args->geomID);
+}
 
-void set_ray(RTCRay& ray, const Probe& probe, std::size_t id) {
+RTCRay make_ray(const Probe& probe, std::size_t id) {
+  RTCRay ray;
   ray.org_x = probe.origin[0];
   ray.org_y = probe.origin[1];
   ray.org_z = probe.origin[2];
@@ -177,19 +98,143 @@ void set_ray(RTCRay& ray, const Probe& probe, std::size_t id) {
   ray.mask = ~0U;
   ray.id = static_cast<unsigned>(id);
   ray.flags = 0;
+  return ray;
 }
 
 }  // namespace
 
-void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) const {
-  if (!embree_) {
-    std::fill(sights.begin(), sights.end(), Sight::kClear);
-    return;
+class BoxSceneDevice {
+ public:
+  BoxSceneDevice() : device_(rtcNewDevice(nullptr)) {
+    if (device_ == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* counter, ssize_t more, bool) {
+          static_cast<std::atomic<std::ptrdiff_t>*>(counter)->fetch_add(more, std::memory_order_relaxed);
+          return true;
+        },
+        &bytes_);
   }
+  ~BoxSceneDevice() { rtcReleaseDevice(device_); }
+  BoxSceneDevice(const BoxSceneDevice&) = delete;
+  BoxSceneDevice& operator=(const BoxSceneDevice&) = delete;
+
+  [[nodiscard]] RTCDevice get() const { return device_; }
+  [[nodiscard]] std::size_t bytes() const {
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes_, 0));
+  }
+
+ private:
+  std::atomic<std::ptrdiff_t> bytes_{0};  // outlives the device, which counts down to the end
+  RTCDevice device_;
+};
+
+std::shared_ptr<BoxSceneDevice> make_box_scene_device() { return std::make_shared<BoxSceneDevice>(); }
+std::size_t memory_bytes(const BoxSceneDevice& device) { return device.bytes(); }
+
+struct BoxScene::Embree {
+  std::shared_ptr<BoxSceneDevice> device;
+  RTCScene scene;
+  std::vector<std::unique_ptr<View>> views;  // by Embree's number of the geometry; null where there is none
+
+  explicit Embree(std::shared_ptr<BoxSceneDevice> shared)
+      : device(std::move(shared)), scene(rtcNewScene(device->get())) {
+    // Only this pair makes Embree rebuild no more than the geometries that changed.
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
+  }
+  ~Embree() { rtcReleaseScene(scene); }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  void attach(std::unique_ptr<View> view) {
+    RTCGeometry geometry = rtcNewGeometry(device->get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(view->group->boxes.size()));
+    rtcSetGeometryUserData(geometry, view.get());
+    rtcSetGeometryBoundsFunction(geometry, &bounds_callback, nullptr);
+    rtcSetGeometryOccludedFunction(geometry, &occluded_callback);
+    rtcSetGeometryIntersectFunction(geometry, &intersect_callback);
+    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+    rtcCommitGeometry(geometry);
+    const unsigned id = rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    if (id == RTC_INVALID_GEOMETRY_ID) throw std::runtime_error("Embree cannot take another geometry");
+    if (id >= views.size()) views.resize(id + 1);
+    views[id] = std::move(view);
+  }
+  void detach(std::size_t id) {
+    rtcDetachGeometry(scene, static_cast<unsigned>(id));
+    views[id].reset();
+  }
+};
+
+BoxScene::BoxScene(std::shared_ptr<BoxSceneDevice> device)
+    : embree_(std::make_unique<Embree>(std::move(device))) {}
+BoxScene::~BoxScene() = default;
+
+void BoxScene::follow(const Blockers& blockers) {
+  Eigen::AlignedBox3d keys;  // bounds, in keys
+  std::unordered_map<const BoxGroup*, bool> wanted;
+  for (const auto& group : blockers.groups) {
+    if (group->boxes.empty()) continue;
+    wanted.emplace(group.get(), true);
+    keys.extend(Eigen::Vector3d(group->bounds.min.x, group->bounds.min.y, group->bounds.min.z));
+    keys.extend(Eigen::Vector3d(group->bounds.max.x + 1, group->bounds.max.y + 1, group->bounds.max.z + 1));
+  }
+  const auto in_frame = [&] {
+    const Eigen::Vector3d origin(origin_.x, origin_.y, origin_.z);
+    return Eigen::AlignedBox3d(keys.min() - origin, keys.max() - origin);
+  };
+  const auto fits = [&] {
+    return std::max(-in_frame().min().minCoeff(), in_frame().max().maxCoeff()) <= reach_;
+  };
+  bounds_.setEmpty();
+  if (!wanted.empty()) {
+    if (!fits()) {
+      // A new frame, in the middle, where coordinates and with them rounding errors are smallest, and with
+      // room to grow.
+      for (std::size_t id = 0; id < embree_->views.size(); ++id)
+        if (embree_->views[id]) embree_->detach(id);
+      const Eigen::Vector3i middle = keys.center().cast<int>();
+      origin_ = {static_cast<std::uint16_t>(middle.x()), static_cast<std::uint16_t>(middle.y()),
+                 static_cast<std::uint16_t>(middle.z())};
+      reach_ = std::exp2(std::ceil(std::log2(keys.sizes().maxCoeff() * 0.5 + 2.0)));
+      // A coordinate of at most `reach` voxels is off by reach * 2^-24. The dozen operations between a probe
+      // and its answer each add a few of those; 2^-19 leaves room for 32. The constant covers castRay's own
+      // rounding.
+      tolerance_ = std::max(1e-4, std::ldexp(reach_, -19));
+    }
+    bounds_ = in_frame();
+  }
+  for (std::size_t id = 0; id < embree_->views.size(); ++id) {
+    const auto& view = embree_->views[id];
+    if (view && wanted.erase(view->group.get()) == 0) embree_->detach(id);
+  }
+  for (const auto& group : blockers.groups) {
+    if (!wanted.contains(group.get())) continue;
+    const auto local = [](std::uint16_t corner, std::uint16_t origin) {
+      return static_cast<float>(corner - origin);
+    };
+    embree_->attach(
+        std::make_unique<View>(View{group,
+                                    {local(group->corner.x, origin_.x), local(group->corner.y, origin_.y),
+                                     local(group->corner.z, origin_.z)},
+                                    static_cast<float>(1 << group->log2_cell),
+                                    static_cast<float>(tolerance_)}));
+  }
+  rtcCommitScene(embree_->scene);
+  const RTCError error = rtcGetDeviceError(embree_->device->get());
+  if (error != RTC_ERROR_NONE)
+    throw std::runtime_error("Embree cannot build a scene of " + std::to_string(blockers.box_count()) +
+                             " boxes (error " + std::to_string(error) + ")");
+}
+
+void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) const {
   std::array<RTCRay, kMaxBatch> rays;
-  std::array<std::uint8_t, kMaxBatch> too_close{};
+  std::array<std::uint8_t, kMaxBatch> too_close;
   const std::size_t size = probes.size();
-  for (std::size_t i = 0; i < size; ++i) set_ray(rays[i], probes[i], i);
+  std::fill_n(too_close.begin(), size, std::uint8_t{0});
+  for (std::size_t i = 0; i < size; ++i) rays[i] = make_ray(probes[i], i);
   QueryContext context;
   rtcInitIntersectContext(&context.embree);
   context.too_close = too_close.data();
@@ -203,17 +248,12 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
   }
 }
 
-void BoxScene::first(std::span<const Probe> probes, std::span<std::uint32_t> boxes) const {
-  if (!embree_) {
-    std::fill(boxes.begin(), boxes.end(), kNoBox);
-    return;
-  }
+void BoxScene::first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const {
   std::array<RTCRayHit, kMaxBatch> rays;
   const std::size_t size = probes.size();
   for (std::size_t i = 0; i < size; ++i) {
-    set_ray(rays[i].ray, probes[i], i);
+    rays[i].ray = make_ray(probes[i], i);
     rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rays[i].hit.primID = kNoBox;
     rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
   QueryContext context;
@@ -223,7 +263,12 @@ void BoxScene::first(std::span<const Probe> probes, std::span<std::uint32_t> box
     rtcIntersect1M(embree_->scene, &context.embree, rays.data(), static_cast<unsigned>(size),
                    sizeof(RTCRayHit));
   }
-  for (std::size_t i = 0; i < size; ++i) boxes[i] = rays[i].hit.primID;
+  for (std::size_t i = 0; i < size; ++i) {
+    const RTCHit& hit = rays[i].hit;
+    boxes[i] = hit.geomID == RTC_INVALID_GEOMETRY_ID
+                   ? std::nullopt
+                   : std::optional(embree_->views[hit.geomID]->group->box(hit.primID));
+  }
 }
 
 }  // namespace frontlux::detail

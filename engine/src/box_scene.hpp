@@ -1,5 +1,7 @@
 #pragma once
 
+#include "blocker_boxes.hpp"
+
 #include <frontlux/voxel_grid.hpp>
 
 #include <Eigen/Geometry>
@@ -7,8 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
-#include <vector>
 
 namespace frontlux::detail {
 
@@ -28,25 +30,34 @@ enum class Sight : std::uint8_t {
   kTooCloseToTell,  ///< it meets none for sure, but passes within the tolerance of one
 };
 
-/// Boxes of voxels in a BVH, in single precision, with its error bounded. Batches must not exceed
-/// `kMaxBatch`. This is the seam behind which Embree lives: another version or query mode changes only the
-/// .cpp.
+/// What the scenes of one caster share of Embree.
+class BoxSceneDevice;
+/// @throws std::runtime_error if Embree cannot make a device
+[[nodiscard]] std::shared_ptr<BoxSceneDevice> make_box_scene_device();
+/// Bytes that Embree holds for all scenes of a device.
+[[nodiscard]] std::size_t memory_bytes(const BoxSceneDevice& device);
+
+/// Boxes of voxels in a BVH, in single precision, with its error bounded. This is the seam behind which
+/// Embree lives: another version or query mode changes only the .cpp.
+///
+/// Thread safety: const members may run at the same time as each other, not as `follow`.
 class BoxScene {
  public:
-  static constexpr std::size_t kMaxBatch = 256;
-  static constexpr std::uint32_t kNoBox = 0xFFFFFFFF;
+  static constexpr std::size_t kMaxBatch = 256;  ///< most probes in a call
 
-  /// @throws std::runtime_error if Embree cannot make its device or the scene
-  explicit BoxScene(std::vector<KeyBox> boxes);
+  explicit BoxScene(std::shared_ptr<BoxSceneDevice> device);
   ~BoxScene();
+  BoxScene(const BoxScene&) = delete;
+  BoxScene& operator=(const BoxScene&) = delete;
 
-  [[nodiscard]] bool empty() const { return boxes_.empty(); }
+  /// Makes the scene hold these boxes. Groups that it holds already cost nothing.
+  /// @throws std::runtime_error if Embree cannot build the scene
+  void follow(const Blockers& blockers);
 
   /// Key of the voxel whose lower corner is the origin of the scene's frame.
   [[nodiscard]] const VoxelKey& origin() const { return origin_; }
-  /// The smallest box around all boxes, in the scene's frame.
+  /// The smallest box around all boxes, in the scene's frame; empty if there are none.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
-
   /// Bound on the error, as a distance in voxels, of everything computed here for probes whose origins lie
   /// within one voxel of the bounds.
   [[nodiscard]] double tolerance() const { return tolerance_; }
@@ -54,18 +65,15 @@ class BoxScene {
   /// Any box between t_near and t_far?
   void occluded(std::span<const Probe> probes, std::span<Sight> sights) const;
 
-  /// For each probe the index of the box that it enters first, or seems to within the tolerance; or kNoBox.
-  void first(std::span<const Probe> probes, std::span<std::uint32_t> boxes) const;
-
-  [[nodiscard]] const KeyBox& box(std::uint32_t index) const { return boxes_[index]; }
-  [[nodiscard]] std::size_t memory_bytes() const;
+  /// For each probe the box that it enters first, or seems to within the tolerance.
+  void first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const;
 
  private:
   struct Embree;
 
-  std::vector<KeyBox> boxes_;
   VoxelKey origin_;
   Eigen::AlignedBox3d bounds_;
+  double reach_ = 0.0;  // largest coordinate that the tolerance allows for
   double tolerance_ = 0.0;
   std::unique_ptr<Embree> embree_;
 };

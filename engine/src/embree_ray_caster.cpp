@@ -13,36 +13,104 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace frontlux {
 namespace {
 
+using detail::Blockers;
 using detail::BoxScene;
 using detail::Probe;
 using detail::Sight;
 
-// A map as it was at one moment, ready to be queried.
-struct Scenes {
-  explicit Scenes(const VoxelGrid& snapshot)
-      : grid(snapshot),
-        occupied(detail::make_blocker_boxes(grid, UnknownPolicy::kPass)),
-        not_free(detail::make_blocker_boxes(grid, UnknownPolicy::kBlock)) {}
+// Scenes that no query looks at any more, to be brought up to date instead of built anew.
+class SpareScenes {
+ public:
+  explicit SpareScenes(std::shared_ptr<detail::BoxSceneDevice> device) : device_(std::move(device)) {}
 
-  [[nodiscard]] const BoxScene& of(UnknownPolicy unknown) const {
-    return unknown == UnknownPolicy::kBlock ? not_free : occupied;
+  [[nodiscard]] std::unique_ptr<BoxScene> take() {
+    const std::lock_guard lock(mutex_);
+    if (scenes_.empty()) return std::make_unique<BoxScene>(device_);
+    auto scene = std::move(scenes_.back());
+    scenes_.pop_back();
+    return scene;
+  }
+  void give_back(std::unique_ptr<BoxScene> scene) {
+    const std::lock_guard lock(mutex_);
+    if (scenes_.empty()) scenes_.push_back(std::move(scene));  // one is enough: updates do not overlap
   }
 
-  VoxelGrid grid;
-  BoxScene occupied, not_free;
+ private:
+  std::shared_ptr<detail::BoxSceneDevice> device_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BoxScene>> scenes_;
+};
+
+// The blockers under one policy, in a list and in a scene.
+class Obstacles {
+ public:
+  Obstacles(Blockers blockers, std::shared_ptr<SpareScenes> spares)
+      : blockers_(std::move(blockers)), spares_(std::move(spares)), scene_(spares_->take()) {
+    scene_->follow(blockers_);
+  }
+  ~Obstacles() { spares_->give_back(std::move(scene_)); }
+  Obstacles(const Obstacles&) = delete;
+  Obstacles& operator=(const Obstacles&) = delete;
+
+  [[nodiscard]] const BoxScene& scene() const { return *scene_; }
+  [[nodiscard]] const Blockers& blockers() const { return blockers_; }
+  [[nodiscard]] const std::shared_ptr<SpareScenes>& spares() const { return spares_; }
+
+ private:
+  Blockers blockers_;
+  std::shared_ptr<SpareScenes> spares_;
+  std::unique_ptr<BoxScene> scene_;
+};
+
+// A map as it was at one moment, ready to be queried.
+class Snapshot {
+ public:
+  Snapshot(const VoxelGrid& grid, const std::shared_ptr<detail::BoxSceneDevice>& device)
+      : grid_(grid),
+        occupied_(detail::make_blockers(grid_, UnknownPolicy::kPass), std::make_shared<SpareScenes>(device)),
+        not_free_(detail::make_blockers(grid_, UnknownPolicy::kBlock),
+                  std::make_shared<SpareScenes>(device)) {}
+
+  Snapshot(const VoxelGrid& grid, const Snapshot& before)
+      : grid_(grid),
+        occupied_(
+            detail::follow_blockers(before.occupied_.blockers(), before.grid_, grid_, UnknownPolicy::kPass),
+            before.occupied_.spares()),
+        not_free_(
+            detail::follow_blockers(before.not_free_.blockers(), before.grid_, grid_, UnknownPolicy::kBlock),
+            before.not_free_.spares()) {}
+
+  [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
+  [[nodiscard]] const BoxScene& scene(UnknownPolicy unknown) const {
+    return unknown == UnknownPolicy::kBlock ? not_free_.scene() : occupied_.scene();
+  }
+  [[nodiscard]] std::size_t box_bytes() const {
+    return (occupied_.blockers().box_count() + not_free_.blockers().box_count()) * sizeof(detail::PackedBox);
+  }
+
+ private:
+  VoxelGrid grid_;
+  Obstacles occupied_, not_free_;
 };
 
 // Answers queries about one map under one policy: what surely holds by the scene, everything else by the
 // walk.
 class Query {
  public:
-  Query(const Scenes& scenes, UnknownPolicy unknown)
-      : grid_(scenes.grid), lattice_(grid_.lattice()), scene_(scenes.of(unknown)), unknown_(unknown) {
+  Query(const Snapshot& snapshot, UnknownPolicy unknown)
+      : grid_(snapshot.grid()),
+        lattice_(grid_.lattice()),
+        scene_(snapshot.scene(unknown)),
+        unknown_(unknown) {
     reach_ = scene_.bounds();
     if (!reach_.isEmpty()) {
       reach_.min().array() -= 1.0;
@@ -68,7 +136,7 @@ class Query {
   [[nodiscard]] std::optional<Probe> probe(const Line& line, double t_far) const;
   [[nodiscard]] std::optional<VoxelKey> entered_voxel(const Line& line, const KeyBox& box) const;
   [[nodiscard]] Hit finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                           std::uint32_t box) const;
+                           const std::optional<KeyBox>& box) const;
 
   struct Sighting {
     Probe probe;
@@ -119,8 +187,10 @@ std::optional<Probe> Query::probe(const Line& line, double t_far) const {
                static_cast<float>(t_far - t_near)};
 }
 
-// The voxel through whose face a line enters a box, unless the line passes so close to an edge of that face
-// that single precision, or castRay's rounding, may have seen it otherwise.
+// The voxel through whose face a line enters a box, unless single precision, or castRay's rounding, may have
+// seen it otherwise. Where the line is off by the tolerance, it enters up to tolerance / |d| earlier along
+// the axis of the face; had it entered another blocker in that time, it would have crossed into it along
+// another axis, and would now be no further beyond that crossing than it moves along that axis in that time.
 std::optional<VoxelKey> Query::entered_voxel(const Line& line, const KeyBox& box) const {
   const auto base = detail::as_array(scene_.origin());
   const auto min = detail::as_array(box.min), max = detail::as_array(box.max);
@@ -137,7 +207,6 @@ std::optional<VoxelKey> Query::entered_voxel(const Line& line, const KeyBox& box
     }
   }
   if (axis < 0) return std::nullopt;
-  const double margin = 4.0 * scene_.tolerance();
   std::array<int, 3> key{};
   for (int i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(i);
@@ -145,6 +214,8 @@ std::optional<VoxelKey> Query::entered_voxel(const Line& line, const KeyBox& box
       key[a] = line.direction[i] > 0.0 ? min[a] : max[a];
       continue;
     }
+    const double margin =
+        4.0 * scene_.tolerance() * (1.0 + std::fabs(line.direction[i] / line.direction[axis]));
     const double at = line.origin[i] + entry * line.direction[i];
     const double cell = std::floor(at);
     if (at - cell < margin || cell + 1.0 - at < margin) return std::nullopt;
@@ -155,9 +226,9 @@ std::optional<VoxelKey> Query::entered_voxel(const Line& line, const KeyBox& box
 }
 
 Hit Query::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                  std::uint32_t box) const {
-  if (box != BoxScene::kNoBox) {
-    const auto key = entered_voxel(line_of(ray.origin, direction), scene_.box(box));
+                  const std::optional<KeyBox>& box) const {
+  if (box) {
+    const auto key = entered_voxel(line_of(ray.origin, direction), *box);
     if (!key) return detail::walk_ray(grid_, ray, unknown_);
     if (!(ray.max_range > 0.0) || !detail::out_of_range(ray.origin, lattice_.center(*key), ray.max_range)) {
       const Occupancy state = grid_.at(*key);
@@ -178,7 +249,7 @@ void Query::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   };
   std::array<Pending, BoxScene::kMaxBatch> pending;
   std::array<Probe, BoxScene::kMaxBatch> probes;
-  std::array<std::uint32_t, BoxScene::kMaxBatch> boxes;
+  std::array<std::optional<KeyBox>, BoxScene::kMaxBatch> boxes;
   std::size_t size = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Ray& ray = rays[i];
@@ -198,7 +269,7 @@ void Query::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
                                              : std::numeric_limits<double>::infinity();
     const auto probed = probe(line_of(ray.origin, direction), t_far);
     if (!probed) {
-      hits[i] = finish(ray, *start, direction, BoxScene::kNoBox);
+      hits[i] = finish(ray, *start, direction, std::nullopt);
       continue;
     }
     probes[size] = *probed;
@@ -313,17 +384,18 @@ void Query::visible(std::span<const Segment> segments, std::span<std::uint8_t> v
 class EmbreeRayCaster final : public RayCaster {
  public:
   explicit EmbreeRayCaster(const VoxelGrid& grid)
-      : RayCaster(grid.lattice()), scenes_(std::make_shared<Scenes>(grid)) {}
+      : RayCaster(grid.lattice()),
+        device_(detail::make_box_scene_device()),
+        snapshot_(std::make_shared<Snapshot>(grid, device_)) {}
 
   [[nodiscard]] std::size_t memory_bytes() const override {
-    const auto scenes = scenes_.snapshot();
-    return scenes->occupied.memory_bytes() + scenes->not_free.memory_bytes();
+    return detail::memory_bytes(*device_) + snapshot_.snapshot()->box_bytes();
   }
 
  private:
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
-    const auto scenes = scenes_.snapshot();
-    const Query query(*scenes, unknown);
+    const auto snapshot = snapshot_.snapshot();
+    const Query query(*snapshot, unknown);
     detail::for_each_piece(rays.size(), BoxScene::kMaxBatch, [&](std::size_t begin, std::size_t end) {
       query.cast(rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
     });
@@ -331,8 +403,8 @@ class EmbreeRayCaster final : public RayCaster {
 
   template <class Segment>
   void look(std::span<const Segment> segments, std::span<std::uint8_t> visible, UnknownPolicy unknown) const {
-    const auto scenes = scenes_.snapshot();
-    const Query query(*scenes, unknown);
+    const auto snapshot = snapshot_.snapshot();
+    const Query query(*snapshot, unknown);
     detail::for_each_piece(segments.size(), BoxScene::kMaxBatch, [&](std::size_t begin, std::size_t end) {
       query.visible(segments.subspan(begin, end - begin), visible.subspan(begin, end - begin));
     });
@@ -346,9 +418,12 @@ class EmbreeRayCaster final : public RayCaster {
     look(segments, visible, unknown);
   }
 
-  void do_update(const VoxelGrid& grid) override { scenes_.replace(std::make_shared<Scenes>(grid)); }
+  void do_update(const VoxelGrid& grid) override {
+    snapshot_.replace(std::make_shared<Snapshot>(grid, *snapshot_.snapshot()));
+  }
 
-  detail::Published<Scenes> scenes_;
+  std::shared_ptr<detail::BoxSceneDevice> device_;
+  detail::Published<Snapshot> snapshot_;
 };
 
 }  // namespace

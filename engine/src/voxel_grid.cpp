@@ -98,12 +98,13 @@ VoxelGrid::VoxelGrid(double resolution)
     : lattice_(resolution), world_(uniform_node<detail::World>(Occupancy::kUnknown)) {}
 
 void VoxelGrid::fill(const Block& block, Occupancy state) {
-  const int mask = (1 << block.log2_edge) - 1;
-  if (block.log2_edge < 0 || block.log2_edge > 16 ||
-      ((block.corner.x | block.corner.y | block.corner.z) & mask) != 0)
-    throw std::invalid_argument("block of edge 2^" + std::to_string(block.log2_edge) + " at key (" +
-                                std::to_string(block.corner.x) + ", " + std::to_string(block.corner.y) +
-                                ", " + std::to_string(block.corner.z) + ") is not aligned to its edge");
+  const bool edge_fits = block.log2_edge >= 0 && block.log2_edge <= 16;
+  const int misaligned =
+      edge_fits ? (block.corner.x | block.corner.y | block.corner.z) & ((1 << block.log2_edge) - 1) : 1;
+  if (misaligned != 0)
+    throw std::invalid_argument("no aligned block of edge 2^" + std::to_string(block.log2_edge) +
+                                " begins at key (" + std::to_string(block.corner.x) + ", " +
+                                std::to_string(block.corner.y) + ", " + std::to_string(block.corner.z) + ")");
   const auto& all = uniform_node<detail::World>(state);
   if (world_ == all) return;
   if (world_.own().fill(block.corner, block.log2_edge, state)) world_ = all;

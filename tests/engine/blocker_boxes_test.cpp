@@ -1,19 +1,34 @@
 #include "blocker_boxes.hpp"
 
 #include "support/maps.hpp"
+#include "support/random.hpp"
 #include "walk.hpp"
 
 #include <frontlux/octomap.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <vector>
 
 namespace frontlux::test {
 namespace {
 
+using detail::Blockers;
 using detail::blocks;
-using detail::make_blocker_boxes;
+using detail::make_blockers;
+
+std::vector<KeyBox> boxes_of(const Blockers& blockers) {
+  std::vector<KeyBox> boxes;
+  for (const auto& group : blockers.groups)
+    for (std::size_t i = 0; i < group->boxes.size(); ++i) boxes.push_back(group->box(i));
+  return boxes;
+}
+
+std::vector<KeyBox> make_blocker_boxes(const VoxelGrid& grid, UnknownPolicy unknown) {
+  return boxes_of(make_blockers(grid, unknown));
+}
 
 bool in_one_cube(const KeyBox& box, int edge) {
   return box.min.x / edge == box.max.x / edge && box.min.y / edge == box.max.y / edge &&
@@ -26,7 +41,7 @@ void expect_boxes_are_the_shell(const VoxelGrid& grid, UnknownPolicy unknown, co
   std::set<VoxelKey> covered;
   for (const KeyBox& box : make_blocker_boxes(grid, unknown)) {
     const bool whole_node = box.max.x - box.min.x >= 63;
-    EXPECT_TRUE(whole_node || in_one_cube(box, detail::kUnitEdge));
+    EXPECT_TRUE(whole_node || in_one_cube(box, Blockers::kUnitEdge));
     for (int z = std::max(box.min.z, part.min.z); z <= std::min(box.max.z, part.max.z); ++z)
       for (int y = std::max(box.min.y, part.min.y); y <= std::min(box.max.y, part.max.y); ++y)
         for (int x = std::max(box.min.x, part.min.x); x <= std::min(box.max.x, part.max.x); ++x) {
@@ -91,6 +106,38 @@ TEST(BlockerBoxes, UniformMapsNeedNone) {
     EXPECT_TRUE(make_blocker_boxes(grid, UnknownPolicy::kBlock).empty());
     EXPECT_TRUE(make_blocker_boxes(grid, UnknownPolicy::kPass).empty());
   }
+}
+
+// What is followed equals what is made anew, box for box, and what did not change is shared.
+TEST(BlockerBoxes, FollowingEqualsMakingAnew) {
+  Random random(21);
+  for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      VoxelGrid grid = make_voxel_grid(*make_random_tree(seed, 0.1));
+      Blockers followed = make_blockers(grid, unknown);
+      for (int round = 0; round < 15; ++round) {
+        const VoxelGrid before = grid;
+        const int edits = random.below(20);
+        for (int i = 0; i < edits; ++i) {
+          const int log2_edge = random.one_in(4) ? random.below(8) : 0;
+          const auto along = [&] {
+            return static_cast<std::uint16_t>((32768 + random.below(200) - 100) >> log2_edge << log2_edge);
+          };
+          grid.fill({{along(), along(), along()}, log2_edge}, static_cast<Occupancy>(random.below(3)));
+        }
+        followed = detail::follow_blockers(followed, before, grid, unknown);
+        ASSERT_EQ(boxes_of(followed), boxes_of(make_blockers(grid, unknown)));
+      }
+    }
+  VoxelGrid grid = make_voxel_grid(*make_random_tree(1, 0.1));
+  const Blockers blockers = make_blockers(grid, UnknownPolicy::kBlock);
+  const VoxelGrid before = grid;
+  grid.set({32768 + 20, 32768 + 20, 32768 + 20}, Occupancy::kOccupied);
+  const Blockers after = detail::follow_blockers(blockers, before, grid, UnknownPolicy::kBlock);
+  std::size_t shared = 0;
+  for (const auto& group : after.groups)
+    shared += static_cast<std::size_t>(std::count(blockers.groups.begin(), blockers.groups.end(), group));
+  EXPECT_GE(shared + 3, after.groups.size());  // whole nodes, and the tile
 }
 
 // One free leaf of 2^45 voxels: its surface must not be spelt out in small boxes.

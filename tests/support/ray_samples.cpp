@@ -43,7 +43,9 @@ class Sampler {
   float along(std::uint16_t key, int half_edges) {
     const double low = (static_cast<int>(key) - Lattice::kOrigin) * grid_.resolution();
     if (half_edges == 1) return static_cast<float>(grid_.lattice().center(key));
-    const double offset = half_edges >= 0 ? half_edges * 0.5 : random_.uniform(0.0, 1.0);
+    double offset = half_edges >= 0 ? half_edges * 0.5 : random_.uniform(0.0, 1.0);
+    if (random_.one_in(6))
+      offset += std::ldexp(random_.uniform(-1.0, 1.0), -random_.below(30));  // all but there
     return static_cast<float>(low + offset * grid_.resolution());
   }
   Eigen::Vector3f point_in(const VoxelKey& key) {
@@ -83,10 +85,11 @@ class Sampler {
     const auto sign = [&] { return static_cast<float>(random_.below(3) - 1); };
     const auto at_random = [&] { return static_cast<float>(random_.uniform(-1.0, 1.0)); };
     const auto tiny = [&] {
-      return static_cast<float>(std::ldexp(random_.uniform(-1.0, 1.0), -random_.below(150)));
+      return static_cast<float>(
+          std::ldexp(random_.uniform(-1.0, 1.0), -random_.below(random_.one_in(3) ? 150 : 32)));
     };
     Eigen::Vector3f d;
-    switch (random_.below(10)) {
+    switch (random_.below(12)) {
       case 0:
         d = {sign(), sign(), sign()};
         break;  // axes, diagonals, zero
@@ -102,6 +105,12 @@ class Sampler {
         break;  // all but parallel to a face
       case 4:
         d = {at_random(), tiny(), sign()};
+        break;
+      case 10:
+        d = {tiny(), tiny(), sign()};
+        break;
+      case 11:
+        d = {sign(), tiny(), at_random()};
         break;
       case 5:
       case 6:
