@@ -6,20 +6,17 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 #include <type_traits>
 
 namespace frontlux::detail {
 namespace {
 
-constexpr int kUnitsPerSide = 64 / Blockers::kUnitEdge;
-
-VoxelKey unit_corner(const VoxelKey& tile, int unit) {
-  const auto along = [](std::uint16_t base, int i) {
-    return static_cast<std::uint16_t>(base + i * Blockers::kUnitEdge);
-  };
-  return {along(tile.x, unit % kUnitsPerSide), along(tile.y, unit / kUnitsPerSide % kUnitsPerSide),
-          along(tile.z, unit / kUnitsPerSide / kUnitsPerSide)};
+// Calls visit(corner) for the cubes of an edge that make up a larger aligned cube.
+template <class Visit>
+void for_each_cube(const VoxelKey& corner, int size, int edge, const Visit& visit) {
+  for (int z = 0; z < size; z += edge)
+    for (int y = 0; y < size; y += edge)
+      for (int x = 0; x < size; x += edge) visit(as_key({corner.x + x, corner.y + y, corner.z + z}));
 }
 
 // Storage nodes seen by the edge of their children.
@@ -114,25 +111,31 @@ class StaleUnits {
           if (face[axis] >= 0 && face[axis] < Lattice::kKeysPerAxis) add(face, size);
         }
     });
+    std::sort(units_.begin(), units_.end());
+    units_.erase(std::unique(units_.begin(), units_.end()), units_.end());
   }
   [[nodiscard]] bool everything() const { return everything_; }
-  [[nodiscard]] bool contains(const VoxelKey& unit) const { return units_.contains(unit); }
-  /// Whether any unit of a tile is stale.
-  [[nodiscard]] bool touches(const VoxelKey& tile) const { return tiles_.contains(tile); }
+  [[nodiscard]] bool contains(const VoxelKey& unit) const {
+    return std::binary_search(units_.begin(), units_.end(), unit);
+  }
+  [[nodiscard]] bool touches(const VoxelKey& group) const {
+    bool any = false;
+    for_each_cube(group, BoxGroup::kEdge, BoxGroup::kUnitEdge,
+                  [&](const VoxelKey& unit) { any = any || contains(unit); });
+    return any;
+  }
 
  private:
   void add(const std::array<int, 3>& low, const std::array<int, 3>& size) {
-    constexpr int kEdge = Blockers::kUnitEdge;
+    constexpr int kEdge = BoxGroup::kUnitEdge;
     for (int z = low[2] / kEdge * kEdge; z < low[2] + size[2]; z += kEdge)
       for (int y = low[1] / kEdge * kEdge; y < low[1] + size[1]; y += kEdge)
-        for (int x = low[0] / kEdge * kEdge; x < low[0] + size[0]; x += kEdge) {
-          units_.insert(as_key({x, y, z}));
-          tiles_.insert(as_key({x & ~63, y & ~63, z & ~63}));
-        }
+        for (int x = low[0] / kEdge * kEdge; x < low[0] + size[0]; x += kEdge)
+          units_.push_back(as_key({x, y, z}));
   }
 
   bool everything_ = false;
-  std::set<VoxelKey> units_, tiles_;
+  std::vector<VoxelKey> units_;  // sorted
 };
 
 // Sets the bounds of a group that is otherwise complete.
@@ -147,23 +150,23 @@ void finish(BoxGroup& group) {
   }
 }
 
-// The boxes of a tile; those of its units that `reusable` has and `stale` does not name are copied.
-std::shared_ptr<const BoxGroup> make_tile_group(const VoxelGrid& grid, UnknownPolicy unknown,
-                                                const VoxelKey& tile, const BoxGroup* reusable,
-                                                const StaleUnits* stale) {
+// The boxes of a cube; those of its units that `reusable` has and `stale` does not name are copied.
+std::shared_ptr<const BoxGroup> make_group(const VoxelGrid& grid, UnknownPolicy unknown,
+                                           const VoxelKey& corner, const BoxGroup* reusable,
+                                           const StaleUnits* stale) {
   auto group = std::make_shared<BoxGroup>();
-  group->corner = tile;
-  for (int unit = 0; unit < Blockers::kUnitsPerTile; ++unit) {
-    const VoxelKey corner = unit_corner(tile, unit);
-    if (reusable != nullptr && !stale->contains(corner)) {
-      const auto u = static_cast<std::size_t>(unit);
+  group->corner = corner;
+  group->unit_end.reserve(BoxGroup::kUnits);
+  for_each_cube(corner, BoxGroup::kEdge, BoxGroup::kUnitEdge, [&](const VoxelKey& unit) {
+    if (reusable != nullptr && !stale->contains(unit)) {
+      const std::size_t u = group->unit_end.size();
       const auto begin = reusable->boxes.begin() + (u == 0 ? 0 : reusable->unit_end[u - 1]);
       group->boxes.insert(group->boxes.end(), begin, reusable->boxes.begin() + reusable->unit_end[u]);
     } else {
-      append_unit_boxes(grid, unknown, corner, group->boxes);
+      append_unit_boxes(grid, unknown, unit, group->boxes);
     }
     group->unit_end.push_back(static_cast<std::uint32_t>(group->boxes.size()));
-  }
+  });
   finish(*group);
   return group;
 }
@@ -191,26 +194,29 @@ namespace {
 Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* old,
                   const StaleUnits* stale) {
   Survey survey(grid, unknown);
+  std::vector<VoxelKey> corners;
+  for (const VoxelKey& tile : survey.mixed_tiles)
+    for_each_cube(tile, 1 << Tile::kLog2, BoxGroup::kEdge,
+                  [&](const VoxelKey& corner) { corners.push_back(corner); });
+  std::sort(corners.begin(), corners.end());
+
   Blockers blockers;
-  blockers.groups.resize(1 + survey.mixed_tiles.size());
   finish(survey.whole_nodes);
+  blockers.groups.resize(1 + corners.size());
   blockers.groups[0] = std::make_shared<BoxGroup>(std::move(survey.whole_nodes));
-  for_each_piece(survey.mixed_tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+  for_each_piece(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const VoxelKey& tile = survey.mixed_tiles[i];
       std::shared_ptr<const BoxGroup> known;
       if (old != nullptr) {
         const auto found =
-            std::lower_bound(old->groups.begin() + 1, old->groups.end(), tile,
+            std::lower_bound(old->groups.begin() + 1, old->groups.end(), corners[i],
                              [](const auto& group, const VoxelKey& key) { return group->corner < key; });
-        if (found != old->groups.end() && (*found)->corner == tile) known = *found;
+        if (found != old->groups.end() && (*found)->corner == corners[i]) known = *found;
       }
-      const bool fresh = known && !stale->touches(tile);
-      blockers.groups[i + 1] = fresh ? known : make_tile_group(grid, unknown, tile, known.get(), stale);
+      const bool fresh = known && !stale->touches(corners[i]);
+      blockers.groups[i + 1] = fresh ? known : make_group(grid, unknown, corners[i], known.get(), stale);
     }
   });
-  std::sort(blockers.groups.begin() + 1, blockers.groups.end(),
-            [](const auto& a, const auto& b) { return a->corner < b->corner; });
   return blockers;
 }
 

@@ -29,10 +29,14 @@ enum class PackedBox : std::uint64_t {};
 /// The boxes of one storage tile, or of all storage nodes in which every voxel blocks. Never changed once
 /// made.
 struct BoxGroup {
+  static constexpr int kEdge = 32;
+  static constexpr int kUnitEdge = 16;
+  static constexpr int kUnits = 8;
+
   VoxelKey corner;    ///< of cell (0, 0, 0)
   int log2_cell = 0;  ///< edge of a cell in voxels: 2^log2_cell
   std::vector<PackedBox> boxes;
-  std::vector<std::uint32_t> unit_end;  ///< of a tile: where the boxes of each of its units end
+  std::vector<std::uint32_t> unit_end;  ///< of a cube: where the boxes of each of its units end
   KeyBox bounds;                        ///< around all boxes, if there are any
 
   [[nodiscard]] KeyBox box(std::size_t index) const;
@@ -42,13 +46,11 @@ struct BoxGroup {
 /// meet first: the shell, which is every blocker with a face neighbour that does not block. A box is entered
 /// where a blocker is entered, so the box that a ray enters first gives the first blocker.
 ///
-/// Boxes may overlap, and each keeps inside its unit: a cube of kUnitEdge voxels, or a whole storage node. So
-/// a change makes only the units at and beside it stale, and all other groups go on being shared.
+/// Boxes may overlap, and each keeps inside its unit: a cube of BoxGroup::kUnitEdge voxels, or a whole
+/// storage node. So a change makes only the units at and beside it stale, and all other groups go on being
+/// shared.
 struct Blockers {
-  static constexpr int kUnitEdge = 16;
-  static constexpr int kUnitsPerTile = 64;
-
-  std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes first, then tiles by corner
+  std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes first, then cubes by corner
 
   [[nodiscard]] std::size_t box_count() const;
 };

@@ -17,9 +17,9 @@ struct BoxKernel {
   /// without surely passing through gets `too_close[id] = 1`.
   void (*occluded)(const LocalBox& box, float tolerance, const int* valid, float* rays, unsigned size,
                    std::uint8_t* too_close);
-  /// A ray that comes within the tolerance of the box takes it as its hit if it may enter it before its t_far, which
-  /// becomes the earliest time at which it may: no box that is truly entered first can lose to a later one
-  /// by more than the tolerance.
+  /// A ray that comes within the tolerance of the box takes it as its hit if it may enter it before its
+  /// t_far, which becomes the earliest time at which it may: no box that is truly entered first can lose to a
+  /// later one by more than the tolerance.
   void (*intersect)(const LocalBox& box, float tolerance, const int* valid, float* ray_hits, unsigned size,
                     unsigned primitive, unsigned geometry);
 };

@@ -74,32 +74,39 @@ class Obstacles {
 // A map as it was at one moment, ready to be queried.
 class Snapshot {
  public:
-  Snapshot(const VoxelGrid& grid, const std::shared_ptr<detail::BoxSceneDevice>& device)
-      : grid_(grid),
-        occupied_(detail::make_blockers(grid_, UnknownPolicy::kPass), std::make_shared<SpareScenes>(device)),
-        not_free_(detail::make_blockers(grid_, UnknownPolicy::kBlock),
-                  std::make_shared<SpareScenes>(device)) {}
+  Snapshot(const VoxelGrid& grid, const std::shared_ptr<detail::BoxSceneDevice>& device) : grid_(grid) {
+    for_both_policies([&](std::size_t i, UnknownPolicy unknown) {
+      obstacles_[i].emplace(detail::make_blockers(grid_, unknown), std::make_shared<SpareScenes>(device));
+    });
+  }
 
-  Snapshot(const VoxelGrid& grid, const Snapshot& before)
-      : grid_(grid),
-        occupied_(
-            detail::follow_blockers(before.occupied_.blockers(), before.grid_, grid_, UnknownPolicy::kPass),
-            before.occupied_.spares()),
-        not_free_(
-            detail::follow_blockers(before.not_free_.blockers(), before.grid_, grid_, UnknownPolicy::kBlock),
-            before.not_free_.spares()) {}
+  Snapshot(const VoxelGrid& grid, const Snapshot& before) : grid_(grid) {
+    for_both_policies([&](std::size_t i, UnknownPolicy unknown) {
+      const Obstacles& old = *before.obstacles_[i];
+      obstacles_[i].emplace(detail::follow_blockers(old.blockers(), before.grid_, grid_, unknown),
+                            old.spares());
+    });
+  }
 
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
   [[nodiscard]] const BoxScene& scene(UnknownPolicy unknown) const {
-    return unknown == UnknownPolicy::kBlock ? not_free_.scene() : occupied_.scene();
+    return obstacles_[static_cast<std::size_t>(unknown)]->scene();
   }
   [[nodiscard]] std::size_t box_bytes() const {
-    return (occupied_.blockers().box_count() + not_free_.blockers().box_count()) * sizeof(detail::PackedBox);
+    return (obstacles_[0]->blockers().box_count() + obstacles_[1]->blockers().box_count()) *
+           sizeof(detail::PackedBox);
   }
 
  private:
+  template <class Work>
+  static void for_both_policies(const Work& work) {
+    detail::for_each_piece(2, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i, static_cast<UnknownPolicy>(i));
+    });
+  }
+
   VoxelGrid grid_;
-  Obstacles occupied_, not_free_;
+  std::array<std::optional<Obstacles>, 2> obstacles_;  // by UnknownPolicy
 };
 
 // Answers queries about one map under one policy: what surely holds by the scene, everything else by the

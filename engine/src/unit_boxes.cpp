@@ -12,7 +12,7 @@ namespace {
 
 // A cube of voxels with one layer of neighbours around it: word [z][y], bit x; voxel 0 of the cube has
 // index 1.
-constexpr int kUnitEdge = Blockers::kUnitEdge;
+constexpr int kUnitEdge = BoxGroup::kUnitEdge;
 constexpr int kPadded = kUnitEdge + 2;
 using Row = std::uint32_t;
 using Rows = std::array<std::array<Row, kPadded>, kPadded>;
@@ -173,7 +173,9 @@ void append_unit_boxes(const VoxelGrid& grid, UnknownPolicy unknown, const Voxel
   const Rows blocked = load_blocked(grid, unknown, corner);
   Rows uncovered = shell_of(blocked);
   const auto cell = [&](const Cell& c) {
-    return std::array{(corner.x & 63) + c[0] - 1, (corner.y & 63) + c[1] - 1, (corner.z & 63) + c[2] - 1};
+    constexpr int kMask = BoxGroup::kEdge - 1;
+    return std::array{(corner.x & kMask) + c[0] - 1, (corner.y & kMask) + c[1] - 1,
+                      (corner.z & kMask) + c[2] - 1};
   };
   Grower grower(blocked, uncovered);
   for (int z = 1; z <= kUnitEdge; ++z)

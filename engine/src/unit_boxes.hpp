@@ -9,7 +9,7 @@
 
 namespace frontlux::detail {
 
-/// Appends the boxes of one unit, a cube of Blockers::kUnitEdge voxels, in cells of its tile.
+/// Appends the boxes of one unit, a cube of BoxGroup::kUnitEdge voxels, in cells of its group.
 void append_unit_boxes(const VoxelGrid& grid, UnknownPolicy unknown, const VoxelKey& corner,
                        std::vector<PackedBox>& boxes);
 

@@ -41,7 +41,7 @@ void expect_boxes_are_the_shell(const VoxelGrid& grid, UnknownPolicy unknown, co
   std::set<VoxelKey> covered;
   for (const KeyBox& box : make_blocker_boxes(grid, unknown)) {
     const bool whole_node = box.max.x - box.min.x >= 63;
-    EXPECT_TRUE(whole_node || in_one_cube(box, Blockers::kUnitEdge));
+    EXPECT_TRUE(whole_node || in_one_cube(box, detail::BoxGroup::kUnitEdge));
     for (int z = std::max(box.min.z, part.min.z); z <= std::min(box.max.z, part.max.z); ++z)
       for (int y = std::max(box.min.y, part.min.y); y <= std::min(box.max.y, part.max.y); ++y)
         for (int x = std::max(box.min.x, part.min.x); x <= std::min(box.max.x, part.max.x); ++x) {
