@@ -34,7 +34,7 @@ struct Border {
 };
 
 void split(const Rect& rect, bool tall, Random& random, std::vector<Space>& spaces) {
-  constexpr int kShortest = 28;
+  constexpr int kShortest = 24;
   const bool across_x = rect.width() >= rect.depth();
   const int length = across_x ? rect.width() : rect.depth();
   if (length < 2 * kShortest + random.whole(0, 20)) {
@@ -124,6 +124,14 @@ std::vector<Opening> arcade(const WallLine& line, int sill) {
   return openings;
 }
 
+std::vector<Rect> hall_pillars(const Rect& hall) {
+  std::vector<Rect> pillars;
+  for (int x = hall.x0 + 13; x < hall.x1 - 7; x += 23) {
+    for (int y = hall.y0 + 13; y < hall.y1 - 7; y += 23) pillars.push_back({x, y, x + 2, y + 2});
+  }
+  return pillars;
+}
+
 void build_storey(int storey, const Rect& hall, Random& random, Modules& solids) {
   const std::vector<Space> spaces = plan_storey(storey, hall, random);
   std::vector<Border> borders = find_borders(spaces);
@@ -133,7 +141,7 @@ void build_storey(int storey, const Rect& hall, Random& random, Modules& solids)
   const int floor = storey * kPitch;
   std::vector<std::size_t> parent(spaces.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
-  std::vector<Rect> passages;
+  std::vector<Rect> keep_clear = hall_pillars(hall);
   for (const Border& border : borders) {
     const Use a = spaces[border.a].use;
     const Use b = spaces[border.b].use;
@@ -142,12 +150,17 @@ void build_storey(int storey, const Rect& hall, Random& random, Modules& solids)
       openings = arcade(border.line, storey == 0 ? 0 : 3);
     } else if (a == Use::kCorridor && b == Use::kCorridor) {
       parent[root(parent, border.a)] = root(parent, border.b);
+      keep_clear.push_back(module_passage(border.line, {border.line.from, border.line.to}));
+      // The storey above ends here.
+      if (spaces[border.a].tall != spaces[border.b].tall) {
+        solids.add_wall(border.line, {floor + kPitch, kHeight}, {});
+      }
       continue;
     } else if (root(parent, border.a) != root(parent, border.b) || random.one_in(5)) {
       openings = door(border.line, random);
     }
     if (!openings.empty()) parent[root(parent, border.a)] = root(parent, border.b);
-    for (const Opening& opening : openings) passages.push_back(module_passage(border.line, opening));
+    for (const Opening& opening : openings) keep_clear.push_back(module_passage(border.line, opening));
     const bool tall = spaces[border.a].tall || spaces[border.b].tall;
     solids.add_wall(border.line, {floor, tall ? kHeight : floor + kPitch - kSlab}, openings);
   }
@@ -155,7 +168,7 @@ void build_storey(int storey, const Rect& hall, Random& random, Modules& solids)
     if (space.use == Use::kHall && storey > 0) continue;
     const int area = space.rect.width() * space.rect.depth();  // [modules^2]
     const int count = area / (space.use == Use::kRoom ? 45 : 110);
-    solids.add_furniture(space.rect, floor, count, passages, random);
+    solids.add_furniture(space.rect, floor, count, keep_clear, random);
   }
 }
 
@@ -187,11 +200,7 @@ Scene make_building_scene(std::uint64_t seed) {
     build_storey(storey, hall, random, solids);
     if (storey > 0) add_slab_around(hall, {floor - kSlab, floor}, solids);
   }
-  for (int x = hall.x0 + 13; x < hall.x1 - 7; x += 23) {
-    for (int y = hall.y0 + 13; y < hall.y1 - 7; y += 23) {
-      solids.add({x, y, x + 2, y + 2}, {-1, kHeight + 1});
-    }
-  }
+  for (const Rect& pillar : hall_pillars(hall)) solids.add(pillar, {-1, kHeight + 1});
   const Rect inside = between_walls(kPlan);
   const Eigen::Vector3d inset = Eigen::Vector3d::Constant(Modules::kInset);
   const Box room(Modules::kEdge * Eigen::Vector3d(inside.x0, inside.y0, 0) - inset,

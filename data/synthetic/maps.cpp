@@ -1,5 +1,6 @@
 #include <frontlux/synthetic/maps.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <fstream>
@@ -34,24 +35,25 @@ struct Survey {
 };
 
 Survey plan_survey(SceneKind kind, double resolution, std::uint64_t seed) {
-  const auto survey = [&](Scene scene, std::size_t places, double spacing, double range) {
-    // So many rays that neighbours are about a voxel apart where they are longest.
+  // `spacing` of neighbouring rays where they are longest.
+  const auto survey = [&](Scene scene, std::size_t places, double apart, double range, double spacing) {
     constexpr double kPi = 3.141592653589793;
-    const int rays = static_cast<int>(4.0 * kPi * range * range / (resolution * resolution));
-    auto drawn = draw_places(scene, places, spacing, seed);
+    const int rays = static_cast<int>(4.0 * kPi * range * range / (spacing * spacing));
+    auto drawn = draw_places(scene, places, apart, seed);
     return Survey{std::move(scene), std::move(drawn), {resolution, range, rays, seed}};
   };
   switch (kind) {
     case SceneKind::kRoom:
-      return survey(make_room_scene(seed), 3, 1.0, 5.0);
+      return survey(make_room_scene(seed), 3, 1.0, 5.0, resolution);
     case SceneKind::kCorridor:
-      return survey(make_corridor_scene(seed), 5, 2.0, 8.0);
+      return survey(make_corridor_scene(seed), 5, 2.0, 8.0, resolution);
     case SceneKind::kHall:
-      return survey(make_hall_scene(seed), 4, 4.0, 9.0);
+      return survey(make_hall_scene(seed), 4, 4.0, 9.0, resolution);
     case SceneKind::kBuilding:
       break;
   }
-  return survey(make_building_scene(seed), 100, 3.0, 9.0);
+  // Denser: at a grazing angle a scan must hit every voxel of a surface, lest it clear those it misses.
+  return survey(make_building_scene(seed), 100, 3.0, 9.0, std::min(0.5 * resolution, 0.1));
 }
 
 void write_tree(const MapRecipe& recipe, std::uint64_t seed, const ScanProgress& progress,

@@ -50,10 +50,10 @@ void Modules::add_wall(const WallLine& line, const Rise& rise, const std::vector
   add(on_line(line, from, line.to + 1), whole);
 }
 
-void Modules::add_furniture(const Rect& space, int floor, int count, std::vector<Rect> keep_clear,
+void Modules::add_furniture(const Rect& space, int floor, int count, std::vector<Rect>& keep_clear,
                             Random& random) {
   const Rect inside = between_walls(space);
-  const Rect middle = inside.grown(-2);
+  const Rect middle = inside.grown(-3);
   for (int i = 0; i < count; ++i) {
     const int kind = random.whole(0, 3);
     const int side = random.whole(0, 3);

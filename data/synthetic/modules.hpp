@@ -32,7 +32,7 @@ class Modules {
   void add_wall(const WallLine& line, const Rise& rise, const std::vector<Opening>& openings);
 
   /// As `Solids::add_furniture`. @param space  between wall lines
-  void add_furniture(const Rect& space, int floor, int count, std::vector<Rect> keep_clear, Random& random);
+  void add_furniture(const Rect& space, int floor, int count, std::vector<Rect>& keep_clear, Random& random);
 
   std::vector<Box> boxes;
 };

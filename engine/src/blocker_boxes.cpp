@@ -5,6 +5,7 @@
 #include "walk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <type_traits>
 
@@ -138,7 +139,7 @@ class StaleUnits {
   std::vector<VoxelKey> units_;  // sorted
 };
 
-// Sets the bounds of a group that is otherwise complete.
+// Sets what follows from a group's boxes.
 void finish(BoxGroup& group) {
   group.boxes.shrink_to_fit();
   group.bounds = {{0xFFFF, 0xFFFF, 0xFFFF}, {0, 0, 0}};
@@ -147,6 +148,11 @@ void finish(BoxGroup& group) {
     auto& [min, max] = group.bounds;
     min = {std::min(min.x, box.min.x), std::min(min.y, box.min.y), std::min(min.z, box.min.z)};
     max = {std::max(max.x, box.max.x), std::max(max.y, box.max.y), std::max(max.z, box.max.z)};
+    std::array<std::uint64_t, 3> edges{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      edges[axis] = static_cast<std::uint64_t>(as_array(box.max)[axis] - as_array(box.min)[axis] + 1);
+    std::sort(edges.begin(), edges.end());
+    group.face_area += edges[1] * edges[2];
   }
 }
 

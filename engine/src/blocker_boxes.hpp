@@ -38,6 +38,7 @@ struct BoxGroup {
   std::vector<PackedBox> boxes;
   std::vector<std::uint32_t> unit_end;  ///< of a cube: where the boxes of each of its units end
   KeyBox bounds;                        ///< around all boxes, if there are any
+  std::uint64_t face_area = 0;          ///< sum over the boxes of their largest faces, in voxels
 
   [[nodiscard]] KeyBox box(std::size_t index) const;
 };

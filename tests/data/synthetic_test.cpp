@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -16,10 +15,8 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace frontlux::synthetic {
@@ -113,67 +110,6 @@ TEST(BoxSet, RefusesBoxesWithoutExtent) {
   EXPECT_THROW(BoxSet({Box()}), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(BoxSet({Box(Eigen::Vector3d(0, 0, nan), Eigen::Vector3d(1, 1, 1))}), std::invalid_argument);
-}
-
-TEST(Scenes, KeepTheirFacesOffTheVoxelFaces) {
-  for (const Scene& scene :
-       {make_building_scene(1), make_room_scene(1), make_corridor_scene(1), make_hall_scene(1)}) {
-    for (const Box& box : scene.solids.boxes()) {
-      for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const double cells = corner[axis] / 0.05;
-          ASSERT_GT(std::abs(cells - std::round(cells)), 0.3) << corner.transpose();
-        }
-      }
-    }
-  }
-}
-
-constexpr double kStep = 0.2;  // [m]
-
-// Floods a storey with a body 0.6 m wide and 1.7 m high, from the first place.
-std::set<std::pair<int, int>> reachable_cells(const Scene& scene, const Eigen::Vector3d& from) {
-  const auto fits = [&](int i, int j) {
-    const Eigen::Vector3d at(from.x() + kStep * i, from.y() + kStep * j, from.z());
-    return !scene.solids.overlaps(
-        Box(at - Eigen::Vector3d(0.3, 0.3, 1.1), at + Eigen::Vector3d(0.3, 0.3, 0.6)));
-  };
-  std::set<std::pair<int, int>> seen{{0, 0}};
-  std::vector<std::pair<int, int>> open{{0, 0}};
-  while (!open.empty()) {
-    const auto [i, j] = open.back();
-    open.pop_back();
-    for (const auto& next : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
-      if (!seen.contains(next) && fits(next.first, next.second)) {
-        seen.insert(next);
-        open.push_back(next);
-      }
-    }
-  }
-  return seen;
-}
-
-TEST(Scenes, DoorsJoinAllRoomsOfAStoreyOfTheBuilding) {
-  const Scene scene = make_building_scene(1);
-  ASSERT_EQ(scene.floors.size(), 2U);
-  const auto places = draw_places(scene, 100, 3.0, 1);
-  ASSERT_EQ(places.size(), 100U);
-  for (const double floor : scene.floors) {
-    std::vector<Eigen::Vector3d> storey;
-    for (const Eigen::Vector3d& place : places) {
-      if (std::abs(place.z() - floor - 1.2) < 1e-9) storey.push_back(place);
-    }
-    ASSERT_GT(storey.size(), 20U);
-    const auto cells = reachable_cells(scene, storey.front());
-    for (const Eigen::Vector3d& place : storey) {
-      const Eigen::Vector3d offset = (place - storey.front()) / kStep;
-      // Beside furniture the body does not fit; two bodies on both sides of a wall are 0.8 m apart.
-      const bool reached = std::any_of(cells.begin(), cells.end(), [&](const std::pair<int, int>& cell) {
-        return std::hypot(cell.first - offset.x(), cell.second - offset.y()) * kStep < 0.75;
-      });
-      EXPECT_TRUE(reached) << place.transpose();
-    }
-  }
 }
 
 TEST(Scanner, RefusesWhatItCannotScan) {

@@ -37,9 +37,9 @@ struct MapRecipe {
 void write_map(const MapRecipe& recipe, std::uint64_t seed, const std::filesystem::path& file,
                const ScanProgress& progress = {});
 
-/// `make_building_scene` seen up to 9 m from each of 100 places: 77 x 77 x 10 m, about a third of it unknown.
-/// Takes seconds at 0.3 m, the best part of a minute at 0.1 m. The tree holds probabilities; the file of the
-/// same map only their maximum likelihood.
+/// `make_building_scene` seen up to 9 m from each of 100 places: 77 x 77 x 10 m, a quarter of it unknown.
+/// Takes some seconds at 0.3 m, about a minute at 0.1 m. The tree holds probabilities; the file of the same
+/// map only their maximum likelihood.
 /// @param resolution [m]
 /// @throws std::invalid_argument unless it is from 0.02 to 2 m
 [[nodiscard]] std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed = 1,

@@ -9,8 +9,10 @@ namespace frontlux::synthetic {
 
 /// A closed room full of solid boxes: the ground truth of a synthetic map. World frame, z up.
 ///
-/// Every face lies 3 cm above a multiple of 0.1 m, so that it never coincides with a voxel face of a map
-/// whose resolution is a multiple of 0.05 m; the lowest floor's top is at z = -0.07 m.
+/// No face coincides with a voxel face of a map whose resolution is a multiple of 0.05 m. The building's lie
+/// 3 cm within their solid, seen from a multiple of 0.3 m, the lowest floor's top at z = -0.03 m: inside the
+/// solid's first layer of voxels at 0.1 m and 0.3 m, so that surfaces come out smooth. Those of the small
+/// scenes lie 3 cm above a multiple of 0.1 m, the floor's top at z = -0.07 m: some amid a voxel.
 struct Scene {
   BoxSet solids;
   Box room;                    ///< inside of the outer walls, floor and roof [m]
