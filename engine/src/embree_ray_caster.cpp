@@ -167,6 +167,10 @@ class Query {
       reach_;  // where the scene's tolerance holds for a probe's origin; empty if there are no boxes
 };
 
+// A component of a direction that moves a ray by less than the tolerance on its whole way through the key
+// range.
+constexpr double kParallel = 1e-12;
+
 bool is_unit(const Eigen::Vector3f& direction) { return std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F; }
 
 // The part of a line that can meet a box, from at most a voxel outside the scene's bounds: coordinates there
@@ -177,7 +181,7 @@ std::optional<Probe> Query::probe(const Line& line, double t_far) const {
   const Eigen::Array3d low = reach_.min().array(), high = reach_.max().array();
   for (int i = 0; i < 3; ++i) {
     const double o = line.origin[i], d = line.direction[i];
-    if (std::fabs(d) < 1e-12) {
+    if (std::fabs(d) < kParallel) {
       if (o < low[i] || o > high[i]) return std::nullopt;
       continue;
     }
@@ -187,7 +191,9 @@ std::optional<Probe> Query::probe(const Line& line, double t_far) const {
   }
   if (!(t_near <= t_far)) return std::nullopt;
   const Eigen::Array3f origin = (line.origin + t_near * line.direction).cast<float>();
-  const Eigen::Array3f direction = line.direction.cast<float>();
+  // Inverses of tinier components overflow inside Embree, and there spoil the rays of the same packet.
+  const Eigen::Array3f direction =
+      (line.direction.abs() < kParallel).select(0.0, line.direction).cast<float>();
   return Probe{{origin[0], origin[1], origin[2]},
                0.0F,
                {direction[0], direction[1], direction[2]},
@@ -205,7 +211,7 @@ std::optional<VoxelKey> Query::entered_voxel(const Line& line, const KeyBox& box
   double entry = 0.0;
   for (int i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(i);
-    if (std::fabs(line.direction[i]) < 1e-12) continue;
+    if (std::fabs(line.direction[i]) < kParallel) continue;
     const int face = line.direction[i] > 0.0 ? min[a] : max[a] + 1;
     const double t = (face - base[a] - line.origin[i]) / line.direction[i];
     if (t > entry) {
@@ -332,7 +338,7 @@ Query::Prepared Query::prepare(const Segment& segment) const {
   for (int i = 0; i < 3; ++i) {
     const auto a = static_cast<std::size_t>(i);
     const double d = line.direction[i];
-    if (std::fabs(d) < 1e-12) {
+    if (std::fabs(d) < kParallel) {
       if (detail::as_array(*from)[a] != target[a]) return {};
       enter[a] = 0.0;
       leave[a] = std::numeric_limits<double>::infinity();
