@@ -42,6 +42,23 @@ struct Slab {
   return ab < c ? ab : c;
 }
 
+// When a ray enters and leaves the box, grown and shrunk by what can be wrong.
+struct Passage {
+  float grown_in, grown_out, shrunk_in, shrunk_out;
+};
+
+template <class Field>
+[[gnu::always_inline]] inline Passage pass(const LocalBox& box, float tolerance, const Field& field,
+                                           unsigned lane) {
+  const Slab x = cross(box, 0, tolerance, field(kOrigin, lane), field(kDirection, lane));
+  const Slab y = cross(box, 1, tolerance, field(kOrigin + 1, lane), field(kDirection + 1, lane));
+  const Slab z = cross(box, 2, tolerance, field(kOrigin + 2, lane), field(kDirection + 2, lane));
+  return {max3(x.center - x.half - x.error, y.center - y.half - y.error, z.center - z.half - z.error),
+          min3(x.center + x.half + x.error, y.center + y.half + y.error, z.center + z.half + z.error),
+          max3(x.center - x.half + x.error, y.center - y.half + y.error, z.center - z.half + z.error),
+          min3(x.center + x.half - x.error, y.center + y.half - y.error, z.center + z.half - z.error)};
+}
+
 template <unsigned kSize>
 [[gnu::always_inline]] inline void occluded_packet(const LocalBox& box, float tolerance,
                                                    const int* __restrict valid, float* __restrict rays,
@@ -50,22 +67,12 @@ template <unsigned kSize>
   alignas(64) int sure[kSize], near[kSize];
   int any_near = 0;
   for (unsigned i = 0; i < kSize; ++i) {
-    const Slab x = cross(box, 0, tolerance, field(kOrigin, i), field(kDirection, i));
-    const Slab y = cross(box, 1, tolerance, field(kOrigin + 1, i), field(kDirection + 1, i));
-    const Slab z = cross(box, 2, tolerance, field(kOrigin + 2, i), field(kDirection + 2, i));
+    const Passage p = pass(box, tolerance, field, i);
     const float t_near = field(kNear, i), t_far = field(kFar, i);
-    const float grown_in =
-        max3(x.center - x.half - x.error, y.center - y.half - y.error, z.center - z.half - z.error);
-    const float grown_out =
-        min3(x.center + x.half + x.error, y.center + y.half + y.error, z.center + z.half + z.error);
-    const float shrunk_in =
-        max3(x.center - x.half + x.error, y.center - y.half + y.error, z.center - z.half + z.error);
-    const float shrunk_out =
-        min3(x.center + x.half - x.error, y.center + y.half - y.error, z.center + z.half - z.error);
-    const int grown = static_cast<int>(grown_in <= grown_out) & static_cast<int>(grown_in <= t_far) &
-                      static_cast<int>(grown_out >= t_near) & static_cast<int>(valid[i] != 0);
-    sure[i] = static_cast<int>(shrunk_in <= shrunk_out) & static_cast<int>(shrunk_in <= t_far) &
-              static_cast<int>(shrunk_out >= t_near) & grown;
+    const int grown = static_cast<int>(p.grown_in <= p.grown_out) & static_cast<int>(p.grown_in <= t_far) &
+                      static_cast<int>(p.grown_out >= t_near) & static_cast<int>(valid[i] != 0);
+    sure[i] = static_cast<int>(p.shrunk_in <= p.shrunk_out) & static_cast<int>(p.shrunk_in <= t_far) &
+              static_cast<int>(p.shrunk_out >= t_near) & grown;
     near[i] = grown & ~sure[i];
     any_near |= near[i];
   }
@@ -84,18 +91,12 @@ template <unsigned kSize>
   const auto field = [ray_hits](unsigned f, unsigned lane) { return ray_hits[f * kSize + lane]; };
   auto* ids = reinterpret_cast<std::uint32_t*>(ray_hits);
   for (unsigned i = 0; i < kSize; ++i) {
-    const Slab x = cross(box, 0, tolerance, field(kOrigin, i), field(kDirection, i));
-    const Slab y = cross(box, 1, tolerance, field(kOrigin + 1, i), field(kDirection + 1, i));
-    const Slab z = cross(box, 2, tolerance, field(kOrigin + 2, i), field(kDirection + 2, i));
+    const Passage p = pass(box, tolerance, field, i);
     const float t_near = field(kNear, i), t_far = field(kFar, i);
-    const float grown_in =
-        max3(x.center - x.half - x.error, y.center - y.half - y.error, z.center - z.half - z.error);
-    const float grown_out =
-        min3(x.center + x.half + x.error, y.center + y.half + y.error, z.center + z.half + z.error);
-    const float t = grown_in > t_near ? grown_in : t_near;
+    const float t = p.grown_in > t_near ? p.grown_in : t_near;
     const bool take =
-        static_cast<bool>(static_cast<int>(grown_in <= grown_out) & static_cast<int>(t < t_far) &
-                          static_cast<int>(grown_out >= t_near) & static_cast<int>(valid[i] != 0));
+        static_cast<bool>(static_cast<int>(p.grown_in <= p.grown_out) & static_cast<int>(t < t_far) &
+                          static_cast<int>(p.grown_out >= t_near) & static_cast<int>(valid[i] != 0));
     ray_hits[kFar * kSize + i] = take ? t : t_far;
     ids[kPrimitive * kSize + i] = take ? primitive : ids[kPrimitive * kSize + i];
     ids[kGeometry * kSize + i] = take ? geometry : ids[kGeometry * kSize + i];
