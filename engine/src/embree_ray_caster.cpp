@@ -2,10 +2,16 @@
 #include "published.hpp"
 #include "scene_query.hpp"
 #include "snapshot.hpp"
+#include "table_query.hpp"
 
 #include <frontlux/ray_caster.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 
 namespace frontlux {
 namespace {
@@ -18,34 +24,54 @@ class EmbreeRayCaster final : public RayCaster {
         snapshot_(std::make_shared<detail::Snapshot>(grid, device_)) {}
 
   [[nodiscard]] std::size_t memory_bytes() const override {
-    return detail::memory_bytes(*device_) + snapshot_.snapshot()->box_bytes();
+    return detail::memory_bytes(*device_) + snapshot_.snapshot()->memory_bytes();
   }
 
  private:
-  void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
-    const auto snapshot = snapshot_.snapshot();
-    const detail::SceneQuery query(*snapshot, unknown);
-    detail::for_each_piece(rays.size(), detail::BoxScene::kMaxBatch, [&](std::size_t begin, std::size_t end) {
-      query.cast(rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
+  static constexpr std::size_t kBatch = std::min(detail::BoxScene::kMaxBatch, detail::TableQuery::kMaxBatch);
+
+  // The table answers what it can, the scene what is left.
+  template <class Query, class Answer, class ByTable, class ByScene>
+  static void answer(std::span<const Query> queries, std::span<Answer> answers, const ByTable& by_table,
+                     const ByScene& by_scene) {
+    detail::for_each_piece(queries.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      const auto some = queries.subspan(begin, end - begin);
+      const auto some_answers = answers.subspan(begin, end - begin);
+      std::array<std::uint16_t, kBatch> left;
+      const std::size_t size = by_table(some, some_answers, std::span(left));
+      if (size == 0) return;
+      std::array<Query, kBatch> hard;
+      std::array<Answer, kBatch> hard_answers;
+      for (std::size_t i = 0; i < size; ++i) hard[i] = some[left[i]];
+      by_scene(std::span<const Query>(hard.data(), size), std::span(hard_answers.data(), size));
+      for (std::size_t i = 0; i < size; ++i) some_answers[left[i]] = hard_answers[i];
     });
   }
 
-  template <class Segment>
-  void look(std::span<const Segment> segments, std::span<std::uint8_t> visible, UnknownPolicy unknown) const {
+  void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
     const auto snapshot = snapshot_.snapshot();
-    const detail::SceneQuery query(*snapshot, unknown);
-    detail::for_each_piece(
-        segments.size(), detail::BoxScene::kMaxBatch, [&](std::size_t begin, std::size_t end) {
-          query.visible(segments.subspan(begin, end - begin), visible.subspan(begin, end - begin));
-        });
+    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown);
+    const detail::SceneQuery scene(*snapshot, unknown);
+    answer(
+        rays, hits, [&](auto some, auto out, auto left) { return table.cast(some, out, left); },
+        [&](auto some, auto out) { scene.cast(some, out); });
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    look(segments, visible, unknown);
+    const auto snapshot = snapshot_.snapshot();
+    const detail::SceneQuery scene(*snapshot, unknown);
+    detail::for_each_piece(segments.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      scene.visible(segments.subspan(begin, end - begin), visible.subspan(begin, end - begin));
+    });
   }
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    look(segments, visible, unknown);
+    const auto snapshot = snapshot_.snapshot();
+    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown);
+    const detail::SceneQuery scene(*snapshot, unknown);
+    answer(
+        segments, visible, [&](auto some, auto out, auto left) { return table.visible(some, out, left); },
+        [&](auto some, auto out) { scene.visible(some, out); });
   }
 
   void do_update(const VoxelGrid& grid) override {

@@ -1,6 +1,6 @@
 #include "scene_query.hpp"
 
-#include "free_end.hpp"
+#include "ray_end.hpp"
 #include "walk.hpp"
 
 #include <algorithm>
@@ -14,8 +14,6 @@ namespace {
 // A component of a direction that moves a ray by less than the tolerance on its whole way through the key
 // range.
 constexpr double kParallel = 1e-12;
-
-bool is_unit(const Eigen::Vector3f& direction) { return std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F; }
 
 }  // namespace
 
@@ -86,18 +84,12 @@ std::optional<VoxelKey> SceneQuery::entered_voxel(const Line& line, const KeyBox
 
 Hit SceneQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
                        const std::optional<KeyBox>& box) const {
+  std::optional<VoxelKey> blocker;
   if (box) {
-    const auto key = entered_voxel(line_of(ray.origin, direction), *box);
-    if (!key) return walk_ray(grid_, ray, unknown_);
-    if (!(ray.max_range > 0.0) || !out_of_range(ray.origin, lattice_.center(*key), ray.max_range)) {
-      const Occupancy state = grid_.at(*key);
-      return make_hit(lattice_, ray, start, direction, stop_in(state), state, *key);
-    }
+    blocker = entered_voxel(line_of(ray.origin, direction), *box);
+    if (!blocker) return walk_ray(grid_, ray, unknown_);
   }
-  // No blocker within range, since centres only get further away along a ray.
-  const auto end = find_free_end(lattice_, ray, start, direction);
-  if (!end) return walk_ray(grid_, ray, unknown_);
-  return make_hit(lattice_, ray, start, direction, end->stop, grid_.at(end->key), end->key);
+  return end_ray(grid_, ray, start, direction, unknown_, blocker);
 }
 
 void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {

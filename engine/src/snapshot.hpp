@@ -3,6 +3,7 @@
 #include "batch.hpp"
 #include "blocker_boxes.hpp"
 #include "box_scene.hpp"
+#include "open_voxels.hpp"
 
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -40,11 +41,14 @@ class SpareScenes {
   std::vector<std::unique_ptr<BoxScene>> scenes_;
 };
 
-/// The blockers under one policy, in a list and in a scene.
+/// The blockers under one policy: in a list, in a scene, and as what is not open.
 class Obstacles {
  public:
-  Obstacles(Blockers blockers, std::shared_ptr<SpareScenes> spares)
-      : blockers_(std::move(blockers)), spares_(std::move(spares)), scene_(spares_->take()) {
+  Obstacles(Blockers blockers, std::shared_ptr<SpareScenes> spares, OpenVoxels open)
+      : blockers_(std::move(blockers)),
+        spares_(std::move(spares)),
+        scene_(spares_->take()),
+        open_(std::move(open)) {
     scene_->follow(blockers_);
   }
   ~Obstacles() { spares_->give_back(std::move(scene_)); }
@@ -52,6 +56,7 @@ class Obstacles {
   Obstacles& operator=(const Obstacles&) = delete;
 
   [[nodiscard]] const BoxScene& scene() const { return *scene_; }
+  [[nodiscard]] const OpenVoxels& open() const { return open_; }
   [[nodiscard]] const Blockers& blockers() const { return blockers_; }
   [[nodiscard]] const std::shared_ptr<SpareScenes>& spares() const { return spares_; }
 
@@ -59,6 +64,7 @@ class Obstacles {
   Blockers blockers_;
   std::shared_ptr<SpareScenes> spares_;
   std::unique_ptr<BoxScene> scene_;
+  OpenVoxels open_;
 };
 
 /// A map as it was at one moment, ready to be queried.
@@ -66,14 +72,16 @@ class Snapshot {
  public:
   Snapshot(const VoxelGrid& grid, const std::shared_ptr<BoxSceneDevice>& device) : grid_(grid) {
     for_both_policies([&](std::size_t i, UnknownPolicy unknown) {
-      obstacles_[i].emplace(make_blockers(grid_, unknown), std::make_shared<SpareScenes>(device));
+      obstacles_[i].emplace(make_blockers(grid_, unknown), std::make_shared<SpareScenes>(device),
+                            OpenVoxels(grid_, unknown));
     });
   }
 
   Snapshot(const VoxelGrid& grid, const Snapshot& before) : grid_(grid) {
     for_both_policies([&](std::size_t i, UnknownPolicy unknown) {
       const Obstacles& old = *before.obstacles_[i];
-      obstacles_[i].emplace(follow_blockers(old.blockers(), before.grid_, grid_, unknown), old.spares());
+      obstacles_[i].emplace(follow_blockers(old.blockers(), before.grid_, grid_, unknown), old.spares(),
+                            OpenVoxels(grid_, unknown));
     });
   }
 
@@ -81,9 +89,15 @@ class Snapshot {
   [[nodiscard]] const BoxScene& scene(UnknownPolicy unknown) const {
     return obstacles_[static_cast<std::size_t>(unknown)]->scene();
   }
-  [[nodiscard]] std::size_t box_bytes() const {
-    return (obstacles_[0]->blockers().box_count() + obstacles_[1]->blockers().box_count()) *
-           sizeof(PackedBox);
+  [[nodiscard]] const OpenVoxels& open(UnknownPolicy unknown) const {
+    return obstacles_[static_cast<std::size_t>(unknown)]->open();
+  }
+  /// Beside the grid, and beside what Embree holds.
+  [[nodiscard]] std::size_t memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& obstacles : obstacles_)
+      bytes += obstacles->blockers().box_count() * sizeof(PackedBox) + obstacles->open().memory_bytes();
+    return bytes;
   }
 
  private:

@@ -24,17 +24,18 @@ Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
              const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key) {
   Hit hit{stop, state, key, lattice.center(key), ray.origin, 0.0F};
   if (key == origin_key) return hit;
-  const Eigen::Vector3d unit = unit_vector(direction);
+  // Only a direction that castRay could not normalise needs care.
+  const Eigen::Vector3d d = is_unit(direction) ? direction.cast<double>() : unit_vector(direction);
   const Eigen::Vector3d origin = ray.origin.cast<double>();
   const std::array<int, 3> cell = as_array(key);
-  double distance = 0.0;
+  double time = 0.0;  // of the last crossing into the voxel, in units of d's length
   for (int i = 0; i < 3; ++i) {
-    if (!(std::fabs(unit[i]) > 0.0)) continue;
-    const int face = cell[static_cast<std::size_t>(i)] - Lattice::kOrigin + (unit[i] > 0.0 ? 0 : 1);
-    distance = std::max(distance, (face * lattice.resolution() - origin[i]) / unit[i]);
+    const int face = cell[static_cast<std::size_t>(i)] - Lattice::kOrigin + static_cast<int>(d[i] < 0.0);
+    const double crossing = (face * lattice.resolution() - origin[i]) / d[i];
+    time = d[i] != 0.0 && crossing > time ? crossing : time;
   }
-  hit.entry = (origin + distance * unit).cast<float>();
-  hit.distance = static_cast<float>(distance);
+  hit.entry = (origin + time * d).cast<float>();
+  hit.distance = static_cast<float>(time * d.norm());
   return hit;
 }
 

@@ -26,6 +26,11 @@ inline Eigen::Vector3f normalized_as_octomap(Eigen::Vector3f d) {
   return d;
 }
 
+/// Whether `normalized_as_octomap` had something to normalise.
+inline bool is_unit(const Eigen::Vector3f& direction) {
+  return std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F;
+}
+
 inline std::array<int, 3> as_array(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 inline VoxelKey as_key(const std::array<int, 3>& key) {
   return {static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
@@ -101,7 +106,7 @@ inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& e
 /// of unit length.
 inline double time_surely_in_range(double max_range, double resolution, const Eigen::Vector3f& direction) {
   if (!(max_range > 0.0)) return std::numeric_limits<double>::infinity();
-  if (!(std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F)) return -std::numeric_limits<double>::infinity();
+  if (!is_unit(direction)) return -std::numeric_limits<double>::infinity();
   // An origin on a face can make the first crossings come at times far below zero: then time tells nothing.
   const double time = (max_range - resolution) * 0.999;
   return time > 0.0 ? time : -std::numeric_limits<double>::infinity();

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace frontlux::detail {
+
+/// Which voxels let rays pass, one bit each, in a flat table around everything that a map knows: what packets
+/// of rays walk through (packet_walk.hpp).
+///
+/// The bits lie brick by brick, so that a walk in any direction stays in a cache line for some steps. The
+/// place of a voxel's bit is its index: 3 bits each of x, y and z in the brick, then the rest of x, y and z.
+/// To step along an axis is to add one to that axis' bits of the index. The table ends with a border of
+/// closed bricks, which stops every walk, and in which a walk of up to seven steps too many still is.
+class OpenVoxels {
+ public:
+  /// Of a grid. Empty if nothing is known, or if the table would be larger than it is worth.
+  OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown);
+
+  [[nodiscard]] bool empty() const { return words_ == nullptr; }
+  /// True for what is known and the rest of its bricks.
+  [[nodiscard]] bool contains(const VoxelKey& key) const { return words_ && bounds_.contains(key); }
+
+  /// How an index is put together.
+  struct Layout {
+    std::array<int, 3> corner{};             ///< key of index 0: in the border, perhaps below the key range
+    std::uint32_t y_shift = 0, z_shift = 0;  ///< of what is above the brick; x has 9
+    std::array<std::uint32_t, 3> bits{};     ///< that belong to each axis
+
+    /// @pre the key lies in the table
+    [[nodiscard]] std::uint32_t index(const VoxelKey& key) const {
+      const auto x = static_cast<std::uint32_t>(key.x - corner[0]);
+      const auto y = static_cast<std::uint32_t>(key.y - corner[1]);
+      const auto z = static_cast<std::uint32_t>(key.z - corner[2]);
+      return (x & 7U) | (y & 7U) << 3U | (z & 7U) << 6U | (x >> 3U) << 9U | (y >> 3U) << y_shift |
+             (z >> 3U) << z_shift;
+    }
+    /// In the border perhaps outside the key range.
+    [[nodiscard]] std::array<int, 3> key(std::uint32_t index) const {
+      const std::uint32_t x = (index & bits[0] & ~511U) >> 9U, y = (index & bits[1] & ~511U) >> y_shift;
+      const std::uint32_t z = index >> z_shift;
+      return {corner[0] + static_cast<int>(x << 3U | (index & 7U)),
+              corner[1] + static_cast<int>(y << 3U | (index >> 3U & 7U)),
+              corner[2] + static_cast<int>(z << 3U | (index >> 6U & 7U))};
+    }
+  };
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  [[nodiscard]] const std::uint64_t* words() const { return words_.get(); }
+  [[nodiscard]] bool open(std::uint32_t index) const {
+    return ((words_[index >> 6U] >> (index & 63U)) & 1U) != 0;
+  }
+  [[nodiscard]] std::size_t memory_bytes() const { return word_count_ * sizeof(std::uint64_t); }
+
+ private:
+  struct Release {
+    void operator()(std::uint64_t* words) const;
+  };
+  KeyBox bounds_;
+  Layout layout_;
+  std::size_t word_count_ = 0;
+  std::unique_ptr<std::uint64_t[], Release> words_;
+};
+
+}  // namespace frontlux::detail

@@ -1,0 +1,151 @@
+// The walk itself. Included by packet_walk.cpp once for each instruction set, inside a namespace that defines
+// the lanes: `Int` with 32-bit time and `Real` with double.
+
+// A step of all lanes needs no branch. Lanes whose line has ended run on for up to kSteps - 1 steps, which the
+// table's border allows, and then stand still until enough of them are to be filled again.
+constexpr int kSteps = 8;
+
+template <class Lanes>
+struct Packet {
+  using V = typename Lanes::V;
+  using I = typename Lanes::I;
+  V tx, ty, tz, dx, dy, dz, end;
+  I index, flip, stopped_at;
+};
+
+template <class Lanes, bool kRecordsStop, class Finish>
+[[gnu::always_inline]] inline void walk_lines(const OpenVoxels& table,
+                                              const PacketLines<typename Lanes::Time>& lines,
+                                              const Finish& finish) {
+  using I = typename Lanes::I;
+  using M = typename Lanes::M;
+  constexpr unsigned kAll = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
+  constexpr int kRefill = Lanes::kWidth / 4;
+  const auto& bits = table.layout().bits;
+  const I not_x = Lanes::whole(~bits[0]), not_y = Lanes::whole(~bits[1]), not_z = Lanes::whole(~bits[2]);
+  const I zero = Lanes::whole(0);
+  const void* words = table.words();
+
+  Packet<Lanes> p{};
+  p.tx = p.ty = p.tz = p.dx = p.dy = p.dz = Lanes::time(0);
+  p.end = Lanes::time(0);
+  p.index = p.flip = p.stopped_at = zero;
+  alignas(64) std::uint32_t line[Lanes::kWidth] = {};
+  unsigned active = 0;
+  std::size_t next = 0;
+  while (true) {
+    const int room = Lanes::kWidth - __builtin_popcount(active);
+    if (next < lines.size && room >= kRefill) {
+      unsigned fill = ~active & kAll;
+      const std::size_t left = lines.size - next;
+      while (static_cast<std::size_t>(__builtin_popcount(fill)) > left) fill &= fill - 1;
+      Lanes::expand(p.tx, fill, &lines.t_max[0][next]);
+      Lanes::expand(p.ty, fill, &lines.t_max[1][next]);
+      Lanes::expand(p.tz, fill, &lines.t_max[2][next]);
+      Lanes::expand(p.dx, fill, &lines.t_delta[0][next]);
+      Lanes::expand(p.dy, fill, &lines.t_delta[1][next]);
+      Lanes::expand(p.dz, fill, &lines.t_delta[2][next]);
+      Lanes::expand(p.end, fill, &lines.end[next]);
+      Lanes::expand(p.index, fill, &lines.index[next]);
+      Lanes::expand(p.flip, fill, &lines.flip[next]);
+      for (unsigned f = fill; f != 0; f &= f - 1) line[__builtin_ctz(f)] = static_cast<std::uint32_t>(next++);
+      active |= fill;
+    }
+    if (active == 0) break;
+
+    const M running = Lanes::mask(active);
+    M ended = Lanes::none(), arrived = Lanes::none();
+    unsigned ended_bits = 0;
+    do {
+#pragma GCC unroll 8
+      for (int k = 0; k < kSteps; ++k) {
+        // Ties go to z before y before x (rule 5).
+        const M x_before_y = Lanes::less(p.tx, p.ty);
+        const auto first = Lanes::min(p.tx, p.ty);
+        const M not_z_next = Lanes::less(first, p.tz);
+        const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
+        const M over = Lanes::is_over(p.end, first, p.tz);
+        p.tx = Lanes::add_if(p.tx, x_next, p.dx);
+        p.ty = Lanes::add_if(p.ty, y_next, p.dy);
+        p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
+        const I others = Lanes::select(not_z_next, Lanes::select(x_before_y, not_x, not_y), not_z);
+        p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
+        const I at = Lanes::exclusive(p.index, p.flip);
+        const M closed = Lanes::closed(words, at, running);
+        const M fresh_arrival = Lanes::but_not(over, ended);
+        arrived = Lanes::any(arrived, fresh_arrival);
+        if constexpr (kRecordsStop)
+          p.stopped_at =
+              Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
+        ended = Lanes::any(ended, Lanes::any(over, closed));
+      }
+      ended_bits = Lanes::bits(Lanes::both(ended, running));
+    } while (ended_bits == 0);
+    finish(p, line, ended_bits, Lanes::bits(arrived));
+    active &= ~ended_bits;
+  }
+}
+
+// The lines of key segments, whose time is a whole number: Crossings<int64_t> in 32 bits.
+[[gnu::always_inline]] inline void segment_lines(const OpenVoxels::Layout& layout, const KeySegment* segments,
+                                                 std::size_t size, PacketLines<std::int32_t>& lines) {
+  constexpr std::size_t kMaxSize = PacketLines<std::int32_t>::kMaxSize;
+  alignas(64) std::int32_t from[3][kMaxSize], offset[3][kMaxSize];
+  for (std::size_t i = 0; i < size; ++i) {
+    const KeySegment& s = segments[i];
+    from[0][i] = s.from.x;
+    from[1][i] = s.from.y;
+    from[2][i] = s.from.z;
+    offset[0][i] = s.to.x - s.from.x;
+    offset[1][i] = s.to.y - s.from.y;
+    offset[2][i] = s.to.z - s.from.z;
+  }
+  const auto length = [](std::int32_t d) { return d < 0 ? -d : d; };
+  const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int32_t x = length(offset[0][i]), y = length(offset[1][i]), z = length(offset[2][i]);
+    const std::int32_t product[3] = {at_least_one(y) * at_least_one(z), at_least_one(z) * at_least_one(x),
+                                     at_least_one(x) * at_least_one(y)};
+    const std::int32_t distance[3] = {x, y, z};
+    std::uint32_t flip = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      lines.t_max[a][i] = distance[a] == 0 ? 0x7FFFFFFF : product[a];
+      lines.t_delta[a][i] = distance[a] == 0 ? 0 : 2 * product[a];
+      flip |= offset[a][i] < 0 ? layout.bits[a] : 0U;
+    }
+    const auto kx = static_cast<std::uint32_t>(from[0][i] - layout.corner[0]),
+               ky = static_cast<std::uint32_t>(from[1][i] - layout.corner[1]),
+               kz = static_cast<std::uint32_t>(from[2][i] - layout.corner[2]);
+    const std::uint32_t index = (kx & 7U) | (ky & 7U) << 3U | (kz & 7U) << 6U | (kx >> 3U) << 9U |
+                                (ky >> 3U) << layout.y_shift | (kz >> 3U) << layout.z_shift;
+    lines.end[i] = x + y + z;
+    lines.index[i] = index ^ flip;
+    lines.flip[i] = flip;
+  }
+}
+
+void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t size, std::uint8_t* visible) {
+  PacketLines<std::int32_t> lines;
+  lines.size = size;
+  segment_lines(table.layout(), segments, size, lines);
+  walk_lines<Int, false>(table, lines,
+                         [visible](const Packet<Int>&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+                           for (; ended != 0; ended &= ended - 1) {
+                             const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
+                             visible[line[lane]] = static_cast<std::uint8_t>((arrived >> lane) & 1U);
+                           }
+                         });
+}
+
+void rays(const OpenVoxels& table, const PacketLines<double>& lines, std::uint32_t* stopped_at) {
+  walk_lines<Real, true>(table, lines,
+                         [&](const Packet<Real>& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+                           alignas(64) typename PacketLines<double>::Index at[Real::kWidth];
+                           Real::store(at, p.stopped_at);
+                           for (; ended != 0; ended &= ended - 1) {
+                             const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
+                             const bool passed = ((arrived >> lane) & 1U) != 0;
+                             stopped_at[line[lane]] = passed ? kWentThrough : static_cast<std::uint32_t>(at[lane]);
+                           }
+                         });
+}
