@@ -1,3 +1,5 @@
+#include "embree_ray_caster.hpp"
+
 #include "batch.hpp"
 #include "published.hpp"
 #include "scene_query.hpp"
@@ -18,8 +20,10 @@ namespace {
 
 class EmbreeRayCaster final : public RayCaster {
  public:
-  explicit EmbreeRayCaster(const VoxelGrid& grid)
+  /// @param packets  null keeps the table out of use
+  EmbreeRayCaster(const VoxelGrid& grid, const detail::PacketWalk* packets)
       : RayCaster(grid.lattice()),
+        packets_(packets),
         device_(detail::make_box_scene_device()),
         snapshot_(std::make_shared<detail::Snapshot>(grid, device_)) {}
 
@@ -50,7 +54,7 @@ class EmbreeRayCaster final : public RayCaster {
 
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
     const auto snapshot = snapshot_.snapshot();
-    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown);
+    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown, packets_);
     const detail::SceneQuery scene(*snapshot, unknown);
     answer(
         rays, hits, [&](auto some, auto out, auto left) { return table.cast(some, out, left); },
@@ -67,7 +71,7 @@ class EmbreeRayCaster final : public RayCaster {
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
     const auto snapshot = snapshot_.snapshot();
-    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown);
+    const detail::TableQuery table(snapshot->grid(), snapshot->open(unknown), unknown, packets_);
     const detail::SceneQuery scene(*snapshot, unknown);
     answer(
         segments, visible, [&](auto some, auto out, auto left) { return table.visible(some, out, left); },
@@ -78,6 +82,7 @@ class EmbreeRayCaster final : public RayCaster {
     snapshot_.replace(std::make_shared<detail::Snapshot>(grid, *snapshot_.snapshot()));
   }
 
+  const detail::PacketWalk* packets_;
   std::shared_ptr<detail::BoxSceneDevice> device_;
   detail::Published<detail::Snapshot> snapshot_;
 };
@@ -85,7 +90,11 @@ class EmbreeRayCaster final : public RayCaster {
 }  // namespace
 
 std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid) {
-  return std::make_unique<EmbreeRayCaster>(grid);
+  return std::make_unique<EmbreeRayCaster>(grid, detail::packet_walk());
+}
+
+std::unique_ptr<RayCaster> detail::make_scene_ray_caster(const VoxelGrid& grid) {
+  return std::make_unique<EmbreeRayCaster>(grid, nullptr);
 }
 
 }  // namespace frontlux

@@ -2,6 +2,7 @@
 // map; FRONTLUX_LONG=1 takes three million rays on each, the generated buildings and FRONTLUX_EXTRA_MAPS
 // included.
 
+#include "embree_ray_caster.hpp"
 #include "support/maps.hpp"
 #include "support/ray_samples.hpp"
 
@@ -67,11 +68,12 @@ struct Subject {
         grid(make_voxel_grid(*map.tree)),
         walk(make_grid_ray_caster(grid)),
         embree(make_embree_ray_caster(grid)),
+        scene(detail::make_scene_ray_caster(grid)),
         baseline(make_octomap_ray_caster(*map.tree)),
         drop_in(*map.tree) {}
   NamedMap map;
   VoxelGrid grid;
-  std::unique_ptr<RayCaster> walk, embree, baseline;
+  std::unique_ptr<RayCaster> walk, embree, scene, baseline;
   OctreeRayCaster drop_in;
 };
 
@@ -80,9 +82,10 @@ struct Subject {
 void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64_t seed,
                           UnknownPolicy unknown, Disagreements& bad) {
   const auto rays = adversarial_rays(subject.grid, count, seed);
-  std::vector<Hit> walked(count), embree(count), baseline(count);
+  std::vector<Hit> walked(count), embree(count), scene(count), baseline(count);
   subject.walk->cast(rays, walked, unknown);
   subject.embree->cast(rays, embree, unknown);
+  subject.scene->cast(rays, scene, unknown);
   subject.baseline->cast(rays, baseline, unknown);
   const bool ignore_unknown = unknown == UnknownPolicy::kPass;
   bad.check(
@@ -98,7 +101,8 @@ void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64
         const Eigen::Vector3f expected =
             walked[i].stop == RayStop::kInvalid ? Eigen::Vector3f(1e20F, -2e20F, 3e20F) : walked[i].end;
         return hit == drop_in_hit && hit == walked[i].occupied() && same_bits(expected, end) &&
-               same_bits(expected, drop_in_end) && same(walked[i], embree[i]) && same(walked[i], baseline[i]);
+               same_bits(expected, drop_in_end) && same(walked[i], embree[i]) && same(walked[i], scene[i]) &&
+               same(walked[i], baseline[i]);
       },
       [&](std::size_t i) { return subject.map.name + ": " + text(rays[i]); });
 }
@@ -106,11 +110,12 @@ void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64
 void expect_visibility_conforms(const Subject& subject, std::size_t count, std::uint64_t seed,
                                 UnknownPolicy unknown, Disagreements& bad) {
   const auto keys = adversarial_key_segments(subject.grid, count, seed);
-  std::vector<std::uint8_t> walked(count), embree(count);
+  std::vector<std::uint8_t> walked(count), embree(count), scene(count);
   subject.walk->visible(keys, walked, unknown);
   subject.embree->visible(keys, embree, unknown);
+  subject.scene->visible(keys, scene, unknown);
   bad.check(
-      count, [&](std::size_t i) { return walked[i] == embree[i]; },
+      count, [&](std::size_t i) { return walked[i] == embree[i] && walked[i] == scene[i]; },
       [&](std::size_t i) {
         std::ostringstream out;
         out << subject.map.name << ": keys (" << keys[i].from.x << ' ' << keys[i].from.y << ' '

@@ -1,5 +1,6 @@
 // What holds for every caster: batches, threads, bad input, updates while others read.
 
+#include "embree_ray_caster.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
@@ -31,6 +32,7 @@ struct Casters {
     all.push_back(make_octomap_ray_caster(*tree));
     all.push_back(make_grid_ray_caster(grid));
     all.push_back(make_embree_ray_caster(grid));
+    all.push_back(detail::make_scene_ray_caster(grid));
   }
 };
 
@@ -147,12 +149,19 @@ TEST(RayCaster, RaysThatAreNoneAreAnsweredNotThrown) {
   grid.set({32768, 32768, 32768}, Occupancy::kOccupied);
   const Eigen::Vector3f wall = grid.lattice().center({32768, 32768, 32768}),
                         free = wall + Eigen::Vector3f(1.0F, 0, 0);
-  for (const auto& caster : {make_grid_ray_caster(grid), make_embree_ray_caster(grid)})
+  for (const auto& caster :
+       {make_grid_ray_caster(grid), make_embree_ray_caster(grid), detail::make_scene_ray_caster(grid)})
     for (const Eigen::Vector3f& none : {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(nan, 0, 0),
                                         Eigen::Vector3f(infinity, 1, 0), Eigen::Vector3f(1e38F, 1e38F, 0)}) {
       EXPECT_EQ(caster->cast({free, none, -1.0}, UnknownPolicy::kBlock).stop, RayStop::kInvalid);
       EXPECT_EQ(caster->cast({wall, none, -1.0}, UnknownPolicy::kBlock).stop, RayStop::kOccupied);
     }
+}
+
+TEST(RayCaster, IsChosenByHowManyRaysItIsFor) {
+  const VoxelGrid grid = make_voxel_grid(*make_noise_tree(1, 0.3, 24));
+  EXPECT_EQ(make_ray_caster(grid, 10)->memory_bytes(), 0U);
+  EXPECT_GT(make_ray_caster(grid, 10'000'000)->memory_bytes(), 0U);
 }
 
 TEST(RayCaster, EmptyAndUniformMaps) {
@@ -179,7 +188,8 @@ TEST(RayCaster, DistanceAndEntryAreThoseOfTheBlockersFace) {
   grid.fill({{32768, 32768, 32768}, 4}, Occupancy::kFree);
   grid.set({32778, 32770, 32770}, Occupancy::kOccupied);  // its lower face along x lies at 5 m
   const Eigen::Vector3f origin(1.25F, 1.25F, 1.25F);
-  for (const auto& caster : {make_grid_ray_caster(grid), make_embree_ray_caster(grid)}) {
+  for (const auto& caster :
+       {make_grid_ray_caster(grid), make_embree_ray_caster(grid), detail::make_scene_ray_caster(grid)}) {
     const Hit straight = caster->cast({origin, {2.0F, 0, 0}, -1.0}, UnknownPolicy::kBlock);
     EXPECT_EQ(straight.stop, RayStop::kOccupied);
     EXPECT_EQ(straight.key, (VoxelKey{32778, 32770, 32770}));
@@ -211,7 +221,8 @@ TEST(RayCaster, RaysAllButParallelToAWall) {
     grid.set({32775, static_cast<std::uint16_t>(32768 + y), 32773}, Occupancy::kOccupied);
   for (const int y : {11, 23, 24, 41})
     grid.set({32774, static_cast<std::uint16_t>(32768 + y), 32773}, Occupancy::kOccupied);
-  const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid);
+  const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid),
+             scene = detail::make_scene_ray_caster(grid);
   std::vector<Ray> rays(100'000);
   for (Ray& ray : rays) {
     const auto tiny = [&] {
@@ -226,14 +237,19 @@ TEST(RayCaster, RaysAllButParallelToAWall) {
     walk->cast(rays, expected, unknown);
     embree->cast(rays, hits, unknown);
     for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same(expected[i], hits[i])) << i;
+    scene->cast(rays, hits, unknown);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same(expected[i], hits[i])) << i;
   }
 }
 
 TEST(RayCaster, UpdateEqualsANewCaster) {
   Random random(11);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    VoxelGrid grid = make_voxel_grid(*make_random_tree(seed, 0.3));
-    const auto followed_by_walk = make_grid_ray_caster(grid), followed = make_embree_ray_caster(grid);
+    // The first kind spans the key range and leaves all to the scene, the second has a table.
+    VoxelGrid grid =
+        make_voxel_grid(seed % 2 == 0 ? *make_random_tree(seed, 0.3) : *make_noise_tree(seed, 0.3, 90));
+    const auto followed_by_walk = make_grid_ray_caster(grid), followed = make_embree_ray_caster(grid),
+               followed_by_scene = detail::make_scene_ray_caster(grid);
     for (int round = 0; round < 12; ++round) {
       const int edits = random.below(40);
       for (int i = 0; i < edits; ++i) {
@@ -245,10 +261,12 @@ TEST(RayCaster, UpdateEqualsANewCaster) {
       }
       followed->update(grid);
       followed_by_walk->update(grid);
+      followed_by_scene->update(grid);
       const auto fresh = make_grid_ray_caster(grid);
       const Questions questions(grid, 1000);
       expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed, 1000));
       expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed_by_walk, 1000));
+      expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed_by_scene, 1000));
     }
   }
 }

@@ -72,13 +72,19 @@ class RayCaster {
   Lattice lattice_;
 };
 
-/// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The oracle,
-/// and the fastest where rays end within a few voxels. Costs nothing to build: it shares the grid's memory.
+/// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The oracle.
+/// Costs nothing to build, and shares the grid's memory.
 [[nodiscard]] std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
 
-/// Casts through a BVH of boxes in Embree and settles by the grid's walk what rounding could decide either
-/// way.
+/// The fast one. Keeps two things beside the grid: a table of open voxels, through which rays are walked in
+/// packets, and a BVH of boxes in Embree for the rays that are too long for that, or outside the table. What
+/// rounding could decide either way is settled by the grid's walk.
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
+
+/// The one of the two that is sooner done: the grid's walk for a few rays, Embree once they repay its building.
+/// @param expected_rays  how many rays will be cast, about, before the map changes everywhere or the caster goes
+/// @throws std::runtime_error if Embree cannot make its device
+[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid, std::uint64_t expected_rays);
 
 }  // namespace frontlux
