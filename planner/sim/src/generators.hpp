@@ -1,0 +1,23 @@
+#pragma once
+
+#include "solid.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+namespace frontlux::sim {
+
+/// A generator's result: what is solid, and where to start.
+struct Building {
+  Solid solid;
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+[[nodiscard]] Building build_maze(std::uint64_t seed);
+[[nodiscard]] Building build_factory(std::uint64_t seed);
+[[nodiscard]] Building build_station(std::uint64_t seed);
+[[nodiscard]] Building build_storage(std::uint64_t seed);
+[[nodiscard]] Building build_room(std::uint64_t seed);
+
+}  // namespace frontlux::sim
