@@ -1,4 +1,5 @@
 #include "generators.hpp"
+#include "layout_random.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
 
@@ -20,6 +21,16 @@ constexpr std::array kWorlds = {
 constexpr std::array kBuilders = {build_maze, build_factory, build_station, build_storage, build_room};
 static_assert(kWorlds.size() == kBuilders.size());
 
+// The same floor plan looks another way from its other side.
+void mirror(Building& building, std::uint64_t seed) {
+  LayoutRandom random(seed, 1);
+  const bool x = random.chance(50), y = random.chance(50);
+  building.solid.mirror(building.inside, x, y);
+  const auto mirrored = [](int place, const Span& frame) { return Span{place, place}.mirrored(frame).from; };
+  if (x) building.start.x() = mirrored(building.start.x(), building.inside.x);
+  if (y) building.start.y() = mirrored(building.start.y(), building.inside.y);
+}
+
 }  // namespace
 
 std::span<const BuiltInWorld> built_in_worlds() { return kWorlds; }
@@ -31,12 +42,13 @@ World make_world(std::string_view name, std::uint64_t seed) {
       names.append(names.empty() ? "" : ", ").append(kWorlds[i].name);
       continue;
     }
-    const Building building = kBuilders[i](seed);
+    Building building = kBuilders[i](seed);
+    mirror(building, seed);
     World world;
     world.name = name;
     world.mesh = building.solid.surface();
     world.bounds = bounds_of(world.mesh);
-    world.start = building.start;
+    world.start = metres(building.start);
     return world;
   }
   throw std::invalid_argument("make_world: there is no world '" + std::string(name) + "', only " + names);

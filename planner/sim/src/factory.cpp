@@ -111,6 +111,7 @@ void add_ducts(Solid& solid, LayoutRandom& random) {
 Building build_factory(std::uint64_t seed) {
   LayoutRandom random(seed);
   Building building;
+  building.inside = kInside;
   Solid& solid = building.solid;
   add_hall(solid, kInside, kHeight);
   add_side_rooms(solid, random);
@@ -132,7 +133,7 @@ Building build_factory(std::uint64_t seed) {
   add_conveyor(solid, conveyor, random);
   floor.occupy(conveyor.grown(3));
   if (const auto start = floor.place(random, 12, 12))
-    building.start = metres(start->x.middle(), start->y.middle(), 0);
+    building.start = {start->x.middle(), start->y.middle(), 0};
   for (int i = 0; i < 3; ++i) {
     const int diameter = 2 * random.whole(10, 16) + 1;
     if (const auto tank = floor.place(random, diameter, diameter))

@@ -8,10 +8,11 @@
 
 namespace frontlux::sim {
 
-/// A generator's result: what is solid, and where to start.
+/// A generator's result: what is solid, and where to start. All in decimetres.
 struct Building {
+  Rect inside;
   Solid solid;
-  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3i start = Eigen::Vector3i::Zero();
 };
 
 [[nodiscard]] Building build_maze(std::uint64_t seed);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBelowBoundary = 0.05;  // [m]
 constexpr double kReach = 0.01;          // [m] above the point
-constexpr double kRightAlready = 1e-6;   // [m] coordinates are floats
+constexpr double kRightAlready = 1e-5;   // [m] coordinates are floats
 
 std::string to_text(const Eigen::Vector3d& p) {
   return std::to_string(p.x()) + "," + std::to_string(p.y()) + "," + std::to_string(p.z());

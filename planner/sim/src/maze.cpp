@@ -50,6 +50,7 @@ class Maze {
     const Cell start{random_.chance(50) ? 0 : kCells - 1, random_.chance(50) ? 0 : kCells - 1};
     grow_from(start);
     Building building;
+    building.inside = {{0, kSize}, {0, kSize}};
     Solid& solid = building.solid;
     solid.add({-3, kSize + 3}, {-3, kSize + 3}, {-3, kHeight + 3});
     for (int i = 0; i < kCells; ++i)
@@ -62,7 +63,7 @@ class Maze {
     dig_tunnels(solid, start);
     open_walls(solid);
     const Rect first = rect_of(start);
-    building.start = metres(first.x.middle(), first.y.middle(), 0);
+    building.start = {first.x.middle(), first.y.middle(), 0};
     return building;
   }
 

@@ -57,7 +57,7 @@ RawMesh read_raw(const std::filesystem::path& file, bool keep_frame) {
     throw MeshFault(
         "no mesh format goes by that name; those read are .ply, .obj, .stl, .dae, .gltf and .glb");
   check_file(file);
-  return ply ? parse_ply(bytes_of(file)) : import_mesh(file, keep_frame);
+  return ply ? parse_ply(bytes_of(file)) : import_mesh(file, ending.substr(1), keep_frame);
 }
 
 // Into a right-handed frame with z up.

@@ -1,12 +1,15 @@
 #include "raw_mesh.hpp"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -32,11 +35,23 @@ void append(const aiMesh& part, const aiMatrix4x4& to_root, RawMesh& mesh) {
     throw MeshFault("holds more than " + std::to_string(kMaxTriangles) + " triangles; simplify it");
 }
 
+// Leaves those that read this ending. Otherwise Assimp looks for signatures and reads what a file is not
+// named after, with any of its fifty importers.
+void keep_importers(Assimp::Importer& importer, const std::string& ending) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const std::string endings = std::string(" ") + importer.GetImporterInfo(i)->mFileExtensions + " ";
+    if (endings.find(" " + ending + " ") != std::string::npos) continue;
+    const std::unique_ptr<Assimp::BaseImporter> other(importer.GetImporter(i));
+    importer.UnregisterLoader(other.get());
+  }
+}
+
 }  // namespace
 
-RawMesh import_mesh(const std::filesystem::path& file, bool keep_frame) {
+RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
   try {
     Assimp::Importer importer;
+    keep_importers(importer, ending);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_frame);
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);

@@ -28,8 +28,10 @@ class MeshFault : public std::runtime_error {
 [[nodiscard]] RawMesh parse_ply(const std::string& bytes);
 
 /// Reads any other format through Assimp, with node transformations and COLLADA's unit applied.
+/// @param ending      of the format to read, whatever the file holds: "obj"
 /// @param keep_frame  if false, a COLLADA file's frame is turned to have y up
 /// @throws MeshFault
-[[nodiscard]] RawMesh import_mesh(const std::filesystem::path& file, bool keep_frame);
+[[nodiscard]] RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending,
+                                  bool keep_frame);
 
 }  // namespace frontlux::sim

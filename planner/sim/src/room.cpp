@@ -13,6 +13,7 @@ constexpr int kHeight = 30;
 Building build_room(std::uint64_t seed) {
   LayoutRandom random(seed);
   Building building;
+  building.inside = kInside;
   Solid& solid = building.solid;
   add_hall(solid, kInside, kHeight);
 
@@ -25,7 +26,7 @@ Building build_room(std::uint64_t seed) {
 
   FloorPlan south({kInside.x, {0, wall}}), north({kInside.x, {wall + 2, 120}});
   if (const auto start = south.place(random, 12, 12))
-    building.start = metres(start->x.middle(), start->y.middle(), 0);
+    building.start = {start->x.middle(), start->y.middle(), 0};
   if (const auto pillar = south.place(random, 5, 5)) solid.add(*pillar, {0, kHeight});
   if (const auto table = random.chance(50) ? south.place(random, 16, 8) : south.place(random, 8, 16))
     add_table(solid, *table, 0);

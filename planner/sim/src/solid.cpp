@@ -37,6 +37,13 @@ class Cuts {
 
 }  // namespace
 
+void Solid::mirror(const Rect& frame, bool x, bool y) {
+  for (auto& step : steps_) {
+    if (x) step.x = step.x.mirrored(frame.x);
+    if (y) step.y = step.y.mirrored(frame.y);
+  }
+}
+
 TriangleMesh Solid::surface() const {
   std::array<Cuts, 3> cuts;
   for (const auto& [x, y, z, add] : steps_) {
@@ -83,6 +90,8 @@ TriangleMesh Solid::surface() const {
   });
 }
 
-Eigen::Vector3d metres(int x, int y, int z) { return {place(0, x), place(1, y), place(2, z)}; }
+Eigen::Vector3d metres(const Eigen::Vector3i& p) {
+  return {place(0, p.x()), place(1, p.y()), place(2, p.z())};
+}
 
 }  // namespace frontlux::sim

@@ -12,6 +12,10 @@ struct Span {
   [[nodiscard]] int length() const { return to - from; }
   [[nodiscard]] int middle() const { return (from + to) / 2; }
   [[nodiscard]] Span grown(int by) const { return {from - by, to + by}; }
+  /// Turned round within `frame`.
+  [[nodiscard]] Span mirrored(const Span& frame) const {
+    return {frame.from + frame.to - to, frame.from + frame.to - from};
+  }
 };
 
 /// Seen from above.
@@ -36,6 +40,9 @@ class Solid {
   void cut(Span x, Span y, Span z) { steps_.push_back({x, y, z, false}); }
   void cut(const Rect& rect, Span z) { cut(rect.x, rect.y, z); }
 
+  /// Turns everything built so far left to right or front to back, within `frame`.
+  void mirror(const Rect& frame, bool x, bool y);
+
   /// The surface of all that is left, facing outwards.
   [[nodiscard]] TriangleMesh surface() const;
 
@@ -48,6 +55,6 @@ class Solid {
 };
 
 /// A place in a built-in world [m].
-[[nodiscard]] Eigen::Vector3d metres(int x, int y, int z);
+[[nodiscard]] Eigen::Vector3d metres(const Eigen::Vector3i& place);
 
 }  // namespace frontlux::sim

@@ -3,6 +3,7 @@
 #include "generators.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace frontlux::sim {
 namespace {
@@ -54,7 +55,7 @@ void add_mezzanine(Solid& solid, const Layout& plan, LayoutRandom& random) {
   const Rect& deck = plan.deck;
   solid.add(deck, {kDeck - 3, kDeck});
   for (int y = deck.y.from + 28; y + kColumn < deck.y.to - 10; y += kColumnPitch)
-    for (const int x : {deck.x.from + 2, deck.x.from + 2 + kColumnPitch})
+    for (const int x : {deck.x.from + 2, deck.x.from + 47})
       solid.add({x, x + kColumn}, {y, y + kColumn}, {kPlatform, kDeck - 3});
   add_stairs(solid, plan.flight, {kPlatform, kDeck}, false);
   add_railing(solid, {{deck.x.from, deck.x.from + 1}, {deck.y.from, plan.flight.y.from}}, kDeck);
@@ -69,10 +70,19 @@ void add_mezzanine(Solid& solid, const Layout& plan, LayoutRandom& random) {
   }
 }
 
-void add_columns_and_roof(Solid& solid, const Layout& plan) {
+// Two rows, a passage away from the edge of the platforms.
+std::vector<Rect> columns(const Layout& plan) {
+  std::vector<Rect> all;
   for (const int y : {plan.trench.from - 26, plan.trench.to + 22})
     for (int x = 30; x + kColumn < plan.deck.x.from - 20; x += kColumnPitch)
-      solid.add({x, x + kColumn}, {y, y + kColumn}, {kPlatform, kTruss});
+      if (const Rect column{{x, x + kColumn}, {y, y + kColumn}};
+          !column.grown(kPassage).overlaps(plan.flight))
+        all.push_back(column);
+  return all;
+}
+
+void add_columns_and_roof(Solid& solid, const Layout& plan) {
+  for (const Rect& column : columns(plan)) solid.add(column, {kPlatform, kTruss});
   for (int x = 30; x < kInside.x.to; x += 2 * kColumnPitch) {
     solid.add({x, x + 3}, kInside.y, {kTruss, kTruss + 3});
     for (int y = 20; y < kInside.y.to; y += 40) solid.add({x + 1, x + 2}, {y, y + 2}, {kTruss + 3, kHeight});
@@ -103,16 +113,22 @@ void furnish_platforms(Solid& solid, const Layout& plan, LayoutRandom& random) {
 }
 
 void furnish_concourse(Solid& solid, const Layout& plan, LayoutRandom& random, Building& building) {
-  // A row of gates between platforms and concourse; every gap is a passage.
+  // A row of gates between platforms and concourse; every gap is a passage, those around columns too.
   const int gates = plan.head + 25;
-  for (int y = 22; y + 14 < kInside.y.to - 20; y += 14 + kPassage + 4)
-    solid.add({gates, gates + 5}, {y, y + 14}, {0, 12});
+  const auto stand = columns(plan);
+  for (int y = 22; y + 14 < kInside.y.to - 20; y += 14 + kPassage + 4) {
+    const Rect gate{{gates, gates + 5}, {y, y + 14}};
+    if (std::none_of(stand.begin(), stand.end(),
+                     [&](const Rect& column) { return gate.grown(kPassage).overlaps(column); }))
+      solid.add(gate, {0, 12});
+  }
 
   FloorPlan floor({{gates + 5, plan.deck.x.from + 30}, kInside.y});
   floor.occupy(plan.flight);
+  for (const Rect& column : stand) floor.occupy(column);
   floor.occupy({{plan.deck.x.from, kInside.x.to}, kInside.y});
   if (const auto start = floor.place(random, 12, 12))
-    building.start = metres(start->x.middle(), start->y.middle(), kPlatform);
+    building.start = {start->x.middle(), start->y.middle(), kPlatform};
   for (int i = 0; i < 4; ++i)
     if (const auto kiosk = floor.place(random, random.whole(32, 44), random.whole(30, 44)))
       add_kiosk(solid, *kiosk, random);
@@ -136,6 +152,7 @@ void furnish_concourse(Solid& solid, const Layout& plan, LayoutRandom& random, B
 Building build_station(std::uint64_t seed) {
   LayoutRandom random(seed);
   Building building;
+  building.inside = kInside;
   Layout plan;
   plan.head = random.whole(440, 500);
   const int middle = random.whole(185, 215), half = random.whole(62, 75);

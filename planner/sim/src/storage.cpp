@@ -18,6 +18,7 @@ constexpr Span kRacks = {22, 178};  // along x
 Building build_storage(std::uint64_t seed) {
   LayoutRandom random(seed);
   Building building;
+  building.inside = kInside;
   Solid& solid = building.solid;
   add_hall(solid, kInside, kHeight);
 
@@ -53,8 +54,6 @@ Building build_storage(std::uint64_t seed) {
   const Span office_y = south ? Span{0, depth} : Span{kInside.y.to - depth, kInside.y.to};
   const Rect office{{kInside.x.to - width, kInside.x.to}, office_y};
   add_room(solid, office, 27);
-  solid.add(office.grown(2).x.to > kInside.x.to ? Span{kInside.x.to, kInside.x.to + 2} : Span{}, office_y,
-            {0, 29});
   const Span front = south ? Span{depth, depth + 2} : Span{office_y.from - 2, office_y.from};
   const int door = random.whole(office.x.from + 3, office.x.to - kPassage - 3);
   cut_door(solid, {{door, door + kPassage}, front});
@@ -65,10 +64,14 @@ Building build_storage(std::uint64_t seed) {
             {0, 20});
 
   // The rest of that end of the hall is for goods that come and go.
-  FloorPlan yard(
-      {{kRacks.to, kInside.x.to}, south ? Span{office.y.to + 2, kInside.y.to} : Span{0, office.y.from - 2}});
+  const Span yard_y = south ? Span{office.y.to + 2, kInside.y.to} : Span{0, office.y.from - 2};
+  constexpr int kBay = 12;  // goods along the east wall, which need no passage behind
+  for (int at = yard_y.from + kPassage; at + kBay + 3 < yard_y.to - kPassage; at += kBay + random.whole(1, 5))
+    if (random.chance(60))
+      add_pile(solid, {{kInside.x.to - kBay, kInside.x.to}, {at, at + kBay}}, random.whole(6, 24), random);
+  FloorPlan yard({{kRacks.to, kInside.x.to - kBay}, yard_y});
   if (const auto start = yard.place(random, 12, 12))
-    building.start = metres(start->x.middle(), start->y.middle(), 0);
+    building.start = {start->x.middle(), start->y.middle(), 0};
   for (int i = 0; i < 4; ++i)
     if (const auto pallet = yard.place(random, random.whole(8, 14), random.whole(8, 12)))
       add_pile(solid, *pallet, random.whole(6, 22), random);

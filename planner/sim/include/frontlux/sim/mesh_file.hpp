@@ -11,8 +11,9 @@ namespace frontlux::sim {
 enum class UpAxis { kX, kY, kZ };
 
 struct MeshOptions {
-  double scale = 1.0;        ///< metres per unit of the file; COLLADA's own unit is applied before
-  std::optional<UpAxis> up;  ///< if nothing: what the format says (COLLADA: the file; glTF: y), else z
+  double scale = 1.0;  ///< metres per unit of the file; COLLADA's own unit is applied before
+  std::optional<UpAxis> up =
+      std::nullopt;  ///< if nothing: what the format says (COLLADA: the file; glTF: y), else z
 };
 
 /// Reads a mesh, by its name's ending: .ply, .obj, .stl, .dae, .gltf, .glb. Polygons become triangles, node
