@@ -20,8 +20,8 @@ constexpr int kBadInput = 2, kFailure = 1;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 8> kNumeric = {"--from",  "--to",     "--direction", "--range",
-                                                        "--start", "--ground", "--scale",     "--resolution"};
+  constexpr std::array<std::string_view, 9> kNumeric = {
+      "--from", "--to", "--direction", "--range", "--start", "--ground", "--scale", "--resolution", "--seed"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];

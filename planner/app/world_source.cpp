@@ -9,10 +9,13 @@
 #include <frontlux/sim/map_world.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 namespace frontlux::app {
 namespace {
@@ -45,6 +48,14 @@ void check_options(const WorldSource& source, WorldKind kind) {
   only_for(source.seed.has_value(), WorldKind::kBuiltIn, "--seed", "built-in worlds");
   only_for(source.scale.has_value(), WorldKind::kMesh, "--scale", "mesh files");
   only_for(source.up.has_value(), WorldKind::kMesh, "--up", "mesh files");
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
+    throw BadInput("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
+  return seed;
 }
 
 sim::MeshOptions mesh_options(const WorldSource& source) {
@@ -113,7 +124,7 @@ SourcedWorld make_world(const WorldSource& source) {
   check_options(source, sourced.kind);
   try {
     if (sourced.kind == WorldKind::kBuiltIn) {
-      sourced.seed = source.seed.value_or(1);
+      sourced.seed = source.seed ? parse_seed(*source.seed) : 1;
       sourced.world = sim::make_world(source.world, sourced.seed);
     } else {
       sourced.world = sourced.kind == WorldKind::kMap

@@ -12,7 +12,7 @@ namespace frontlux::app {
 /// Where a world comes from, as the user names it.
 struct WorldSource {
   std::string world;                  ///< a built-in world, or a mesh or OctoMap file
-  std::optional<std::uint64_t> seed;  ///< of a built-in world; 1 if not given
+  std::optional<std::string> seed;    ///< of a built-in world; 1 if not given
   std::optional<std::string> scale;   ///< of a mesh file: metres per unit
   std::optional<std::string> up;      ///< of a mesh file: x, y or z
   std::optional<std::string> start;   ///< x,y,z [m], in the world's frame before the ground is aligned

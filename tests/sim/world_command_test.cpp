@@ -96,7 +96,7 @@ TEST_F(WorldCommand, WritesWhatTheLibraryMakes) {
 }
 
 TEST_F(WorldCommand, MeasuresABox) {
-  expect_answer({box("box.ply")}, {"size         4 x 5 x 6 m, 5376 voxels of 0.3 m\n",
+  expect_answer({box("box.ply")}, {"size         4 x 5 x 6 m, 4998 voxels of 0.3 m\n",
                                    "bounds x     0 to 4 m\n", "triangles    12\n", "surface      148 m^2\n",
                                    "free         0 m^3, of 120 m^3", "start        none"});
   expect_answer({file("box.ply"), "--scale", "0.5", "--up", "y"},
@@ -124,7 +124,9 @@ TEST_F(WorldCommand, RefusesBadInput) {
   expect_refusal({file("none.ply")}, {file("none.ply"), "no such file"});
   expect_refusal({file("none.bt")}, {file("none.bt"), "no such file"});
   expect_refusal({"maze", "--seed", "two"}, {"--seed"});
-  expect_refusal({"maze", "--seed", "-1"}, {"-1"});
+  expect_refusal({"maze", "--seed", "-1"}, {"--seed", "'-1'"});
+  expect_refusal({"maze", "--seed", ""}, {"--seed"});
+  expect_refusal({"maze", "--seed", "18446744073709551616"}, {"--seed"});
   expect_refusal({"maze", "--scale", "2"}, {"--scale", "mesh files", "maze"});
   expect_refusal({"maze", "--up", "y"}, {"--up", "mesh files"});
   expect_refusal({file("box.ply"), "--seed", "3"}, {"--seed", "built-in"});
