@@ -50,6 +50,7 @@ int run(int argc, const char* const* argv) {
       "Examples:\n"
       "  frontlux info building.bt\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
+      "  frontlux world station --seed 3 -o station.ply\n"
       "`frontlux info --help` and `frontlux cast --help` say more. Lengths are in metres. Exit code: 0 if "
       "the\n"
       "question was answered, 2 if the input was not usable, 1 if anything else went wrong.");

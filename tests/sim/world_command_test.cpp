@@ -1,7 +1,10 @@
+#include <frontlux/octomap.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/map_world.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
 #include <gtest/gtest.h>
+#include <octomap/OcTree.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -113,9 +116,18 @@ TEST_F(WorldCommand, AlignsTheGround) {
 }
 
 TEST_F(WorldCommand, TakesMaps) {
-  // The same numbers as `frontlux info` gives for this map.
-  expect_answer({std::string(FRONTLUX_DATA_DIR) + "/maps/room_0.1m.bt"},
-                {"world        room_0.1m.bt\n", "m^3, of "});
+  const std::string path = std::string(FRONTLUX_DATA_DIR) + "/maps/room_0.1m.bt";
+  octomap::OcTree tree(path);
+  tree.expand();
+  std::size_t occupied = 0;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf)
+    occupied += tree.isNodeOccupied(*leaf) ? 1 : 0;
+  ASSERT_GT(occupied, 1000U);
+  write_ply(file("expected.ply"), make_map_world(make_voxel_grid(tree)).mesh);
+  expect_answer({path, "-o", file("map.ply")}, {"world        room_0.1m.bt\n", "m^3, of "});
+  EXPECT_EQ(content_of(file("map.ply")), content_of(file("expected.ply")));
+  EXPECT_NEAR(solid_volume(read_mesh_world(file("map.ply")).mesh).value(),
+              1e-3 * static_cast<double>(occupied), 1e-4);
 }
 
 TEST_F(WorldCommand, RefusesBadInput) {
