@@ -235,5 +235,28 @@ TEST(BuiltInWorlds, CanBeExplored) {
       test::long_mode() ? 200 : 20);
 }
 
+// Each robot has places of its own: tunnels and underpasses, where there is no room above 1.2 m, and floors
+// that stand on others.
+TEST(BuiltInWorlds, NeedBothRobots) {
+  constexpr double kResolution = 0.3;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    for (const char* name : {"maze", "factory", "station"}) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(seed));
+      const World world = make_world(name, seed);
+      const test::SolidVoxels voxels(world, kResolution);
+      const int ground = voxels.local(*world.start + Eigen::Vector3d(0, 0, 0.1))[2];
+      int low = 0, raised = 0;
+      for (int x = 2; x + 2 < voxels.size()[0]; ++x)
+        for (int y = 2; y + 2 < voxels.size()[1]; ++y) {
+          low += voxels.free({x - 2, y - 2, ground}, {x + 2, y + 2, ground + 2}) &&
+                 voxels.solid({x, y, ground + 3});
+          for (int z = ground + 4; z + 2 < voxels.size()[2]; ++z)
+            raised += voxels.solid({x, y, z - 1}) && voxels.free({x - 1, y - 1, z}, {x + 1, y + 1, z + 2});
+        }
+      if (std::string(name) != "station") EXPECT_GT(low, 0);
+      EXPECT_GT(raised, 10);
+    }
+}
+
 }  // namespace
 }  // namespace frontlux::sim

@@ -70,8 +70,8 @@ Building build_storage(std::uint64_t seed) {
     if (random.chance(60))
       add_pile(solid, {{kInside.x.to - kBay, kInside.x.to}, {at, at + kBay}}, random.whole(6, 24), random);
   FloorPlan yard({{kRacks.to, kInside.x.to - kBay}, yard_y});
-  if (const auto start = yard.place(random, 12, 12))
-    building.start = {start->x.middle(), start->y.middle(), 0};
+  const Rect start = yard.place(random, 12, 12).value();
+  building.start = {start.x.middle(), start.y.middle(), 0};
   for (int i = 0; i < 4; ++i)
     if (const auto pallet = yard.place(random, random.whole(8, 14), random.whole(8, 12)))
       add_pile(solid, *pallet, random.whole(6, 22), random);
