@@ -253,7 +253,9 @@ TEST(BuiltInWorlds, NeedBothRobots) {
           for (int z = ground + 4; z + 2 < voxels.size()[2]; ++z)
             raised += voxels.solid({x, y, z - 1}) && voxels.free({x - 1, y - 1, z}, {x + 1, y + 1, z + 2});
         }
-      if (std::string(name) != "station") EXPECT_GT(low, 0);
+      if (std::string(name) != "station") {
+        EXPECT_GT(low, 0);
+      }
       EXPECT_GT(raised, 10);
     }
 }
