@@ -20,12 +20,27 @@ struct TriangleMesh {
 /// The smallest box around all triangles; empty if there are none.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const TriangleMesh& mesh);
 
+/// Total area of all triangles [m^2].
+[[nodiscard]] double surface_area(const TriangleMesh& mesh);
+
+/// Volume [m^3] of the solids whose surface the mesh is. Negative if the triangles face inwards, as in a mesh
+/// of a room without its walls' thickness; solids that overlap count twice.
+/// @return nothing if the surface is not closed and wound one way: some edge lacks its counterpart
+[[nodiscard]] std::optional<double> solid_volume(const TriangleMesh& mesh);
+
 /// The truth that robots explore: what stands in for the real world. World frame, metres, z up.
 struct World {
   std::string name;
   TriangleMesh mesh;
-  Eigen::AlignedBox3d bounds;            ///< [m] the map never goes beyond; around the mesh
-  std::optional<Eigen::Vector3d> start;  ///< [m] a place in free space, on or above the floor, if one is known
+  Eigen::AlignedBox3d bounds;  ///< [m] the map never goes beyond; around the mesh
+  std::optional<Eigen::Vector3d>
+      start;  ///< [m] a place in free space, on or above the floor, if one is known
 };
+
+/// Number of voxels that meet `bounds`, counted without a limit; 0 if the box is empty. To be looked at
+/// before memory is spent on a map of this size.
+/// @param resolution edge length of a voxel [m]
+/// @throws std::invalid_argument unless the resolution is finite and positive and the bounds are finite
+[[nodiscard]] double voxel_count(const Eigen::AlignedBox3d& bounds, double resolution);
 
 }  // namespace frontlux::sim

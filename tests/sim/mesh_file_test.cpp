@@ -1,0 +1,385 @@
+#include "support/maps.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+class MeshFile : public testing::Test {
+ protected:
+  MeshFile()
+      : folder_(std::filesystem::temp_directory_path() / ("frontlux_mesh_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~MeshFile() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+
+  [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+    return file(name);
+  }
+
+  static std::string content_of(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  static void expect_refusal(const std::filesystem::path& path, const std::string& part) {
+    try {
+      static_cast<void>(read_mesh_world(path));
+      ADD_FAILURE() << path << " was read, but not: " << part;
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      EXPECT_TRUE(text.starts_with(path.string() + ": ")) << text;
+      EXPECT_NE(text.find(part), std::string::npos) << text << "\nlacks: " << part;
+    }
+  }
+
+  std::filesystem::path folder_;
+};
+
+// The corners of every triangle, which the order of vertices does not change.
+std::vector<std::array<float, 9>> corners_of(const TriangleMesh& mesh) {
+  std::vector<std::array<float, 9>> all;
+  for (const auto& t : mesh.triangles) {
+    all.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) all.back()[3 * i + k] = mesh.vertices[t[i]][static_cast<int>(k)];
+  }
+  return all;
+}
+
+// A house of 2 x 3 x 5 m with its lowest corner at the origin: no two axes look the same.
+const std::vector<Eigen::Vector3f> kHouse = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0},
+                                             {0, 0, 5}, {2, 0, 5}, {2, 3, 5}, {0, 3, 5}};
+const std::vector<std::array<int, 4>> kSides = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                                {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+
+std::string house_ply(const std::string& newline = "\n") {
+  std::string text;
+  const auto line = [&](const std::string& words) { text += words + newline; };
+  line("ply");
+  line("format ascii 1.0");
+  line("comment a house");
+  line("element vertex 8");
+  for (const char* property : {"float x", "double y", "uchar red", "float32 z"})
+    line(std::string("property ") + property);
+  line("element face 6");
+  line("property list uint8 int32 vertex_index");
+  line("end_header");
+  const auto number = [](float value) { return std::to_string(value); };
+  for (const auto& v : kHouse) line(number(v.x()) + " " + number(v.y()) + " 7 " + number(v.z()));
+  for (const auto& s : kSides)
+    line("4 " + std::to_string(s[0]) + " " + std::to_string(s[1]) + " " + std::to_string(s[2]) + " " +
+         std::to_string(s[3]));
+  return text;
+}
+
+std::string house_obj() {
+  std::string text;
+  for (const auto& v : kHouse)
+    text += "v " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+  for (const auto& s : kSides) {
+    text += "f";
+    for (const int i : s) text += " " + std::to_string(i + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string house_stl() {
+  std::string text = "solid house\n";
+  for (const auto& s : kSides)
+    for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+      text += "facet normal 0 0 0\nouter loop\n";
+      for (const int corner : {a, b, c}) {
+        const auto& v = kHouse[static_cast<std::size_t>(s[static_cast<std::size_t>(corner)])];
+        text += "vertex " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " +
+                std::to_string(v.z()) + "\n";
+      }
+      text += "endloop\nendfacet\n";
+    }
+  return text + "endsolid house\n";
+}
+
+std::string house_dae(const std::string& up, const std::string& unit) {
+  std::string positions, indices, counts;
+  for (const auto& v : kHouse)
+    positions += std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + " ";
+  for (const auto& s : kSides) {
+    for (const int i : s) indices += std::to_string(i) + " ";
+    counts += "4 ";
+  }
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="u" meter=")" +
+         unit + R"("/><up_axis>)" + up + R"(</up_axis></asset>
+<library_geometries><geometry id="g" name="g"><mesh>
+<source id="p"><float_array id="pa" count="24">)" +
+         positions + R"(</float_array><technique_common><accessor source="#pa" count="8" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="6"><input semantic="VERTEX" source="#v" offset="0"/><vcount>)" +
+         counts + "</vcount><p>" + indices + R"(</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>
+)";
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : kDigits[(word >> (18 - 6 * k)) & 63U];
+  }
+  return out;
+}
+
+// A node shifts the house by 10 along the file's x axis.
+std::string house_gltf() {
+  std::string bytes;
+  for (const auto& v : kHouse) bytes.append(reinterpret_cast<const char*>(v.data()), 12);
+  for (const auto& s : kSides)
+    for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) {
+      const auto index = static_cast<std::uint16_t>(s[corner]);
+      bytes.append(reinterpret_cast<const char*>(&index), 2);
+    }
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":[10,0,0]}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[0,0,0],"max":[2,3,5]},)"
+         R"({"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}],)"
+         R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":96},{"buffer":0,"byteOffset":96,"byteLength":72}],)"
+         R"("buffers":[{"byteLength":168,"uri":"data:application/octet-stream;base64,)" +
+         base64(bytes) + R"("}]})";
+}
+
+void expect_house(const World& world, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  EXPECT_EQ(world.mesh.triangles.size(), 12U);
+  EXPECT_EQ(world.mesh.vertices.size(), 8U);
+  EXPECT_LT((world.bounds.min() - min).norm(), 1e-5) << world.bounds.min().transpose();
+  EXPECT_LT((world.bounds.max() - max).norm(), 1e-5) << world.bounds.max().transpose();
+  const auto volume = solid_volume(world.mesh);
+  ASSERT_TRUE(volume.has_value());
+  EXPECT_NEAR(*volume, (max - min).prod(), 1e-4) << "mirrored?";
+}
+
+TEST_F(MeshFile, RoundTripIsExact) {
+  for (const auto& [name, description] : built_in_worlds()) {
+    const World world = make_world(name, 4);
+    write_ply(file("world.ply"), world.mesh);
+    const World read = read_mesh_world(file("world.ply"));
+    EXPECT_EQ(read.name, "world.ply");
+    EXPECT_EQ(corners_of(read.mesh), corners_of(world.mesh));
+    EXPECT_EQ(read.mesh.vertices.size(), world.mesh.vertices.size());
+    EXPECT_EQ(read.bounds.min(), world.bounds.min());
+    EXPECT_EQ(read.bounds.max(), world.bounds.max());
+    EXPECT_FALSE(std::filesystem::exists(file("world.ply.part")));
+  }
+}
+
+TEST_F(MeshFile, EveryFormatGivesTheSameHouse) {
+  for (const auto& path :
+       {write("h.ply", house_ply()), write("crlf.PLY", house_ply("\r\n")), write("h.obj", house_obj()),
+        write("h.stl", house_stl()), write("h.dae", house_dae("Z_UP", "1"))}) {
+    SCOPED_TRACE(path.string());
+    expect_house(read_mesh_world(path), {0, 0, 0}, {2, 3, 5});
+  }
+  // y up in the file: its z comes towards us.
+  expect_house(read_mesh_world(write("h.gltf", house_gltf())), {10, -5, 0}, {12, 0, 3});
+  expect_house(read_mesh_world(write("y.dae", house_dae("Y_UP", "1"))), {0, -5, 0}, {2, 0, 3});
+}
+
+TEST_F(MeshFile, ScaleUnitAndAxisAreTaken) {
+  const auto ply = write("h.ply", house_ply());
+  expect_house(read_mesh_world(ply, {.scale = 0.5}), {0, 0, 0}, {1, 1.5, 2.5});
+  expect_house(read_mesh_world(ply, {.scale = 1, .up = UpAxis::kY}), {0, -5, 0}, {2, 0, 3});
+  expect_house(read_mesh_world(ply, {.scale = 1, .up = UpAxis::kX}), {0, 0, 0}, {3, 5, 2});
+  const auto inches = write("inch.dae", house_dae("Z_UP", "0.0254"));
+  expect_house(read_mesh_world(inches), {0, 0, 0}, {0.0508, 0.0762, 0.127});
+  expect_house(read_mesh_world(inches, {.scale = 10}), {0, 0, 0}, {0.508, 0.762, 1.27});
+  expect_house(read_mesh_world(write("y.dae", house_dae("Y_UP", "1")), {.scale = 1, .up = UpAxis::kZ}),
+               {0, 0, 0}, {2, 3, 5});
+  expect_house(read_mesh_world(write("h.gltf", house_gltf()), {.scale = 1, .up = UpAxis::kZ}), {10, 0, 0},
+               {12, 3, 5});
+  for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_THROW(static_cast<void>(read_mesh_world(ply, {.scale = scale})), std::invalid_argument);
+}
+
+TEST_F(MeshFile, BinaryPlyOfEitherByteOrderIsRead) {
+  for (const bool big : {false, true}) {
+    std::string bytes =
+        std::string("ply\nformat binary_") + (big ? "big" : "little") +
+        "_endian 1.0\nelement vertex 3\nproperty double x\nproperty float y\nproperty short z\n"
+        "element face 1\nproperty uchar flag\nproperty list ushort uint vertex_indices\nend_header\n";
+    const auto add = [&](auto value) {
+      std::string raw(reinterpret_cast<const char*>(&value), sizeof(value));
+      bytes += big ? std::string(raw.rbegin(), raw.rend()) : raw;
+    };
+    for (const auto& [x, y, z] :
+         {std::tuple(0.5, 1.25F, -3), std::tuple(2.0, 0.0F, 7), std::tuple(-1.0, 4.0F, 300)}) {
+      add(x);
+      add(y);
+      add(static_cast<std::int16_t>(z));
+    }
+    add(std::uint8_t{9});
+    add(std::uint16_t{3});
+    for (const std::uint32_t i : {0U, 1U, 2U}) add(i);
+    const World world = read_mesh_world(write("b.ply", bytes));
+    ASSERT_EQ(world.mesh.vertices.size(), 3U);
+    EXPECT_EQ(world.mesh.vertices[0], Eigen::Vector3f(0.5F, 1.25F, -3));
+    EXPECT_EQ(world.mesh.vertices[2], Eigen::Vector3f(-1, 4, 300));
+  }
+}
+
+TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOut) {
+  const auto path =
+      write("h.ply",
+            "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 0\n1 0 0\n2 0 0\n0 1 0\n0 0 0\n"
+            "3 0 1 2\n3 0 1 3\n3 0 4 3\n3 1 1 1\n");
+  const World world = read_mesh_world(path);
+  EXPECT_EQ(world.mesh.triangles.size(), 1U);
+  EXPECT_EQ(world.mesh.vertices.size(), 3U);
+  EXPECT_EQ(surface_area(world.mesh), 0.5);
+}
+
+TEST_F(MeshFile, BadFilesAreRefusedByName) {
+  const std::string house = house_ply();
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string text = house;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  expect_refusal(file("none.ply"), "no such file");
+  expect_refusal(file("none.obj"), "no such file");
+  std::filesystem::create_directories(file("folder.ply"));
+  expect_refusal(file("folder.ply"), "not a regular file");
+  expect_refusal(write("house.step", house), ".gltf");
+  expect_refusal(write("empty.ply", ""), "end_header");
+  expect_refusal(write("foreign.ply", "solid\n"), "begin with 'ply'");
+  for (const char* name : {"empty.obj", "empty.stl", "empty.dae", "empty.gltf", "empty.glb"})
+    expect_refusal(write(name, ""), "");
+  for (const char* name : {"foreign.stl", "foreign.dae", "foreign.gltf", "foreign.glb"})
+    expect_refusal(write(name, house), "");
+  const auto ply = [&](const std::string& from, const std::string& to, const std::string& part) {
+    expect_refusal(write("bad.ply", replaced(from, to)), part);
+  };
+  ply("ascii", "ebcdic", "format");
+  ply("format ascii 1.0\n", "", "no format");
+  ply("float x", "quaternion x", "unknown type 'quaternion'");
+  ply("double y", "double why", "no y");
+  ply("element vertex 8", "element vertex eight", "malformed");
+  ply("element vertex 8", "element vertex -8", "malformed");
+  ply("element vertex 8", "element vertex 18446744073709551615", "too early");
+  ply("element vertex 8", "element vertex 99999999999999999999", "malformed");
+  ply("element vertex 8", "element vertex 7", "");
+  ply("element face 6", "element face 0", "no triangles");
+  ply("element face 6", "element face 7", "too early");
+  ply("4 0 3 2 1", "4 0 3 8 1", "vertex 8, but there are only 8");
+  ply("4 0 3 2 1", "4 0 -3 2 1", "index");
+  ply("4 0 3 2 1", "4 0 3.5 2 1", "index");
+  ply("4 0 3 2 1", "4000000000 0 3 2 1", "too early");
+  ply("2.000000", "nan", "vertex 1 is not finite");
+  ply("2.000000", "-inf", "vertex 1 is not finite");
+  ply("2.000000", "1e39", "vertex 1 is not finite");
+  ply("2.000000", "two", "'two' is not a number");
+  expect_refusal(
+      write("flat.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 "
+            "2\n"),
+      "none of its 1 triangles has an area");
+  expect_refusal(write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "");
+}
+
+// Reads it, or refuses it as a runtime_error that names it; a world that is read is sound.
+void expect_calm(const std::filesystem::path& path) {
+  try {
+    const World world = read_mesh_world(path);
+    ASSERT_FALSE(world.mesh.triangles.empty());
+    for (const auto& t : world.mesh.triangles)
+      for (const auto i : t) ASSERT_LT(i, world.mesh.vertices.size());
+    for (const auto& v : world.mesh.vertices) ASSERT_TRUE(v.allFinite());
+    ASSERT_GT(surface_area(world.mesh), 0.0);
+  } catch (const std::runtime_error& error) {
+    ASSERT_TRUE(std::string(error.what()).starts_with(path.string() + ": ")) << error.what();
+  }
+}
+
+TEST_F(MeshFile, TruncatedPlyIsRefused) {
+  write_ply(file("whole.ply"), make_world("room", 1).mesh);
+  for (const std::string& bytes : {content_of(file("whole.ply")), house_ply()}) {
+    // The ASCII file misses nothing if only its last line break is cut.
+    for (std::size_t size = 0; size + 1 < bytes.size(); size += size < 400 ? 1 : 37)
+      expect_refusal(write("cut.ply", bytes.substr(0, size)), "");
+  }
+}
+
+TEST_F(MeshFile, DamagedPlyDoesNoHarm) {
+  write_ply(file("whole.ply"), make_world("room", 1).mesh);
+  test::Random random(5);
+  for (const std::string& whole : {content_of(file("whole.ply")), house_ply()})
+    for (int i = 0; i < (test::long_mode() ? 20000 : 500); ++i) {
+      std::string bytes = whole;
+      const int header = static_cast<int>(bytes.find("end_header"));
+      for (int damage = random.below(4); damage >= 0; --damage) {
+        const int range = random.one_in(2) ? header : static_cast<int>(bytes.size());
+        bytes[static_cast<std::size_t>(random.below(range))] = static_cast<char>(random.below(256));
+      }
+      expect_calm(write("damaged.ply", bytes));
+      if (HasFatalFailure()) return;
+    }
+}
+
+TEST_F(MeshFile, OtherFormatsSurviveTruncation) {
+  for (const auto& [name, bytes] :
+       {std::pair("cut.obj", house_obj()), std::pair("cut.stl", house_stl()),
+        std::pair("cut.dae", house_dae("Z_UP", "1")), std::pair("cut.gltf", house_gltf())})
+    for (std::size_t size = 0; size < bytes.size(); size += 11) {
+      SCOPED_TRACE(size);
+      expect_calm(write(name, bytes.substr(0, size)));
+      if (HasFatalFailure()) return;
+    }
+}
+
+TEST_F(MeshFile, WritesWholeOrNotAtAll) {
+  const World room = make_world("room", 1), maze = make_world("maze", 1);
+  write_ply(file("world.ply"), room.mesh);
+  write_ply(file("world.ply"), maze.mesh);
+  EXPECT_EQ(corners_of(read_mesh_world(file("world.ply")).mesh), corners_of(maze.mesh));
+  EXPECT_THROW(write_ply(file("no") / "folder.ply", room.mesh), std::runtime_error);
+  EXPECT_THROW(write_ply(folder_, room.mesh), std::runtime_error);
+  EXPECT_THROW(write_ply("", room.mesh), std::runtime_error);
+  if (std::filesystem::exists("/dev/full")) {
+    std::filesystem::create_symlink("/dev/full", file("full.ply.part"));
+    static_cast<void>(write("full.ply", "as it was"));
+    EXPECT_THROW(write_ply(file("full.ply"), room.mesh), std::runtime_error);
+    EXPECT_EQ(content_of(file("full.ply")), "as it was");
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::sim
