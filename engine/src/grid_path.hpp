@@ -59,14 +59,29 @@ class GridPath {
   /// Whether it took all of them.
   [[nodiscard]] bool exhausted() const { return left_ == kNotNegative; }
 
+  /// How many steps are left, per axis; -1 along one that overstepped.
+  [[nodiscard]] std::array<int, 3> steps_left() const {
+    std::array<int, 3> steps{};
+    for (std::size_t i = 0; i < 3; ++i)
+      steps[i] = static_cast<int>((left_ >> (21 * i)) & (2 * kZero - 1)) - static_cast<int>(kZero);
+    return steps;
+  }
+  /// The line's crossings as seen from the present voxel.
+  [[nodiscard]] const Crossings<Time>& line() const { return line_; }
+
   /// Fetches the brick that the last step led into; to be called after each step that did not overstep.
-  [[gnu::always_inline]] void follow() {
-    if ((in_brick_ & kNotNegative) != kNotNegative) enter_next_brick();
+  /// @return whether it lies in another tile
+  [[gnu::always_inline]] bool follow() {
+    return (in_brick_ & kNotNegative) != kNotNegative && enter_next_brick();
   }
 
   [[nodiscard]] bool blocked() const {
     const std::uint64_t word = (*plane_)[static_cast<std::size_t>(local_ >> 6)] ^ flip_;
     return ((word >> (local_ & 63)) & 1U) != 0;
+  }
+
+  [[nodiscard]] bool free() const {
+    return ((brick_->free[static_cast<std::size_t>(local_ >> 6)] >> (local_ & 63)) & 1U) != 0;
   }
 
   [[nodiscard]] VoxelKey key() const { return key_at(static_cast<int>(local_)); }
@@ -82,8 +97,9 @@ class GridPath {
  private:
   // Fields of 21 bits. The highest is set while the count below it is not negative, and keeps it from
   // borrowing from the next field.
+  static constexpr std::int64_t kZero = std::int64_t{1} << 20;
   static constexpr std::int64_t one(std::size_t axis) { return std::int64_t{1} << (21 * axis); }
-  static constexpr std::int64_t not_negative(std::size_t axis) { return one(axis) << 20; }
+  static constexpr std::int64_t not_negative(std::size_t axis) { return one(axis) * kZero; }
   static constexpr std::int64_t kNotNegative = not_negative(0) | not_negative(1) | not_negative(2);
 
   [[nodiscard]] VoxelKey key_at(int local) const {
@@ -97,7 +113,7 @@ class GridPath {
       return value & mask;
   }
 
-  [[gnu::always_inline]] void enter_next_brick() {
+  [[gnu::always_inline]] bool enter_next_brick() {
     int changed = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if ((in_brick_ & not_negative(i)) != 0) continue;
@@ -107,10 +123,12 @@ class GridPath {
       corner_[i] += 8 * line_.step[i];
       changed |= before ^ corner_[i];
     }
-    if ((changed & ~63) != 0)
+    const bool other_tile = (changed & ~63) != 0;
+    if (other_tile)
       enter_tile();
     else
       enter_brick();
+    return other_tile;
   }
   [[gnu::always_inline]] void enter_tile() {
     tile_ = &grid_.tile(as_key(corner_));

@@ -13,6 +13,7 @@
 #define OCTOMAP_ERROR_STR(args) ((void)0)
 #include "batch.hpp"
 #include "octree_file.hpp"
+#include "path_count.hpp"
 #include "walk.hpp"
 
 #include <octomap/ColorOcTree.h>
@@ -147,6 +148,90 @@ class OctomapRayCaster final : public RayCaster {
             visible_one(lattice().center(segments[i].from), lattice().center(segments[i].to), unknown));
     });
   }
+
+  // Step by step over the tree: what a caller without a grid would write.
+  // @param in_range  whether the path may enter a voxel
+  // @param at_overstep  why it ended if it took a step too many
+  template <class Time, class InRange>
+  PathCount count_along(const detail::Standing<Time>& start, UnknownPolicy unknown, const InRange& in_range,
+                        RayStop at_overstep) const {
+    auto [start_key, line, left] = start;
+    const bool to_target = at_overstep == RayStop::kOutOfRange;
+    std::array<int, 3> key = detail::as_array(start_key);
+    std::array<std::uint32_t, 3> crossed{};
+    Occupancy state = state_at(start_key);
+    while (true) {
+      ++crossed[static_cast<std::size_t>(state)];
+      const auto& t = line.t_max;
+      const std::size_t axis = t[0] < t[1] && t[0] < t[2] ? 0 : !(t[0] < t[1]) && t[1] < t[2] ? 1 : 2;
+      RayStop stop = RayStop::kReached;
+      if (--left[axis] < 0) {
+        stop = at_overstep;
+      } else {
+        key[axis] += line.step[axis];
+        line.t_max[axis] += line.t_delta[axis];
+        if (!to_target || left != std::array{0, 0, 0}) {
+          state = state_at(detail::as_key(key));
+          if (!in_range(detail::as_key(key)))
+            stop = RayStop::kOutOfRange;
+          else if (detail::blocks(state, unknown))
+            stop = detail::stop_in(state);
+          else
+            continue;
+        }
+      }
+      return {crossed[0], crossed[1], crossed[2], stop};
+    }
+  }
+  Occupancy state_at(const VoxelKey& key) const { return state_of(tree_, tree_.search(to_octomap(key))); }
+
+  PathCount count_one(const Ray& ray, UnknownPolicy unknown) const {
+    const auto start = lattice().key(ray.origin);
+    if (!start) return {};
+    const Occupancy state = state_at(*start);
+    if (detail::blocks(state, unknown)) return {0, 0, 0, detail::stop_in(state)};
+    const auto course =
+        detail::course_along(lattice(), ray.origin, *start, detail::normalized_as_octomap(ray.direction));
+    if (!course) return {};
+    const auto in_range = [&](const VoxelKey& key) {
+      return !(ray.max_range > 0.0 && detail::out_of_range(ray.origin, lattice().center(key), ray.max_range));
+    };
+    return count_along(*course, unknown, in_range, RayStop::kLeftMap);
+  }
+  PathCount count_one(const Segment& segment, UnknownPolicy unknown) const {
+    const auto from = lattice().key(segment.from), to = lattice().key(segment.to);
+    if (!from || !to) return {};
+    if (*from == *to) return {0, 0, 0, RayStop::kReached};
+    const auto course = detail::course_between(lattice(), segment, *from, *to);
+    if (!course) return {};
+    return count_along(
+        *course, unknown, [](const VoxelKey&) { return true; }, RayStop::kOutOfRange);
+  }
+  PathCount count_one(const KeySegment& segment, UnknownPolicy unknown) const {
+    if (segment.from == segment.to) return {0, 0, 0, RayStop::kReached};
+    return count_along(
+        detail::course_between(segment), unknown, [](const VoxelKey&) { return true; }, RayStop::kOutOfRange);
+  }
+
+  template <class Path>
+  void count_paths(std::span<const Path> paths, std::span<PathCount> counts, UnknownPolicy unknown) const {
+    detail::for_each_piece(paths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) counts[i] = count_one(paths[i], unknown);
+    });
+  }
+  void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(rays, counts, unknown);
+  }
+  void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+  void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+
   void do_update(const VoxelGrid&) override {}
 
   const Tree& tree_;

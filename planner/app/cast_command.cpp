@@ -103,6 +103,7 @@ std::string explain(RayStop stop) {
       return "nothing within --range; this is the first voxel beyond it";
     case RayStop::kLeftMap:
       return "nothing up to the end of the map's key range; this is the last voxel";
+    case RayStop::kReached:
     case RayStop::kInvalid:
       break;
   }
@@ -110,7 +111,7 @@ std::string explain(RayStop stop) {
 }
 
 std::string name_of(RayStop stop) {
-  constexpr std::array kNames = {"invalid", "occupied", "unknown", "out_of_range", "left_map"};
+  constexpr std::array kNames = {"invalid", "occupied", "unknown", "out_of_range", "left_map", "reached"};
   return kNames[static_cast<std::size_t>(stop)];
 }
 
