@@ -14,6 +14,7 @@
 #include "batch.hpp"
 #include "octree_file.hpp"
 #include "path_count.hpp"
+#include "plain_count.hpp"
 #include "walk.hpp"
 
 #include <octomap/ColorOcTree.h>
@@ -149,41 +150,12 @@ class OctomapRayCaster final : public RayCaster {
     });
   }
 
-  // Step by step over the tree: what a caller without a grid would write.
-  // @param in_range  whether the path may enter a voxel
-  // @param at_overstep  why it ended if it took a step too many
-  template <class Time, class InRange>
-  PathCount count_along(const detail::Standing<Time>& start, UnknownPolicy unknown, const InRange& in_range,
-                        RayStop at_overstep) const {
-    auto [start_key, line, left] = start;
-    const bool to_target = at_overstep == RayStop::kOutOfRange;
-    std::array<int, 3> key = detail::as_array(start_key);
-    std::array<std::uint32_t, 3> crossed{};
-    Occupancy state = state_at(start_key);
-    while (true) {
-      ++crossed[static_cast<std::size_t>(state)];
-      const auto& t = line.t_max;
-      const std::size_t axis = t[0] < t[1] && t[0] < t[2] ? 0 : !(t[0] < t[1]) && t[1] < t[2] ? 1 : 2;
-      RayStop stop = RayStop::kReached;
-      if (--left[axis] < 0) {
-        stop = at_overstep;
-      } else {
-        key[axis] += line.step[axis];
-        line.t_max[axis] += line.t_delta[axis];
-        if (!to_target || left != std::array{0, 0, 0}) {
-          state = state_at(detail::as_key(key));
-          if (!in_range(detail::as_key(key)))
-            stop = RayStop::kOutOfRange;
-          else if (detail::blocks(state, unknown))
-            stop = detail::stop_in(state);
-          else
-            continue;
-        }
-      }
-      return {crossed[0], crossed[1], crossed[2], stop};
-    }
-  }
   Occupancy state_at(const VoxelKey& key) const { return state_of(tree_, tree_.search(to_octomap(key))); }
+
+  [[nodiscard]] auto looker() const {
+    return [this](const VoxelKey& key) { return state_at(key); };
+  }
+  static bool anywhere(const VoxelKey&) { return true; }
 
   PathCount count_one(const Ray& ray, UnknownPolicy unknown) const {
     const auto start = lattice().key(ray.origin);
@@ -196,7 +168,7 @@ class OctomapRayCaster final : public RayCaster {
     const auto in_range = [&](const VoxelKey& key) {
       return !(ray.max_range > 0.0 && detail::out_of_range(ray.origin, lattice().center(key), ray.max_range));
     };
-    return count_along(*course, unknown, in_range, RayStop::kLeftMap);
+    return detail::count_plainly(*course, unknown, looker(), in_range, RayStop::kLeftMap);
   }
   PathCount count_one(const Segment& segment, UnknownPolicy unknown) const {
     const auto from = lattice().key(segment.from), to = lattice().key(segment.to);
@@ -204,13 +176,12 @@ class OctomapRayCaster final : public RayCaster {
     if (*from == *to) return {0, 0, 0, RayStop::kReached};
     const auto course = detail::course_between(lattice(), segment, *from, *to);
     if (!course) return {};
-    return count_along(
-        *course, unknown, [](const VoxelKey&) { return true; }, RayStop::kOutOfRange);
+    return detail::count_plainly(*course, unknown, looker(), anywhere, RayStop::kOutOfRange);
   }
   PathCount count_one(const KeySegment& segment, UnknownPolicy unknown) const {
     if (segment.from == segment.to) return {0, 0, 0, RayStop::kReached};
-    return count_along(
-        detail::course_between(segment), unknown, [](const VoxelKey&) { return true; }, RayStop::kOutOfRange);
+    return detail::count_plainly(detail::course_between(segment), unknown, looker(), anywhere,
+                                 RayStop::kOutOfRange);
   }
 
   template <class Path>

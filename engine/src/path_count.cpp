@@ -14,13 +14,19 @@ bool is_uniform(const Node& node) {
   return false;
 }
 
-// Edge of the largest node of one state that holds a voxel, if that is a tile or more; else 0.
+// Edge of the largest node of one state that holds a voxel, given that its tile is of one.
 int log2_of_uniform_cube(const VoxelGrid& grid, const VoxelKey& key) {
   const auto& sector = grid.storage()->child(key);
   if (is_uniform(*sector)) return Sector::kLog2;
-  const auto& region = sector->child(key);
-  if (is_uniform(*region)) return Region::kLog2;
-  return is_uniform(*region->child(key)) ? Tile::kLog2 : 0;
+  return is_uniform(*sector->child(key)) ? Region::kLog2 : Tile::kLog2;
+}
+
+// The uniform tiles' addresses, since every path asks for them several times.
+bool is_uniform_tile(const Tile& tile) {
+  static const std::array<const Tile*, 3> kTiles = {&*uniform_node<Tile>(Occupancy::kUnknown),
+                                                    &*uniform_node<Tile>(Occupancy::kFree),
+                                                    &*uniform_node<Tile>(Occupancy::kOccupied)};
+  return &tile == kTiles[0] || &tile == kTiles[1] || &tile == kTiles[2];
 }
 
 bool in_one_cube(const VoxelKey& a, const VoxelKey& b, int log2_edge) {
@@ -32,15 +38,15 @@ struct RangeLimit {
   const Lattice& lattice;
   const Ray& ray;
   double matters_from;  // no voxel entered before this time is out of range
-  [[nodiscard]] bool excludes(double time, const VoxelKey& key) const {
-    return time >= matters_from && out_of_range(ray.origin, lattice.center(key), ray.max_range);
+  [[nodiscard]] bool excludes(double time, const GridPath<double>& path) const {
+    return time >= matters_from && out_of_range(ray.origin, lattice.center(path.key()), ray.max_range);
   }
 };
 template <class Time>
 struct Target {
   VoxelKey key;
   Time matters_from = std::numeric_limits<Time>::max();
-  [[nodiscard]] bool excludes(Time, const VoxelKey&) const { return false; }
+  [[nodiscard]] bool excludes(Time, const GridPath<Time>&) const { return false; }
 };
 
 // Counts along one path. Every step enters one voxel, so the steps taken are the voxels crossed, and only the
@@ -85,7 +91,7 @@ class Counter {
         break;
       }
       const bool other_tile = path.follow();
-      if (limit_.excludes(t, path.key())) {
+      if (limit_.excludes(t, path)) {
         stop_ = RayStop::kOutOfRange;
         break;
       }
@@ -94,7 +100,7 @@ class Counter {
         break;
       }
       free += path.free() ? 1 : 0;
-      if (other_tile && log2_of_uniform_cube(grid_, path.key()) != 0) {
+      if (other_tile && is_uniform_tile(path.tile())) {
         at.key = path.key();
         at.line = path.line();
         break;
@@ -106,6 +112,7 @@ class Counter {
 
   // Through voxels of one state at once, from one of them into the first that is not.
   bool leap(Standing<Time>& at) {
+    if (!is_uniform_tile(grid_.tile(at.key))) return false;
     int log2_edge = log2_of_uniform_cube(grid_, at.key);
     if constexpr (kHasTarget)
       while (log2_edge >= Tile::kLog2 && in_one_cube(at.key, limit_.key, log2_edge)) log2_edge -= 3;
