@@ -1,6 +1,7 @@
 #include "embree_ray_caster.hpp"
 
 #include "batch.hpp"
+#include "path_count.hpp"
 #include "published.hpp"
 #include "scene_query.hpp"
 #include "snapshot.hpp"
@@ -76,6 +77,29 @@ class EmbreeRayCaster final : public RayCaster {
     answer(
         segments, visible, [&](auto some, auto out, auto left) { return table.visible(some, out, left); },
         [&](auto some, auto out) { scene.visible(some, out); });
+  }
+
+  // Voxels have to be looked at one by one: the boxes do not tell.
+  template <class Path>
+  void count_paths(std::span<const Path> paths, std::span<PathCount> counts, UnknownPolicy unknown) const {
+    const auto snapshot = snapshot_.snapshot();
+    detail::for_each_piece(paths.size(), detail::BoxScene::kMaxBatch,
+                           [&](std::size_t begin, std::size_t end) {
+                             for (std::size_t i = begin; i < end; ++i)
+                               counts[i] = detail::count_path(snapshot->grid(), paths[i], unknown);
+                           });
+  }
+  void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(rays, counts, unknown);
+  }
+  void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+  void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
   }
 
   void do_update(const VoxelGrid& grid) override {

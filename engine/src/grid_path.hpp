@@ -9,6 +9,9 @@
 #include <bit>
 #include <cstdint>
 #include <type_traits>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace frontlux::detail {
 
@@ -44,9 +47,7 @@ class GridPath {
     const bool z_next = !(first < tz);
     const std::int64_t z = -static_cast<std::int64_t>(z_next), not_z = ~z;
     const std::int64_t x = -static_cast<std::int64_t>(x_before_y) & not_z, y = ~x & not_z;
-    line_.t_max[0] = tx + only_if(x, line_.t_delta[0]);
-    line_.t_max[1] = ty + only_if(y, line_.t_delta[1]);
-    line_.t_max[2] = tz + only_if(z, line_.t_delta[2]);
+    take(x, y, z);
     local_ += (x & local_step_[0]) + (y & local_step_[1]) + (z & local_step_[2]);
     const std::int64_t taken = (x & one(0)) + (y & one(1)) + (z & one(2));
     in_brick_ -= taken;
@@ -59,14 +60,29 @@ class GridPath {
   /// Whether it took all of them.
   [[nodiscard]] bool exhausted() const { return left_ == kNotNegative; }
 
+  /// How many steps are left, per axis; -1 along one that overstepped.
+  [[nodiscard]] std::array<int, 3> steps_left() const {
+    std::array<int, 3> steps{};
+    for (std::size_t i = 0; i < 3; ++i)
+      steps[i] = static_cast<int>((left_ >> (21 * i)) & (2 * kZero - 1)) - static_cast<int>(kZero);
+    return steps;
+  }
+  /// The line's crossings as seen from the present voxel.
+  [[nodiscard]] const Crossings<Time>& line() const { return line_; }
+
   /// Fetches the brick that the last step led into; to be called after each step that did not overstep.
-  [[gnu::always_inline]] void follow() {
-    if ((in_brick_ & kNotNegative) != kNotNegative) enter_next_brick();
+  /// @return whether it lies in another tile
+  [[gnu::always_inline]] bool follow() {
+    return (in_brick_ & kNotNegative) != kNotNegative && enter_next_brick();
   }
 
   [[nodiscard]] bool blocked() const {
     const std::uint64_t word = (*plane_)[static_cast<std::size_t>(local_ >> 6)] ^ flip_;
     return ((word >> (local_ & 63)) & 1U) != 0;
+  }
+
+  [[nodiscard]] bool free() const {
+    return ((brick_->free[static_cast<std::size_t>(local_ >> 6)] >> (local_ & 63)) & 1U) != 0;
   }
 
   [[nodiscard]] VoxelKey key() const { return key_at(static_cast<int>(local_)); }
@@ -77,19 +93,45 @@ class GridPath {
       if ((left_ & not_negative(i)) == 0) local -= local_step_[i];
     return key_at(static_cast<int>(local));
   }
+  [[nodiscard]] const Tile& tile() const { return *tile_; }
   [[nodiscard]] Occupancy state() const { return brick_->at(key()); }
 
  private:
   // Fields of 21 bits. The highest is set while the count below it is not negative, and keeps it from
   // borrowing from the next field.
+  static constexpr std::int64_t kZero = std::int64_t{1} << 20;
   static constexpr std::int64_t one(std::size_t axis) { return std::int64_t{1} << (21 * axis); }
-  static constexpr std::int64_t not_negative(std::size_t axis) { return one(axis) << 20; }
+  static constexpr std::int64_t not_negative(std::size_t axis) { return one(axis) * kZero; }
   static constexpr std::int64_t kNotNegative = not_negative(0) | not_negative(1) | not_negative(2);
 
   [[nodiscard]] VoxelKey key_at(int local) const {
     return as_key({corner_[0] + (local & 7), corner_[1] + ((local >> 3) & 7), corner_[2] + (local >> 6)});
   }
 
+  // Adds to the time of the axis whose mask is set.
+  [[gnu::always_inline]] void take(std::int64_t x, std::int64_t y, std::int64_t z) {
+#ifdef __SSE2__
+    // The same comparisons again, in the registers that hold the times: a mask from an integer register would
+    // arrive there so late that a step took a fifth longer.
+    if constexpr (std::is_same_v<Time, double>) {
+      const __m128d tx = _mm_set_sd(line_.t_max[0]), ty = _mm_set_sd(line_.t_max[1]),
+                    tz = _mm_set_sd(line_.t_max[2]);
+      const __m128d x_before_y = _mm_cmplt_sd(tx, ty), not_z = _mm_cmplt_sd(_mm_min_sd(tx, ty), tz);
+      const auto add = [](double& t, const __m128d& before, const __m128d& delta) {
+        t = _mm_cvtsd_f64(_mm_add_sd(before, delta));
+      };
+      const __m128d dx = _mm_set_sd(line_.t_delta[0]), dy = _mm_set_sd(line_.t_delta[1]),
+                    dz = _mm_set_sd(line_.t_delta[2]);
+      add(line_.t_max[0], tx, _mm_and_pd(_mm_and_pd(x_before_y, not_z), dx));
+      add(line_.t_max[1], ty, _mm_and_pd(_mm_andnot_pd(x_before_y, not_z), dy));
+      add(line_.t_max[2], tz, _mm_andnot_pd(not_z, dz));
+      return;
+    }
+#endif
+    line_.t_max[0] += only_if(x, line_.t_delta[0]);
+    line_.t_max[1] += only_if(y, line_.t_delta[1]);
+    line_.t_max[2] += only_if(z, line_.t_delta[2]);
+  }
   [[gnu::always_inline]] static Time only_if(std::int64_t mask, Time value) {
     if constexpr (std::is_same_v<Time, double>)
       return std::bit_cast<double>(std::bit_cast<std::int64_t>(value) & mask);
@@ -97,7 +139,7 @@ class GridPath {
       return value & mask;
   }
 
-  [[gnu::always_inline]] void enter_next_brick() {
+  [[gnu::always_inline]] bool enter_next_brick() {
     int changed = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if ((in_brick_ & not_negative(i)) != 0) continue;
@@ -107,10 +149,12 @@ class GridPath {
       corner_[i] += 8 * line_.step[i];
       changed |= before ^ corner_[i];
     }
-    if ((changed & ~63) != 0)
+    const bool other_tile = (changed & ~63) != 0;
+    if (other_tile)
       enter_tile();
     else
       enter_brick();
+    return other_tile;
   }
   [[gnu::always_inline]] void enter_tile() {
     tile_ = &grid_.tile(as_key(corner_));

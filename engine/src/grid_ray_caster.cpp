@@ -1,4 +1,5 @@
 #include "batch.hpp"
+#include "path_count.hpp"
 #include "published.hpp"
 #include "walk.hpp"
 
@@ -37,6 +38,26 @@ class GridRayCaster final : public RayCaster {
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
     walk(segments, visible, unknown);
+  }
+
+  template <class Path>
+  void count_paths(std::span<const Path> paths, std::span<PathCount> counts, UnknownPolicy unknown) const {
+    const auto grid = grid_.snapshot();
+    detail::for_each_piece(paths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) counts[i] = detail::count_path(*grid, paths[i], unknown);
+    });
+  }
+  void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(rays, counts, unknown);
+  }
+  void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+  void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
   }
 
   void do_update(const VoxelGrid& grid) override { grid_.replace(std::make_shared<VoxelGrid>(grid)); }

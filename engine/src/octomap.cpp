@@ -13,6 +13,8 @@
 #define OCTOMAP_ERROR_STR(args) ((void)0)
 #include "batch.hpp"
 #include "octree_file.hpp"
+#include "path_count.hpp"
+#include "plain_count.hpp"
 #include "walk.hpp"
 
 #include <octomap/ColorOcTree.h>
@@ -147,6 +149,60 @@ class OctomapRayCaster final : public RayCaster {
             visible_one(lattice().center(segments[i].from), lattice().center(segments[i].to), unknown));
     });
   }
+
+  Occupancy state_at(const VoxelKey& key) const { return state_of(tree_, tree_.search(to_octomap(key))); }
+
+  [[nodiscard]] auto looker() const {
+    return [this](const VoxelKey& key) { return state_at(key); };
+  }
+  static bool anywhere(const VoxelKey&) { return true; }
+
+  PathCount count_one(const Ray& ray, UnknownPolicy unknown) const {
+    const auto start = lattice().key(ray.origin);
+    if (!start) return {};
+    const Occupancy state = state_at(*start);
+    if (detail::blocks(state, unknown)) return {0, 0, 0, detail::stop_in(state)};
+    const auto course =
+        detail::course_along(lattice(), ray.origin, *start, detail::normalized_as_octomap(ray.direction));
+    if (!course) return {};
+    const auto in_range = [&](const VoxelKey& key) {
+      return !(ray.max_range > 0.0 && detail::out_of_range(ray.origin, lattice().center(key), ray.max_range));
+    };
+    return detail::count_plainly(*course, unknown, looker(), in_range, RayStop::kLeftMap);
+  }
+  PathCount count_one(const Segment& segment, UnknownPolicy unknown) const {
+    const auto from = lattice().key(segment.from), to = lattice().key(segment.to);
+    if (!from || !to) return {};
+    if (*from == *to) return {0, 0, 0, RayStop::kReached};
+    const auto course = detail::course_between(lattice(), segment, *from, *to);
+    if (!course) return {};
+    return detail::count_plainly(*course, unknown, looker(), anywhere, RayStop::kOutOfRange);
+  }
+  PathCount count_one(const KeySegment& segment, UnknownPolicy unknown) const {
+    if (segment.from == segment.to) return {0, 0, 0, RayStop::kReached};
+    return detail::count_plainly(detail::course_between(segment), unknown, looker(), anywhere,
+                                 RayStop::kOutOfRange);
+  }
+
+  template <class Path>
+  void count_paths(std::span<const Path> paths, std::span<PathCount> counts, UnknownPolicy unknown) const {
+    detail::for_each_piece(paths.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) counts[i] = count_one(paths[i], unknown);
+    });
+  }
+  void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(rays, counts, unknown);
+  }
+  void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+  void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    count_paths(segments, counts, unknown);
+  }
+
   void do_update(const VoxelGrid&) override {}
 
   const Tree& tree_;

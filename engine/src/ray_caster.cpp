@@ -37,6 +37,23 @@ void RayCaster::visible(std::span<const KeySegment> segments, std::span<std::uin
   if (!segments.empty()) do_visible(segments, visible, unknown);
 }
 
+void RayCaster::count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const {
+  require_equal_sizes(rays.size(), counts.size(), "rays");
+  if (!rays.empty()) do_count(rays, counts, unknown);
+}
+
+void RayCaster::count(std::span<const Segment> segments, std::span<PathCount> counts,
+                      UnknownPolicy unknown) const {
+  require_equal_sizes(segments.size(), counts.size(), "segments");
+  if (!segments.empty()) do_count(segments, counts, unknown);
+}
+
+void RayCaster::count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                      UnknownPolicy unknown) const {
+  require_equal_sizes(segments.size(), counts.size(), "segments");
+  if (!segments.empty()) do_count(segments, counts, unknown);
+}
+
 void RayCaster::update(const VoxelGrid& grid) {
   if (grid.resolution() != lattice_.resolution())
     throw std::invalid_argument("a caster of resolution " + std::to_string(lattice_.resolution()) +

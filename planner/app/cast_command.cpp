@@ -25,12 +25,13 @@ struct Options {
   std::string map;
   std::string from, to, direction, range;  // as written; empty if not given
   std::string unknown = "block", caster = "embree";
-  bool json = false;
+  bool count = false, json = false;
 };
 
 struct Answer {
   Hit hit;
-  std::optional<bool> visible;  // of the voxel of --to
+  std::optional<bool> visible;               // of the voxel of --to
+  std::optional<PathCount> crossed, before;  // on the way to the hit, and to --to
 };
 
 void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Vector3f& point) {
@@ -80,12 +81,14 @@ Answer cast(const Options& options) {
     throw BadInput("--to: " + options.to + " is the point of --from; give another, or a --direction");
 
   const auto caster = make_caster(map, options.caster);
-  Answer answer{caster->cast(ray, unknown), {}};
+  Answer answer{caster->cast(ray, unknown), {}, {}, {}};
   if (answer.hit.stop == RayStop::kInvalid)
     throw BadInput((to ? "--to: " + options.to : "--direction: " + options.direction) +
                    " gives no direction that a float can hold; give one of a length nearer to 1");
+  if (options.count) caster->count({&ray, 1}, {&answer.crossed.emplace(), 1}, unknown);
   if (to) {
     const Segment segment{ray.origin, *to};
+    if (options.count) caster->count({&segment, 1}, {&answer.before.emplace(), 1}, unknown);
     std::uint8_t visible = 0;
     caster->visible({&segment, 1}, {&visible, 1}, unknown);
     answer.visible = visible != 0;
@@ -103,14 +106,20 @@ std::string explain(RayStop stop) {
       return "nothing within --range; this is the first voxel beyond it";
     case RayStop::kLeftMap:
       return "nothing up to the end of the map's key range; this is the last voxel";
+    case RayStop::kReached:
     case RayStop::kInvalid:
       break;
   }
   return "no ray";
 }
 
+std::string list(const PathCount& count) {
+  return std::to_string(count.unknown) + " unknown, " + std::to_string(count.free) + " free, " +
+         std::to_string(count.occupied) + " occupied voxels";
+}
+
 std::string name_of(RayStop stop) {
-  constexpr std::array kNames = {"invalid", "occupied", "unknown", "out_of_range", "left_map"};
+  constexpr std::array kNames = {"invalid", "occupied", "unknown", "out_of_range", "left_map", "reached"};
   return kNames[static_cast<std::size_t>(stop)];
 }
 
@@ -121,8 +130,15 @@ void print_text(const Answer& answer) {
                     row("end", to_text(hit.end) + " m (its centre)") +
                     row("entry", to_text(hit.entry) + " m (where the ray enters it)") +
                     row("distance", to_text(hit.distance) + " m (to the entry)");
+  if (answer.crossed)
+    out += row("crossed", list(*answer.crossed) +
+                              (hit.stop == RayStop::kLeftMap ? " (with this one)" : " (before this one)"));
   if (answer.visible)
     out += row("visible", *answer.visible ? "yes, the voxel of --to is" : "no, the voxel of --to is not");
+  if (answer.before)
+    out += row("on the way", list(*answer.before) + (answer.before->stop == RayStop::kReached
+                                                         ? " (before that of --to)"
+                                                         : " (before the way to that of --to ends)"));
   std::cout << out;
 }
 
@@ -136,7 +152,16 @@ void print_json(const Answer& answer) {
       .add("end_m", hit.end)
       .add("entry_m", hit.entry)
       .add("distance_m", hit.distance);
+  const auto add = [&](const char* name, const PathCount& count) {
+    out.add(name, JsonObject()
+                      .add("unknown", std::uint64_t{count.unknown})
+                      .add("free", std::uint64_t{count.free})
+                      .add("occupied", std::uint64_t{count.occupied})
+                      .add("stop", name_of(count.stop)));
+  };
+  if (answer.crossed) add("crossed", *answer.crossed);
   if (answer.visible) out.add("visible", *answer.visible);
+  if (answer.before) add("before_to", *answer.before);
   std::cout << out.text() << '\n';
 }
 
@@ -157,13 +182,18 @@ void add_cast_command(CLI::App& app) {
   command->add_option("--caster", options->caster, "What casts it; all give the same answer")
       ->check(CLI::IsMember({"embree", "grid", "octomap"}))
       ->capture_default_str();
+  command->add_flag("--count", options->count,
+                    "Also count the voxels crossed: by the ray, and with --to on the way there");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Examples:\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux cast building.bt --from -2.5,0,1.2 --to 4,-1,0.5 --unknown pass\n"
+      "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10 --unknown pass --count\n"
       "The first asks what a sensor at (0, 0, 1.2) sees along x within 10 m. The second also says whether\n"
-      "the voxel that holds (4, -1, 0.5) is visible when unknown voxels do not block the view.");
+      "the voxel that holds (4, -1, 0.5) is visible when unknown voxels do not block the view. The third\n"
+      "counts the unknown, free and occupied voxels that the first's ray crosses if unknown voxels let it\n"
+      "pass: from its first voxel, included, to the one in which it ended, excluded.");
   command->callback([options] {
     const Answer answer = cast(*options);
     options->json ? print_json(answer) : print_text(answer);

@@ -259,6 +259,33 @@ TEST_F(AppTest, CastSeesTheWall) {
                 {"end of the map's key range", "key 65535, "});
 }
 
+TEST_F(AppTest, CastCountsWhatItCrosses) {
+  octomap::OcTree tree(kResolution);
+  for (const int x : {0, 1, 5}) tree.updateNode(key(x, 0, 0), false);
+  tree.updateNode(key(6, 0, 0), true);
+  ASSERT_TRUE(tree.write(file("beam.ot")));
+  const auto count = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all = {"cast", file("beam.ot"), "--from", "0.05,0.05,0.05", "--count"};
+    all.insert(all.end(), words.begin(), words.end());
+    return run(all);
+  };
+  for (const std::string caster : {"embree", "grid", "octomap"}) {
+    SCOPED_TRACE(caster);
+    expect_answer(count({"--unknown", "pass", "--direction", "1,0,0", "--caster", caster}),
+                  {"crossed      3 unknown, 3 free, 0 occupied voxels (before this one)\n"});
+    expect_answer(count({"--unknown", "pass", "--direction", "-1,0,0", "--caster", caster}),
+                  {"crossed      32768 unknown, 1 free, 0 occupied voxels (with this one)\n"});
+    expect_answer(count({"--json", "--to", "0.35,0.05,0.05", "--unknown", "pass", "--caster", caster}),
+                  {R"("crossed": {"unknown": 3, "free": 3, "occupied": 0, "stop": "occupied"})",
+                   R"("before_to": {"unknown": 1, "free": 2, "occupied": 0, "stop": "reached"})"});
+    expect_answer(
+        count({"--to", "0.35,0.05,0.05", "--caster", caster}),
+        {"on the way   0 unknown, 2 free, 0 occupied voxels (before the way to that of --to ends)\n"});
+  }
+  EXPECT_EQ(run({"cast", file("beam.ot"), "--from", "0,0,0", "--to", "1,0,0"}).out.find("crossed"),
+            std::string::npos);
+}
+
 TEST_F(AppTest, CastTakesNegativeNumbers) {
   const Answer first = cast({"--from=-0.45,-0.45,0.55", "--direction=-1,-.5,0"});
   expect_answer(first, {"key "});
@@ -325,7 +352,8 @@ TEST_F(AppTest, RefusesWrongFiles) {
 TEST_F(AppTest, HelpTeaches) {
   expect_answer(run({"--help"}), {"info", "cast", "Examples:", "Exit code"});
   expect_answer(run({"info", "--help"}), {"Example", "frontlux info building.bt"});
-  expect_answer(run({"cast", "--help"}), {"Example", "frontlux cast building.bt --from", "--unknown"});
+  expect_answer(run({"cast", "--help"}),
+                {"Example", "frontlux cast building.bt --from", "--unknown", "--count"});
   expect_answer(run({"--version"}), {"frontlux "});
 }
 

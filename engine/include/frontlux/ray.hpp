@@ -39,13 +39,14 @@ struct KeySegment {
   VoxelKey from, to;
 };
 
-/// Why a ray ended.
+/// Why a ray or a counted segment ended.
 enum class RayStop : std::uint8_t {
   kInvalid,     ///< no ray: origin outside the key range or not finite, or a direction without length
   kOccupied,    ///< in an occupied voxel; the only case in which castRay returns true
   kUnknown,     ///< in an unknown voxel, under `UnknownPolicy::kBlock`
-  kOutOfRange,  ///< in the first voxel whose centre lies beyond `Ray::max_range`
+  kOutOfRange,  ///< in the first voxel whose centre lies beyond `Ray::max_range`; a segment: beyond `to`
   kLeftMap,     ///< in the last voxel before the key range (0..65535) ends
+  kReached,     ///< in the voxel of `to`: segments only
 };
 
 /// Where a ray ended. With `kInvalid` every other field keeps its default.
@@ -60,6 +61,19 @@ struct Hit {
 
   /// What castRay returns.
   [[nodiscard]] bool occupied() const { return stop == RayStop::kOccupied; }
+};
+
+/// How many voxels of each state a path crosses before it stops: from the voxel of its origin, included, to
+/// the voxel that stopped it, excluded. Excluded are thus a blocker, the first voxel out of range and the
+/// voxel of a segment's `to`; a ray that leaves the key range crosses its last voxel, which counts.
+///
+/// `occupied` is 0 of a ray, which no occupied voxel lets pass, and at most 1 of a segment, whose first voxel
+/// never blocks.
+struct PathCount {
+  std::uint32_t unknown = 0, free = 0, occupied = 0;  ///< [voxels]
+  RayStop stop = RayStop::kInvalid;                   ///< with `kInvalid` nothing is counted
+
+  friend constexpr bool operator==(const PathCount&, const PathCount&) = default;
 };
 
 }  // namespace frontlux

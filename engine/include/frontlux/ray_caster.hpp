@@ -48,6 +48,21 @@ class RayCaster {
   void visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                UnknownPolicy unknown) const;
 
+  /// How many unknown, free and occupied voxels each ray crosses before it stops where `cast` says. With
+  /// `UnknownPolicy::kPass` and a range, `unknown` is what a sensor beam would uncover at most.
+  /// @throws std::invalid_argument if the spans differ in size
+  void count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const;
+
+  /// The same from the voxel of `from`, included, to that of `to`, excluded, on the path that `visible`
+  /// follows: `kReached` where it says 1. The voxel of `from` never blocks. Of a segment within one voxel
+  /// nothing is counted.
+  /// @throws std::invalid_argument if the spans differ in size
+  void count(std::span<const Segment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
+
+  /// The same between voxel centres, in exact integer arithmetic.
+  /// @throws std::invalid_argument if the spans differ in size
+  void count(std::span<const KeySegment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
+
   /// Follows a map that has changed. What changed is found by comparing `grid` with the snapshot held, which
   /// passes over the parts they share: cheap for an edited copy, right for any grid.
   /// @throws std::invalid_argument if the resolution differs from the one this caster was made with
@@ -67,6 +82,12 @@ class RayCaster {
                           UnknownPolicy unknown) const = 0;
   virtual void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                           UnknownPolicy unknown) const = 0;
+  virtual void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                        UnknownPolicy unknown) const = 0;
+  virtual void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                        UnknownPolicy unknown) const = 0;
+  virtual void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                        UnknownPolicy unknown) const = 0;
   virtual void do_update(const VoxelGrid& grid) = 0;
 
   Lattice lattice_;
