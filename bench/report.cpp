@@ -1,9 +1,9 @@
 #include "report.hpp"
 
+#include "text.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace frontlux::bench {
 namespace {
@@ -20,27 +20,6 @@ std::optional<double> median_of(const std::map<std::string, std::vector<double>>
   const auto found = samples.find(row);
   if (found == samples.end()) return std::nullopt;
   return median(found->second);
-}
-
-std::string cell(const char* pattern, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), pattern, value);
-  return text.data();
-}
-
-std::string pad(const std::string& text, std::size_t width) {
-  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
-}
-
-/// Three digits, however large.
-std::string digits(double value) {
-  return cell(value < 9.995 ? "%.2f" : value < 99.95 ? "%.1f" : "%.0f", value);
-}
-
-/// Shares close to one are told from one.
-std::string percent(double share) {
-  if (share == 1.0) return "100 %";
-  return cell("%.2f %%", std::min(100 * share, 99.99));
 }
 
 std::string rays(double count) {
@@ -77,13 +56,6 @@ const Entry* find_entry(const Trial& trial, const std::string& caster) {
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.caster == caster; });
   return found == entries.end() ? nullptr : &*found;
-}
-
-std::string words(int threads) { return std::to_string(threads) + (threads == 1 ? " thread" : " threads"); }
-
-std::string centered(const std::string& text, std::size_t width) {
-  const std::size_t left = (width - std::min(width, text.size())) / 2;
-  return pad(text, left + text.size()) + std::string(width - std::min(width, left + text.size()), ' ');
 }
 
 /// Median of all rows of so many threads, or so many if none ran.
