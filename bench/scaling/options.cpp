@@ -20,7 +20,7 @@ constexpr const char* kDescription =
     "  order       the building's rays as a planner asks them and shuffled, on each number of threads\n"
     "All but `order` are measured on the highest number of threads. Without --quick the run takes some "
     "minutes\n"
-    "and 3 GB of memory; the first one makes the building in four resolutions, two minutes more.\n"
+    "and 2.2 GB of memory; the first one makes the building in four resolutions, two minutes more.\n"
     "Takes Google Benchmark's options (--benchmark_...) as well.\n"
     "Draw the results with: bench/plot_scaling.py RESULTS.json FOLDER\n";
 
