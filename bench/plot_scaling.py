@@ -77,9 +77,13 @@ def read_rows(document):
     for run in sorted(runs, key=lambda r: r.get("family_index", 0)):
         match = ROW.match(run["run_name"])
         if match and "items_per_second" in run and "x" in run:
-            samples[match.groups()].append(run["items_per_second"])
-            facts[match.groups()] = run
-    return [Row(*key[:5], int(key[5]), statistics.median(rates), facts[key]) for key, rates in samples.items()]
+            samples[match.groups()].append((run["items_per_second"], run.get("busy_processors", 0.0)))
+            facts[match.groups()] = dict(run)
+    rows = []
+    for key, values in samples.items():
+        facts[key]["busy_processors"] = statistics.median(busy for _, busy in values)
+        rows.append(Row(*key[:5], int(key[5]), statistics.median(rate for rate, _ in values), facts[key]))
+    return rows
 
 
 class Scale:
@@ -303,6 +307,14 @@ def draw_order(rows, facts):
     return svg(TITLES["order"], bottom + MARGIN - 12, CASTERS, chart)
 
 
+def disturbance(rows):
+    """What a reader must know if the machine was busy with something else; empty if it was not."""
+    threads = max(r.threads for r in rows)
+    busy = [r.facts["busy_processors"] for r in rows if r.threads == threads]
+    typical = statistics.median(busy)
+    return f"CAUTION: measured beside other work, {typical:.1f} processors" if typical < 0.9 * threads else ""
+
+
 def draw_all(document):
     """{name: svg} of every axis that was measured."""
     rows = [row for row in read_rows(document) if row.axis in TITLES]
@@ -310,12 +322,13 @@ def draw_all(document):
         raise ValueError("no rows of bench_scaling")
     context = document.get("context", {})
     date = context.get("date", "")[:10]
+    caution = disturbance(rows)
     figures = {}
     for axis in dict.fromkeys(row.axis for row in rows):
         chosen = [r for r in rows if r.axis == axis]
         threads = max(r.threads for r in chosen)
         counted = f"{threads} threads" if threads > 1 else "1 thread"
-        facts = [context.get("cpu_name", ""), counted, date, "medians"]
+        facts = [context.get("cpu_name", ""), counted, date, "medians", caution]
         if axis == "order":
             figures[axis] = draw_order(chosen, facts)
         else:

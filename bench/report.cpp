@@ -58,18 +58,6 @@ const Entry* find_entry(const Trial& trial, const std::string& caster) {
   return found == entries.end() ? nullptr : &*found;
 }
 
-/// Median of all rows of so many threads, or so many if none ran.
-double busy_processors(std::span<const std::unique_ptr<Trial>> trials, int threads,
-                       const Recorder& recorder) {
-  std::vector<double> busy;
-  for (const auto& trial : trials) {
-    for (const Entry& entry : trial->entries()) {
-      if (const auto b = recorder.busy_processors(row_name(*trial, entry, threads))) busy.push_back(*b);
-    }
-  }
-  return busy.empty() ? threads : median(busy);
-}
-
 class Table {
  public:
   Table(std::span<const std::unique_ptr<Trial>> trials, std::span<const int> threads,
@@ -192,8 +180,21 @@ void print_table(std::span<const std::unique_ptr<Trial>> trials, std::span<const
          "tree to the caster, grid included.\npays after: so many rays until building and casting is faster "
          "than "
          "castRay.\n";
-  if (const double busy = busy_processors(trials, threads.back(), recorder); busy < 0.9 * threads.back()) {
-    out << "CAUTION: rows of " << words(threads.back()) << " kept only " << cell("%.1f", busy)
+  std::vector<std::string> rows;
+  for (const auto& trial : trials) {
+    for (const Entry& entry : trial->entries()) rows.push_back(row_name(*trial, entry, threads.back()));
+  }
+  print_cautions(rows, threads.back(), recorder, out);
+}
+
+void print_cautions(std::span<const std::string> rows, int threads, const Recorder& recorder,
+                    std::ostream& out) {
+  std::vector<double> busy;
+  for (const std::string& row : rows) {
+    if (const auto processors = recorder.busy_processors(row)) busy.push_back(*processors);
+  }
+  if (const double typical = busy.empty() ? threads : median(busy); typical < 0.9 * threads) {
+    out << "CAUTION: rows of " << words(threads) << " kept only " << cell("%.1f", typical)
         << " processors busy: others use this machine, or the batches are small.\n";
   }
   if (const auto spread = recorder.spread()) {

@@ -91,10 +91,13 @@ void print_scaling_table(std::span<const Point> points, const Recorder& recorder
          "bit "
          "for\nbit, or between voxel keys with the integer rule, from which castRay itself may round away. "
          "bytes and ns\nper known voxel; embree's contain the grid's; from the octree to the caster.\n";
-  if (const auto spread = recorder.spread()) {
-    out << "The repetitions of a row lie " << cell("%.0f %%", 100 * spread->typical)
-        << " apart (median of all rows; the worst " << cell("%.0f %%", 100 * spread->worst) << ").\n";
+  std::vector<std::string> rows;
+  int threads = 1;
+  for (const Point& point : points) {
+    threads = point.threads.back();
+    for (const Entry& entry : point.trial->entries()) rows.push_back(row_name(point, entry, threads));
   }
+  print_cautions(rows, threads, recorder, out);
 }
 
 }  // namespace frontlux::bench
