@@ -1,10 +1,11 @@
 #include "options.hpp"
 
+#include "google_benchmark.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
@@ -28,24 +29,11 @@ std::vector<fs::path> maps_in(const fs::path& folder) {
   return maps;
 }
 
-/// Google Benchmark finds out that it cannot write only after everything has been prepared.
-void check_writable(const std::string& file) {
-  if (!std::ofstream(file, std::ios::app)) throw std::runtime_error("cannot write " + file);
-}
-
 }  // namespace
 
 std::optional<Options> read_options(int argc, char** argv, int& exit_code) {
   Options options;
-  std::vector<std::string> own, passed_on;
-  for (int i = argc - 1; i > 0; --i) {  // CLI11 takes a vector from its end
-    const std::string argument = argv[i];
-    if (argument.starts_with("--benchmark_")) {
-      passed_on.insert(passed_on.begin(), argument);
-    } else {
-      own.push_back(argument);
-    }
-  }
+  auto [own, passed_on] = SplitArguments(argc, argv);
 
   CLI::App app{
       "Measures rays per second of every ray caster on OctoMap maps, after checking that all give the same\n"

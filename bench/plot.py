@@ -23,6 +23,7 @@ WHAT_IT_ASKS = {
 
 # Okabe and Ito's colours, told apart with any colour vision; (light, dark) background.
 COLOURS = {
+    "octomap": ("#6e7781", "#9aa4af"),
     "grid": ("#e69f00", "#e69f00"),
     "embree": ("#0072b2", "#56b4e9"),
     "nanovdb": ("#009e73", "#2cc29a"),
@@ -102,13 +103,32 @@ text{font:12px system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,
 
 def style_sheet(casters):
     def theme(index, ink, faint, rule, paper):
-        fills = "".join(f".fill-{c}{{fill:{COLOURS.get(c, OTHER)[index]}}}" for c in casters)
+        fills = "".join(f".fill-{c}{{fill:{COLOURS.get(c, OTHER)[index]}}}"
+                        f".line-{c}{{stroke:{COLOURS.get(c, OTHER)[index]}}}" for c in casters)
         return (f"text{{fill:{ink}}}.faint{{fill:{faint}}}.rule{{stroke:{rule}}}.base{{stroke:{faint}}}"
                 f".paper{{fill:{paper}}}.value{{stroke:{paper}}}{fills}")
 
     light = theme(0, "#1f2328", "#59636e", "#e4e8ec", "#ffffff")
     dark = theme(1, "#e6edf3", "#9198a1", "#2a3038", "#0d1117")
     return f"<style>{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}</style>"
+
+
+def svg(title, height, casters, drawing):
+    """The whole file."""
+    head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height:.0f}" width="{WIDTH}" '
+            f'height="{height:.0f}" role="img"><title>{escape(title)}</title>')
+    paper = f'<rect class="paper" width="{WIDTH}" height="{height:.0f}" rx="8"/>'
+    return "\n".join([head, style_sheet(casters), paper, *drawing.lines, "</svg>", ""])
+
+
+def save(path, text):
+    """Writes the file complete or not at all."""
+    unfinished = path.with_name(path.name + ".unfinished")
+    try:
+        unfinished.write_text(text, encoding="utf-8")
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def compare(results, threads):
@@ -181,10 +201,7 @@ def draw(results, context):
         y += 12
     height = y + MARGIN - 8
 
-    head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height:.0f}" width="{WIDTH}" '
-            f'height="{height:.0f}" role="img"><title>Speed-up over castRay</title>')
-    paper = f'<rect class="paper" width="{WIDTH}" height="{height:.0f}" rx="8"/>'
-    return "\n".join([head, style_sheet(casters), paper, *drawing.lines, "</svg>", ""])
+    return svg("Speed-up over castRay", height, casters, drawing)
 
 
 def main():
@@ -194,8 +211,7 @@ def main():
     arguments = parser.parse_args()
     try:
         document = json.loads(arguments.results.read_text(encoding="utf-8"))
-        svg = draw(read_results(document), document.get("context", {}))
-        arguments.chart.write_text(svg, encoding="utf-8")
+        save(arguments.chart, draw(read_results(document), document.get("context", {})))
     except (OSError, ValueError, KeyError) as error:
         print(f"plot.py: {arguments.results}: {error}", file=sys.stderr)
         return 2

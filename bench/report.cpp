@@ -1,9 +1,9 @@
 #include "report.hpp"
 
+#include "text.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace frontlux::bench {
 namespace {
@@ -20,27 +20,6 @@ std::optional<double> median_of(const std::map<std::string, std::vector<double>>
   const auto found = samples.find(row);
   if (found == samples.end()) return std::nullopt;
   return median(found->second);
-}
-
-std::string cell(const char* pattern, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), pattern, value);
-  return text.data();
-}
-
-std::string pad(const std::string& text, std::size_t width) {
-  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
-}
-
-/// Three digits, however large.
-std::string digits(double value) {
-  return cell(value < 9.995 ? "%.2f" : value < 99.95 ? "%.1f" : "%.0f", value);
-}
-
-/// Shares close to one are told from one.
-std::string percent(double share) {
-  if (share == 1.0) return "100 %";
-  return cell("%.2f %%", std::min(100 * share, 99.99));
 }
 
 std::string rays(double count) {
@@ -77,25 +56,6 @@ const Entry* find_entry(const Trial& trial, const std::string& caster) {
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.caster == caster; });
   return found == entries.end() ? nullptr : &*found;
-}
-
-std::string words(int threads) { return std::to_string(threads) + (threads == 1 ? " thread" : " threads"); }
-
-std::string centered(const std::string& text, std::size_t width) {
-  const std::size_t left = (width - std::min(width, text.size())) / 2;
-  return pad(text, left + text.size()) + std::string(width - std::min(width, left + text.size()), ' ');
-}
-
-/// Median of all rows of so many threads, or so many if none ran.
-double busy_processors(std::span<const std::unique_ptr<Trial>> trials, int threads,
-                       const Recorder& recorder) {
-  std::vector<double> busy;
-  for (const auto& trial : trials) {
-    for (const Entry& entry : trial->entries()) {
-      if (const auto b = recorder.busy_processors(row_name(*trial, entry, threads))) busy.push_back(*b);
-    }
-  }
-  return busy.empty() ? threads : median(busy);
 }
 
 class Table {
@@ -220,8 +180,21 @@ void print_table(std::span<const std::unique_ptr<Trial>> trials, std::span<const
          "tree to the caster, grid included.\npays after: so many rays until building and casting is faster "
          "than "
          "castRay.\n";
-  if (const double busy = busy_processors(trials, threads.back(), recorder); busy < 0.9 * threads.back()) {
-    out << "CAUTION: rows of " << words(threads.back()) << " kept only " << cell("%.1f", busy)
+  std::vector<std::string> rows;
+  for (const auto& trial : trials) {
+    for (const Entry& entry : trial->entries()) rows.push_back(row_name(*trial, entry, threads.back()));
+  }
+  print_cautions(rows, threads.back(), recorder, out);
+}
+
+void print_cautions(std::span<const std::string> rows, int threads, const Recorder& recorder,
+                    std::ostream& out) {
+  std::vector<double> busy;
+  for (const std::string& row : rows) {
+    if (const auto processors = recorder.busy_processors(row)) busy.push_back(*processors);
+  }
+  if (const double typical = busy.empty() ? threads : median(busy); typical < 0.9 * threads) {
+    out << "CAUTION: rows of " << words(threads) << " kept only " << cell("%.1f", typical)
         << " processors busy: others use this machine, or the batches are small.\n";
   }
   if (const auto spread = recorder.spread()) {

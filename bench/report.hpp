@@ -46,4 +46,9 @@ class Recorder : public benchmark::BenchmarkReporter {
 void print_table(std::span<const std::unique_ptr<Trial>> trials, std::span<const int> threads,
                  const Recorder& recorder, std::ostream& out);
 
+/// What lessens trust in the numbers: processors that were busy with something else while these rows ran on
+/// so many threads, and repetitions that lie apart.
+void print_cautions(std::span<const std::string> rows, int threads, const Recorder& recorder,
+                    std::ostream& out);
+
 }  // namespace frontlux::bench

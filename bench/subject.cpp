@@ -38,8 +38,7 @@ const Contender& Subject::contender(const std::string& caster) const {
   throw std::invalid_argument("no caster named " + caster);
 }
 
-std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
-  Octree tree = read_octree(file);
+std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   std::optional<VoxelGrid> grid;
   const double grid_seconds = median_seconds([&] {
     grid.reset();
@@ -62,7 +61,11 @@ std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::st
   });
   bytes = subject->grid.memory_bytes() + caster->memory_bytes();
   subject->contenders.push_back({"embree", std::move(caster), grid_seconds + seconds, bytes});
+  return subject;
+}
 
+std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
+  auto subject = make_subject(read_octree(file), std::move(name));
   std::visit([&](const auto& octree) { subject->drop_in = std::make_unique<OctreeRayCaster>(*octree); },
              subject->tree);
   return subject;

@@ -25,13 +25,16 @@ struct Subject {
   std::string name;
   Octree tree;
   VoxelGrid grid;
-  std::vector<Contender> contenders;  ///< octomap, grid, embree
-  std::unique_ptr<OctreeRayCaster> drop_in;
+  std::vector<Contender> contenders;         ///< octomap, grid, embree
+  std::unique_ptr<OctreeRayCaster> drop_in;  ///< null unless the map was loaded from a file
 
   [[nodiscard]] const Contender& contender(const std::string& caster) const;
 };
 
-/// Reads a map and builds the casters with as many threads as TBB's current arena has.
+/// Builds the casters with as many threads as TBB's current arena has.
+[[nodiscard]] std::unique_ptr<Subject> make_subject(Octree tree, std::string name);
+
+/// Reads a map, and builds the casters and the drop-in for single calls.
 /// @throws std::runtime_error naming the file
 [[nodiscard]] std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name);
 

@@ -24,7 +24,9 @@ constexpr std::array kRecipes{
     MapRecipe{"corridor_0.1m", ".bt", SceneKind::kCorridor, 0.1},
     MapRecipe{"hall_0.2m", ".bt", SceneKind::kHall, 0.2},
     MapRecipe{"hall_0.3m", ".bt", SceneKind::kHall, 0.3},
+    MapRecipe{"building_0.5m", ".bt", SceneKind::kBuilding, 0.5},
     MapRecipe{"building_0.3m", ".bt", SceneKind::kBuilding, 0.3},
+    MapRecipe{"building_0.2m", ".bt", SceneKind::kBuilding, 0.2},
     MapRecipe{"building_0.1m", ".bt", SceneKind::kBuilding, 0.1},
 };
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "workload.hpp"
+
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace frontlux::bench {
+
+/// Targets of one viewpoint, which follow each other in the order of their keys.
+inline constexpr std::size_t kTargetsPerViewpoint = 64;
+
+/// Pairs of free voxels whose centres are `length` apart, to within a voxel, and about 20 degrees off the
+/// horizon at most. Viewpoints are in spatial order. Whether anything stands between the two is not asked.
+/// @param length  [m]
+/// @return `count` pairs, or fewer where viewpoints find too few free voxels at that distance
+/// @throws std::invalid_argument if the length is not finite or below two voxels
+[[nodiscard]] std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length,
+                                                         std::size_t count);
+
+/// A ray along each segment, from a random point of its first voxel.
+/// @param range  [m]
+[[nodiscard]] std::vector<Ray> rays_along(std::span<const KeySegment> segments, const Lattice& lattice,
+                                          double range);
+
+/// The same queries in random order, each batch by itself; the same order every time.
+[[nodiscard]] Workload shuffled(Workload workload);
+
+}  // namespace frontlux::bench

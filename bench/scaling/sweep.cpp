@@ -1,0 +1,201 @@
+#include "scaling/sweep.hpp"
+
+#include "castray_loop.hpp"
+#include "generated_map.hpp"
+#include "scaling/maps.hpp"
+#include "scaling/octree.hpp"
+#include "scaling/rays.hpp"
+#include "text.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace frontlux::bench {
+namespace {
+
+constexpr std::size_t kPilotRays = 2'048, kMinRays = 5'000, kMaxRays = 100'000;
+
+// castRay takes some hundredths of a second for them: short, because there are many rows.
+constexpr double kVoxelsPerPass = 2e6, kVoxelsPerQuickPass = 2e5;
+
+// So many on every map that the rays of the largest one start in all of its rooms.
+constexpr std::size_t kRaysOfSize = 65'536;
+
+constexpr double kNearlyEmpty = 1e-4;
+
+struct RoomCount {
+  int x, y, z;
+};
+
+}  // namespace
+
+std::string Point::name() const {
+  return axis + "/" + trial->workload().name + "/" + trial->map() + "/" + label;
+}
+
+std::string row_name(const Point& point, const Entry& entry, int threads) {
+  return point.name() + "/" + entry.caster + "/threads:" + std::to_string(threads);
+}
+
+Sweep::Sweep(const ScalingOptions& options, std::ostream& out) : options_(options), out_(out) {}
+
+bool Sweep::prepare() {
+  tbb::task_arena(options_.threads.back()).execute([&] {
+    for (const std::string_view axis : kAxes) {
+      if (std::find(options_.axes.begin(), options_.axes.end(), axis) == options_.axes.end()) continue;
+      if (axis == "resolution") vary_resolution();
+      if (axis == "length") vary_length();
+      if (axis == "share") vary_share();
+      if (axis == "size") vary_size();
+      if (axis == "order") vary_order();
+    }
+  });
+  return agreed_;
+}
+
+void Sweep::vary_resolution() {
+  const std::vector<double> resolutions =
+      options_.quick ? std::vector{0.5, 0.3} : std::vector{0.5, 0.3, 0.2, 0.1};
+  for (const double resolution : resolutions) {
+    const Subject& subject = building(resolution);
+    for (const std::string_view query : {"visible_uav", "cast_lidar"})
+      add("resolution", resolution, cell("%g", resolution) + "m", subject, planned(subject, query));
+  }
+}
+
+void Sweep::vary_length() {
+  const std::vector<double> lengths =
+      options_.quick ? std::vector{2.0, 10.0, 60.0} : std::vector{2.0, 5.0, 10.0, 20.0, 40.0, 60.0};
+  for (const Subject* subject : {&blocks(kNearlyEmpty), &building(options_.quick ? 0.3 : 0.2)}) {
+    for (const double length : lengths)
+      add_lines("length", length, cell("%g", length) + "m", *subject, length, std::nullopt);
+  }
+}
+
+void Sweep::vary_share() {
+  const std::vector<double> shares = options_.quick
+                                         ? std::vector{kNearlyEmpty, 0.01, 0.2}
+                                         : std::vector{kNearlyEmpty, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.2};
+  for (const double share : shares)
+    add_lines("share", 100 * share, cell("%g", 100 * share) + "pct", blocks(share), 20.0, std::nullopt);
+}
+
+void Sweep::vary_size() {
+  // 1, 3, 10, 30 and 100 million voxels, as nearly as whole storeys of rooms allow.
+  std::vector<RoomCount> counts{{2, 2, 2}, {3, 3, 3}, {5, 5, 3}};
+  if (!options_.quick) counts.insert(counts.end(), {{8, 8, 4}, {12, 11, 6}});
+  for (const RoomCount& count : counts) {
+    const Subject& subject = rooms(count.x, count.y, count.z);
+    const auto known = static_cast<double>(count_known(subject.grid));
+    add_lines("size", known, cell("%.1f", known * 1e-6) + "M", subject, 5.0,
+              options_.quick ? kRaysOfSize / 16 : kRaysOfSize);
+  }
+}
+
+void Sweep::vary_order() {
+  const std::vector<double> resolutions = options_.quick ? std::vector{0.3} : std::vector{0.3, 0.1};
+  for (const double resolution : resolutions) {
+    const Subject& subject = building(resolution);
+    for (const std::string_view query : {"visible_uav", "cast_lidar"}) {
+      Workload workload = planned(subject, query);
+      add("order", 0, "sorted", subject, workload);
+      add("order", 1, "shuffled", subject, shuffled(std::move(workload)));
+    }
+  }
+  for (Point& point : points_) {
+    if (point.axis == "order") point.threads = options_.threads;
+  }
+}
+
+const Subject& Sweep::building(double resolution) {
+  const std::string name = "building_" + cell("%g", resolution) + "m";
+  if (const Subject* known = find(name)) return *known;
+  return keep(make_subject(read_octree(generate_map(name, options_.cache)), name));
+}
+
+const Subject& Sweep::blocks(double share) {
+  const std::string name = "blocks_" + cell("%g", 100 * share) + "pct";
+  if (const Subject* known = find(name)) return *known;
+  return keep(make_subject(make_octree(make_blocks(share)), name));
+}
+
+const Subject& Sweep::rooms(int x, int y, int z) {
+  const std::string name = "rooms_" + std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z);
+  if (const Subject* known = find(name)) return *known;
+  return keep(make_subject(make_octree(make_rooms({x, y, z})), name));
+}
+
+const Subject& Sweep::keep(std::unique_ptr<Subject> subject) {
+  out_ << describe(*subject) << std::endl;
+  const auto count = subject->grid.count();
+  facts_[subject.get()] = {{"resolution", subject->grid.resolution()},
+                           {"free_voxels", static_cast<double>(count[1])},
+                           {"occupied_voxels", static_cast<double>(count[2])},
+                           {"octree_bytes", static_cast<double>(memory_bytes(subject->tree))}};
+  subjects_.push_back(std::move(subject));
+  return *subjects_.back();
+}
+
+const Subject* Sweep::find(const std::string& name) const {
+  for (const auto& subject : subjects_) {
+    if (subject->name == name) return subject.get();
+  }
+  return nullptr;
+}
+
+void Sweep::add(std::string axis, double x, std::string label, const Subject& subject, Workload workload) {
+  const std::string where = axis + " " + label + " on " + subject.name;
+  if (workload.size() == 0) {
+    out_ << "  " << where << workload.name
+         << " skipped: " << (workload.skipped.empty() ? "no free voxels are so far apart" : workload.skipped)
+         << std::endl;
+    return;
+  }
+  auto counters = facts_[&subject];
+  counters["x"] = x;
+  if (heading_ != where) out_ << where << '\n';
+  heading_ = where;
+  auto trial = std::make_unique<Trial>(subject, std::move(workload), std::span<const Peer>{});
+  agreed_ = trial->check(options_.threads, out_) && agreed_;
+  out_.flush();
+  points_.push_back({std::move(axis),
+                     x,
+                     std::move(label),
+                     {options_.threads.back()},
+                     std::move(counters),
+                     std::move(trial)});
+}
+
+void Sweep::add_lines(const std::string& axis, double x, const std::string& label, const Subject& subject,
+                      double length, std::optional<std::size_t> rays) {
+  const auto make = [&](const std::string& query, std::size_t count) {
+    Workload workload{query, {}, {}, {}};
+    auto segments = segments_of_length(subject.grid, length, count);
+    if (query == "visible") {
+      workload.segments = std::move(segments);
+    } else if (!segments.empty()) {
+      workload.batches.push_back(
+          {rays_along(segments, subject.grid.lattice(), length), UnknownPolicy::kPass});
+    }
+    return workload;
+  };
+  for (const char* query : {"visible", "cast"}) {
+    const std::size_t count = rays ? *rays : rays_for(make(query, kPilotRays), subject);
+    add(axis, x, label, subject, make(query, count));
+  }
+}
+
+Workload Sweep::planned(const Subject& subject, std::string_view query) const {
+  WorkloadSource source(subject.grid, *subject.contender("grid").caster);
+  return source.make(query, rays_for(source.make(query, kPilotRays), subject));
+}
+
+std::size_t Sweep::rays_for(const Workload& pilot, const Subject& subject) const {
+  const double length = mean_voxels(pilot, *subject.contender("grid").caster, subject.grid.lattice());
+  const double voxels = options_.quick ? kVoxelsPerQuickPass : kVoxelsPerPass;
+  return std::clamp(static_cast<std::size_t>(voxels / std::max(length, 1.0)), kMinRays, kMaxRays);
+}
+
+}  // namespace frontlux::bench

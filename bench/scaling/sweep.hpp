@@ -1,0 +1,75 @@
+#pragma once
+
+#include "scaling/options.hpp"
+#include "subject.hpp"
+#include "trial.hpp"
+#include "workload.hpp"
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frontlux::bench {
+
+/// One place on one axis: a workload on a map.
+struct Point {
+  std::string axis;
+  double x = 0;       ///< value on the axis; for `order` 0 as asked, 1 shuffled
+  std::string label;  ///< the value in words
+  std::vector<int> threads;
+  std::map<std::string, double> counters;  ///< facts for the JSON
+  std::unique_ptr<Trial> trial;
+
+  /// `<axis>/<query>/<map>/<value>`
+  [[nodiscard]] std::string name() const;
+};
+
+/// `<axis>/<query>/<map>/<value>/<caster>/threads:<n>`
+[[nodiscard]] std::string row_name(const Point& point, const Entry& entry, int threads);
+
+/// Prepares the points of all axes asked for. Maps that several axes use are made once.
+class Sweep {
+ public:
+  /// @param options  must outlive this object
+  Sweep(const ScalingOptions& options, std::ostream& out);
+
+  /// Makes maps and rays and compares the answers of all casters on them.
+  /// @return false if casters disagree where they must not; it goes on then, to show where
+  bool prepare();
+
+  [[nodiscard]] const std::vector<Point>& points() const { return points_; }
+
+ private:
+  void vary_resolution();
+  void vary_length();
+  void vary_share();
+  void vary_size();
+  void vary_order();
+
+  const Subject& building(double resolution);
+  const Subject& blocks(double share);
+  const Subject& rooms(int x, int y, int z);
+  const Subject& keep(std::unique_ptr<Subject> subject);
+  [[nodiscard]] const Subject* find(const std::string& name) const;
+
+  void add(std::string axis, double x, std::string label, const Subject& subject, Workload workload);
+  void add_lines(const std::string& axis, double x, const std::string& label, const Subject& subject,
+                 double length, std::optional<std::size_t> rays);
+  [[nodiscard]] Workload planned(const Subject& subject, std::string_view query) const;
+  [[nodiscard]] std::size_t rays_for(const Workload& pilot, const Subject& subject) const;
+
+  const ScalingOptions& options_;
+  std::ostream& out_;
+  std::vector<std::unique_ptr<Subject>> subjects_;
+  std::map<const Subject*, std::map<std::string, double>> facts_;
+  std::vector<Point> points_;
+  std::string heading_;  // said last
+  bool agreed_ = true;
+};
+
+}  // namespace frontlux::bench
