@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "cast_command.hpp"
 #include "info_command.hpp"
+#include "map_command.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -19,7 +20,8 @@ constexpr int kBadInput = 2, kFailure = 1;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 4> kNumeric = {"--from", "--to", "--direction", "--range"};
+  constexpr std::array<std::string_view, 5> kNumeric = {"--from", "--to", "--direction", "--range",
+                                                        "--bounds"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -39,7 +41,7 @@ int complain(const std::string& message, int code) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Asks OctoMap maps what can be seen in them.");
+  CLI::App app("Makes OctoMap maps and asks what can be seen in them.");
   app.name("frontlux");
   app.set_version_flag("--version", std::string("frontlux ") + FRONTLUX_VERSION, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
@@ -53,6 +55,7 @@ int run(int argc, const char* const* argv) {
       "question was answered, 2 if the input was not usable, 1 if anything else went wrong.");
   frontlux::app::add_info_command(app);
   frontlux::app::add_cast_command(app);
+  frontlux::app::add_map_command(app);
   try {
     auto words = words_of(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them
