@@ -32,9 +32,9 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
                     [&](const tbb::blocked_range<std::size_t>& piece) {
                       Voxels& voxels = passed.local();
-                      const auto mark = [&voxels](std::int64_t place) { return voxels.add(place); };
-                      for (std::size_t i = piece.begin(); i < piece.end(); ++i)
-                        if (rays[i].has_key) follow_ray(lattice, origin, start, rays[i], places, mark);
+                      follow_rays(
+                          lattice, origin, start, rays.subspan(piece.begin(), piece.size()), places,
+                          [&voxels](unsigned lane, std::int64_t place) { return voxels.add(place, lane); });
                     });
   Voxels all = none, hits = none;
   for (const Voxels& voxels : passed) all.add(voxels);

@@ -42,7 +42,7 @@ class DenseVoxels {
   }
 
   /// Adds a voxel. @return false if there is no such place
-  bool add(std::int64_t place) {
+  bool add(std::int64_t place, unsigned /*lane*/ = 0) {
     const auto byte = static_cast<std::uint64_t>(place) >> 3;
     if (byte >= bytes_.size()) return false;
     bytes_[byte] = static_cast<std::uint8_t>(bytes_[byte] | (1U << (place & 7)));
@@ -88,14 +88,16 @@ class SparseVoxels {
   // A field of 21 bits for each axis, moved by a brick so that a step below the key range borrows nothing.
   [[nodiscard]] static LinearPlaces places() { return {kStride, 8 * (kStride[0] + kStride[1] + kStride[2])}; }
 
-  bool add(std::int64_t place) {
+  /// Adds a voxel; fast if the last one of the lane was in the same brick.
+  bool add(std::int64_t place, unsigned lane = 0) {
+    Last& last = last_[lane];
     const std::int64_t number = place & ~kInBrick;
-    if (number != last_number_) {  // a path stays in a brick for some steps
-      last_ = bricks_.index(static_cast<std::uint64_t>(number));
-      last_number_ = number;
+    if (number != last.number) {
+      last.index = bricks_.index(static_cast<std::uint64_t>(number));
+      last.number = number;
     }
     const auto x = place & 7, y = (place >> 21) & 7, z = (place >> 42) & 7;
-    bricks_.value(last_)[static_cast<std::size_t>(z)] |= std::uint64_t{1} << (8 * y + x);
+    bricks_.value(last.index)[static_cast<std::size_t>(z)] |= std::uint64_t{1} << (8 * y + x);
     return true;
   }
 
@@ -129,8 +131,11 @@ class SparseVoxels {
   static constexpr std::int64_t kInBrick = 7 * (kStride[0] + kStride[1] + kStride[2]);
 
   BrickTable<Layers> bricks_;
-  std::int64_t last_number_ = -1;
-  std::size_t last_ = 0;
+  struct Last {
+    std::int64_t number = -1;
+    std::size_t index = 0;
+  };
+  std::array<Last, PathLanes::kLanes> last_{};
 };
 
 }  // namespace frontlux::planner::detail
