@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "cast_command.hpp"
 #include "info_command.hpp"
+#include "map_command.hpp"
 #include "world_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -20,8 +21,9 @@ constexpr int kBadInput = 2, kFailure = 1;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 9> kNumeric = {
-      "--from", "--to", "--direction", "--range", "--start", "--ground", "--scale", "--resolution", "--seed"};
+  constexpr std::array<std::string_view, 12> kNumeric = {"--from",       "--to",     "--direction", "--range",
+                                                         "--start",      "--ground", "--scale",     "--seed",
+                                                         "--resolution", "--bounds", "--at",        "--yaw"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -41,7 +43,7 @@ int complain(const std::string& message, int code) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Asks OctoMap maps what can be seen in them.");
+  CLI::App app("Makes OctoMap maps and asks what can be seen in them.");
   app.name("frontlux");
   app.set_version_flag("--version", std::string("frontlux ") + FRONTLUX_VERSION, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
@@ -51,12 +53,12 @@ int run(int argc, const char* const* argv) {
       "  frontlux info building.bt\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux world station --seed 3 -o station.ply\n"
-      "`frontlux info --help` and `frontlux cast --help` say more. Lengths are in metres. Exit code: 0 if "
-      "the\n"
-      "question was answered, 2 if the input was not usable, 1 if anything else went wrong.");
+      "Each command's --help says more. Lengths are in metres. Exit code: 0 if the question was answered,\n"
+      " 2 if the input was not usable, 1 if anything else went wrong.");
   frontlux::app::add_info_command(app);
   frontlux::app::add_cast_command(app);
   frontlux::app::add_world_command(app);
+  frontlux::app::add_map_command(app);
   try {
     auto words = words_of(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them

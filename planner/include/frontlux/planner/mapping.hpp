@@ -1,0 +1,117 @@
+#pragma once
+
+#include <frontlux/planner/scan.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace octomap {
+class OcTree;
+}
+
+namespace frontlux::planner {
+
+/// The voxels that a box [m] reaches into. A face that lies on the lattice, give or take a millionth of a
+/// voxel, adds no voxels beyond it; what lies outside the key range is cut off.
+/// @throws std::invalid_argument if the box is empty, not a number, or outside the key range
+[[nodiscard]] KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
+
+/// Every voxel that has a key.
+inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
+
+struct MappingOptions {
+  double resolution = 0.3;       ///< [m] edge of a voxel
+  KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched
+  double surface_depth = 0.001;  ///< [m] how far behind a measured surface a scan's end point is put, so that
+                                 ///< a surface that lies on a voxel face falls into the voxel behind it
+};
+
+/// All points within `radius` [m] of `center` [m].
+struct Ball {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
+/// An upright cylinder.
+struct Cylinder {
+  Eigen::Vector3d bottom = Eigen::Vector3d::Zero();  ///< [m] centre of the lower end
+  double radius = 0.0;                               ///< [m]
+  double height = 0.0;                               ///< [m]
+};
+
+/// What the last insertion spent [s], by part.
+struct InsertionTime {
+  double rays = 0.0;    ///< following rays through the voxels, and merging what they passed
+  double tree = 0.0;    ///< updating the tree
+  double mirror = 0.0;  ///< sorting the changes and writing them to the grid
+};
+
+/// The probabilistic map that robots fill: an octomap::OcTree with OctoMap's default sensor model, and the
+/// ternary grid that mirrors it.
+///
+/// A scan updates the tree exactly as OctoMap's `insertPointCloud` does without discretisation and lazy
+/// evaluation: every voxel that its rays pass or end in gets one update, a hit if any ray ended there, else a
+/// miss. The voxels in which rays end without a hit get none.
+///
+/// Every method that changes the map returns the keys of the voxels that became unknown, free or occupied and
+/// were not so before, sorted.
+///
+/// Thread safety: as a standard container. Insertion spreads its rays over TBB's current arena; what comes
+/// out does not depend on the number of threads.
+class Mapping {
+ public:
+  /// @throws std::invalid_argument naming the value, if the resolution is no length, the bounds are empty, or
+  /// the depth is negative or not finite
+  explicit Mapping(const MappingOptions& options);
+  ~Mapping();
+  Mapping(Mapping&&) noexcept;
+  Mapping& operator=(Mapping&&) noexcept;
+
+  /// A scan: rays with a return end in a hit, `surface_depth` behind the surface. Rays of infinite range
+  /// clear the way up to `max_range`, rays of range NaN tell nothing.
+  /// @throws std::invalid_argument if the scan fails `check` or begins outside the key range
+  std::vector<VoxelKey> insert(const Scan& scan);
+
+  /// The end points of rays from `origin` [m], world frame, taken as they are. Points beyond `max_range` [m]
+  /// clear the way up to it and are no hits; points that are not finite tell nothing.
+  /// @throws std::invalid_argument if the origin lies outside the key range or the range is not above 0
+  std::vector<VoxelKey> insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
+                               double max_range = std::numeric_limits<double>::infinity());
+
+  /// Declares free what a robot knows to be free without seeing it: voxels whose centre lies in the shape,
+  /// its surface included. They become as free as one miss makes an unknown voxel, unless they are freer
+  /// already; so sensors can still correct it.
+  /// @throws std::invalid_argument if a number of the shape is not finite or a length is negative
+  std::vector<VoxelKey> mark_free(const Eigen::AlignedBox3d& box);
+  std::vector<VoxelKey> mark_free(const Ball& ball);
+  std::vector<VoxelKey> mark_free(const Cylinder& cylinder);
+
+  /// The map itself. Its change detection is off, since insertion reports changes by itself.
+  [[nodiscard]] const octomap::OcTree& tree() const;
+
+  /// The same as `make_voxel_grid(tree())`, kept in step.
+  [[nodiscard]] const VoxelGrid& grid() const;
+
+  [[nodiscard]] const KeyBox& bounds() const;
+
+  [[nodiscard]] const InsertionTime& insertion_time() const;
+
+  /// Writes the map in OctoMap's format: the log-odds of every node to a file named `.ot`, free and occupied
+  /// only to one named `.bt`. The file appears complete or not at all.
+  /// @throws std::invalid_argument if the name ends otherwise
+  /// @throws std::runtime_error naming the file, if it cannot be written
+  void write(const std::filesystem::path& file) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frontlux::planner

@@ -1,0 +1,446 @@
+#include "support/quiet_octomap.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/planner/mapping.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using octomap::OcTree;
+using test::Random;
+using Points = std::vector<Eigen::Vector3f>;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+octomap::point3d to_octomap(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+
+struct Node {
+  octomap::OcTreeKey key;
+  unsigned depth;
+  float log_odds;
+  bool leaf;
+  friend bool operator==(const Node&, const Node&) = default;
+};
+
+// Every node, inner ones included.
+std::vector<Node> nodes_of(const OcTree& tree) {
+  std::vector<Node> nodes;
+  for (auto it = tree.begin_tree(), end = tree.end_tree(); it != end; ++it)
+    nodes.push_back({it.getKey(), it.getDepth(), it->getLogOdds(), it.isLeaf()});
+  return nodes;
+}
+
+void expect_same_nodes(const OcTree& tree, const OcTree& expected, const std::string& where) {
+  ASSERT_EQ(tree.size(), expected.size()) << where;
+  const auto a = nodes_of(tree), b = nodes_of(expected);
+  ASSERT_EQ(a.size(), b.size()) << where;
+  ASSERT_EQ(a.size(), tree.size()) << where;  // the count that the tree keeps is true
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_TRUE(a[i] == b[i]) << where << ": node " << i << " at " << a[i].key[0] << " " << a[i].key[1] << " "
+                              << a[i].key[2] << ", depth " << a[i].depth << ": " << a[i].log_odds << " and "
+                              << b[i].log_odds;
+}
+
+// Where most rays go wrong if any does: ends on faces, edges and corners, along axes and diagonals, in the
+// voxel of the origin, twice the same.
+Points adversarial_points(Random& random, const Eigen::Vector3f& origin, double resolution, double reach,
+                          int count) {
+  Points points;
+  const auto anywhere = [&] { return static_cast<float>(random.uniform(-reach, reach)); };
+  const auto on_lattice = [&] {
+    return static_cast<float>(std::round(random.uniform(-reach, reach) / resolution) * resolution);
+  };
+  for (int i = 0; i < count; ++i) {
+    Eigen::Vector3f p = origin + Eigen::Vector3f(anywhere(), anywhere(), anywhere());
+    switch (random.below(8)) {
+      case 0:
+        p = {on_lattice(), on_lattice(), on_lattice()};
+        break;
+      case 1:
+        p[random.below(3)] = on_lattice();
+        break;
+      case 2: {
+        const int axis = random.below(3);
+        const float along = p[axis];
+        p = origin;
+        p[axis] = along;
+        break;
+      }
+      case 3: {
+        const float d = anywhere();
+        p = origin + Eigen::Vector3f(d, random.one_in(2) ? d : -d, random.one_in(2) ? d : -d);
+        break;
+      }
+      case 4:
+        p = origin + 0.01F * (p - origin);
+        break;
+      case 5:
+        if (!points.empty())
+          p = points[static_cast<std::size_t>(random.below(static_cast<int>(points.size())))];
+        break;
+      default:
+        break;
+    }
+    points.push_back(p);
+  }
+  return points;
+}
+
+Eigen::Vector3f random_origin(Random& random, double resolution) {
+  const auto along = [&] {
+    const double c = random.uniform(-2.0, 2.0);
+    return static_cast<float>(random.one_in(4) ? std::round(c / resolution) * resolution : c);
+  };
+  return {along(), along(), along()};
+}
+
+void insert_by_octomap(OcTree& tree, const Eigen::Vector3f& origin, const Points& points, double max_range) {
+  octomap::Pointcloud cloud;
+  for (const auto& p : points) cloud.push_back(to_octomap(p));
+  tree.insertPointCloud(cloud, to_octomap(origin), std::isfinite(max_range) ? max_range : -1.0, false, false);
+}
+
+TEST(Mapping, PointsEqualInsertPointCloud) {
+  Random random(1);
+  for (const double resolution : {0.3, 0.1, 0.25, 0.07}) {
+    for (const double max_range : {4.0, std::numeric_limits<double>::infinity()}) {
+      Mapping mapping({.resolution = resolution});
+      OcTree oracle(resolution);
+      for (int scan = 0; scan < 25; ++scan) {
+        const auto origin = random_origin(random, resolution);
+        auto points = adversarial_points(random, origin, resolution, 6.0, 1 + random.below(600));
+        points.insert(points.end(), {{kNan, 0.F, 0.F}, {1.F, kNan, kNan}});
+        mapping.insert(origin, points, max_range);
+        insert_by_octomap(oracle, origin, points, max_range);
+        expect_same_nodes(mapping.tree(), oracle,
+                          "resolution " + std::to_string(resolution) + ", scan " + std::to_string(scan));
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+// The same scan again and again: nodes are clamped, pruned, and opened once more when something moves.
+TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
+  Random random(2);
+  Mapping mapping({.resolution = 0.2});
+  OcTree oracle(0.2);
+  const Eigen::Vector3f origin(0.3F, -0.2F, 1.1F);
+  const auto wall = [&](float distance) {
+    Points points;
+    for (int y = -60; y <= 60; ++y)
+      for (int z = -60; z <= 60; ++z)
+        points.push_back(
+            {origin.x() + distance, 0.05F * static_cast<float>(y), 0.05F * static_cast<float>(z)});
+    return points;
+  };
+  for (int scan = 0; scan < 40; ++scan) {
+    const auto points = wall(scan < 15 ? 4.F : scan < 20 ? 2.F : 4.1F);
+    mapping.insert(origin, points);
+    insert_by_octomap(oracle, origin, points, -1.0);
+    expect_same_nodes(mapping.tree(), oracle, "scan " + std::to_string(scan));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// A box of rays too large for a bitmap, out to the ends of the key range.
+TEST(Mapping, FarPointsEqualInsertPointCloud) {
+  Random random(3);
+  const double resolution = 0.01, edge = 327.68;
+  Mapping mapping({.resolution = resolution});
+  OcTree oracle(resolution);
+  for (int scan = 0; scan < 3; ++scan) {
+    const auto origin = random_origin(random, resolution);
+    auto points = adversarial_points(random, origin, resolution, scan == 0 ? 30.0 : 400.0, 8);
+    points.push_back({static_cast<float>(-edge), 0.F, static_cast<float>(edge - 0.005)});
+    mapping.insert(origin, points, 350.0);
+    insert_by_octomap(oracle, origin, points, 350.0);
+    expect_same_nodes(mapping.tree(), oracle, "scan " + std::to_string(scan));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// What a scan means, said with OctoMap's own pieces: one ray at a time, sets of keys, updates of nodes.
+class ScanOracle {
+ public:
+  explicit ScanOracle(const MappingOptions& options) : options_(options), tree_(options.resolution) {}
+
+  void insert(const Scan& scan) {
+    octomap::KeySet misses, hits;
+    octomap::KeyRay ray;
+    const auto origin = to_octomap(scan.origin);
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+      if (std::isnan(scan.ranges[i])) continue;
+      const bool hit = std::isfinite(scan.ranges[i]);
+      const float reach = hit ? scan.ranges[i] + static_cast<float>(options_.surface_depth)
+                              : static_cast<float>(scan.max_range);
+      const Eigen::Vector3f end = scan.origin + scan.directions[i] * reach;
+      if (tree_.computeRayKeys(origin, to_octomap(end), ray)) misses.insert(ray.begin(), ray.end());
+      octomap::OcTreeKey key;
+      if (hit && tree_.coordToKeyChecked(to_octomap(end), key)) hits.insert(key);
+    }
+    for (const auto& key : misses)
+      if (hits.count(key) == 0 && inside(key)) tree_.updateNode(key, false);
+    for (const auto& key : hits)
+      if (inside(key)) tree_.updateNode(key, true);
+  }
+
+  [[nodiscard]] const OcTree& tree() const { return tree_; }
+
+ private:
+  [[nodiscard]] bool inside(const octomap::OcTreeKey& key) const {
+    return options_.bounds.contains({key[0], key[1], key[2]});
+  }
+  MappingOptions options_;
+  OcTree tree_;
+};
+
+Scan random_scan(Random& random, double resolution, int rays) {
+  Scan scan;
+  scan.origin = random_origin(random, resolution);
+  scan.max_range = 5.0;
+  for (int i = 0; i < rays; ++i) {
+    Eigen::Vector3f direction;
+    do {
+      for (int a = 0; a < 3; ++a)
+        direction[a] = random.one_in(5) ? 0.F : static_cast<float>(random.uniform(-1, 1));
+    } while (direction.norm() < 0.1F);
+    scan.directions.push_back(direction.normalized());
+    scan.ranges.push_back(random.one_in(6)    ? kInfinity
+                          : random.one_in(10) ? kNan
+                                              : static_cast<float>(random.uniform(0.0, 5.0)));
+  }
+  return scan;
+}
+
+KeyBox box(int min, int max) {
+  const auto key = [](int k) { return static_cast<std::uint16_t>(k + 32768); };
+  return {{key(min), key(min + 1), key(min + 3)}, {key(max), key(max + 2), key(max - 1)}};
+}
+
+std::vector<VoxelKey> differences(const VoxelGrid& before, const VoxelGrid& after, const KeyBox& where) {
+  std::vector<VoxelKey> keys;
+  for (int x = where.min.x; x <= where.max.x; ++x)
+    for (int y = where.min.y; y <= where.max.y; ++y)
+      for (int z = where.min.z; z <= where.max.z; ++z) {
+        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(z)};
+        if (before.at(key) != after.at(key)) keys.push_back(key);
+      }
+  return keys;
+}
+
+TEST(Mapping, ScansEqualTheirDefinitionAndTheMirrorFollows) {
+  Random random(4);
+  for (const double depth : {0.001, 0.0}) {
+    const MappingOptions options{.resolution = 0.3, .bounds = box(-12, 9), .surface_depth = depth};
+    Mapping mapping(options);
+    ScanOracle oracle(options);
+    for (int i = 0; i < 60; ++i) {
+      const Scan scan = random_scan(random, 0.3, 1 + random.below(1500));
+      const VoxelGrid before = mapping.grid();
+      const auto changed = mapping.insert(scan);
+      oracle.insert(scan);
+      expect_same_nodes(mapping.tree(), oracle.tree(), "scan " + std::to_string(i));
+      if (HasFatalFailure()) return;
+      ASSERT_TRUE(mapping.grid() == make_voxel_grid(mapping.tree())) << "scan " << i;
+      ASSERT_EQ(changed, differences(before, mapping.grid(), box(-40, 40))) << "scan " << i;
+    }
+    const auto known = mapping.grid().known_bounds();
+    ASSERT_TRUE(known.has_value());
+    EXPECT_EQ(*known, options.bounds);  // full to the brim, and nothing spilt
+  }
+}
+
+// A wall that lies on a voxel face belongs to the voxels behind it.
+TEST(Mapping, SurfaceOnAVoxelFaceFallsBehindIt) {
+  Mapping mapping({.resolution = 0.3});
+  Scan scan;
+  scan.origin = {0.1F, 0.1F, 0.1F};
+  scan.max_range = 10.0;
+  for (int i = -40; i <= 40; ++i) {
+    const Eigen::Vector3f on_wall(3.6F, 0.05F * static_cast<float>(i) + 0.013F, 0.1F);
+    const Eigen::Vector3f way = on_wall - scan.origin;
+    scan.directions.push_back(way.normalized());
+    scan.ranges.push_back(way.norm());
+  }
+  mapping.insert(scan);
+  const Lattice lattice(0.3);
+  for (int i = -40; i <= 40; ++i) {
+    const float y = 0.05F * static_cast<float>(i) + 0.013F;
+    EXPECT_EQ(mapping.grid().at(*lattice.key(Eigen::Vector3f(3.7F, y, 0.1F))), Occupancy::kOccupied) << y;
+    EXPECT_EQ(mapping.grid().at(*lattice.key(Eigen::Vector3f(3.5F, y, 0.1F))), Occupancy::kFree) << y;
+  }
+}
+
+TEST(Mapping, SameForAnyNumberOfThreads) {
+  const auto map_with = [](int threads) {
+    Random random(5);
+    auto mapping = std::make_unique<Mapping>(MappingOptions{.resolution = 0.15});
+    std::vector<VoxelKey> changes;
+    tbb::task_arena(threads).execute([&] {
+      for (int i = 0; i < 5; ++i) {
+        const auto keys = mapping->insert(random_scan(random, 0.15, 20000));
+        changes.insert(changes.end(), keys.begin(), keys.end());
+      }
+    });
+    return std::pair(std::move(mapping), changes);
+  };
+  const auto one = map_with(1), two = map_with(2);
+  EXPECT_EQ(one.second, two.second);
+  expect_same_nodes(one.first->tree(), two.first->tree(), "1 and 2 threads");
+}
+
+TEST(Mapping, MarksShapesFree) {
+  const MappingOptions options{.resolution = 0.3, .bounds = box(-12, 9)};
+  Random random(6);
+  const Eigen::AlignedBox3d cube(Eigen::Vector3d(-0.4, -0.4, 0.0), Eigen::Vector3d(0.8, 0.4, 0.75));
+  const Ball ball{{-0.7, 0.2, 0.1}, 1.0};
+  const Cylinder disc{{0.1, 0.3, -0.2}, 2.3, 0.9};
+  const auto in_cube = [&](const Eigen::Vector3d& c) { return cube.contains(c); };
+  const auto in_ball = [&](const Eigen::Vector3d& c) { return (c - ball.center).squaredNorm() <= 1.0; };
+  const auto in_disc = [&](const Eigen::Vector3d& c) {
+    const double x = c.x() - 0.1, y = c.y() - 0.3;
+    return x * x + y * y <= 2.3 * 2.3 && c.z() >= -0.2 && c.z() <= 0.7;
+  };
+  const auto expect_free = [&](const auto& shape, const auto& inside) {
+    Mapping mapping(options);
+    for (int i = 0; i < 2; ++i) mapping.insert(random_scan(random, 0.3, 200));
+    OcTree before(mapping.tree());
+    const VoxelGrid grid_before = mapping.grid();
+    const auto changed = mapping.mark_free(shape);
+    EXPECT_EQ(changed, differences(grid_before, mapping.grid(), box(-40, 40)));
+    EXPECT_TRUE(mapping.grid() == make_voxel_grid(mapping.tree()));
+    int marked = 0;
+    for (int x = -20; x < 20; ++x)
+      for (int y = -20; y < 20; ++y)
+        for (int z = -20; z < 20; ++z) {
+          const auto along = [](int k) { return static_cast<std::uint16_t>(k + 32768); };
+          const VoxelKey key{along(x), along(y), along(z)};
+          const octomap::OcTreeKey octomap_key(key.x, key.y, key.z);
+          const auto* was = before.search(octomap_key);
+          const auto* is = mapping.tree().search(octomap_key);
+          if (options.bounds.contains(key) &&
+              inside(Eigen::Vector3d(0.3 * (x + 0.5), 0.3 * (y + 0.5), 0.3 * (z + 0.5)))) {
+            ++marked;
+            ASSERT_NE(is, nullptr);
+            const float miss = before.getProbMissLog();
+            EXPECT_EQ(is->getLogOdds(), was == nullptr ? miss : std::min(miss, was->getLogOdds()));
+          } else {
+            ASSERT_EQ(was == nullptr, is == nullptr) << x << " " << y << " " << z;
+            if (was != nullptr) {
+              EXPECT_EQ(is->getLogOdds(), was->getLogOdds());
+            }
+          }
+        }
+    EXPECT_GT(marked, 10);
+  };
+  expect_free(cube, in_cube);
+  expect_free(ball, in_ball);
+  expect_free(disc, in_disc);
+}
+
+TEST(Mapping, WritesWhatItHolds) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("frontlux_mapping_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  Mapping mapping({.resolution = 0.1 + 1e-9});
+  Random random(7);
+  mapping.write(folder / "empty.bt");
+  for (int i = 0; i < 4; ++i) mapping.insert(random_scan(random, 0.1, 500));
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  mapping.write(folder / "map.ot");
+  mapping.write(folder / "map.bt");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+
+  const auto full = std::get<std::shared_ptr<OcTree>>(read_octree(folder / "map.ot"));
+  EXPECT_EQ(full->getResolution(), 0.1 + 1e-9);
+  expect_same_nodes(*full, mapping.tree(), "map.ot");
+  const auto binary = std::get<std::shared_ptr<OcTree>>(read_octree(folder / "map.bt"));
+  EXPECT_TRUE(make_voxel_grid(*binary) == mapping.grid());
+  OcTree by_octomap(0.5);
+  ASSERT_TRUE(by_octomap.readBinary((folder / "map.bt").string()));
+  EXPECT_TRUE(make_voxel_grid(by_octomap) == mapping.grid());
+  EXPECT_EQ(std::get<std::shared_ptr<OcTree>>(read_octree(folder / "empty.bt"))->size(), 0U);
+
+  EXPECT_THROW(mapping.write(folder / "map.pcd"), std::invalid_argument);
+  EXPECT_THROW(mapping.write(folder / "no" / "map.bt"), std::runtime_error);
+  std::filesystem::create_directory(folder / "folder.bt");
+  EXPECT_THROW(mapping.write(folder / "folder.bt"), std::runtime_error);
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"empty.bt", "folder.bt", "map.bt", "map.ot"}));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Mapping, RefusesWrongCalls) {
+  EXPECT_THROW(Mapping({.resolution = 0.0}), std::invalid_argument);
+  EXPECT_THROW(Mapping({.resolution = std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}), std::invalid_argument);
+  EXPECT_THROW(Mapping({.surface_depth = -0.1}), std::invalid_argument);
+  Mapping mapping({.resolution = 0.3});
+  const Points points = {{1.F, 0.F, 0.F}};
+  EXPECT_THROW(mapping.insert({kNan, 0.F, 0.F}, points), std::invalid_argument);
+  EXPECT_THROW(mapping.insert({1e5F, 0.F, 0.F}, points), std::invalid_argument);
+  EXPECT_THROW(mapping.insert({0.F, 0.F, 0.F}, points, 0.0), std::invalid_argument);
+  EXPECT_THROW(mapping.insert({0.F, 0.F, 0.F}, points, std::nan("")), std::invalid_argument);
+  Scan scan;
+  scan.max_range = 5.0;
+  scan.ranges = {1.F};
+  EXPECT_THROW(mapping.insert(scan), std::invalid_argument);
+  EXPECT_THROW(mapping.mark_free(Ball{{0, 0, 0}, -1.0}), std::invalid_argument);
+  EXPECT_THROW(mapping.mark_free(Ball{{0, 0, 0}, std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(mapping.mark_free(Eigen::AlignedBox3d()), std::invalid_argument);
+  EXPECT_EQ(mapping.tree().size(), 0U);
+}
+
+// Distances that are 0 in float between voxels that differ: OctoMap's own loop does not end here.
+TEST(Mapping, EndsWhereDistancesUnderflow) {
+  Mapping mapping({.resolution = 0.3});
+  const Points points = {{-1e-30F, -1e-30F, -1e-30F}};
+  mapping.insert({1e-30F, 1e-30F, 1e-30F}, points);
+  EXPECT_EQ(mapping.grid().at({32768, 32768, 32768}), Occupancy::kFree);
+  EXPECT_EQ(mapping.grid().at({32767, 32767, 32767}), Occupancy::kOccupied);
+  EXPECT_EQ(mapping.grid().count()[1] + mapping.grid().count()[2], 2U);
+}
+
+TEST(VoxelsOf, BoxesOnTheLatticeAndOff) {
+  const Lattice lattice(0.3);
+  const auto key = [](int k) { return static_cast<std::uint16_t>(k + 32768); };
+  EXPECT_EQ(voxels_of(lattice, {Eigen::Vector3d(0, -0.6, -0.05), Eigen::Vector3d(12.0, 3.6, 2.95)}),
+            (KeyBox{{key(0), key(-2), key(-1)}, {key(39), key(11), key(9)}}));
+  EXPECT_EQ(voxels_of(lattice, {Eigen::Vector3d::Constant(-1e9), Eigen::Vector3d::Constant(1e9)}),
+            kAllVoxels);
+  EXPECT_THROW(static_cast<void>(voxels_of(lattice, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 1)})),
+               std::invalid_argument);
+  EXPECT_THROW(
+      static_cast<void>(voxels_of(lattice, {Eigen::Vector3d(0, 0, std::nan("")), Eigen::Vector3d(1, 1, 1)})),
+      std::invalid_argument);
+  EXPECT_THROW(
+      static_cast<void>(voxels_of(lattice, {Eigen::Vector3d::Constant(1e5), Eigen::Vector3d::Constant(2e5)})),
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::planner
