@@ -54,7 +54,7 @@ int run(int argc, const char* const* argv) {
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux world station --seed 3 -o station.ply\n"
       "Each command's --help says more. Lengths are in metres. Exit code: 0 if the question was answered,\n"
-      " 2 if the input was not usable, 1 if anything else went wrong.");
+      "2 if the input was not usable, 1 if anything else went wrong.");
   frontlux::app::add_info_command(app);
   frontlux::app::add_cast_command(app);
   frontlux::app::add_world_command(app);
