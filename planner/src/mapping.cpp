@@ -353,7 +353,8 @@ const VoxelGrid& Mapping::grid() const { return state_->grid; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
 const InsertionTime& Mapping::insertion_time() const { return state_->time; }
 
-// The headers are our own: OctoMap's functions for whole files report on stderr, and round the resolution.
+// The headers are our own: OctoMap's functions for whole files and trees report on stderr, and round the
+// resolution.
 void Mapping::write(const std::filesystem::path& file) const {
   const bool binary = file.extension() == ".bt";
   if (!binary && file.extension() != ".ot")
@@ -364,7 +365,7 @@ void Mapping::write(const std::filesystem::path& file) const {
         << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << shortest(tree.getResolution())
         << "\ndata\n";
     if (tree.size() == 0) return;
-    binary ? tree.writeBinaryData(out) : tree.writeData(out);
+    binary ? tree.writeBinaryNode(out, tree.getRoot()) : tree.writeData(out);
   });
 }
 
