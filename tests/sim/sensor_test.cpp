@@ -105,7 +105,8 @@ TEST(Sensor, RaysFillTheFieldOfViewAndStayInIt) {
     }
   }
   double highest = -1, lowest = 1;
-  for (const Eigen::Vector3d& direction : lidar().directions()) {
+  const Sensor spinning = lidar();
+  for (const Eigen::Vector3d& direction : spinning.directions()) {
     highest = std::max(highest, direction.z());
     lowest = std::min(lowest, direction.z());
   }

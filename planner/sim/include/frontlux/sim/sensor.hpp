@@ -38,7 +38,8 @@ class Sensor {
   [[nodiscard]] const RangeErrors& errors() const { return errors_; }
 
   /// Unit vectors in the sensor's frame (x forward, y left, z up), columns() * rows() of them.
-  [[nodiscard]] std::span<const Eigen::Vector3d> directions() const { return directions_; }
+  [[nodiscard]] std::span<const Eigen::Vector3d> directions() const& { return directions_; }
+  void directions() const&& = delete;  // they would go with the sensor
 
  private:
   FieldOfView field_of_view_;
