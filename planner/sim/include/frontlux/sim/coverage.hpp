@@ -1,0 +1,34 @@
+#pragma once
+
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstdint>
+
+namespace frontlux::sim {
+
+/// How much of a world a map knows, in voxels. Known is what is free or occupied, right or wrong.
+struct Coverage {
+  std::uint64_t known_observable = 0, observable = 0;  ///< of the observable voxels
+  std::uint64_t known_bounding = 0, bounding = 0;      ///< of all voxels within the world's bounds
+
+  [[nodiscard]] double of_observable() const {
+    return static_cast<double>(known_observable) / static_cast<double>(observable);
+  }
+  [[nodiscard]] double of_bounding() const {
+    return static_cast<double>(known_bounding) / static_cast<double>(bounding);
+  }
+  friend bool operator==(const Coverage&, const Coverage&) = default;
+};
+
+/// Looks at every known voxel of the map.
+/// @throws std::invalid_argument if the resolutions differ
+[[nodiscard]] Coverage measure(const GroundTruth& truth, const VoxelGrid& known);
+
+/// The same for a map that has changed, in time that grows with the change only.
+/// @param before a copy of the map as it was, and `coverage` its coverage
+/// @throws std::invalid_argument if the resolutions differ
+[[nodiscard]] Coverage follow(const GroundTruth& truth, const Coverage& coverage, const VoxelGrid& before,
+                              const VoxelGrid& after);
+
+}  // namespace frontlux::sim

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <frontlux/lattice.hpp>
+#include <frontlux/sim/world.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace frontlux::sim {
+
+/// What there is to be learnt about a voxel of a world.
+enum class Truth : std::uint8_t {
+  kHidden,   ///< nothing: beyond the bounds, within a solid, or in a room that is closed
+  kFree,     ///< no surface in it, and a way to it through such voxels from the start
+  kSurface,  ///< not free, but behind a face of a free voxel
+};
+
+/// The voxels whose interior the box meets, by more than a millionth of a voxel.
+/// @param bounds [m]
+/// @throws std::invalid_argument if the box is empty, flat or not finite, or beyond the lattice's keys
+[[nodiscard]] KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice);
+
+/// Number of voxels in a box of keys.
+[[nodiscard]] std::uint64_t volume(const KeyBox& box);
+
+/// Which voxels of a world a robot can get to know: what coverage is measured against.
+///
+/// A surface within `margin` of a voxel's face counts as lying on the face, and belongs to neither voxel: it
+/// is a wall between the two. The mapping puts end points as far beyond the surface, so the voxel behind such
+/// a wall, seen from either side, is the one that it maps as occupied. A free voxel therefore has no surface
+/// in it (but for the margin), one can go straight from its centre to that of a free neighbour unless there
+/// is a wall between them, and no wall is so thin that the free space leaks through it.
+///
+/// Takes a byte for each voxel of the bounds. A value; reading is safe from any number of threads.
+class GroundTruth {
+ public:
+  static constexpr double kMargin = 1e-3;  ///< [m] or a quarter of a voxel, if that is less
+
+  /// @param resolution edge length of a voxel [m]
+  /// @param start [m] a point in free space, in the world frame
+  /// @throws std::invalid_argument naming the value, if the resolution, the bounds or the mesh is not valid,
+  /// the bounds hold more than 2^31 voxels, the start lies outside of them, or a surface passes through its
+  /// voxel
+  GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start);
+
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  /// The voxels within the world's bounds.
+  [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
+
+  [[nodiscard]] Truth at(const VoxelKey& key) const;
+  /// Whether the voxel is observable: free or surface.
+  [[nodiscard]] bool contains(const VoxelKey& key) const { return at(key) != Truth::kHidden; }
+  /// Whether a surface passes through the voxel, deeper than the margin; observable or not.
+  [[nodiscard]] bool holds_surface(const VoxelKey& key) const;
+
+  [[nodiscard]] std::uint64_t free_voxels() const { return free_voxels_; }
+  [[nodiscard]] std::uint64_t surface_voxels() const { return surface_voxels_; }
+  [[nodiscard]] std::uint64_t observable_voxels() const { return free_voxels_ + surface_voxels_; }
+  [[nodiscard]] std::uint64_t bounding_voxels() const { return volume(bounds_); }
+
+  /// Calls `visit` for every observable voxel: x fastest, z slowest.
+  void for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const;
+
+ private:
+  [[nodiscard]] std::size_t index(const VoxelKey& key) const;
+  void flood(std::size_t start);
+
+  Lattice lattice_;
+  KeyBox bounds_;
+  std::vector<std::uint8_t> cells_;  // a set of cell::Flag for each voxel, x fastest
+  std::uint64_t free_voxels_ = 0, surface_voxels_ = 0;
+};
+
+}  // namespace frontlux::sim
