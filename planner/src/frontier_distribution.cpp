@@ -23,7 +23,7 @@ using detail::FeasibleRegion;
 using detail::Shadow;
 
 constexpr std::size_t kPiece = 256;  // frontiers that are decided together, on one thread
-constexpr int kNearby = 6;           // [voxels] how far the first cells tried may be
+constexpr int kNearby = 4;           // [voxels] how far the first cells tried may be
 
 // What all frontiers of an agent need.
 struct Search {
