@@ -29,7 +29,7 @@ struct PathOptimizerOptions {
   int yaw_bins = 24;   ///< 1 to 63, around the full circle
   bool ascend = true;  ///< along the gradient, with Ipopt; else the start is all
   std::vector<double> sharpness = {8.0, 20.0, 40.0};  ///< one ascent after the other; not empty
-  int max_evaluations = 60;                           ///< of the differentiable gain, in all; at least 4
+  int max_evaluations = 30;  ///< of the differentiable gain, in all; at least 4. More help from poorer starts
   Differentiation differentiation = Differentiation::kClosedForm;
   double max_yaw_step = std::numeric_limits<double>::infinity();  ///< [rad] from one viewpoint to the next
   double max_yaw_rate = std::numeric_limits<double>::infinity();  ///< [rad/m] along the path
