@@ -88,21 +88,25 @@ MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds)
 }
 
 PathTrial run_large_path() {
-  constexpr std::uint32_t kViewpoints = 12, kPairs = 20'000;
-  std::vector<planner::Pose> path(kViewpoints);
-  for (std::uint32_t i = 0; i < kViewpoints; ++i) path[i].position = {1.2 * i, 0.0, 0.0};
-  std::vector<Eigen::Vector3d> frontiers;
-  std::vector<planner::VisiblePair> list;
-  for (std::uint64_t drawn = 0; list.size() < kPairs; drawn += 3) {
-    const Eigen::Vector3d frontier(-9.0 + 31.2 * uniform(1, drawn), -9.0 + 18.0 * uniform(1, drawn + 1),
-                                   -3.0 + 6.0 * uniform(1, drawn + 2));
-    for (std::uint32_t i = 0; i < kViewpoints && list.size() < kPairs; ++i)
-      if (camera_view().contains_at_some_yaw(frontier - path[i].position))
-        list.push_back({i, static_cast<std::uint32_t>(frontiers.size())});
-    frontiers.push_back(frontier);
-  }
+  constexpr int kLength = 90, kWidth = 32, kHeight = 21;  // [voxels]
+  const auto key = [](int x, int y, int z) {
+    const auto along = [](int k) { return static_cast<std::uint16_t>(Lattice::kOrigin + k); };
+    return VoxelKey{along(x), along(y), along(z)};
+  };
+  VoxelGrid grid(0.2);
+  for (int x = 0; x < kLength; ++x)
+    for (int y = 0; y < kWidth; ++y)
+      for (int z = 0; z < kHeight; ++z) grid.set(key(x, y, z), Occupancy::kFree);
+  const planner::FrontierSet set(grid, {key(-1, -1, -1), key(kLength, kWidth, kHeight)});
+  const auto caster = make_embree_ray_caster(grid);
+  std::vector<planner::Pose> path(12);
+  for (std::size_t i = 0; i < path.size(); ++i)
+    path[i].position = {2.4 + 1.2 * static_cast<double>(i), 0.1 * kWidth, 0.1 * kHeight};
   PathTrial trial;
-  run_methods(path, frontiers, {kViewpoints, frontiers.size(), list}, trial);
+  planner::VisiblePairs pairs;
+  trial.visibility_seconds =
+      median_seconds([&] { pairs = planner::visible_pairs(*caster, grid, path, set.keys(), camera_view()); });
+  run_methods(path, planner::centers(grid.lattice(), set.keys()), pairs, trial);
   return trial;
 }
 

@@ -29,21 +29,21 @@ class Climb {
         limits_(limits),
         automatic_(options.differentiation == Differentiation::kAutomatic),
         best_(start.begin(), start.end()),
-        most_(gain.distinct(start)) {
-    // From here on yaws are as the robot turns, without jumps of a whole turn.
-    for (std::size_t i = 1; i < best_.size(); ++i) best_[i] = best_[i - 1] + wrapped(best_[i] - best_[i - 1]);
-  }
+        shown_(best_),
+        most_(gain.distinct(start)) {}
 
   [[nodiscard]] double evaluate(std::span<const double> yaws, double sharpness, std::span<double> gradient) {
     ++evaluations_;
-    const std::uint64_t distinct = gain_.distinct(yaws);
-    if (distinct >= most_ && limits_.allow(yaws)) {
+    // Judged is what would be returned, to the last bit: whole turns taken out, the ends as they were given.
+    for (std::size_t i = 1; i + 1 < yaws.size(); ++i) shown_[i] = wrapped(yaws[i]);
+    const std::uint64_t distinct = gain_.distinct(shown_);
+    if (distinct >= most_ && limits_.allow(shown_)) {
       most_ = distinct;
-      best_.assign(yaws.begin(), yaws.end());
+      best_ = shown_;
     }
-    if (!automatic_) return gain_.value(yaws, sharpness, gradient);
+    if (!automatic_) return gain_.value(shown_, sharpness, gradient);
     std::vector<PoseGradient> all(poses_.size());
-    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i].yaw = yaws[i];
+    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i].yaw = shown_[i];
     const double value = gain_.automatic_value_at(poses_, sharpness, all);
     for (std::size_t i = 0; i < all.size(); ++i) gradient[i] = all[i].yaw;
     return value;
@@ -58,7 +58,7 @@ class Climb {
   std::vector<Pose> poses_;
   const YawLimits& limits_;
   bool automatic_;
-  std::vector<double> best_;
+  std::vector<double> best_, shown_;  // [rad] inner ones in [-pi, pi]
   std::uint64_t most_;
   int evaluations_ = 0;
 };
@@ -73,6 +73,8 @@ class Stage : public Ipopt::TNLP {
         gradient_(yaws_.size()),
         sharpness_(sharpness),
         last_evaluation_(climb.evaluations() + max_evaluations) {
+    // From here on yaws are as the robot turns, without jumps by a whole turn.
+    for (std::size_t i = 1; i < yaws_.size(); ++i) yaws_[i] = yaws_[i - 1] + wrapped(yaws_[i] - yaws_[i - 1]);
     gain_ = climb_.evaluate(yaws_, sharpness_, gradient_);
     double steepest = 0.0;
     for (std::size_t i = 1; i + 1 < yaws_.size(); ++i) steepest = std::max(steepest, std::fabs(gradient_[i]));

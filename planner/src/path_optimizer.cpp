@@ -116,6 +116,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
     path.yaws = start_yaws(gain, tangent, limits, options);
   else
     path.yaws = limits.allow(tangent) ? tangent : even;
+  for (std::size_t i = 1; i + 1 < path.yaws.size(); ++i) path.yaws[i] = wrapped(path.yaws[i]);
   path.start = report(path.yaws);
 
   if (!reachable)
@@ -133,7 +134,6 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
     path.yaws = tangent;
     path.result = path.tangent;
   }
-  for (std::size_t i = 1; i + 1 < path.yaws.size(); ++i) path.yaws[i] = wrapped(path.yaws[i]);
   return path;
 }
 

@@ -17,6 +17,29 @@ void check_countable(const char* what, std::size_t count) {
                                 ", more than 2^32 - 1");
 }
 
+// FieldOfView::contains_at_some_yaw, which calls tan and hypot, asked only where rounding could matter.
+class Reach {
+ public:
+  explicit Reach(const FieldOfView& view) : view_(view), squared_range_(view.max_range * view.max_range) {
+    const bool cone = view.shape == FieldOfView::Shape::kCone;
+    const double slope = std::tan((cone ? view.horizontal : view.vertical) / 2);
+    squared_slope_ = slope * slope;
+  }
+
+  [[nodiscard]] bool holds(const Eigen::Vector3d& offset) const {
+    constexpr double kRounding = 1e-12;
+    if (!(offset.squaredNorm() <= squared_range_)) return false;
+    const double rise = offset.z() * offset.z();
+    const double limit = squared_slope_ * (offset.x() * offset.x() + offset.y() * offset.y());
+    if (rise > limit * (1.0 + kRounding)) return false;
+    return rise < limit * (1.0 - kRounding) || view_.contains_at_some_yaw(offset);
+  }
+
+ private:
+  const FieldOfView& view_;
+  double squared_range_, squared_slope_ = 0.0;
+};
+
 }  // namespace
 
 VisiblePairs::VisiblePairs(std::size_t viewpoints, std::size_t frontiers,
@@ -61,15 +84,14 @@ VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid, std::
   check_countable("frontiers", frontiers.size());
   view.check();
   const auto targets = centers(grid.lattice(), frontiers);
-  const double squared_range = view.max_range * view.max_range;
+  const Reach reach(view);
   std::vector<VisiblePair> pairs;
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < viewpoints.size(); ++i) {
     const Eigen::Vector3d from = viewpoints[i].position;
     for (std::size_t j = 0; j < targets.size(); ++j) {
       const Eigen::Vector3d offset = targets[j] - from;
-      // Most frontiers are out of range; the rest of the test calls tan and hypot.
-      if (!(offset.squaredNorm() <= squared_range) || !view.contains_at_some_yaw(offset)) continue;
+      if (!reach.holds(offset)) continue;
       pairs.push_back({place(i), place(j)});
       segments.push_back({from.cast<float>(), targets[j].cast<float>()});
     }
