@@ -88,7 +88,7 @@ MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds)
 }
 
 PathTrial run_large_path() {
-  constexpr int kLength = 90, kWidth = 32, kHeight = 21;  // [voxels]
+  constexpr int kLength = 90, kWidth = 28, kHeight = 20;  // [voxels]
   const auto key = [](int x, int y, int z) {
     const auto along = [](int k) { return static_cast<std::uint16_t>(Lattice::kOrigin + k); };
     return VoxelKey{along(x), along(y), along(z)};
