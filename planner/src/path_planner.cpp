@@ -230,7 +230,8 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
   way.front() = query.start;
   way.back() = query.goal;
 
-  way = detail::shortened(std::move(way), options.spacing / 2, options.shortcut_rounds, is_free);
+  const double step = std::max(options.spacing / 2, lattice.resolution());  // a smaller one gains nothing
+  way = detail::shortened(std::move(way), step, options.shortcut_rounds, is_free);
   if (query.plane) set_heights(way, start.position.z(), goal.position.z());
   way = detail::divided(way, options.spacing);
   plan.viewpoints = with_yaws(way, start, goal);
