@@ -1,0 +1,110 @@
+#pragma once
+
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/planner/pose.hpp>
+#include <frontlux/planner/visible_pairs.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// What a frontier counts that several viewpoints of a path see.
+enum class GainMode : std::uint8_t {
+  kOr,   ///< once: the probability that at least one of them detects it
+  kSum,  ///< once for each of them, as printed in the paper
+};
+
+struct GainOptions {
+  GainMode mode = GainMode::kOr;
+  double detection = 0.97;       ///< probability of a detection in full view, in (0, 1); for `kOr`
+  double range_sharpness = 4.0;  ///< [1/m] of the logistic that fades the gain out about the maximum range
+
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  void check() const;
+};
+
+/// What one viewpoint's gradient says.
+struct PoseGradient {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [1/m]
+  double yaw = 0.0;                                    ///< [1/rad]
+};
+
+/// The information gain of a path: how many frontiers its viewpoints see, as a number that is differentiable
+/// in the viewpoints' yaws.
+///
+/// Viewpoint i sees frontier j with membership m_ij in [0, 1]: a product of logistic functions of the
+/// distances to the planes that bound the view and to its range, times visibility. `sharpness` says how steep
+/// they are: as it grows, m_ij tends to 1 in view and 0 out of it. What the product stands for, the number of
+/// distinct frontiers truly in view, is `distinct`.
+///
+/// Yaws are in [rad], one for each viewpoint, the first and last included; any number of turns is the same.
+/// Of a spinning sensor they have no effect.
+///
+/// Sharpness is in (0, 100]. Wrong sizes, values that are not finite and other sharpnesses throw
+/// std::invalid_argument. Thread safety: const members may run at the same time.
+class InformationGain {
+ public:
+  static constexpr double kMaxSharpness = 100.0;
+
+  /// @param viewpoints  where the sensor is; their yaws are not used
+  /// @param frontiers   centres [m]
+  /// @param pairs       who sees whom, between these viewpoints and these frontiers
+  InformationGain(std::span<const Pose> viewpoints, std::span<const Eigen::Vector3d> frontiers,
+                  const VisiblePairs& pairs, const FieldOfView& view, const GainOptions& options = {});
+
+  [[nodiscard]] std::size_t viewpoints() const { return positions_.size(); }
+  [[nodiscard]] std::size_t pairs() const { return seen_.size(); }
+
+  /// The differentiable gain.
+  [[nodiscard]] double value(std::span<const double> yaws, double sharpness) const;
+
+  /// The same with its gradient by the yaws [1/rad], in closed form.
+  double value(std::span<const double> yaws, double sharpness, std::span<double> gradient) const;
+
+  /// The same from other positions, with its gradient by position and yaw, in closed form. Who sees whom
+  /// stays as it was: true for small moves only.
+  double value_at(std::span<const Pose> poses, double sharpness, std::span<PoseGradient> gradient) const;
+
+  /// The same by automatic differentiation of the plain formula. Slower by the number of viewpoints.
+  double automatic_value_at(std::span<const Pose> poses, double sharpness,
+                            std::span<PoseGradient> gradient) const;
+
+  /// The hard gain: how many distinct frontiers are in view (`FieldOfView::contains`) of a viewpoint that
+  /// sees them.
+  [[nodiscard]] std::uint64_t distinct(std::span<const double> yaws) const;
+
+  /// Frontiers that a viewpoint sees at some yaw, ascending: `VisiblePairs::frontiers_of`.
+  [[nodiscard]] std::span<const std::uint32_t> frontiers_of(std::size_t viewpoint) const;
+
+  /// For each of `frontiers_of(viewpoint)`, 1 if it is in view at this yaw, else 0.
+  void in_view(std::size_t viewpoint, double yaw, std::span<std::uint8_t> in_view) const;
+
+  [[nodiscard]] const FieldOfView& view() const { return view_; }
+  [[nodiscard]] std::size_t frontiers() const { return frontiers_.size(); }
+
+ private:
+  struct Memberships;
+  [[nodiscard]] Memberships memberships(std::span<const double> yaws, double sharpness, bool slopes) const;
+  void check_yaws(std::span<const double> yaws) const;
+  void check_poses(std::span<const Pose> poses, std::size_t gradients) const;
+
+  std::vector<Eigen::Vector3d> positions_, frontiers_;
+  FieldOfView view_;
+  GainOptions options_;
+  std::vector<std::size_t> first_;    // of each viewpoint's pairs, and the end of the last
+  std::vector<std::uint32_t> seen_;   // the frontier of each pair
+  std::vector<std::uint8_t> within_;  // 1 where range, and whatever else yaw does not change, allow a view
+  Eigen::ArrayXd x_, y_, z_;          // [m] offset of each pair
+  Eigen::ArrayXd ux_, uy_, uz_;       // its direction
+  Eigen::ArrayXd fade_;               // membership by range
+};
+
+/// @throws std::invalid_argument unless it is in (0, InformationGain::kMaxSharpness]
+void check_sharpness(double sharpness);
+
+}  // namespace frontlux::planner

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <frontlux/planner/pose.hpp>
+
+#include <span>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// The same direction in [-pi, pi] [rad].
+[[nodiscard]] double wrapped(double yaw);
+
+/// How far a robot may turn from each viewpoint to the next [rad]. Infinite: as far as it likes.
+class YawLimits {
+ public:
+  static constexpr double kTolerance = 1e-9;  ///< [rad]
+
+  /// @param max_step [rad]
+  /// @param max_rate [rad/m]
+  YawLimits(std::span<const Pose> viewpoints, double max_step, double max_rate);
+
+  /// From viewpoint `i` to the next [rad].
+  [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
+
+  [[nodiscard]] bool limited() const { return limited_; }
+
+  [[nodiscard]] bool allows(std::size_t i, double yaw, double next) const;
+  [[nodiscard]] bool allow(std::span<const double> yaws) const;
+
+  /// Turns from the first yaw to the last the short way, using the same share of each limit: allowed if
+  /// anything is.
+  [[nodiscard]] std::vector<double> even_turn(double first, double last) const;
+
+ private:
+  std::vector<double> steps_;
+  bool limited_ = false;
+};
+
+}  // namespace frontlux::planner

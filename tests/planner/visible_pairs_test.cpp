@@ -1,0 +1,123 @@
+#include "support/random.hpp"
+#include "support/random_view.hpp"
+
+#include <frontlux/planner/visible_pairs.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+std::vector<VisiblePair> listed(const VisiblePairs& pairs) {
+  std::vector<VisiblePair> list;
+  for (std::uint32_t i = 0; i < pairs.viewpoints(); ++i)
+    for (const std::uint32_t j : pairs.frontiers_of(i)) list.push_back({i, j});
+  return list;
+}
+
+TEST(VisiblePairs, AgreeWithOneRayAtATime) {
+  Random random(1);
+  std::size_t found = 0, blocked = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    // Every third voxel free would block nearly all: clear most of it.
+    VoxelGrid grid(0.3);
+    for (int x = 0; x < 24; ++x)
+      for (int y = 0; y < 24; ++y)
+        for (int z = 0; z < 12; ++z)
+          grid.set({static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+                    static_cast<std::uint16_t>(32768 + z)},
+                   random.one_in(30)   ? Occupancy::kOccupied
+                   : random.one_in(30) ? Occupancy::kUnknown
+                                       : Occupancy::kFree);
+    std::vector<VoxelKey> frontiers;
+    for (int j = 0; j < 200; ++j)
+      frontiers.push_back({static_cast<std::uint16_t>(32768 + random.below(24)),
+                           static_cast<std::uint16_t>(32768 + random.below(24)),
+                           static_cast<std::uint16_t>(32768 + random.below(12))});
+    std::sort(frontiers.begin(), frontiers.end());
+    frontiers.erase(std::unique(frontiers.begin(), frontiers.end()), frontiers.end());
+    std::vector<Pose> path;
+    for (int i = 0; i < 6; ++i)
+      path.push_back({{random.uniform(0, 7), random.uniform(0, 7), random.uniform(0, 3.5)}, 0.0});
+    const FieldOfView view{FieldOfView::Shape::kPyramid, 1.5, 1.2, 4.0};
+
+    const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid);
+    std::vector<VisiblePair> expected;
+    for (std::uint32_t i = 0; i < path.size(); ++i)
+      for (std::uint32_t j = 0; j < frontiers.size(); ++j) {
+        const Eigen::Vector3d center((frontiers[j].x - 32768 + 0.5) * 0.3,
+                                     (frontiers[j].y - 32768 + 0.5) * 0.3,
+                                     (frontiers[j].z - 32768 + 0.5) * 0.3);
+        if (!view.contains_at_some_yaw(center - path[i].position)) continue;
+        const Segment segment{path[i].position.cast<float>(), center.cast<float>()};
+        std::uint8_t visible = 0;
+        walk->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kBlock);
+        if (visible != 0) expected.push_back({i, j});
+        blocked += visible == 0 ? 1U : 0U;
+      }
+    found += expected.size();
+    EXPECT_EQ(listed(visible_pairs(*walk, grid, path, frontiers, view)), expected);
+    EXPECT_EQ(listed(visible_pairs(*embree, grid, path, frontiers, view)), expected);
+  }
+  EXPECT_GT(found, 500U);
+  EXPECT_GT(blocked, 500U);
+}
+
+TEST(VisiblePairs, UnknownAndOccupiedBlockButNotTheTarget) {
+  const auto key = [](int x) { return VoxelKey{static_cast<std::uint16_t>(32768 + x), 32768, 32768}; };
+  VoxelGrid grid(1.0);
+  for (int x = 0; x < 6; ++x) grid.set(key(x), Occupancy::kFree);
+  const std::vector<Pose> path{{{0.5, 0.5, 0.5}, 3.0}};
+  const std::vector<VoxelKey> frontiers{key(6), key(7), key(3)};  // unknown, behind it, free
+  const auto seen = [&] {
+    return listed(visible_pairs(*make_grid_ray_caster(grid), grid, path, frontiers, test::camera()));
+  };
+  EXPECT_EQ(seen(), (std::vector<VisiblePair>{{0, 0}, {0, 2}}));
+  grid.set(key(2), Occupancy::kOccupied);
+  EXPECT_EQ(seen(), (std::vector<VisiblePair>{}));
+}
+
+TEST(VisiblePairs, BothIndicesHoldTheSamePairs) {
+  Random random(2);
+  auto scene = test::random_scene(random, 7, 50, 0.3);
+  std::reverse(scene.list.begin(), scene.list.end());
+  const VisiblePairs pairs = scene.pairs();
+  std::sort(scene.list.begin(), scene.list.end());
+  EXPECT_EQ(listed(pairs), scene.list);
+  EXPECT_EQ(pairs.size(), scene.list.size());
+  std::vector<VisiblePair> by_frontier;
+  for (std::uint32_t j = 0; j < pairs.frontiers(); ++j) {
+    EXPECT_TRUE(std::is_sorted(pairs.viewpoints_of(j).begin(), pairs.viewpoints_of(j).end()));
+    for (const std::uint32_t i : pairs.viewpoints_of(j)) by_frontier.push_back({i, j});
+  }
+  std::sort(by_frontier.begin(), by_frontier.end());
+  EXPECT_EQ(by_frontier, scene.list);
+}
+
+TEST(VisiblePairs, RefusesWhatCannotBe) {
+  const std::vector<VisiblePair> twice{{0, 1}, {1, 1}, {0, 1}}, outside{{2, 0}}, beyond{{0, 3}};
+  EXPECT_THROW(VisiblePairs(2, 3, twice), std::invalid_argument);
+  EXPECT_THROW(VisiblePairs(2, 3, outside), std::invalid_argument);
+  EXPECT_THROW(VisiblePairs(2, 3, beyond), std::invalid_argument);
+  const VoxelGrid grid(0.3);
+  const auto caster = make_grid_ray_caster(grid);
+  std::vector<Pose> path(3);
+  path[1].position.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)visible_pairs(*caster, grid, path, {}, test::camera()), std::invalid_argument);
+  path[1] = {{0, 0, 0}, std::numeric_limits<double>::infinity()};
+  EXPECT_THROW((void)visible_pairs(*caster, grid, path, {}, test::camera()), std::invalid_argument);
+  path[1] = {};
+  EXPECT_EQ(visible_pairs(*caster, grid, path, {}, test::camera()).size(), 0U);
+  EXPECT_THROW((void)visible_pairs(*caster, grid, path, {}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::planner
