@@ -4,13 +4,18 @@
 #include "map_file.hpp"
 #include "text.hpp"
 
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/planner/frontier.hpp>
 #include <frontlux/planner/path_file.hpp>
+#include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
+#include <frontlux/planner/visible_pairs.hpp>
+#include <frontlux/ray_caster.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -20,6 +25,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -42,6 +48,7 @@ struct Options {
   std::string map, robot, from, to, output;  // as written
   std::string search = "rrt", seed = "1", ground = "on", min_height = "1.2";
   std::string iterations;
+  std::string optimize = "on", mode = "default";
 };
 
 std::vector<double> parse_numbers(std::string_view name, std::string_view text) {
@@ -177,11 +184,68 @@ void look_ahead(std::vector<Pose>& viewpoints) {
   }
 }
 
+// What the paper's robots see with.
+FieldOfView view_of(const std::string& robot) {
+  using std::numbers::pi;
+  if (robot == "ugv") return {FieldOfView::Shape::kSpinning, 0.0, 2.0 * pi / 9.0, 6.0};
+  return {FieldOfView::Shape::kPyramid, pi / 2.0, 2.0 * pi / 5.0, 10.0};
+}
+
+planner::PathOptimizerOptions optimizer_options(const Options& options) {
+  if (options.optimize != "on" && options.optimize != "off")
+    throw BadInput("--optimize: '" + options.optimize + "' is neither on nor off");
+  if (options.mode == "paper") return planner::paper_path_options();
+  if (options.mode != "default")
+    throw BadInput("--mode: '" + options.mode + "' is neither default nor paper");
+  return {};
+}
+
+// The part of the known map from which frontiers can be in view somewhere along the path.
+KeyBox surroundings(const VoxelGrid& grid, const std::vector<Pose>& viewpoints, double range) {
+  KeyBox box = *grid.known_bounds();
+  const auto clip = [&](int axis, std::uint16_t& low, std::uint16_t& high) {
+    double least = viewpoints.front().position[axis], most = least;
+    for (const Pose& viewpoint : viewpoints) {
+      least = std::min(least, viewpoint.position[axis]);
+      most = std::max(most, viewpoint.position[axis]);
+    }
+    if (const auto key = grid.lattice().key(least - range)) low = std::max(low, *key);
+    if (const auto key = grid.lattice().key(most + range)) high = std::min(high, *key);
+  };
+  clip(0, box.min.x, box.max.x);
+  clip(1, box.min.y, box.max.y);
+  clip(2, box.min.z, box.max.z);
+  return box;
+}
+
+struct Turned {
+  planner::OptimizedPath path;
+  double milliseconds = 0.0;
+};
+
+// Turns the viewpoints between the ends so that they see more, if that is wanted.
+Turned turn(const Options& options, const planner::PathOptimizerOptions& optimizer, const VoxelGrid& grid,
+            std::vector<Pose>& viewpoints) {
+  const FieldOfView view = view_of(options.robot);
+  const auto caster = make_embree_ray_caster(grid);
+  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, view.max_range));
+  const auto before = std::chrono::steady_clock::now();
+  const auto pairs = planner::visible_pairs(*caster, grid, viewpoints, frontiers.keys(), view);
+  const auto centers = planner::centers(grid.lattice(), frontiers.keys());
+  Turned turned;
+  turned.path = planner::optimize_path(viewpoints, centers, pairs, view, optimizer);
+  turned.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+  for (std::size_t i = 0; i < viewpoints.size(); ++i) viewpoints[i].yaw = turned.path.yaws[i];
+  return turned;
+}
+
 void plan(const Options& options) {
   const PathOptions path = path_options(options);
   const TravelOptions travel = travel_options(options);
   const auto seed = parse_whole<std::uint64_t>("--seed", options.seed, 0, UINT64_MAX);
   const Place from = parse_place("--from", options.from, true), to = parse_place("--to", options.to, false);
+  const planner::PathOptimizerOptions optimizer = optimizer_options(options);
   check_output(options.output);
 
   const VoxelGrid grid = make_voxel_grid(read_map_file(options.map));
@@ -199,7 +263,13 @@ void plan(const Options& options) {
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - before;
   if (!found.found()) complain(options, corridor, found);
   if (!to.has_yaw) look_ahead(found.viewpoints);
-  // The yaws are optimised here, and the gain before and after goes to the output below.
+  std::optional<Turned> turned;
+  if (options.optimize == "on") {
+    const double first = found.viewpoints.front().yaw, last = found.viewpoints.back().yaw;
+    turned = turn(options, optimizer, grid, found.viewpoints);
+    found.viewpoints.front().yaw = first;  // to the last bit, by how many turns whatever
+    found.viewpoints.back().yaw = last;
+  }
 
   try {
     if (!options.output.empty()) planner::write_path(options.output, found.viewpoints);
@@ -215,6 +285,16 @@ void plan(const Options& options) {
             << row("planner", std::string(planner::name(path.search)) + ", " +
                                   std::to_string(found.iterations) + " iterations")
             << row("time", rounded(std::round(time.count() * 1e3) / 1e3) + " ms");
+  if (turned) {
+    const auto& [path_turned, milliseconds] = *turned;
+    std::cout << row("gain", std::to_string(path_turned.tangent.distinct) + " frontiers in view before, " +
+                                 std::to_string(path_turned.result.distinct) + " after; fuzzy " +
+                                 rounded(path_turned.tangent.fuzzy) + " before, " +
+                                 rounded(path_turned.result.fuzzy) + " after")
+              << row("optimiser", std::string(planner::describe(path_turned.end)) + ", " +
+                                      std::to_string(path_turned.evaluations) + " evaluations, " +
+                                      rounded(std::round(milliseconds * 1e3) / 1e3) + " ms");
+  }
   if (!options.output.empty()) std::cout << row("written", options.output);
 }
 
@@ -252,6 +332,19 @@ void add_plan_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--min-height", options->min_height, "uav: of its centre above z = 0 [m]")
       ->type_name("M")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--optimize", options->optimize,
+          "Turn the viewpoints between the ends so that they see more frontiers (on), or let them look "
+          "ahead (off)")
+      ->type_name("ON|OFF")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--mode", options->mode,
+          "Of the optimisation: each frontier counts once (default), or as the paper prints it (paper)")
+      ->type_name("NAME")
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "Write the viewpoints here: .csv, or .ply to look at")
       ->type_name("FILE");

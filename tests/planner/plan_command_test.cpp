@@ -1,10 +1,14 @@
 #include "support/quiet_octomap.hpp"
 
+#include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_file.hpp>
 #include <frontlux/planner/path_planner.hpp>
+#include <frontlux/ray_caster.hpp>
 
 #include <gtest/gtest.h>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 #include <sys/wait.h>
 
 #include <cmath>
@@ -12,10 +16,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
 #include <unistd.h>
+#include <variant>
 #include <vector>
 
 namespace frontlux::planner {
@@ -159,6 +165,71 @@ TEST_F(PlanCommandTest, ArrivesLookingAheadWithoutAYaw) {
   EXPECT_EQ(poses.front().yaw, 3.0);
 }
 
+// Frontiers in view of some viewpoint of a UAV, from the map alone.
+std::uint64_t seen(const VoxelGrid& grid, const std::vector<Pose>& poses) {
+  const auto caster = make_grid_ray_caster(grid);
+  const KeyBox bounds = *grid.known_bounds();
+  const double pi = std::numbers::pi;
+  std::uint64_t count = 0;
+  for (int x = bounds.min.x; x <= bounds.max.x; ++x)
+    for (int y = bounds.min.y; y <= bounds.max.y; ++y)
+      for (int z = bounds.min.z; z <= bounds.max.z; ++z) {
+        const auto key = [&](int dx, int dy, int dz) {
+          return VoxelKey{static_cast<std::uint16_t>(x + dx), static_cast<std::uint16_t>(y + dy),
+                          static_cast<std::uint16_t>(z + dz)};
+        };
+        const auto is_free = [&](int dx, int dy, int dz) {
+          return grid.at(key(dx, dy, dz)) == Occupancy::kFree;
+        };
+        if (grid.at(key(0, 0, 0)) != Occupancy::kUnknown) continue;
+        if (!is_free(1, 0, 0) && !is_free(-1, 0, 0) && !is_free(0, 1, 0) && !is_free(0, -1, 0) &&
+            !is_free(0, 0, 1) && !is_free(0, 0, -1))
+          continue;
+        const Eigen::Vector3f at = grid.lattice().center(key(0, 0, 0));
+        bool in_view = false;
+        for (const Pose& pose : poses) {
+          const Eigen::Vector3d to = at.cast<double>() - pose.position;
+          const double ahead = std::cos(pose.yaw) * to.x() + std::sin(pose.yaw) * to.y();
+          const double left = std::cos(pose.yaw) * to.y() - std::sin(pose.yaw) * to.x();
+          if (to.norm() > 10.0 || std::abs(left) > ahead || std::abs(to.z()) > std::tan(pi / 5) * ahead)
+            continue;
+          const std::vector<Segment> segment = {{pose.position.cast<float>(), at}};
+          std::vector<std::uint8_t> visible(1);
+          caster->visible(segment, visible, UnknownPolicy::kBlock);
+          in_view |= visible[0] != 0;
+        }
+        count += static_cast<std::uint64_t>(in_view);
+      }
+  return count;
+}
+
+TEST_F(PlanCommandTest, TurnsThePathToSeeMoreFrontiers) {
+  const VoxelGrid grid =
+      std::visit([](const auto& tree) { return make_voxel_grid(*tree); }, read_octree(path("hall.bt")));
+  const std::vector<std::string> words = {
+      path("hall.bt"), "--robot",          "uav", "--from",         "1.57,1.12,1.93,-0.5",
+      "--to",          "7.51,1.37,2.04,2", "-o",  path("path.csv"), "--optimize"};
+  const auto run_with = [&](const std::vector<std::string>& more) {
+    auto all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    const Answer answer = run(all);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return answer.out;
+  };
+  EXPECT_EQ(run_with({"off"}).find("\ngain"), std::string::npos);
+  const std::uint64_t before = seen(grid, poses_in(content_of(path("path.csv"))));
+  for (const std::string mode : {"default", "paper"}) {
+    const std::string out = run_with({"on", "--mode", mode});
+    const std::uint64_t after = seen(grid, poses_in(content_of(path("path.csv"))));
+    EXPECT_GE(after, before);
+    EXPECT_NE(out.find("\ngain         " + std::to_string(before) + " frontiers in view before, " +
+                       std::to_string(after) + " after"),
+              std::string::npos)
+        << before << ", " << after << " in\n"
+        << out;
+  }
+}
+
 TEST_F(PlanCommandTest, WritesAPlyWithDirectionsOfView) {
   const std::vector<Pose> poses = {{{1, 2, 3}, 0.0}, {{2, 2, 3}, 1.5}, {{2, 3, 3.5}, -3.0}};
   write_path(path("path.ply"), poses);
@@ -221,6 +292,8 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(with("--seed", "1.5"), "--seed: '1.5'");
   expect_refused(with("--iterations", "0"), "--iterations: '0'");
   expect_refused(with("--require-ground", "maybe"), "--require-ground: 'maybe'");
+  expect_refused(with("--optimize", "yes"), "--optimize: 'yes'");
+  expect_refused(with("--mode", "fast"), "--mode: 'fast'");
   expect_refused(with("-o", path("path.txt")), "path.txt is no name for a path");
   expect_refused(with("-o", path("none/path.csv")), "there is no folder");
   std::filesystem::create_directory(path("folder.csv"));
