@@ -1,0 +1,158 @@
+#pragma once
+
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/lattice.hpp>
+#include <frontlux/ray.hpp>
+#include <frontlux/ray_caster.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux {
+
+namespace detail {
+class TargetIndex;
+class ViewReach;
+struct Viewpoint;
+}  // namespace detail
+
+/// How the view quality of a viewpoint is estimated.
+struct ViewQualityOptions {
+  /// What the targets are drawn from.
+  enum class Sampling : std::uint8_t {
+    kFeasible,  ///< the targets that are in the field of view at some yaw; they are listed
+    kBuckets,   ///< all targets of the blocks of 8 x 8 x 8 voxels that may be in view, whose number is known
+                ///< without listing; draws that are not in view count as not visible
+  };
+  /// What the visible among them stand for.
+  enum class Estimator : std::uint8_t {
+    kUnbiased,  ///< gain = population * hits / drawn
+    kPaper,     ///< gain = hits, which saturates at `samples`; with `Sampling::kFeasible` only
+  };
+  /// For `samples`: never draw, always look at every target.
+  static constexpr int kAll = std::numeric_limits<int>::max();
+
+  int samples = 64;  ///< most targets drawn for a viewpoint; where there are no more, all are taken
+  Sampling sampling = Sampling::kFeasible;
+  Estimator estimator = Estimator::kUnbiased;
+  std::uint64_t seed = 1;
+  int azimuth_bins = 0;  ///< equal sectors of the horizon in which visible targets are counted; 0: none
+
+  static constexpr int kMaxAzimuthBins = 3600;
+
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  void check() const;
+};
+
+/// What a viewpoint would see.
+struct ViewQuality {
+  std::uint32_t population = 0;  ///< targets drawn from: those in view at some yaw, or those in the buckets
+  std::uint32_t drawn = 0;       ///< of them, without replacement
+  std::uint32_t hits = 0;        ///< of the drawn: in view at some yaw and visible
+  double gain = 0.0;             ///< estimated number of visible targets, or `hits` with `Estimator::kPaper`
+  /// Of `gain`: sqrt((1 - drawn / population) q (1 - q) / (drawn - 1)), times population (paper: times
+  /// drawn). 0 only if all were drawn: q = (hits + 1) / (drawn + 2), so that 0 hits in 64 draws are no
+  /// certainty.
+  double standard_error = 0.0;
+
+  /// `gain` for each of `hits`.
+  [[nodiscard]] double gain_per_hit() const { return hits == 0 ? 0.0 : gain / hits; }
+  friend bool operator==(const ViewQuality&, const ViewQuality&) = default;
+};
+
+/// Neighbouring azimuth bins that fit into a camera's opening angle.
+struct AzimuthWindow {
+  double yaw = 0.0;        ///< [rad] of its middle, in [-pi, pi]
+  std::uint64_t hits = 0;  ///< visible targets in it
+};
+
+/// The window with the most hits; of equals the one that starts first, counted from azimuth 0 upwards.
+/// @param bin_hits    visible targets in equal sectors of the horizon; bin b of n starts at azimuth b / n of
+/// a
+///                    turn
+/// @param opening     [rad] a window is as many whole bins as fit into it, at most all
+/// @param containing  [rad] if given, only windows with the bin of this azimuth are looked at
+/// @throws std::invalid_argument if there is no bin, if not even one fits, or if an angle is not finite
+[[nodiscard]] AzimuthWindow best_window(std::span<const std::uint32_t> bin_hits, double opening,
+                                        std::optional<double> containing = std::nullopt);
+
+/// The view quality of many viewpoints (the paper's Monte-Carlo rendering), which follows a changing map.
+///
+/// A viewpoint's value depends on the map, the field of view, the targets near it, the options and its own
+/// key only: not on the other viewpoints, their order, the caster or the number of threads. The random
+/// numbers are keyed by (seed, viewpoint) and by nothing that counts the steps of an exploration, so that a
+/// viewpoint around which nothing changed keeps its value; that its draws repeat does no harm, since a change
+/// of the targets shuffles them.
+///
+/// Thread safety: as a standard container.
+class ViewQualityImage {
+ public:
+  /// An image without viewpoints.
+  /// @param lattice  of the keys
+  /// @throws std::invalid_argument naming the value that is out of bounds, also if the range is longer than
+  ///                 1024 voxels
+  ViewQualityImage(const Lattice& lattice, const FieldOfView& field_of_view,
+                   const ViewQualityOptions& options);
+
+  /// Renders every viewpoint.
+  /// @param caster      of the map. Occupied and unknown voxels block; a target itself does not, nor does the
+  ///                    voxel of the viewpoint
+  /// @param viewpoints  sensor positions, in any order
+  /// @param targets     what is to be seen, in any order; repeated ones count once
+  void render(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+              std::span<const VoxelKey> targets);
+
+  /// Renders only the viewpoints that are new or that have a changed voxel, or a target that came or went,
+  /// where it could matter. The image is afterwards what `render` would have made of it.
+  /// @param caster   that has followed the change
+  /// @param changed  blocks that together hold every voxel whose state differs since the last call, as
+  ///                 `for_each_change` reports them; single voxels are blocks with `log2_edge` 0
+  /// @return how many viewpoints were rendered
+  /// @throws std::invalid_argument if a block is not aligned or larger than the key range
+  std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+                     std::span<const VoxelKey> targets, std::span<const Block> changed);
+
+  [[nodiscard]] std::size_t size() const { return viewpoints_.size(); }
+  [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }
+  /// `values()[i]` belongs to `viewpoints()[i]`.
+  [[nodiscard]] std::span<const ViewQuality> values() const { return values_; }
+  /// Visible among the drawn targets of viewpoint `i` by azimuth, as `best_window` takes them: empty without
+  /// `azimuth_bins`. Times `gain_per_hit()` they estimate the visible targets. @pre i < size()
+  [[nodiscard]] std::span<const std::uint32_t> bin_hits(std::size_t i) const {
+    return std::span(bin_hits_).subspan(i * bins(), bins());
+  }
+
+  [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
+  [[nodiscard]] const ViewQualityOptions& options() const { return options_; }
+
+ private:
+  // `kept`: for each of the sorted viewpoints the index of its value, or none.
+  std::size_t remake(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+                     std::shared_ptr<const std::vector<detail::Viewpoint>> order,
+                     std::shared_ptr<const detail::TargetIndex> targets, std::span<const std::uint32_t> kept);
+  [[nodiscard]] std::size_t bins() const { return static_cast<std::size_t>(options_.azimuth_bins); }
+
+  FieldOfView field_of_view_;
+  ViewQualityOptions options_;
+  std::shared_ptr<const detail::ViewReach> reach_;
+  std::shared_ptr<const detail::TargetIndex> targets_;
+  std::vector<VoxelKey> viewpoints_;
+  std::shared_ptr<const std::vector<detail::Viewpoint>> order_;  // the viewpoints, sorted by place
+  std::vector<ViewQuality> values_;
+  std::vector<std::uint32_t> bin_hits_;
+};
+
+/// Renders an image from scratch: see `ViewQualityImage`.
+[[nodiscard]] ViewQualityImage render_view_quality(const RayCaster& caster, const Lattice& lattice,
+                                                   std::span<const VoxelKey> viewpoints,
+                                                   std::span<const VoxelKey> targets,
+                                                   const FieldOfView& field_of_view,
+                                                   const ViewQualityOptions& options = {});
+
+}  // namespace frontlux

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// From which offsets, in voxels, something is in view at some yaw: `FieldOfView::contains_at_some_yaw` as a
+/// table. The view is the same on all sides, and what it holds at some distance ends at a height.
+class FeasibleRegion {
+ public:
+  FeasibleRegion(const FieldOfView& view, double resolution);
+
+  /// [voxels] No offset along any axis is longer.
+  [[nodiscard]] int reach() const { return reach_; }
+
+  /// Greatest height for this offset along x and y, up or down; negative if there is none.
+  [[nodiscard]] int height(int x, int y) const {
+    x = x < 0 ? -x : x;
+    y = y < 0 ? -y : y;
+    if (x > reach_ || y > reach_) return -1;
+    return heights_[static_cast<std::size_t>(x) * static_cast<std::size_t>(reach_ + 1) +
+                    static_cast<std::size_t>(y)];
+  }
+  [[nodiscard]] bool contains(int x, int y, int z) const {
+    return (x != 0 || y != 0 || z != 0) && (z < 0 ? -z : z) <= height(x, y);
+  }
+
+  /// False only if the region of a voxel holds none of a box.
+  [[nodiscard]] bool may_meet(const VoxelKey& voxel, const KeyBox& box) const;
+
+  /// All offsets of at most this length [voxels] that it contains, the shortest first.
+  [[nodiscard]] std::vector<std::array<int, 3>> offsets(int length) const;
+
+ private:
+  int reach_;
+  std::vector<int> heights_;
+  double squared_range_ = 0.0;  // [voxels^2]
+  double slope_ = 0.0;          // greatest height over the distance along x and y
+};
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,273 @@
+#include "corridor_blocks.hpp"
+#include "feasible_region.hpp"
+#include "shadow.hpp"
+
+#include <frontlux/planner/frontier_distribution.hpp>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::planner {
+namespace {
+
+using detail::BlockCells;
+using detail::CorridorBlocks;
+using detail::FeasibleRegion;
+using detail::Shadow;
+
+constexpr std::size_t kPiece = 256;  // frontiers that are decided together, on one thread
+constexpr int kNearby = 6;           // [voxels] how far the first cells tried may be
+
+// What all frontiers of an agent need.
+struct Search {
+  const RayCaster& caster;
+  std::span<const VoxelKey> frontiers;
+  FeasibleRegion region;
+  CorridorBlocks blocks;
+  Shadow shadow;
+  std::vector<std::array<int, 3>> nearby;
+};
+
+// Decides some frontiers by rounds of rays, a few for each that is undecided: from cells nearby, from where
+// its neighbours are seen, from one cell of each block in which there are any, from all others.
+class Piece {
+ public:
+  Piece(const Search& search, std::size_t begin, std::size_t end)
+      : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
+    open_.resize(end - begin);
+    for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = static_cast<std::uint32_t>(i);
+  }
+
+  void decide() {
+    for (const std::uint32_t i : open_) try_nearby(i);
+    cast();
+    ask_neighbours();
+    ask_neighbours();
+    for (const std::uint32_t i : open_) list_blocks(i);
+    for (std::size_t share = 8; take_one_per_block(share); share *= 4) {
+      cast();
+      ask_neighbours();
+    }
+    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
+      cast();
+      ask_neighbours();
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::optional<VoxelKey>>& seen_from() const { return seen_from_; }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+ private:
+  // Candidates that a frontier has not tried yet.
+  struct Left {
+    std::vector<BlockCells> blocks;
+    std::size_t next = 0;
+  };
+
+  [[nodiscard]] const VoxelKey& frontier(std::uint32_t i) const { return search_.frontiers[begin_ + i]; }
+
+  void add(std::uint32_t i, const VoxelKey& cell) {
+    segments_.push_back({cell, frontier(i)});
+    owners_.push_back(i);
+  }
+
+  // Casts what has been added and leaves out the frontiers that it decides.
+  void cast() {
+    if (segments_.empty()) return;
+    visible_.resize(segments_.size());
+    search_.caster.visible(std::span<const KeySegment>(segments_), visible_, UnknownPolicy::kPass);
+    rays_ += segments_.size();
+    for (std::size_t k = 0; k < segments_.size(); ++k)
+      if (visible_[k] != 0 && !seen_from_[owners_[k]]) {
+        seen_from_[owners_[k]] = segments_[k].from;
+        left_[owners_[k]] = {};
+      }
+    std::erase_if(open_, [this](std::uint32_t i) { return seen_from_[i].has_value(); });
+    segments_.clear();
+    owners_.clear();
+  }
+
+  void try_nearby(std::uint32_t i) {
+    const VoxelKey& f = frontier(i);
+    int found = 0;
+    for (const auto& offset : search_.nearby) {
+      const int x = f.x - offset[0], y = f.y - offset[1], z = f.z - offset[2];
+      if (((x | y | z) & ~0xFFFF) != 0) continue;
+      const VoxelKey cell{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                          static_cast<std::uint16_t>(z)};
+      if (!search_.blocks.contains(cell)) continue;
+      add(i, cell);
+      if (++found == 2) return;
+    }
+  }
+
+  // Frontiers next to each other are often seen from the same cell.
+  void ask_neighbours() {
+    for (const std::uint32_t i : open_) {
+      const VoxelKey& f = frontier(i);
+      std::optional<VoxelKey> last;
+      const auto ask = [&](std::size_t neighbour) {
+        const auto& cell = seen_from_[neighbour];
+        if (!cell || cell == last || !search_.region.contains(f.x - cell->x, f.y - cell->y, f.z - cell->z))
+          return false;
+        last = cell;
+        add(i, *cell);
+        return true;
+      };
+      for (std::size_t k = i, steps = 0; k-- > 0 && steps < 64; ++steps)
+        if (ask(k)) break;
+      for (std::size_t k = i + 1, steps = 0; k < seen_from_.size() && steps < 64; ++k, ++steps)
+        if (ask(k)) break;
+    }
+    cast();
+  }
+
+  void list_blocks(std::uint32_t i) {
+    const VoxelKey& f = frontier(i);
+    cubes_.clear();
+    search_.blocks.cubes_near(f, search_.region, cubes_);
+    for (const CorridorBlocks::Cube* cube : cubes_) {
+      if (search_.shadow.hides(f, detail::cube(cube->corner, CorridorBlocks::kCube))) continue;
+      for (std::uint64_t filled = cube->filled; filled != 0; filled &= filled - 1) {
+        const int block = std::countr_zero(filled);
+        const auto along = [&](std::uint16_t base, int shift) {
+          return static_cast<std::uint16_t>(base + CorridorBlocks::kBlock * ((block >> shift) & 3));
+        };
+        const VoxelKey corner{along(cube->corner.x, 4), along(cube->corner.y, 2), along(cube->corner.z, 0)};
+        const KeyBox box = detail::cube(corner, CorridorBlocks::kBlock);
+        if (!search_.region.may_meet(f, box)) continue;
+        const BlockCells cells = detail::feasible_cells(
+            {corner, cube->blocks[static_cast<std::size_t>(block)]}, f, search_.region);
+        if (cells.bits != 0 && !search_.shadow.hides(f, box)) left_[i].blocks.push_back(cells);
+      }
+    }
+  }
+
+  // Whether there was anything left to take.
+  bool take_one_per_block(std::size_t share) {
+    for (const std::uint32_t i : open_) {
+      Left& left = left_[i];
+      for (std::size_t n = 0; n < share && left.next < left.blocks.size(); ++n) {
+        BlockCells& cells = left.blocks[left.next++];
+        const int bit = middle_bit(cells.bits);
+        cells.bits &= ~(std::uint64_t{1} << bit);
+        add(i, cells.key(bit));
+      }
+    }
+    if (!segments_.empty()) return true;
+    for (const std::uint32_t i : open_) left_[i].next = 0;
+    return false;
+  }
+
+  bool take_rest(std::size_t share) {
+    for (const std::uint32_t i : open_) {
+      Left& left = left_[i];
+      for (std::size_t n = 0; n < share && left.next < left.blocks.size();) {
+        BlockCells& cells = left.blocks[left.next++];
+        for (; cells.bits != 0; cells.bits &= cells.bits - 1, ++n)
+          add(i, cells.key(std::countr_zero(cells.bits)));
+      }
+    }
+    return !segments_.empty();
+  }
+
+  // The middle one of the bits that are set.
+  static int middle_bit(std::uint64_t bits) {
+    for (int skip = std::popcount(bits) / 2; skip > 0; --skip) bits &= bits - 1;
+    return std::countr_zero(bits);
+  }
+
+  const Search& search_;
+  std::size_t begin_;
+  std::vector<std::optional<VoxelKey>> seen_from_;
+  std::vector<Left> left_;
+  std::vector<std::uint32_t> open_, owners_;
+  std::vector<KeySegment> segments_;
+  std::vector<std::uint8_t> visible_;
+  std::vector<const CorridorBlocks::Cube*> cubes_;
+  std::uint64_t rays_ = 0;
+};
+
+KeyBox box_around(std::span<const VoxelKey> frontiers, int reach) {
+  KeyBox box{frontiers[0], frontiers[0]};
+  for (const VoxelKey& key : frontiers) {
+    box.min = {std::min(box.min.x, key.x), std::min(box.min.y, key.y), std::min(box.min.z, key.z)};
+    box.max = {std::max(box.max.x, key.x), std::max(box.max.y, key.y), std::max(box.max.z, key.z)};
+  }
+  const auto moved = [](std::uint16_t k, int by) {
+    return static_cast<std::uint16_t>(std::clamp(k + by, 0, 0xFFFF));
+  };
+  return {{moved(box.min.x, -reach), moved(box.min.y, -reach), moved(box.min.z, -reach)},
+          {moved(box.max.x, reach), moved(box.max.y, reach), moved(box.max.z, reach)}};
+}
+
+}  // namespace
+
+FrontierShare find_visible_frontiers(const RayCaster& caster, const VoxelGrid& grid,
+                                     std::span<const VoxelKey> frontiers, const FrontierAgent& agent) {
+  if (frontiers.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::invalid_argument(std::to_string(frontiers.size()) + " frontiers are more than 32 bits count");
+  FeasibleRegion region(agent.view, grid.resolution());
+  if (frontiers.empty() || agent.corridor.empty()) return {};
+  const KeyBox box = box_around(frontiers, region.reach());
+  auto nearby = region.offsets(kNearby);
+  const Search search{
+      caster,           frontiers, std::move(region), CorridorBlocks(agent.corridor), Shadow(grid, box),
+      std::move(nearby)};
+  const std::size_t pieces = (frontiers.size() + kPiece - 1) / kPiece;
+  std::vector<FrontierShare> found(pieces);
+  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t p) {
+    const std::size_t begin = p * kPiece;
+    Piece piece(search, begin, std::min(frontiers.size(), begin + kPiece));
+    piece.decide();
+    for (std::size_t i = 0; i < piece.seen_from().size(); ++i)
+      if (const auto& cell = piece.seen_from()[i]) {
+        found[p].frontiers.push_back(static_cast<std::uint32_t>(begin + i));
+        found[p].seen_from.push_back(*cell);
+      }
+    found[p].rays = piece.rays();
+  });
+  FrontierShare share;
+  for (const FrontierShare& part : found) {
+    share.frontiers.insert(share.frontiers.end(), part.frontiers.begin(), part.frontiers.end());
+    share.seen_from.insert(share.seen_from.end(), part.seen_from.begin(), part.seen_from.end());
+    share.rays += part.rays;
+  }
+  return share;
+}
+
+FrontierDistribution distribute_frontiers(const RayCaster& caster, const VoxelGrid& grid,
+                                          std::span<const VoxelKey> frontiers,
+                                          std::span<const FrontierAgent> agents) {
+  FrontierDistribution result;
+  std::vector<VoxelKey> left(frontiers.begin(), frontiers.end());
+  result.unassigned.resize(frontiers.size());
+  for (std::size_t i = 0; i < frontiers.size(); ++i) result.unassigned[i] = static_cast<std::uint32_t>(i);
+  for (const FrontierAgent& agent : agents) {
+    FrontierShare share = find_visible_frontiers(caster, grid, left, agent);
+    std::vector<std::uint32_t> remaining;
+    std::vector<VoxelKey> remaining_keys;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (next < share.frontiers.size() && share.frontiers[next] == i) {
+        share.frontiers[next++] = result.unassigned[i];
+        continue;
+      }
+      remaining.push_back(result.unassigned[i]);
+      remaining_keys.push_back(left[i]);
+    }
+    result.unassigned = std::move(remaining);
+    left = std::move(remaining_keys);
+    result.shares.push_back(std::move(share));
+  }
+  return result;
+}
+
+}  // namespace frontlux::planner

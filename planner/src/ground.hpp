@@ -1,0 +1,49 @@
+#pragma once
+
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// Where a layer of floor carries a robot: nothing known free under it, something known occupied near its
+/// middle.
+class Ground {
+ public:
+  /// Columns are those of the box; floor beyond it is unknown.
+  /// @param layer  key of the floor along z; none below the key range, and then there is no ground
+  struct Options {
+    KeyBox box;
+    std::optional<std::uint16_t> layer;
+    int half_x = 0, half_y = 0;  ///< [voxels] beside the middle, of what must not be known free
+    int reach = 1;               ///< [voxels] beside the middle, within which one has to be occupied
+    std::vector<KeyBox> exempt;  ///< needs no ground
+  };
+  explicit Ground(Options options);
+
+  void read(const VoxelGrid& grid);
+  void read(const VoxelGrid& grid, std::span<const VoxelKey> changed);
+
+  /// @pre the key lies in the box as to x and y
+  [[nodiscard]] bool carries(const VoxelKey& key) const { return carries_[column(key)] != 0; }
+
+ private:
+  using Flags = std::vector<std::uint8_t>;  // one for each column
+
+  [[nodiscard]] std::size_t column(const VoxelKey& key) const {
+    return static_cast<std::size_t>(key.x - options_.box.min.x) * static_cast<std::size_t>(size_y_) +
+           static_cast<std::size_t>(key.y - options_.box.min.y);
+  }
+  void read_voxel(const VoxelGrid& grid, const VoxelKey& key);
+  [[nodiscard]] Flags spread(const Flags& flags, int by_x, int by_y) const;
+  void decide();
+
+  Options options_;
+  int size_x_, size_y_;
+  Flags free_, occupied_, carries_;
+};
+
+}  // namespace frontlux::planner::detail

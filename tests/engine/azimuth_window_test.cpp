@@ -1,0 +1,89 @@
+// The sliding window against summing up each window anew.
+
+#include "support/random.hpp"
+
+#include <frontlux/view_quality.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Expected {
+  std::size_t begin = 0;
+  std::uint64_t hits = 0;
+};
+
+Expected sum_up(const std::vector<std::uint32_t>& bins, std::size_t window, std::optional<std::size_t> with) {
+  std::optional<Expected> best;
+  for (std::size_t begin = 0; begin < bins.size(); ++begin) {
+    std::uint64_t hits = 0;
+    bool holds = !with;
+    for (std::size_t b = begin; b < begin + window; ++b) {
+      hits += bins[b % bins.size()];
+      holds = holds || b % bins.size() == *with;
+    }
+    if (holds && (!best || hits > best->hits)) best = {begin, hits};
+  }
+  return *best;
+}
+
+TEST(BestWindow, EqualsTheBestOfAllWindows) {
+  Random random(1);
+  for (int i = 0; i < 3'000; ++i) {
+    const auto count = static_cast<std::size_t>(1 + random.below(40));
+    const auto window = static_cast<std::size_t>(1 + random.below(static_cast<int>(count)));
+    std::vector<std::uint32_t> bins(count);
+    for (auto& bin : bins)
+      bin = static_cast<std::uint32_t>(random.one_in(50) ? 4'000'000'000 : random.below(4));
+    const double width = 2 * std::numbers::pi / static_cast<double>(count);
+    // From just the bins' own width to just short of one bin more.
+    const double opening = width * (static_cast<double>(window) + (random.one_in(2) ? 0.0 : 0.99));
+    std::optional<std::size_t> with;
+    if (random.one_in(2)) with = static_cast<std::size_t>(random.below(static_cast<int>(count)));
+    std::optional<double> azimuth;
+    if (with)
+      azimuth = (static_cast<double>(*with) + 0.5) * width + 2 * std::numbers::pi * (random.below(5) - 2);
+    const Expected expected = sum_up(bins, window, with);
+    const AzimuthWindow found = best_window(bins, opening, azimuth);
+    ASSERT_EQ(found.hits, expected.hits);
+    const double middle = (static_cast<double>(expected.begin) + static_cast<double>(window) / 2) * width;
+    ASSERT_NEAR(std::remainder(found.yaw - middle, 2 * std::numbers::pi), 0.0, 1e-9);
+    ASSERT_LE(std::fabs(found.yaw), std::numbers::pi + 1e-12);
+    if (with) {
+      ASSERT_LE(std::fabs(std::remainder(*azimuth - found.yaw, 2 * std::numbers::pi)), opening / 2 + 1e-9);
+    }
+  }
+}
+
+TEST(BestWindow, ACameraOf90DegreesHoldsNineBinsOf36) {
+  std::vector<std::uint32_t> bins(36, 1);
+  EXPECT_EQ(best_window(bins, 90 * kDegree).hits, 9U);
+  EXPECT_EQ(best_window(bins, 89.9 * kDegree).hits, 8U);
+  EXPECT_EQ(best_window(bins, 400 * kDegree).hits, 36U);
+  bins[35] = bins[0] = 5;  // around azimuth 0
+  EXPECT_EQ(best_window(bins, 20 * kDegree).hits, 10U);
+  EXPECT_NEAR(best_window(bins, 20 * kDegree).yaw, 0.0, 1e-12);
+}
+
+TEST(BestWindow, RefusesWhatHasNoAnswer) {
+  const std::vector<std::uint32_t> bins(36, 1);
+  EXPECT_THROW((void)best_window({}, 1.0), std::invalid_argument);
+  EXPECT_THROW((void)best_window(std::vector<std::uint32_t>(3601), 1.0), std::invalid_argument);
+  EXPECT_THROW((void)best_window(bins, 9.9 * kDegree), std::invalid_argument);
+  EXPECT_THROW((void)best_window(bins, -1.0), std::invalid_argument);
+  EXPECT_THROW((void)best_window(bins, std::nan("")), std::invalid_argument);
+  EXPECT_THROW((void)best_window(bins, std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW((void)best_window(bins, 1.0, std::nan("")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::test

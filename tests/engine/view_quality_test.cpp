@@ -1,0 +1,427 @@
+// The renderer against brute force: every target asked one by one with the field of view's own test and the
+// grid caster. What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
+
+#include "support/random.hpp"
+
+#include <frontlux/view_quality.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+using Sampling = ViewQualityOptions::Sampling;
+using Estimator = ViewQualityOptions::Estimator;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr Sampling kSamplings[] = {Sampling::kFeasible, Sampling::kBuckets};
+
+FieldOfView lidar() { return {FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0}; }
+FieldOfView camera() { return {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 4.0}; }
+
+std::uint16_t key(int k) { return static_cast<std::uint16_t>(k); }
+
+// A hall with pillars, in which some voxels were never seen.
+struct Hall {
+  static constexpr int kLength = 48, kHeight = 14;
+  int low;
+  VoxelGrid grid{0.3};
+  std::vector<VoxelKey> targets, viewpoints;
+
+  explicit Hall(std::uint64_t seed, int low_key = 32750) : low(low_key) {
+    Random random(seed);
+    for_each_voxel(
+        [&](const VoxelKey& k) { grid.set(k, random.one_in(24) ? Occupancy::kUnknown : Occupancy::kFree); });
+    for (int i = 0; i < 14; ++i) {
+      const int x = random.below(kLength), y = random.below(kLength);
+      for (int z = 0; z < kHeight; ++z)
+        grid.set({key(low + x), key(low + y), key(low + z)}, Occupancy::kOccupied);
+    }
+    observe();
+  }
+
+  template <class Visit>
+  void for_each_voxel(const Visit& visit) const {
+    for (int x = 0; x < kLength; ++x)
+      for (int y = 0; y < kLength; ++y)
+        for (int z = 0; z < kHeight; ++z) visit(VoxelKey{key(low + x), key(low + y), key(low + z)});
+  }
+
+  // Unknown voxels are targets, and some of the free ones viewpoints.
+  void observe() {
+    targets.clear();
+    viewpoints.clear();
+    for_each_voxel([&](const VoxelKey& k) {
+      const Occupancy state = grid.at(k);
+      if (state == Occupancy::kUnknown) targets.push_back(k);
+      if (state == Occupancy::kFree && (k.x + 2 * k.y + 5 * k.z) % 41 == 0) viewpoints.push_back(k);
+    });
+  }
+
+  [[nodiscard]] VoxelKey middle() const {
+    return {key(low + kLength / 2), key(low + kLength / 2), key(low + kHeight / 2)};
+  }
+};
+
+struct Truth {
+  std::size_t in_view = 0, visible = 0;
+  std::vector<std::uint32_t> bins;
+};
+
+Truth look_at_all(const RayCaster& caster, const Hall& hall, const VoxelKey& from, const FieldOfView& view,
+                  std::size_t bins = 0) {
+  Truth truth{0, 0, std::vector<std::uint32_t>(bins)};
+  for (const VoxelKey& to : hall.targets) {
+    const double r = hall.grid.resolution();
+    const int dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
+    if (!view.contains_at_some_yaw({dx * r, dy * r, dz * r})) continue;
+    ++truth.in_view;
+    const KeySegment segment{from, to};
+    std::uint8_t visible = 0;
+    caster.visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kBlock);
+    truth.visible += visible;
+    if (bins == 0 || visible == 0) continue;
+    double degrees = std::atan2(dy, dx) / kDegree;
+    if (degrees < 0) degrees += 360;
+    // Axes and diagonals lie on borders of bins, exactly.
+    ++truth.bins[static_cast<std::size_t>(degrees * static_cast<double>(bins) / 360 + 1e-9) % bins];
+  }
+  return truth;
+}
+
+ViewQualityImage render(const RayCaster& caster, const Hall& hall, std::span<const VoxelKey> viewpoints,
+                        const FieldOfView& view, const ViewQualityOptions& options) {
+  return render_view_quality(caster, hall.grid.lattice(), viewpoints, hall.targets, view, options);
+}
+
+void expect_equal(const ViewQualityImage& a, const ViewQualityImage& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a.viewpoints()[i], b.viewpoints()[i]);
+    ASSERT_EQ(a.values()[i], b.values()[i]) << i;
+    ASSERT_TRUE(std::ranges::equal(a.bin_hits(i), b.bin_hits(i))) << i;
+  }
+}
+
+TEST(ViewQuality, IsExactWhereAllTargetsAreTaken) {
+  const FieldOfView sonar{FieldOfView::Shape::kCone, 50 * kDegree, 0.0, 3.3};
+  for (const FieldOfView& view : {lidar(), camera(), sonar})
+    for (const int low : {0, 32750, 65536 - Hall::kLength}) {
+      const Hall hall(1, low);
+      const auto caster = make_grid_ray_caster(hall.grid);
+      for (const Sampling sampling : kSamplings) {
+        ViewQualityOptions options{
+            .samples = ViewQualityOptions::kAll, .sampling = sampling, .azimuth_bins = 36};
+        const auto image = render(*caster, hall, hall.viewpoints, view, options);
+        options.samples = 150;
+        const auto some = render(*caster, hall, hall.viewpoints, view, options);
+        std::size_t seen = 0, exact = 0;
+        for (std::size_t i = 0; i < image.size(); i += 7) {
+          const ViewQuality& value = image.values()[i];
+          const Truth truth = look_at_all(*caster, hall, hall.viewpoints[i], view, 36);
+          if (sampling == Sampling::kFeasible) {
+            ASSERT_EQ(value.population, truth.in_view);
+          } else {
+            ASSERT_GE(value.population, truth.in_view);
+          }
+          ASSERT_EQ(value.drawn, value.population);
+          ASSERT_EQ(value.hits, truth.visible);
+          ASSERT_EQ(value.gain, static_cast<double>(truth.visible));
+          ASSERT_EQ(value.standard_error, 0.0);
+          ASSERT_TRUE(std::ranges::equal(image.bin_hits(i), truth.bins));
+          seen += truth.visible;
+          ASSERT_EQ(some.values()[i].drawn, std::min(value.population, 150U));
+          if (value.population > 150) {
+            ASSERT_GT(some.values()[i].standard_error, 0.0);
+          } else {
+            ASSERT_EQ(some.values()[i], value);
+            ++exact;
+          }
+        }
+        EXPECT_GT(seen, 1000U);
+        if (sampling == Sampling::kFeasible && view.max_range < 5) {
+          EXPECT_GT(exact, 20U);
+        }
+      }
+    }
+}
+
+TEST(ViewQuality, TargetAndViewpointDoNotBlockButWhatLiesBetweenDoes) {
+  VoxelGrid grid(0.3);
+  const VoxelKey from{100, 100, 100}, target{110, 100, 100}, wall{105, 100, 100};
+  for (std::uint16_t x = 101; x < 110; ++x) grid.set({x, 100, 100}, Occupancy::kFree);
+  const auto gain = [&] {
+    return render_view_quality(*make_grid_ray_caster(grid), grid.lattice(), {{from}}, {{target}}, lidar())
+        .values()[0]
+        .gain;
+  };
+  EXPECT_EQ(gain(), 1.0);
+  grid.set(target, Occupancy::kOccupied);
+  grid.set(from, Occupancy::kOccupied);
+  EXPECT_EQ(gain(), 1.0);
+  grid.set(wall, Occupancy::kOccupied);
+  EXPECT_EQ(gain(), 0.0);
+  grid.set(wall, Occupancy::kUnknown);
+  EXPECT_EQ(gain(), 0.0);
+}
+
+TEST(ViewQuality, PaperEstimatorCountsHits) {
+  const Hall hall(2);
+  const auto caster = make_grid_ray_caster(hall.grid);
+  const auto unbiased = render(*caster, hall, hall.viewpoints, lidar(), {.samples = 50});
+  const auto paper =
+      render(*caster, hall, hall.viewpoints, lidar(), {.samples = 50, .estimator = Estimator::kPaper});
+  bool differs = false;
+  for (std::size_t i = 0; i < paper.size(); ++i) {
+    const ViewQuality &p = paper.values()[i], &u = unbiased.values()[i];
+    ASSERT_EQ(p.hits, u.hits);
+    ASSERT_EQ(p.gain, p.hits);
+    ASSERT_DOUBLE_EQ(u.gain, static_cast<double>(u.hits) * u.population / std::max(u.drawn, 1U));
+    ASSERT_NEAR(p.standard_error * u.population, u.standard_error * u.drawn, 1e-9);
+    differs = differs || p.gain != u.gain;
+  }
+  EXPECT_TRUE(differs);
+}
+
+// The errors of many seeds, each with the standard error that was told with it.
+struct Errors {
+  std::vector<double> errors, told;
+  [[nodiscard]] double mean() const {
+    return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
+  }
+  [[nodiscard]] double root_mean_square(const std::vector<double>& values) const {
+    const double sum = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+    return std::sqrt(sum / static_cast<double>(values.size()));
+  }
+};
+
+Errors errors_of(const RayCaster& caster, const Hall& hall, const VoxelKey& viewpoint, Sampling sampling,
+                 int samples, int seeds) {
+  Errors result;
+  const auto truth = static_cast<double>(look_at_all(caster, hall, viewpoint, lidar()).visible);
+  for (int seed = 0; seed < seeds; ++seed) {
+    const ViewQualityOptions options{
+        .samples = samples, .sampling = sampling, .seed = static_cast<std::uint64_t>(seed)};
+    const auto image = render(caster, hall, {&viewpoint, 1}, lidar(), options);
+    result.errors.push_back(image.values()[0].gain - truth);
+    result.told.push_back(image.values()[0].standard_error);
+  }
+  return result;
+}
+
+TEST(ViewQuality, UnbiasedEstimatorIsUnbiasedAndItsErrorIsHonest) {
+  const Hall hall(3);
+  const auto caster = make_embree_ray_caster(hall.grid);
+  const VoxelKey m = hall.middle();
+  for (const Sampling sampling : kSamplings)
+    for (const int shift : {-9, 0, 7}) {
+      const VoxelKey viewpoint{key(m.x + shift), key(m.y - shift / 2), m.z};
+      ASSERT_GT(look_at_all(*caster, hall, viewpoint, lidar()).in_view, 300U);
+      const Errors e = errors_of(*caster, hall, viewpoint, sampling, 64, 1000);
+      const double spread = e.root_mean_square(e.errors);
+      EXPECT_GT(spread, 1.0);
+      EXPECT_LT(std::fabs(e.mean()), 3 * spread / std::sqrt(1000.0)) << e.mean() << " of " << spread;
+      EXPECT_NEAR(e.root_mean_square(e.told) / spread, 1.0, 0.15);
+      const auto covered = [&](double deviations) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < e.errors.size(); ++i)
+          count += std::fabs(e.errors[i]) <= deviations * e.told[i] ? 1 : 0;
+        return static_cast<double>(count) / static_cast<double>(e.errors.size());
+      };
+      EXPECT_NEAR(covered(1.0), 0.683, 0.08);
+      EXPECT_NEAR(covered(2.0), 0.954, 0.035);
+    }
+}
+
+TEST(ViewQuality, ErrorFallsWithTheRootOfTheSamples) {
+  const Hall hall(4);
+  const auto caster = make_embree_ray_caster(hall.grid);
+  const VoxelKey viewpoint = hall.middle();
+  for (const Sampling sampling : kSamplings) {
+    std::vector<double> spread;
+    const double population =
+        render(*caster, hall, {&viewpoint, 1}, lidar(), {.sampling = sampling}).values()[0].population;
+    for (const int samples : {16, 64, 256}) {
+      ASSERT_GT(population, samples);
+      const Errors e = errors_of(*caster, hall, viewpoint, sampling, samples, 1000);
+      // Beside the root there is the correction for drawing from few without replacement.
+      spread.push_back(e.root_mean_square(e.errors) / std::sqrt((population - samples) / (population - 1)));
+    }
+    EXPECT_NEAR(spread[0] / spread[1], 2.0, 0.25);
+    EXPECT_NEAR(spread[1] / spread[2], 2.0, 0.25);
+  }
+}
+
+TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
+  const Hall hall(5);
+  const auto embree = make_embree_ray_caster(hall.grid);
+  const auto grid = make_grid_ray_caster(hall.grid);
+  for (const Sampling sampling : kSamplings) {
+    const ViewQualityOptions options{.sampling = sampling, .azimuth_bins = 8};
+    const auto image = render(*embree, hall, hall.viewpoints, camera(), options);
+    for (const int threads : {1, 2})
+      tbb::task_arena(threads).execute(
+          [&] { expect_equal(image, render(*embree, hall, hall.viewpoints, camera(), options)); });
+    expect_equal(image, render(*grid, hall, hall.viewpoints, camera(), options));
+
+    std::vector<std::size_t> order(hall.viewpoints.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    Hall shuffled = hall;
+    Random random(1);
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    for (std::size_t i = 0; i < order.size(); ++i) shuffled.viewpoints[i] = hall.viewpoints[order[i]];
+    shuffled.viewpoints.push_back(shuffled.viewpoints.front());
+    std::reverse(shuffled.targets.begin(), shuffled.targets.end());
+    shuffled.targets.push_back(shuffled.targets.front());
+    const auto other = render(*embree, shuffled, shuffled.viewpoints, camera(), options);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ASSERT_EQ(other.values()[i], image.values()[order[i]]);
+      ASSERT_TRUE(std::ranges::equal(other.bin_hits(i), image.bin_hits(order[i])));
+    }
+    ASSERT_EQ(other.values().back(), other.values().front());
+
+    ViewQualityOptions reseeded = options;
+    reseeded.seed = 2;
+    const auto redrawn = render(*embree, hall, hall.viewpoints, camera(), reseeded);
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < image.size(); ++i)
+      differing += redrawn.values()[i] == image.values()[i] ? 0 : 1;
+    EXPECT_GT(differing, image.size() / 4);
+  }
+}
+
+TEST(ViewQuality, NothingToSeeOrNowhereToStandIsNoError) {
+  const Hall hall(6);
+  const auto caster = make_grid_ray_caster(hall.grid);
+  const auto image =
+      render_view_quality(*caster, hall.grid.lattice(), hall.viewpoints, {}, lidar(), {.azimuth_bins = 4});
+  ASSERT_EQ(image.size(), hall.viewpoints.size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    ASSERT_EQ(image.values()[i], ViewQuality{});
+    ASSERT_TRUE(std::ranges::equal(image.bin_hits(i), std::vector<std::uint32_t>(4)));
+  }
+  EXPECT_EQ(render(*caster, hall, {}, lidar(), {}).size(), 0U);
+  // A viewpoint does not see the target that it stands in.
+  EXPECT_EQ(render_view_quality(*caster, hall.grid.lattice(), {{hall.middle()}}, {{hall.middle()}}, lidar())
+                .values()[0],
+            ViewQuality{});
+}
+
+template <class Call>
+std::string complaint(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+TEST(ViewQuality, NamesTheValueThatIsWrong) {
+  const Lattice lattice(0.3);
+  const auto with = [&](const FieldOfView& view, const ViewQualityOptions& options) {
+    return complaint([&] { const ViewQualityImage image(lattice, view, options); });
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  has(with(lidar(), {.samples = 0}), "samples is 0");
+  has(with(lidar(), {.samples = -5}), "samples is -5");
+  has(with(lidar(), {.azimuth_bins = -1}), "azimuth_bins is -1");
+  has(with(lidar(), {.azimuth_bins = 3601}), "azimuth_bins is 3601");
+  has(with(lidar(), {.sampling = static_cast<Sampling>(9)}), "sampling is 9");
+  has(with(lidar(), {.estimator = static_cast<Estimator>(9)}), "estimator is 9");
+  has(with(lidar(), {.sampling = Sampling::kBuckets, .estimator = Estimator::kPaper}), "kFeasible");
+  FieldOfView view = lidar();
+  view.max_range = -1;
+  has(with(view, {}), "max_range is -1");
+  view.max_range = 400;
+  has(with(view, {}), "max_range is 400");
+  view.max_range = 1e300;
+  has(with(view, {}), "out of the numbers' range");
+  has(complaint([&] { const ViewQualityImage image(Lattice(1e-200), lidar(), {}); }), "resolution");
+  EXPECT_EQ(with(lidar(), {}), "no complaint");
+
+  ViewQualityImage image(lattice, lidar(), {});
+  const auto caster = make_grid_ray_caster(VoxelGrid(0.3));
+  const auto following = [&](const Block& block) {
+    return complaint([&] { image.update(*caster, {}, {}, {&block, 1}); });
+  };
+  has(following({{4, 0, 0}, 3}), "(4, 0, 0)");
+  has(following({{0, 0, 0}, 17}), "log2_edge 17");
+  has(following({{0, 0, 0}, -1}), "log2_edge -1");
+}
+
+// Edits of all kinds, told as single voxels or as blocks; each time the image has to be what rendering makes.
+TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
+  for (const Sampling sampling : kSamplings)
+    for (const bool as_blocks : {false, true}) {
+      Hall hall(7);
+      Random random(as_blocks ? 8 : 9);
+      const auto caster = make_embree_ray_caster(hall.grid);
+      const ViewQualityOptions options{.samples = 24, .sampling = sampling, .azimuth_bins = 12};
+      ViewQualityImage image(hall.grid.lattice(), camera(), options);
+      image.render(*caster, hall.viewpoints, hall.targets);
+      std::size_t rendered = 0, all = 0;
+      for (int step = 0; step < 25; ++step) {
+        const VoxelGrid before = hall.grid;
+        std::vector<Block> changed;
+        const int x = random.below(Hall::kLength), y = random.below(Hall::kLength);
+        const int edits = random.one_in(5) ? 0 : 1 + random.below(6);
+        for (int e = 0; e < edits; ++e) {
+          const auto near = [&](int i) {
+            return key(hall.low + std::clamp(i + random.below(5) - 2, 0, Hall::kLength - 1));
+          };
+          const VoxelKey k{near(x), near(y), key(hall.low + random.below(Hall::kHeight))};
+          hall.grid.set(k, static_cast<Occupancy>(random.below(3)));
+          changed.push_back({k, 0});
+        }
+        if (as_blocks) {
+          changed.clear();
+          for_each_change(before, hall.grid, [&](const Block& block) { changed.push_back(block); });
+        }
+        hall.observe();
+        // Targets and viewpoints come and go for other reasons than the map as well.
+        if (random.one_in(3)) hall.targets.erase(hall.targets.begin() + random.below(300));
+        if (random.one_in(3)) std::reverse(hall.viewpoints.begin(), hall.viewpoints.end());
+        if (random.one_in(4)) hall.viewpoints.resize(hall.viewpoints.size() * 3 / 4);
+        caster->update(hall.grid);
+        rendered += image.update(*caster, hall.viewpoints, hall.targets, changed);
+        all += hall.viewpoints.size();
+        expect_equal(image, render(*caster, hall, hall.viewpoints, camera(), options));
+        if (HasFatalFailure()) return;
+      }
+      EXPECT_GT(rendered, all / 50);
+      EXPECT_LT(rendered, all * 3 / 4) << "of " << all;
+      EXPECT_EQ(image.update(*caster, hall.viewpoints, hall.targets, {}), 0U);
+    }
+}
+
+TEST(ViewQualityImage, TakesItsOwnViewpointsBack) {
+  const Hall hall(10);
+  const auto caster = make_grid_ray_caster(hall.grid);
+  auto image = render(*caster, hall, hall.viewpoints, camera(), {.azimuth_bins = 4});
+  const auto whole = image;
+  const std::size_t half = image.size() / 2;
+  EXPECT_EQ(image.update(*caster, image.viewpoints().subspan(half), hall.targets, {}), 0U);
+  ASSERT_EQ(image.size(), whole.size() - half);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    ASSERT_EQ(image.values()[i], whole.values()[i + half]);
+    ASSERT_TRUE(std::ranges::equal(image.bin_hits(i), whole.bin_hits(i + half)));
+  }
+  image.render(*caster, image.viewpoints().first(3), hall.targets);
+  EXPECT_EQ(image.size(), 3U);
+  EXPECT_EQ(image.values()[1], whole.values()[half + 1]);
+}
+
+}  // namespace
+}  // namespace frontlux::test
