@@ -39,6 +39,14 @@ class CorridorBlocks {
     VoxelKey corner;
     std::uint64_t filled = 0;  ///< the blocks that hold cells
     std::array<std::uint64_t, 64> blocks{};
+
+    [[nodiscard]] BlockCells block(int number) const {
+      const auto along = [number](std::uint16_t from, int shift) {
+        return static_cast<std::uint16_t>(from + kBlock * ((number >> shift) & 3));
+      };
+      return {{along(corner.x, 4), along(corner.y, 2), along(corner.z, 0)},
+              blocks[static_cast<std::size_t>(number)]};
+    }
   };
 
   /// @throws std::invalid_argument if the cells span more than 2^24 cubes

@@ -50,8 +50,9 @@ class Piece {
     cast();
     ask_neighbours();
     ask_neighbours();
-    for (const std::uint32_t i : open_) list_blocks(i);
-    for (std::size_t share = 8; take_one_per_block(share); share *= 4) {
+    for (const std::uint32_t i : open_)
+      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
+    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
       cast();
       ask_neighbours();
     }
@@ -67,8 +68,10 @@ class Piece {
  private:
   // Candidates that a frontier has not tried yet.
   struct Left {
-    std::vector<BlockCells> blocks;
-    std::size_t next = 0;
+    std::vector<const CorridorBlocks::Cube*> cubes;
+    std::size_t next_cube = 0;
+    std::vector<BlockCells> blocks;  // with cells in view
+    std::size_t next_block = 0;
   };
 
   [[nodiscard]] const VoxelKey& frontier(std::uint32_t i) const { return search_.frontiers[begin_ + i]; }
@@ -129,53 +132,47 @@ class Piece {
     cast();
   }
 
-  void list_blocks(std::uint32_t i) {
-    const VoxelKey& f = frontier(i);
-    cubes_.clear();
-    search_.blocks.cubes_near(f, search_.region, cubes_);
-    for (const CorridorBlocks::Cube* cube : cubes_) {
-      if (search_.shadow.hides(f, detail::cube(cube->corner, CorridorBlocks::kCube))) continue;
-      for (std::uint64_t filled = cube->filled; filled != 0; filled &= filled - 1) {
-        const int block = std::countr_zero(filled);
-        const auto along = [&](std::uint16_t base, int shift) {
-          return static_cast<std::uint16_t>(base + CorridorBlocks::kBlock * ((block >> shift) & 3));
-        };
-        const VoxelKey corner{along(cube->corner.x, 4), along(cube->corner.y, 2), along(cube->corner.z, 0)};
-        const KeyBox box = detail::cube(corner, CorridorBlocks::kBlock);
-        if (!search_.region.may_meet(f, box)) continue;
-        const BlockCells cells = detail::feasible_cells(
-            {corner, cube->blocks[static_cast<std::size_t>(block)]}, f, search_.region);
-        if (cells.bits != 0 && !search_.shadow.hides(f, box)) left_[i].blocks.push_back(cells);
-      }
-    }
-  }
-
-  // Whether there was anything left to take.
+  // From the next cubes, this many. Whether there was anything left to take.
   bool take_one_per_block(std::size_t share) {
+    bool any = false;
     for (const std::uint32_t i : open_) {
       Left& left = left_[i];
-      for (std::size_t n = 0; n < share && left.next < left.blocks.size(); ++n) {
-        BlockCells& cells = left.blocks[left.next++];
-        const int bit = middle_bit(cells.bits);
-        cells.bits &= ~(std::uint64_t{1} << bit);
-        add(i, cells.key(bit));
+      for (std::size_t n = 0; n < share && left.next_cube < left.cubes.size(); ++n) {
+        any = true;
+        take_one_per_block(i, *left.cubes[left.next_cube++]);
       }
     }
-    if (!segments_.empty()) return true;
-    for (const std::uint32_t i : open_) left_[i].next = 0;
-    return false;
+    return any;
+  }
+
+  void take_one_per_block(std::uint32_t i, const CorridorBlocks::Cube& cube) {
+    const VoxelKey& f = frontier(i);
+    if (search_.shadow.hides(f, detail::cube(cube.corner, CorridorBlocks::kCube))) return;
+    for (std::uint64_t filled = cube.filled; filled != 0; filled &= filled - 1) {
+      const BlockCells block = cube.block(std::countr_zero(filled));
+      if (!search_.region.may_meet(f, detail::cube(block.corner, CorridorBlocks::kBlock))) continue;
+      BlockCells cells = detail::feasible_cells(block, f, search_.region);
+      if (cells.bits == 0) continue;
+      const int bit = middle_bit(cells.bits);
+      cells.bits &= ~(std::uint64_t{1} << bit);
+      add(i, cells.key(bit));
+      if (cells.bits != 0) left_[i].blocks.push_back(cells);
+    }
   }
 
   bool take_rest(std::size_t share) {
+    bool any = false;
     for (const std::uint32_t i : open_) {
       Left& left = left_[i];
-      for (std::size_t n = 0; n < share && left.next < left.blocks.size();) {
-        BlockCells& cells = left.blocks[left.next++];
+      for (std::size_t n = 0; n < share && left.next_block < left.blocks.size();) {
+        any = true;
+        BlockCells cells = left.blocks[left.next_block++];
+        if (search_.shadow.hides(frontier(i), detail::cube(cells.corner, CorridorBlocks::kBlock))) continue;
         for (; cells.bits != 0; cells.bits &= cells.bits - 1, ++n)
           add(i, cells.key(std::countr_zero(cells.bits)));
       }
     }
-    return !segments_.empty();
+    return any;
   }
 
   // The middle one of the bits that are set.
@@ -191,7 +188,6 @@ class Piece {
   std::vector<std::uint32_t> open_, owners_;
   std::vector<KeySegment> segments_;
   std::vector<std::uint8_t> visible_;
-  std::vector<const CorridorBlocks::Cube*> cubes_;
   std::uint64_t rays_ = 0;
 };
 

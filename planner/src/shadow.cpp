@@ -1,8 +1,6 @@
 #include "shadow.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -53,8 +51,6 @@ Shadow::Shadow(const VoxelGrid& grid, const KeyBox& box) {
 }
 
 bool Shadow::occupied(const std::array<int, 3>& low, const std::array<int, 3>& high) const {
-  for (std::size_t a = 0; a < 3; ++a)
-    if (low[a] < 0 || high[a] >= size_[a]) return false;
   const int first = low[2] >> 6, last = high[2] >> 6;
   for (int x = low[0]; x <= high[0]; ++x)
     for (int y = low[1]; y <= high[1]; ++y) {
@@ -68,33 +64,45 @@ bool Shadow::occupied(const std::array<int, 3>& low, const std::array<int, 3>& h
 // A line from a voxel's centre to the target's crosses the middle of a layer between them at a point, and its
 // path visits the voxel that holds the point, or both that share it. Seen from the target the point lies at
 // the share m / d of the offset, with d layers to the voxel and m to the layer in question; so the points of
-// all lines from the box lie in a rectangle.
+// all lines from the box lie in a rectangle. Its sides, as m grows, are lines: in fixed point, rounded
+// outwards.
 bool Shadow::hides(const VoxelKey& target, const KeyBox& from) const {
-  constexpr double kSlack = 1e-9;
+  if (bits_.empty()) return false;
+  constexpr int kFraction = 32;
+  constexpr double kOne = 0x1p32;
+  constexpr std::int64_t kHalf = std::int64_t{1} << (kFraction - 1);
   const std::array<int, 3> t = {target.x, target.y, target.z};
   const std::array<int, 3> near = {from.min.x - t[0], from.min.y - t[1], from.min.z - t[2]};
   const std::array<int, 3> far = {from.max.x - t[0], from.max.y - t[1], from.max.z - t[2]};
+  // Across the axis along which they are farthest apart, the rectangles are smallest.
+  std::size_t axis = 0;
+  std::array<int, 3> apart{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const int side = near[a] > 0 ? 1 : far[a] < 0 ? -1 : 0;
-    if (side == 0) continue;
-    const int nearest = side > 0 ? near[a] : -far[a], farthest = side > 0 ? far[a] : -near[a];
-    const double most_per_layer = 1.0 / nearest, least_per_layer = 1.0 / farthest;
-    for (int m = 1; m < nearest; ++m) {
-      const double most = m * most_per_layer, least = m * least_per_layer;
-      std::array<int, 3> low{}, high{};
-      for (std::size_t b = 0; b < 3; ++b) {
-        const int origin = t[b] - low_[b];
-        if (b == a) {
-          low[b] = high[b] = origin + side * m;
-          continue;
-        }
-        const double lowest = near[b] * (near[b] < 0 ? most : least);
-        const double highest = far[b] * (far[b] > 0 ? most : least);
-        low[b] = origin + static_cast<int>(std::ceil(lowest - 0.5 - kSlack));
-        high[b] = origin + static_cast<int>(std::floor(highest + 0.5 + kSlack));
-      }
-      if (occupied(low, high)) return true;
+    apart[a] = std::max(near[a], -far[a]);
+    if (apart[a] > apart[axis]) axis = a;
+  }
+  const int nearest = apart[axis], side = near[axis] > 0 ? 1 : -1;
+  if (nearest < 2) return false;
+  const int farthest = side > 0 ? far[axis] : -near[axis];
+  std::array<std::int64_t, 3> low_at{}, high_at{}, low_step{}, high_step{};
+  std::array<int, 3> low{}, high{};
+  for (std::size_t b = 0; b < 3; ++b) {
+    if (b == axis) continue;
+    low_step[b] = static_cast<std::int64_t>(kOne * near[b] / (near[b] < 0 ? nearest : farthest)) - 1;
+    high_step[b] = static_cast<std::int64_t>(kOne * far[b] / (far[b] > 0 ? nearest : farthest)) + 1;
+    low_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf - 1;
+    high_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf;
+  }
+  for (int m = 1; m < nearest; ++m) {
+    bool inside = true;
+    for (std::size_t b = 0; b < 3; ++b) {
+      low_at[b] += low_step[b];
+      high_at[b] += high_step[b];
+      low[b] = b == axis ? t[b] - low_[b] + side * m : static_cast<int>(low_at[b] >> kFraction);
+      high[b] = b == axis ? low[b] : static_cast<int>(high_at[b] >> kFraction);
+      inside = inside && low[b] >= 0 && high[b] < size_[b];
     }
+    if (inside && occupied(low, high)) return true;
   }
   return false;
 }
