@@ -17,6 +17,8 @@ TargetIndex::TargetIndex(std::span<const VoxelKey> targets) {
   std::transform(targets.begin(), targets.end(), codes_.begin(), cell_code);
   tbb::parallel_sort(codes_.begin(), codes_.end());
   codes_.erase(std::unique(codes_.begin(), codes_.end()), codes_.end());
+  keys_.resize(codes_.size());
+  std::transform(codes_.begin(), codes_.end(), keys_.begin(), cell_of_code);
 
   for (std::size_t i = 0; i < codes_.size(); ++i) {
     const std::uint64_t code = codes_[i];

@@ -30,6 +30,8 @@ class TargetIndex {
 
   /// Their codes, ascending.
   [[nodiscard]] std::span<const std::uint64_t> codes() const { return codes_; }
+  /// Their voxels, in the same order.
+  [[nodiscard]] std::span<const VoxelKey> keys() const { return keys_; }
   /// Cubes of 8 voxels a side with targets, in order.
   [[nodiscard]] std::span<const Cube> cubes() const { return cubes_; }
 
@@ -38,6 +40,7 @@ class TargetIndex {
 
  private:
   std::vector<std::uint64_t> codes_;
+  std::vector<VoxelKey> keys_;
   std::vector<Cube> cubes_, regions_;
 };
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -30,21 +31,18 @@ struct Surroundings {
   void list(const ViewReach& reach, const TargetIndex& targets, const CellBox& from) {
     tile = from;
     targets.list_cubes(reach, tile, cubes);
-    cube_begin.clear();
-    keys.clear();
-    entries.clear();
-    heights.clear();
-    for (const std::uint32_t c : cubes) {
-      const TargetIndex::Cube& cube = targets.cubes()[c];
-      cube_begin.push_back(static_cast<std::uint32_t>(keys.size()));
-      for (std::uint32_t t = cube.begin; t < cube.end; ++t) {
-        const VoxelKey key = cell_of_code(targets.codes()[t]);
-        keys.push_back(key);
-        entries.push_back(reach.entry(key.x - tile.min[0], key.y - tile.min[1]));
-        heights.push_back(static_cast<std::int16_t>(key.z - tile.min[2]));
-      }
+    cube_begin.assign(1, 0);
+    for (const std::uint32_t c : cubes) cube_begin.push_back(cube_begin.back() + targets.cubes()[c].size());
+    keys.resize(cube_begin.back());
+    entries.resize(keys.size());
+    heights.resize(keys.size());
+    for (std::size_t c = 0; c < cubes.size(); ++c)
+      std::copy_n(targets.keys().begin() + targets.cubes()[cubes[c]].begin, targets.cubes()[cubes[c]].size(),
+                  keys.begin() + cube_begin[c]);
+    for (std::size_t t = 0; t < keys.size(); ++t) {
+      entries[t] = reach.entry(keys[t].x - tile.min[0], keys[t].y - tile.min[1]);
+      heights[t] = static_cast<std::int16_t>(keys[t].z - tile.min[2]);
     }
-    cube_begin.push_back(static_cast<std::uint32_t>(keys.size()));
   }
 };
 
@@ -63,7 +61,8 @@ class TileRenderer {
 
   // Casts what has gathered.
   void finish(const ViewScene& scene, std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
-    visible_.resize(segments_.size());
+    visible_.resize(
+        segments_.size());  // perhaps 0: viewpoints without targets have their answers written too
     // Without isolation this thread would start further tiles while it waits, each with a batch of its own.
     tbb::this_task_arena::isolate([&] { scene.caster.visible(segments_, visible_, UnknownPolicy::kBlock); });
     const auto bins = static_cast<std::size_t>(scene.options.azimuth_bins);
@@ -112,7 +111,7 @@ class TileRenderer {
         scene.reach.entry(from.x - surroundings_.tile.min[0], from.y - surroundings_.tile.min[1]);
     const auto add = [&](std::uint32_t target) {
       segments_.push_back({from, surroundings_.keys[target]});
-      entries_.push_back(surroundings_.entries[target] - origin);
+      if (scene.options.azimuth_bins != 0) entries_.push_back(surroundings_.entries[target] - origin);
     };
     const std::size_t begin = segments_.size();
     std::uint32_t population = 0, count = 0;
@@ -122,7 +121,7 @@ class TileRenderer {
       count = static_cast<std::uint32_t>(ranks.size());
       for (const std::uint32_t rank : ranks) add(in_view_[rank]);
     } else {
-      population = list_buckets(scene.reach, from);
+      population = list_buckets(scene, from);
       const auto& ranks = ranks_.draw(population, samples, random);
       count = static_cast<std::uint32_t>(ranks.size());
       auto bucket = buckets_.begin();
@@ -140,29 +139,28 @@ class TileRenderer {
   std::uint32_t list_in_view(const ViewReach& reach, const VoxelKey& from, std::int32_t origin) {
     const Surroundings& near = surroundings_;
     in_view_.resize(near.keys.size());
-    const std::int16_t* heights = reach.heights() - origin;
+    const std::int16_t* limits = reach.heights() - origin;
+    const std::int32_t* entries = near.entries.data();
+    const std::int16_t* heights = near.heights.data();
     const int level = from.z - near.tile.min[2];
+    const auto size = static_cast<std::uint32_t>(near.keys.size());
     std::uint32_t* out = in_view_.data();
-    for (std::size_t c = 0; c < near.cubes.size(); ++c) {
-      for (std::uint32_t t = near.cube_begin[c]; t < near.cube_begin[c + 1]; ++t) {
-        const int up = std::abs(near.heights[t] - level);
-        *out = t;
-        out += up <= heights[near.entries[t]] ? 1 : 0;
-      }
+    for (std::uint32_t t = 0; t < size; ++t) {
+      const int up = std::abs(heights[t] - level);
+      *out = t;
+      out += up <= limits[entries[t]] ? 1 : 0;
     }
     return static_cast<std::uint32_t>(out - in_view_.data());
   }
 
   // The cubes that may be in view from this voxel, and not only from its tile.
-  std::uint32_t list_buckets(const ViewReach& reach, const VoxelKey& from) {
+  std::uint32_t list_buckets(const ViewScene& scene, const VoxelKey& from) {
     const Surroundings& near = surroundings_;
     buckets_.clear();
     const CellBox here = CellBox::of(from);
     std::uint32_t population = 0;
     for (std::size_t c = 0; c < near.cubes.size(); ++c) {
-      const VoxelKey in_cube = near.keys[near.cube_begin[c]];
-      const CellBox cube = CellBox::of(cell_of_code(cell_code(in_cube) >> kBlockCode << kBlockCode), 3);
-      if (!reach.may_contain(here, cube)) continue;
+      if (!scene.reach.may_contain(here, scene.targets.cubes()[near.cubes[c]].box)) continue;
       population += near.cube_begin[c + 1] - near.cube_begin[c];
       buckets_.push_back({population, near.cube_begin[c + 1]});
     }
