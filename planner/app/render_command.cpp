@@ -196,6 +196,7 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
     // The rule renders no image by itself; the picture shows what eq. 1 says all the same.
     TeamMember rendered = view.member;
     rendered.options.rule = GoalRule::kViewQuality;
+    rendered.options.rendering.estimator = ViewQualityOptions::Estimator::kUnbiased;  // clusters count, too
     GoalSelection image({rendered}, lattice, *bounds);
     static_cast<void>(image.select(*caster, grid, frontiers.keys(), {&view.pose, 1}));
     view.cells = image.rendered_cells(0);

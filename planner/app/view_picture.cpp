@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -15,7 +16,8 @@ namespace frontlux::app {
 namespace {
 
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kUnknown{150, 150, 156}, kFree{226, 226, 230},
-    kOccupied{38, 38, 44}, kFrontier{238, 120, 20}, kGoal{214, 18, 92}, kRobot{255, 255, 255};
+    kOccupied{38, 38, 44}, kFrontier{238, 120, 20}, kFarFrontier{226, 184, 150}, kGoal{214, 18, 92},
+    kRobot{255, 255, 255};
 constexpr int kMargin = 24, kPanel = 250, kLetters = 2, kLine = 26;
 constexpr int kWidth = 900;                   // [px] of the longer edge of the map, about
 constexpr int kMinScale = 3, kMaxScale = 24;  // [px] of a voxel
@@ -107,12 +109,14 @@ void draw_cells(Canvas& canvas, const ViewScene& scene, const Window& window, do
       if (quality(x, y) >= 0.0)
         canvas.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale,
                     color_of_share(share_of(quality(x, y), most)));
-  // Frontiers of all heights, but none above cells.
+  // Frontiers of all heights, those far above or below faintly, and none over cells.
   const int inset = window.scale >= 5 ? window.scale / 5 : 0;
-  for (const VoxelKey& key : scene.frontiers)
-    if (quality(key.x, key.y) < 0.0)
-      canvas.fill(window.pixel_x(key.x) + inset, window.pixel_y(key.y) + inset, window.scale - 2 * inset,
-                  window.scale - 2 * inset, kFrontier);
+  const int layer = scene.grid.lattice().key(scene.pose.position.z()).value();
+  for (const bool near : {false, true})
+    for (const VoxelKey& key : scene.frontiers)
+      if (near == (std::abs(key.z - layer) <= 1) && quality(key.x, key.y) < 0.0)
+        canvas.fill(window.pixel_x(key.x) + inset, window.pixel_y(key.y) + inset, window.scale - 2 * inset,
+                    window.scale - 2 * inset, near ? kFrontier : kFarFrontier);
 }
 
 struct Spot {
@@ -159,9 +163,11 @@ void draw_robot_and_goal(Canvas& canvas, const ViewScene& scene, const Window& w
 
 std::string short_number(double number) {
   std::array<char, 32> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::general, 3).ptr;
-  return {buffer.data(), end};
+  char *const begin = buffer.data(), *const end = begin + buffer.size();
+  const bool whole = number >= 1000.0 && number < 1e7;
+  const auto written = whole ? std::to_chars(begin, end, std::llround(number))
+                             : std::to_chars(begin, end, number, std::chars_format::general, 3);
+  return {begin, written.ptr};
 }
 
 void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, int left, int height,
@@ -194,6 +200,7 @@ void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, in
   entry("free", patch(kFree));
   entry("occupied", patch(kOccupied));
   entry("frontier", patch(kFrontier));
+  entry("above/below", patch(kFarFrontier));
   entry("robot", [&](int x, int middle) { draw_robot_mark(canvas, {double(x), double(middle)}); });
   entry("goal", [&](int x, int middle) { draw_goal_mark(canvas, {double(x), double(middle)}); });
 
