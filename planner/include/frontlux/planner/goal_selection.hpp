@@ -27,7 +27,8 @@ enum class GoalRule : std::uint8_t {
 
 /// What eq. 1 takes for the distance between a viewpoint and the robot.
 enum class TravelDistance : std::uint8_t {
-  kPath,      ///< length of the shortest way through the corridor
+  kPath,      ///< length of the shortest way through the corridor; to the middle of a cluster, to which
+              ///< there may be none, the straight distance
   kStraight,  ///< Euclidean, as printed
 };
 
