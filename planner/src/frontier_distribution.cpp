@@ -23,7 +23,7 @@ using detail::FeasibleRegion;
 using detail::Shadow;
 
 constexpr std::size_t kPiece = 256;  // frontiers that are decided together, on one thread
-constexpr int kNearby = 6;           // [voxels] how far the first cells tried may be
+constexpr int kNearby = 4;           // [voxels] how far the first cells tried may be
 
 // What all frontiers of an agent need.
 struct Search {
@@ -70,7 +70,7 @@ class Piece {
   struct Left {
     std::vector<const CorridorBlocks::Cube*> cubes;
     std::size_t next_cube = 0;
-    std::vector<BlockCells> blocks;  // with cells in view
+    std::vector<BlockCells> blocks;  // with cells not tried, some of them perhaps out of view
     std::size_t next_block = 0;
   };
 
@@ -151,9 +151,14 @@ class Piece {
     for (std::uint64_t filled = cube.filled; filled != 0; filled &= filled - 1) {
       const BlockCells block = cube.block(std::countr_zero(filled));
       if (!search_.region.may_meet(f, detail::cube(block.corner, CorridorBlocks::kBlock))) continue;
-      BlockCells cells = detail::feasible_cells(block, f, search_.region);
-      if (cells.bits == 0) continue;
-      const int bit = middle_bit(cells.bits);
+      BlockCells cells = block;
+      int bit = middle_bit(cells.bits);
+      const VoxelKey middle = cells.key(bit);
+      if (!search_.region.contains(f.x - middle.x, f.y - middle.y, f.z - middle.z)) {
+        cells = detail::feasible_cells(block, f, search_.region);
+        if (cells.bits == 0) continue;
+        bit = middle_bit(cells.bits);
+      }
       cells.bits &= ~(std::uint64_t{1} << bit);
       add(i, cells.key(bit));
       if (cells.bits != 0) left_[i].blocks.push_back(cells);
@@ -166,8 +171,9 @@ class Piece {
       Left& left = left_[i];
       for (std::size_t n = 0; n < share && left.next_block < left.blocks.size();) {
         any = true;
-        BlockCells cells = left.blocks[left.next_block++];
-        if (search_.shadow.hides(frontier(i), detail::cube(cells.corner, CorridorBlocks::kBlock))) continue;
+        const BlockCells block = left.blocks[left.next_block++];
+        if (search_.shadow.hides(frontier(i), detail::cube(block.corner, CorridorBlocks::kBlock))) continue;
+        BlockCells cells = detail::feasible_cells(block, frontier(i), search_.region);
         for (; cells.bits != 0; cells.bits &= cells.bits - 1, ++n)
           add(i, cells.key(std::countr_zero(cells.bits)));
       }

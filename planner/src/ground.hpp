@@ -13,14 +13,12 @@ namespace frontlux::planner::detail {
 /// middle.
 class Ground {
  public:
-  /// Columns are those of the box; floor beyond it is unknown.
-  /// @param layer  key of the floor along z; none below the key range, and then there is no ground
   struct Options {
-    KeyBox box;
-    std::optional<std::uint16_t> layer;
-    int half_x = 0, half_y = 0;  ///< [voxels] beside the middle, of what must not be known free
-    int reach = 1;               ///< [voxels] beside the middle, within which one has to be occupied
-    std::vector<KeyBox> exempt;  ///< needs no ground
+    KeyBox box;                          ///< floor beyond its columns is unknown
+    std::optional<std::uint16_t> layer;  ///< key of the floor along z; none: there is no ground
+    int half_x = 0, half_y = 0;          ///< [voxels] beside the middle, of what must not be known free
+    int reach = 1;                       ///< [voxels] beside the middle, within which one has to be occupied
+    std::vector<KeyBox> exempt;          ///< needs no ground
   };
   explicit Ground(Options options);
 

@@ -74,35 +74,30 @@ bool Shadow::hides(const VoxelKey& target, const KeyBox& from) const {
   const std::array<int, 3> t = {target.x, target.y, target.z};
   const std::array<int, 3> near = {from.min.x - t[0], from.min.y - t[1], from.min.z - t[2]};
   const std::array<int, 3> far = {from.max.x - t[0], from.max.y - t[1], from.max.z - t[2]};
-  // Across the axis along which they are farthest apart, the rectangles are smallest.
-  std::size_t axis = 0;
-  std::array<int, 3> apart{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    apart[a] = std::max(near[a], -far[a]);
-    if (apart[a] > apart[axis]) axis = a;
-  }
-  const int nearest = apart[axis], side = near[axis] > 0 ? 1 : -1;
-  if (nearest < 2) return false;
-  const int farthest = side > 0 ? far[axis] : -near[axis];
-  std::array<std::int64_t, 3> low_at{}, high_at{}, low_step{}, high_step{};
-  std::array<int, 3> low{}, high{};
-  for (std::size_t b = 0; b < 3; ++b) {
-    if (b == axis) continue;
-    low_step[b] = static_cast<std::int64_t>(kOne * near[b] / (near[b] < 0 ? nearest : farthest)) - 1;
-    high_step[b] = static_cast<std::int64_t>(kOne * far[b] / (far[b] > 0 ? nearest : farthest)) + 1;
-    low_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf - 1;
-    high_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf;
-  }
-  for (int m = 1; m < nearest; ++m) {
-    bool inside = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int nearest = std::max(near[axis], -far[axis]), side = near[axis] > 0 ? 1 : -1;
+    if (nearest < 2) continue;
+    const int farthest = side > 0 ? far[axis] : -near[axis];
+    std::array<std::int64_t, 3> low_at{}, high_at{}, low_step{}, high_step{};
+    std::array<int, 3> low{}, high{};
     for (std::size_t b = 0; b < 3; ++b) {
-      low_at[b] += low_step[b];
-      high_at[b] += high_step[b];
-      low[b] = b == axis ? t[b] - low_[b] + side * m : static_cast<int>(low_at[b] >> kFraction);
-      high[b] = b == axis ? low[b] : static_cast<int>(high_at[b] >> kFraction);
-      inside = inside && low[b] >= 0 && high[b] < size_[b];
+      if (b == axis) continue;
+      low_step[b] = static_cast<std::int64_t>(kOne * near[b] / (near[b] < 0 ? nearest : farthest)) - 1;
+      high_step[b] = static_cast<std::int64_t>(kOne * far[b] / (far[b] > 0 ? nearest : farthest)) + 1;
+      low_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf - 1;
+      high_at[b] = (std::int64_t{t[b] - low_[b]} << kFraction) + kHalf;
     }
-    if (inside && occupied(low, high)) return true;
+    for (int m = 1; m < nearest; ++m) {
+      bool inside = true;
+      for (std::size_t b = 0; b < 3; ++b) {
+        low_at[b] += low_step[b];
+        high_at[b] += high_step[b];
+        low[b] = b == axis ? t[b] - low_[b] + side * m : static_cast<int>(low_at[b] >> kFraction);
+        high[b] = b == axis ? low[b] : static_cast<int>(high_at[b] >> kFraction);
+        inside = inside && low[b] >= 0 && high[b] < size_[b];
+      }
+      if (inside && occupied(low, high)) return true;
+    }
   }
   return false;
 }

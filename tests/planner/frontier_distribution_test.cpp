@@ -1,0 +1,186 @@
+// Alg. 2 as printed, ray by ray through the grid, against rounds of batches.
+
+#include "support/random.hpp"
+
+#include <frontlux/planner/frontier_distribution.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+constexpr double kDegree = std::numbers::pi / 180;
+FieldOfView lidar(double range) { return {FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, range}; }
+FieldOfView camera(double range) { return {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, range}; }
+FieldOfView sonar(double range) { return {FieldOfView::Shape::kCone, 100 * kDegree, 0.0, range}; }
+
+VoxelKey key_at(int x, int y, int z) {
+  return {static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+          static_cast<std::uint16_t>(32768 + z)};
+}
+
+// The free voxels stand for cells of a corridor, the unknown ones for frontiers.
+struct Scene {
+  VoxelGrid grid{0.3};
+  std::vector<VoxelKey> cells, frontiers;
+};
+
+// Rooms of random size with walls that have holes, or noise.
+Scene random_scene(std::uint64_t seed) {
+  Random random(seed);
+  Scene scene;
+  const int room = 4 + random.below(9), hole = 5 + random.below(40);
+  const bool noise = random.one_in(4);
+  const int keep_cells = 1 + random.below(12), keep_frontiers = 1 + random.below(6);
+  for (int x = -24; x < 24; ++x)
+    for (int y = -20; y < 20; ++y)
+      for (int z = -8; z < 8; ++z) {
+        const bool wall = noise ? random.one_in(6) : (x % room == 0 || y % room == 0 || z % 9 == 0);
+        const VoxelKey key = key_at(x, y, z);
+        if (wall && !random.one_in(hole))
+          scene.grid.set(key, Occupancy::kOccupied);
+        else if (!random.one_in(8))
+          scene.grid.set(key, Occupancy::kFree);
+        if (scene.grid.at(key) == Occupancy::kFree && random.one_in(4 * keep_cells))
+          scene.cells.push_back(key);
+        if (scene.grid.at(key) == Occupancy::kUnknown && random.one_in(keep_frontiers))
+          scene.frontiers.push_back(key);
+      }
+  if (random.one_in(2))  // a corridor in one corner only: most frontiers fail
+    std::erase_if(scene.cells, [](const VoxelKey& k) { return k.x > 32768 - 8 || k.y > 32768; });
+  for (std::size_t i = scene.cells.size(); i > 1; --i)
+    std::swap(scene.cells[i - 1], scene.cells[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+  return scene;
+}
+
+bool in_view(const FieldOfView& view, const VoxelKey& cell, const VoxelKey& frontier, double resolution) {
+  return view.contains_at_some_yaw(
+      Eigen::Vector3d(frontier.x - cell.x, frontier.y - cell.y, frontier.z - cell.z) * resolution);
+}
+
+std::vector<std::uint32_t> naive(const Scene& scene, const FieldOfView& view) {
+  const auto caster = make_grid_ray_caster(scene.grid);
+  std::vector<std::uint32_t> agents;
+  for (std::uint32_t i = 0; i < scene.frontiers.size(); ++i)
+    for (const VoxelKey& cell : scene.cells) {
+      if (!in_view(view, cell, scene.frontiers[i], scene.grid.resolution())) continue;
+      const KeySegment segment{cell, scene.frontiers[i]};
+      std::uint8_t visible = 0;
+      caster->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
+      if (visible == 0) continue;
+      agents.push_back(i);
+      break;
+    }
+  return agents;
+}
+
+TEST(FrontierDistribution, EqualsTheAlgorithmAsPrinted) {
+  std::size_t taken = 0, left = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    const Scene scene = random_scene(seed);
+    const FieldOfView view = seed % 3 == 0   ? lidar(3.0 + 0.3 * static_cast<double>(seed % 10))
+                             : seed % 3 == 1 ? camera(5.0)
+                                             : sonar(4.0);
+    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_embree_ray_caster(scene.grid);
+    const FrontierShare share =
+        find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view});
+    ASSERT_EQ(share.frontiers, naive(scene, view)) << "seed " << seed;
+    ASSERT_EQ(share.seen_from.size(), share.frontiers.size());
+    const std::set<VoxelKey> cells(scene.cells.begin(), scene.cells.end());
+    const auto judge = make_grid_ray_caster(scene.grid);
+    for (std::size_t i = 0; i < share.frontiers.size(); ++i) {
+      const KeySegment segment{share.seen_from[i], scene.frontiers[share.frontiers[i]]};
+      std::uint8_t visible = 0;
+      judge->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
+      ASSERT_EQ(visible, 1);
+      ASSERT_TRUE(cells.contains(segment.from));
+      ASSERT_TRUE(in_view(view, segment.from, segment.to, 0.3));
+    }
+    taken += share.frontiers.size();
+    left += scene.frontiers.size() - share.frontiers.size();
+  }
+  EXPECT_GT(taken, 1'000U);
+  EXPECT_GT(left, 1'000U);
+}
+
+TEST(FrontierDistribution, GivesTheSecondAgentWhatTheFirstDoesNotSee) {
+  const Scene scene = random_scene(5);
+  Scene low = scene, high = scene;
+  std::erase_if(low.cells, [](const VoxelKey& k) { return k.z != 32768 - 5; });
+  std::erase_if(high.cells, [](const VoxelKey& k) { return k.z < 32768 + 1; });
+  const std::vector<FrontierAgent> agents = {{low.cells, lidar(6.0)}, {high.cells, camera(10.0)}};
+  const auto caster = make_embree_ray_caster(scene.grid);
+  const auto shares = distribute_frontiers(*caster, scene.grid, scene.frontiers, agents);
+  const auto ugv = naive(low, lidar(6.0)), alone = naive(high, camera(10.0));
+  std::vector<std::uint32_t> uav, nobody;
+  std::ranges::set_difference(alone, ugv, std::back_inserter(uav));
+  for (std::uint32_t i = 0; i < scene.frontiers.size(); ++i)
+    if (!std::ranges::binary_search(ugv, i) && !std::ranges::binary_search(alone, i)) nobody.push_back(i);
+  ASSERT_EQ(shares.shares.size(), 2U);
+  EXPECT_EQ(shares.shares[0].frontiers, ugv);
+  EXPECT_EQ(shares.shares[1].frontiers, uav);
+  EXPECT_EQ(shares.unassigned, nobody);
+  EXPECT_FALSE(ugv.empty());
+  EXPECT_FALSE(uav.empty());
+}
+
+TEST(FrontierDistribution, IsTheSameOnAnyNumberOfThreads) {
+  const Scene scene = random_scene(9);
+  const auto caster = make_embree_ray_caster(scene.grid);
+  std::vector<FrontierShare> shares;
+  for (const int threads : {1, 2, 3}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      shares.push_back(
+          find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, camera(8.0)}));
+    });
+  }
+  for (const FrontierShare& share : shares) {
+    EXPECT_EQ(share.frontiers, shares[0].frontiers);
+    EXPECT_EQ(share.seen_from, shares[0].seen_from);
+    EXPECT_EQ(share.rays, shares[0].rays);
+  }
+  EXPECT_FALSE(shares[0].frontiers.empty());
+}
+
+TEST(FrontierDistribution, TakesNothingFromNothing) {
+  const Scene scene = random_scene(2);
+  const auto caster = make_grid_ray_caster(scene.grid);
+  EXPECT_TRUE(find_visible_frontiers(*caster, scene.grid, {}, {scene.cells, camera(8.0)}).frontiers.empty());
+  const std::vector<FrontierAgent> stuck = {{{}, lidar(6.0)}};
+  EXPECT_EQ(distribute_frontiers(*caster, scene.grid, scene.frontiers, stuck).unassigned.size(),
+            scene.frontiers.size());
+  EXPECT_EQ(distribute_frontiers(*caster, scene.grid, scene.frontiers, {}).unassigned.size(),
+            scene.frontiers.size());
+}
+
+TEST(FrontierDistribution, WorksAtTheEndsOfTheKeyRange) {
+  VoxelGrid grid(0.3);
+  grid.set({3, 0, 0}, Occupancy::kOccupied);
+  const std::vector<VoxelKey> cells = {{0, 0, 0}, {65535, 65535, 65535}};
+  const std::vector<VoxelKey> frontiers = {{6, 0, 0}, {65530, 65535, 65535}, {65535, 65535, 65535}};
+  const auto caster = make_grid_ray_caster(grid);
+  const std::vector<VoxelKey> first(cells.begin(), cells.begin() + 1), second(cells.begin() + 1, cells.end());
+  EXPECT_TRUE(find_visible_frontiers(*caster, grid, frontiers, {first, lidar(6.0)}).frontiers.empty());
+  EXPECT_EQ(find_visible_frontiers(*caster, grid, frontiers, {second, lidar(6.0)}).frontiers,
+            (std::vector<std::uint32_t>{1}));
+  EXPECT_THROW((void)find_visible_frontiers(*caster, grid, frontiers, {cells, lidar(6.0)}),
+               std::invalid_argument);
+  EXPECT_THROW((void)find_visible_frontiers(*caster, grid, frontiers, {first, lidar(-1.0)}),
+               std::invalid_argument);
+  EXPECT_THROW((void)find_visible_frontiers(*caster, grid, frontiers, {first, lidar(1e9)}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::planner

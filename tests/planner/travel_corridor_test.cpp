@@ -1,0 +1,357 @@
+// Corridors against definitions applied cell by cell, and a plain Dijkstra over a set.
+
+#include "support/random.hpp"
+
+#include <frontlux/planner/travel_corridor.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+VoxelKey key_at(int x, int y, int z) {
+  return {static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+          static_cast<std::uint16_t>(32768 + z)};
+}
+VoxelKey moved(const VoxelKey& k, int x, int y, int z) {
+  return {static_cast<std::uint16_t>(k.x + x), static_cast<std::uint16_t>(k.y + y),
+          static_cast<std::uint16_t>(k.z + z)};
+}
+
+constexpr Occupancy kStates[] = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
+const KeyBox kBounds{key_at(-13, -10, -5), key_at(14, 12, 11)};
+
+template <class Visit>
+void for_each_key(const KeyBox& box, const Visit& visit) {
+  for (int x = box.min.x; x <= box.max.x; ++x)
+    for (int y = box.min.y; y <= box.max.y; ++y)
+      for (int z = box.min.z; z <= box.max.z; ++z)
+        visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                       static_cast<std::uint16_t>(z)});
+}
+
+// Free space with walls, specks and unknown pockets, on a floor with gaps.
+VoxelGrid random_map(std::uint64_t seed, double resolution, int specks) {
+  Random random(seed);
+  VoxelGrid grid(resolution);
+  for_each_key(kBounds, [&](const VoxelKey& key) {
+    if (key.z < 32768)
+      grid.set(key, random.one_in(9) ? kStates[random.below(3)] : Occupancy::kOccupied);
+    else
+      grid.set(key, random.one_in(specks) ? kStates[random.below(3)] : Occupancy::kFree);
+  });
+  return grid;
+}
+
+// What a cell needs, voxel by voxel: its box from `low` to `high`, and a floor.
+struct Rule {
+  int low[3], high[3];
+  int stride = 1;
+  int lowest = std::numeric_limits<int>::min();  // key along z
+  int ground = -1;                               // floor voxels beside the middle that must not be free
+  std::vector<KeyBox> without_ground;
+
+  [[nodiscard]] bool passable(const VoxelGrid& grid, const VoxelKey& cell, bool plane) const {
+    if (cell.z < lowest) return false;
+    for (int x = low[0]; x <= high[0]; ++x)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int z = low[2]; z <= high[2]; ++z) {
+          const VoxelKey v = moved(cell, x, y, z);
+          KeyBox box = kBounds;
+          if (plane) box.min.z = 0, box.max.z = 65535;
+          if (!box.contains(v) || grid.at(v) != Occupancy::kFree) return false;
+        }
+    if (ground < 0) return true;
+    for (const KeyBox& box : without_ground)
+      if (box.min.x <= cell.x && cell.x <= box.max.x && box.min.y <= cell.y && cell.y <= box.max.y)
+        return true;
+    bool carried = false;
+    for (int x = -ground; x <= ground; ++x)
+      for (int y = -ground; y <= ground; ++y) {
+        const Occupancy floor = grid.at(moved(cell, x, y, low[2] - 1));
+        if (floor == Occupancy::kFree) return false;
+        carried = carried || (std::max(std::abs(x), std::abs(y)) <= 1 && floor == Occupancy::kOccupied);
+      }
+    return carried;
+  }
+};
+
+// Distances in metres, by Dijkstra's algorithm over a sorted set, with true lengths of steps.
+std::map<VoxelKey, double> dijkstra(const std::set<VoxelKey>& open, const VoxelKey& from, int stride,
+                                    PathMetric metric, double resolution) {
+  std::map<VoxelKey, double> distance;
+  if (!open.contains(from)) return distance;
+  std::set<std::pair<double, VoxelKey>> queue{{0.0, from}};
+  distance[from] = 0.0;
+  while (!queue.empty()) {
+    const auto [d, key] = *queue.begin();
+    queue.erase(queue.begin());
+    for (int i = 0; i < 27; ++i) {
+      const int s[3] = {i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1};
+      const int axes = std::abs(s[0]) + std::abs(s[1]) + std::abs(s[2]);
+      if (axes == 0 || (metric == PathMetric::kSteps && axes > 1)) continue;
+      bool clear = true;
+      for (int part = 1; part < 8; ++part)
+        clear = clear && open.contains(moved(key, (part & 1 ? s[0] : 0) * stride,
+                                             (part & 2 ? s[1] : 0) * stride, (part & 4 ? s[2] : 0) * stride));
+      if (!clear) continue;
+      const VoxelKey next = moved(key, s[0] * stride, s[1] * stride, s[2] * stride);
+      const double length = d + std::sqrt(axes) * stride * resolution;
+      const auto found = distance.find(next);
+      if (found != distance.end() && found->second <= length) continue;
+      if (found != distance.end()) queue.erase({found->second, next});
+      distance[next] = length;
+      queue.emplace(length, next);
+    }
+  }
+  return distance;
+}
+
+struct Robot {
+  TravelOptions options;
+  double resolution;
+  Rule rule;
+  VoxelKey at;
+};
+
+void expect_as_defined(const TravelCorridor& corridor, const VoxelGrid& grid, const Robot& robot) {
+  const bool plane = robot.options.motion == Motion::kPlane;
+  std::set<VoxelKey> open;
+  for_each_key(kBounds, [&](const VoxelKey& key) {
+    if (plane && key.z != robot.at.z) return;
+    if (robot.rule.stride > 1 && corridor.cell_of(key) != key) return;
+    if (robot.rule.passable(grid, key, plane)) open.insert(key);
+  });
+  const VoxelKey start = corridor.cell_of(robot.at);
+  const auto expected = dijkstra(open, start, robot.rule.stride, robot.options.metric, robot.resolution);
+  for_each_key(kBounds, [&](const VoxelKey& key) { ASSERT_EQ(corridor.passable(key), open.contains(key)); });
+  ASSERT_EQ(corridor.state() == CorridorState::kReady, open.contains(start));
+  ASSERT_EQ(corridor.cells().size(), expected.size());
+  std::size_t i = 0;
+  for (const auto& [key, distance] : expected) {
+    ASSERT_EQ(corridor.cells()[i++], key);
+    ASSERT_TRUE(corridor.distance(key).has_value());
+    ASSERT_NEAR(*corridor.distance(key), distance, 5e-5 * distance);
+  }
+  Random random(5);
+  for (int n = 0; n < 20 && !expected.empty(); ++n) {
+    const VoxelKey goal = corridor.cells()[static_cast<std::size_t>(random.below(static_cast<int>(i)))];
+    const auto path = corridor.path_to(goal);
+    ASSERT_FALSE(path.empty());
+    ASSERT_EQ(path.front(), start);
+    ASSERT_EQ(path.back(), goal);
+    double length = 0.0;
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      ASSERT_TRUE(open.contains(path[k]));
+      const int d[3] = {path[k].x - path[k - 1].x, path[k].y - path[k - 1].y, path[k].z - path[k - 1].z};
+      for (const int step : d) ASSERT_LE(std::abs(step), robot.rule.stride);
+      length += std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * robot.resolution;
+    }
+    ASSERT_NEAR(length, expected.at(goal), 5e-5 * length);
+  }
+}
+
+// Boxes by hand, from the documented rule.
+std::vector<Robot> robots() {
+  std::vector<Robot> robots;
+  TravelOptions ugv = ugv_travel();
+  ugv.without_ground = {{key_at(-2, -2, -5), key_at(2, 2, 5)}};
+  robots.push_back({ugv, 0.3, {{-2, -2, -2}, {2, 2, 0}, 1, 0, 2, ugv.without_ground}, key_at(0, 0, 2)});
+  robots.push_back({ugv, 0.4, {{-1, -1, -1}, {1, 1, 0}, 1, 0, 1, ugv.without_ground}, key_at(0, 0, 1)});
+  ugv.extents = {0.9, 0.2, 0.9};  // as wide as three voxels, and higher than its sensor
+  ugv.sensor_height = 0.3;
+  ugv.ground_extents = Eigen::Vector2d(0.3, 0.3);
+  ugv.metric = PathMetric::kSteps;
+  Rule narrow{{-1, 0, -1}, {1, 0, 1}, 1, 0, 1, ugv.without_ground};
+  ugv.require_ground = false;
+  narrow.ground = -1;
+  robots.push_back({ugv, 0.3, narrow, key_at(0, 0, 1)});
+  ugv.extents = {0.1, 0.1, 0.1};  // far below its sensor
+  ugv.sensor_height = 0.75;
+  robots.push_back({ugv, 0.3, {{0, 0, -2}, {0, 0, 0}, 1, 0, -1, {}}, key_at(0, 0, 2)});
+  TravelOptions uav = uav_travel();
+  robots.push_back({uav, 0.3, {{-1, -1, -1}, {1, 1, 1}, 1, 32768 + 4, -1, {}}, key_at(0, 0, 6)});
+  uav.min_height = 0.3 * 2 + 0.15;  // a centre: just high enough
+  uav.extents = {0.3, 0.31, 1.0};
+  robots.push_back({uav, 0.3, {{0, -1, -2}, {0, 1, 2}, 1, 32768 + 2, -1, {}}, key_at(0, 0, 5)});
+  uav.metric = PathMetric::kSteps;
+  uav.floor = -0.6;
+  robots.push_back({uav, 0.3, {{0, -1, -2}, {0, 1, 2}, 1, 32768, -1, {}}, key_at(0, 0, 5)});
+  TravelOptions nodes = uav_node_travel();
+  nodes.min_height = 0.6;
+  robots.push_back({nodes, 0.3, {{-2, -2, -2}, {1, 1, 1}, 4, 32768 + 2, -1, {}}, key_at(1, 1, 3)});
+  nodes.node_edge = 0.9;  // four voxels again
+  robots.push_back({nodes, 0.3, {{-2, -2, -2}, {1, 1, 1}, 4, 32768 + 2, -1, {}}, key_at(1, 1, 3)});
+  nodes.metric = PathMetric::kSteps;
+  robots.push_back({nodes, 0.5, {{-1, -1, -1}, {0, 0, 0}, 2, 32768 + 2, -1, {}}, key_at(1, 1, 3)});
+  return robots;
+}
+
+// The box around the robot free, so that there is a corridor more often than not.
+void clear_around(VoxelGrid& grid, const Robot& robot, const TravelCorridor& corridor) {
+  const VoxelKey cell = corridor.cell_of(robot.at);
+  const auto& [low, high] = std::pair(robot.rule.low, robot.rule.high);
+  for_each_key({moved(cell, low[0], low[1], low[2]), moved(cell, high[0], high[1], high[2])},
+               [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+}
+
+TEST(TravelCorridor, IsWhatItsDefinitionSays) {
+  std::size_t cells = 0;
+  int number = 0;
+  for (const Robot& robot : robots()) {
+    ++number;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      SCOPED_TRACE(testing::Message() << "robot " << number << " seed " << seed);
+      VoxelGrid grid = random_map(seed, robot.resolution, seed % 2 == 0 ? 40 : 400);
+      TravelCorridor corridor(robot.options, grid.lattice(), kBounds);
+      clear_around(grid, robot, corridor);
+      corridor.update(grid, {}, robot.at);
+      expect_as_defined(corridor, grid, robot);
+      if (testing::Test::HasFatalFailure()) return;
+      cells += corridor.cells().size();
+    }
+  }
+  EXPECT_GT(cells, 10'000U);
+}
+
+TEST(TravelCorridor, FollowsChangesAsIfMadeAnew) {
+  for (const Robot& robot : robots()) {
+    Random random(7);
+    VoxelGrid grid = random_map(3, robot.resolution, 300);
+    TravelCorridor corridor(robot.options, grid.lattice(), kBounds);
+    Robot here = robot;
+    for (int step = 0; step < 25; ++step) {
+      std::vector<VoxelKey> changed;
+      for (int n = random.below(60); n >= 0; --n) {
+        const VoxelKey key = key_at(random.below(40) - 20, random.below(40) - 20, random.below(25) - 8);
+        const Occupancy state = random.one_in(3) ? kStates[random.below(3)] : Occupancy::kFree;
+        if (grid.at(key) != state || random.one_in(10)) changed.push_back(key);
+        grid.set(key, state);
+      }
+      const auto& cells = corridor.cells();
+      if (!cells.empty() && random.one_in(2))
+        here.at = cells[static_cast<std::size_t>(random.below(static_cast<int>(cells.size())))];
+      if (random.one_in(10)) here.at = moved(here.at, 0, 0, random.one_in(2) ? 1 : -1);
+      corridor.update(grid, changed, here.at);
+      TravelCorridor fresh(robot.options, grid.lattice(), kBounds);
+      fresh.update(grid, {}, here.at);
+      ASSERT_EQ(corridor.state(), fresh.state());
+      ASSERT_TRUE(std::ranges::equal(corridor.cells(), fresh.cells()));
+      for_each_key(kBounds, [&](const VoxelKey& key) {
+        ASSERT_EQ(corridor.passable(key), fresh.passable(key));
+        ASSERT_EQ(corridor.distance(key), fresh.distance(key));
+      });
+    }
+  }
+}
+
+TEST(TravelCorridor, KeepsToGround) {
+  VoxelGrid grid(0.3);
+  for_each_key(kBounds, [&](const VoxelKey& key) {
+    if (key.z >= 32768) grid.set(key, Occupancy::kFree);
+    // Rings of floor every third voxel along x, up to a platform's edge at x = 6, beyond which it is open.
+    if (key.z == 32767 && key.x <= 32768 + 6 && key.x % 3 == 32768 % 3) grid.set(key, Occupancy::kOccupied);
+    if (key.z == 32767 && key.x > 32768 + 9) grid.set(key, Occupancy::kFree);
+  });
+  TravelCorridor corridor(ugv_travel(), grid.lattice(), kBounds);
+  corridor.update(grid, {}, key_at(0, 0, 2));
+  ASSERT_EQ(corridor.state(), CorridorState::kReady);
+  int farthest = 0;
+  for (const VoxelKey& key : corridor.cells()) farthest = std::max(farthest, key.x - 32768);
+  EXPECT_EQ(farthest, 7);  // the last ring's neighbour, and two voxels from what is known to be open
+
+  corridor.update(grid, {}, key_at(9, 0, 2));
+  EXPECT_EQ(corridor.state(), CorridorState::kWithoutGround);
+  EXPECT_TRUE(corridor.cells().empty());
+
+  TravelOptions lenient = ugv_travel();
+  lenient.require_ground = false;
+  TravelCorridor flying(lenient, grid.lattice(), kBounds);
+  flying.update(grid, {}, key_at(0, 0, 2));
+  for (const VoxelKey& key : flying.cells()) farthest = std::max(farthest, key.x - 32768);
+  EXPECT_EQ(farthest, 12);  // half a box from the bounds
+}
+
+TEST(TravelCorridor, HasReasonsForHavingNoCells) {
+  VoxelGrid grid(0.3);
+  TravelCorridor corridor(uav_travel(), grid.lattice(), kBounds);
+  EXPECT_EQ(corridor.state(), CorridorState::kNotUpdated);
+  EXPECT_TRUE(corridor.cells().empty());
+  EXPECT_FALSE(corridor.passable(key_at(0, 0, 6)));
+  EXPECT_TRUE(corridor.path_to(key_at(0, 0, 6)).empty());
+  const auto state = [&](const VoxelKey& robot) {
+    TravelCorridor fresh(uav_travel(), grid.lattice(), kBounds);
+    fresh.update(grid, {}, robot);
+    EXPECT_EQ(fresh.cells().empty(), fresh.state() != CorridorState::kReady);
+    EXPECT_FALSE(describe(fresh.state()).empty());
+    return fresh.state();
+  };
+  EXPECT_EQ(state(key_at(0, 0, 6)), CorridorState::kUnknown);
+  grid.set(key_at(0, 0, 6), Occupancy::kOccupied);
+  EXPECT_EQ(state(key_at(0, 0, 6)), CorridorState::kOccupied);
+  grid.set(key_at(0, 0, 6), Occupancy::kFree);
+  EXPECT_EQ(state(key_at(0, 0, 6)), CorridorState::kBoxNotFree);
+  for_each_key(kBounds, [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+  EXPECT_EQ(state(key_at(0, 0, 6)), CorridorState::kReady);
+  EXPECT_EQ(state(key_at(0, 0, 3)), CorridorState::kTooLow);
+  EXPECT_EQ(state(key_at(40, 0, 6)), CorridorState::kOutside);
+  EXPECT_EQ(state({0, 0, 0}), CorridorState::kOutside);
+  EXPECT_EQ(state({65535, 65535, 65535}), CorridorState::kOutside);
+}
+
+TEST(TravelCorridor, WorksAtTheEndsOfTheKeyRange) {
+  VoxelGrid grid(0.3);
+  const KeyBox corner{{0, 0, 0}, {9, 9, 9}};
+  for_each_key(corner, [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+  TravelOptions options = uav_travel();
+  options.floor = -1e9;
+  TravelCorridor corridor(options, grid.lattice(), corner);
+  corridor.update(grid, {}, {5, 5, 5});
+  EXPECT_EQ(corridor.cells().size(), 512U);
+  EXPECT_EQ(corridor.cells()[0], (VoxelKey{1, 1, 1}));
+  TravelCorridor ugv(ugv_travel(), grid.lattice(), corner);
+  ugv.update(grid, {}, {5, 5, 1});  // its box would stand below the key range
+  EXPECT_EQ(ugv.state(), CorridorState::kBoxNotFree);
+  ugv.update(grid, {}, {5, 5, 2});  // and here its floor lies there
+  EXPECT_EQ(ugv.state(), CorridorState::kWithoutGround);
+}
+
+TEST(TravelCorridor, RefusesOptionsThatCannotBe) {
+  const Lattice lattice(0.3);
+  const auto refuses = [&](auto change, TravelOptions options) {
+    change(options);
+    EXPECT_THROW(TravelCorridor(options, lattice, kBounds), std::invalid_argument);
+  };
+  const double nan = std::nan("");
+  for (const double bad : {-1.0, 0.0, nan, 1e9})
+    for (const int axis : {0, 1, 2}) refuses([&](TravelOptions& o) { o.extents[axis] = bad; }, uav_travel());
+  for (const double bad : {-1.0, nan, 1e9})
+    refuses([&](TravelOptions& o) { o.sensor_height = bad; }, ugv_travel());
+  refuses([](TravelOptions& o) { o.ground_reach = -1; }, ugv_travel());
+  refuses([](TravelOptions& o) { o.ground_extents = Eigen::Vector2d(-1, 1); }, ugv_travel());
+  refuses([](TravelOptions& o) { o.node_edge = 1.2; }, ugv_travel());
+  refuses([&](TravelOptions& o) { o.floor = nan; }, uav_travel());
+  refuses([&](TravelOptions& o) { o.min_height = 1 / 0.0; }, uav_travel());
+  for (const double bad : {-1.0, 0.5, nan, 1e9})
+    refuses([&](TravelOptions& o) { o.node_edge = bad; }, uav_travel());
+  EXPECT_THROW(TravelCorridor(uav_travel(), lattice, {key_at(1, 0, 0), key_at(0, 0, 0)}),
+               std::invalid_argument);
+  EXPECT_THROW(TravelCorridor(uav_travel(), lattice, {{0, 0, 0}, {65535, 65535, 65535}}),
+               std::invalid_argument);
+  TravelCorridor corridor(uav_travel(), lattice, kBounds);
+  EXPECT_THROW(corridor.update(VoxelGrid(0.1), {}, key_at(0, 0, 6)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::planner
