@@ -34,7 +34,7 @@ struct Options {
   std::filesystem::path cache = std::filesystem::temp_directory_path() / "frontlux-maps";
   std::vector<int> threads{1, 2}, samples{16, 64, 256};
   std::size_t ground_viewpoints = 40'000, aerial_viewpoints = 150'000;
-  bool quick = false;
+  bool corners = false, quick = false;
   std::string json;
 };
 
@@ -202,9 +202,10 @@ void prepare(const std::filesystem::path& file, const Options& options, Session&
     session.subjects.push_back(load_subject(file, file.stem().string()));
     const Subject& subject = *session.subjects.back();
     std::cout << describe(subject) << std::endl;
-    session.scenes.push_back(
-        std::make_unique<PlannerScene>(subject, options.quick ? 2'000 : options.ground_viewpoints,
-                                       options.quick ? 5'000 : options.aerial_viewpoints));
+    session.scenes.push_back(std::make_unique<PlannerScene>(
+        subject, options.corners ? planner::Adjacency::kCorners : planner::Adjacency::kFaces,
+        options.quick ? 2'000 : options.ground_viewpoints,
+        options.quick ? 5'000 : options.aerial_viewpoints));
     const PlannerScene& scene = *session.scenes.back();
     std::cout << "  " << scene.frontiers.size() << " frontiers; corridors of " << scene.ground_cells.size()
               << " and " << scene.aerial_cells.size()
@@ -264,6 +265,8 @@ std::optional<Options> read_options(SplitArguments& arguments, int& exit_code) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{10'000'000}));
   app.add_option("--json", options.json, "write Google Benchmark's JSON to this file");
   app.add_option("--map-cache", options.cache, "folder in which generated maps are kept");
+  app.add_flag("--corners", options.corners,
+               "frontiers share an edge or corner with a free voxel, too: more of them");
   app.add_flag("--quick", options.quick, "a smoke run: few viewpoints, one repetition");
   try {
     app.parse(arguments.own);

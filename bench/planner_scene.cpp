@@ -2,7 +2,6 @@
 
 #include "random.hpp"
 
-#include <frontlux/planner/frontier.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <algorithm>
@@ -73,18 +72,20 @@ std::size_t scan(VoxelGrid& grid, const RayCaster& caster, const VoxelKey& from,
   return changed;
 }
 
-std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds) {
-  const planner::FrontierSet set(grid, bounds, planner::Adjacency::kCorners);
+std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds,
+                                   planner::Adjacency adjacency) {
+  const planner::FrontierSet set(grid, bounds, adjacency);
   return {set.keys().begin(), set.keys().end()};
 }
 
 }  // namespace
 
-PlannerScene::PlannerScene(const Subject& map, std::size_t ground_count, std::size_t aerial_count)
+PlannerScene::PlannerScene(const Subject& map, planner::Adjacency adjacency, std::size_t ground_count,
+                           std::size_t aerial_count)
     : subject(map), ground(planner::ugv()), aerial(planner::uav()), scanned(map.grid) {
   const VoxelGrid& grid = subject.grid;
   const auto bounds = grid.known_bounds();
-  if (bounds) frontiers = frontiers_of(grid, *bounds);
+  if (bounds) frontiers = frontiers_of(grid, *bounds, adjacency);
   if (frontiers.empty()) throw std::runtime_error(subject.name + ": has no frontiers; give another map");
   const int up = static_cast<int>(ground.travel.sensor_height / grid.resolution()) + 1;
   KeyBox plane = *bounds;
@@ -108,7 +109,7 @@ PlannerScene::PlannerScene(const Subject& map, std::size_t ground_count, std::si
     if (image.values()[i].gain >= image.values()[best].gain) best = i;
   window = best_window(image.bin_hits(best), aerial.view.horizontal);
   changed_voxels = scan(scanned, caster, image.viewpoints()[best], window.yaw, aerial.view);
-  scanned_frontiers = frontiers_of(scanned, *bounds);
+  scanned_frontiers = frontiers_of(scanned, *bounds, adjacency);
   for_each_change(grid, scanned, [&](const Block& block) { change.push_back(block); });
 }
 

@@ -2,6 +2,7 @@
 
 #include "subject.hpp"
 
+#include <frontlux/planner/frontier.hpp>
 #include <frontlux/planner/frontier_distribution.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/view_quality.hpp>
@@ -17,7 +18,7 @@ namespace frontlux::bench {
 struct PlannerScene {
   const Subject& subject;
   planner::Robot ground, aerial;
-  std::vector<VoxelKey> frontiers;          ///< unknown voxels with a free one among their 26 neighbours
+  std::vector<VoxelKey> frontiers;          ///< of the map, all
   std::vector<VoxelKey> ground_cells;       ///< the largest travel corridor that was found
   std::vector<VoxelKey> aerial_cells;       ///< the same in space
   std::vector<VoxelKey> ground_viewpoints;  ///< to render
@@ -28,7 +29,8 @@ struct PlannerScene {
   std::size_t changed_voxels = 0;
 
   /// @throws std::runtime_error if the map has no frontiers or no free space
-  PlannerScene(const Subject& subject, std::size_t ground_viewpoints, std::size_t aerial_viewpoints);
+  PlannerScene(const Subject& subject, planner::Adjacency adjacency, std::size_t ground_viewpoints,
+               std::size_t aerial_viewpoints);
 
   [[nodiscard]] std::vector<planner::FrontierAgent> agents() const;
 };
