@@ -288,18 +288,44 @@ TEST(GoalSelection, ClustersAsANaiveSearchFindsThem) {
   }
 }
 
+TEST(GoalSelection, TheWindowHoldsTheClustersTargetWhateverElseCouldBeSeen) {
+  GoalRoom room(36, 9);
+  std::vector<VoxelKey> frontiers = {room.key(8, 17, 4), room.key(8, 18, 4), room.key(9, 17, 4)};
+  for (const int y : {8, 12, 16, 20, 24})
+    for (const int z : {4, 5}) frontiers.push_back(room.key(27, y, z));
+  for (const VoxelKey& frontier : frontiers) room.grid.set(frontier, Occupancy::kUnknown);
+  std::sort(frontiers.begin(), frontiers.end());
+  const auto caster = make_grid_ray_caster(room.grid);
+  TeamMember member = aerial_robot(Method::kPaper);
+  member.robot.view.max_range = 6.0;
+  member.options.cluster_edge = 1.2;
+  GoalSelection selection({member}, room.grid.lattice(), room.bounds());
+  const Pose pose = room.pose(17, 17, 4);
+  const Goal goal = selection.select(*caster, room.grid, frontiers, {&pose, 1}).goals[0];
+  const auto cells = selection.corridor(0).cells();
+  expect_goal(goal, naive_cluster_goal(*caster, {cells.begin(), cells.end()}, room.key(17, 17, 4), frontiers,
+                                       member.robot.view, room.grid.lattice()));
+  ASSERT_TRUE(goal.pose);
+  bool holds_target = false;
+  for (const VoxelKey& target : {room.key(8, 17, 4), room.key(8, 18, 4), room.key(9, 17, 4)})
+    holds_target = holds_target ||
+                   member.robot.view.contains(offset_between(goal.cell, target, kResolution), goal.pose->yaw);
+  EXPECT_TRUE(holds_target);
+}
+
 TEST(GoalSelection, NearestIsTheFirstCellByStepsThatSeesAny) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     GoalRoom room(26, 6, seed);
     room.clear(5, 20, 2);
     const auto caster = make_grid_ray_caster(room.grid);
-    for (TeamMember member : {ground_robot(), aerial_robot()}) {
+    for (const int from : {0, 14}) {
+      TeamMember member = seed % 2 == 0 ? ground_robot() : aerial_robot();
       member.options.rule = GoalRule::kNearest;
       GoalSelection selection({member}, room.grid.lattice(), room.bounds());
       const Pose pose = room.pose(5, 20, 2);
-      // Only what lies at the other side of the room.
+      // Everything, or only what lies at the other side of the room.
       auto frontiers = room.frontiers();
-      std::erase_if(frontiers, [&](const VoxelKey& key) { return key.x < GoalRoom::kLow + 14; });
+      std::erase_if(frontiers, [&](const VoxelKey& key) { return key.x < GoalRoom::kLow + from; });
       const Goal goal = selection.select(*caster, room.grid, frontiers, {&pose, 1}).goals[0];
       const auto cells = selection.corridor(0).cells();
       const auto steps = naive_steps(cells, room.key(5, 20, 2));
