@@ -3,6 +3,7 @@
 #include "info_command.hpp"
 #include "map_command.hpp"
 #include "plan_command.hpp"
+#include "render_command.hpp"
 #include "world_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -22,9 +23,9 @@ constexpr int kBadInput = 2, kFailure = 1;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 14> kNumeric = {
+  constexpr std::array<std::string_view, 15> kNumeric = {
       "--from", "--to",         "--direction", "--range", "--start", "--ground",     "--scale",
-      "--seed", "--resolution", "--bounds",    "--at",    "--yaw",   "--iterations", "--min-height"};
+      "--seed", "--resolution", "--bounds",    "--at",    "--yaw",   "--iterations", "--min-height", "--floor"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -61,6 +62,7 @@ int run(int argc, const char* const* argv) {
   frontlux::app::add_world_command(app);
   frontlux::app::add_map_command(app);
   frontlux::app::add_plan_command(app);
+  frontlux::app::add_render_command(app);
   try {
     auto words = words_of(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them

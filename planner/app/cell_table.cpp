@@ -1,0 +1,67 @@
+#include "cell_table.hpp"
+
+#include "color_scale.hpp"
+#include "text.hpp"
+#include "whole_file.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+namespace frontlux::app {
+namespace {
+
+void write(const std::filesystem::path& file, const std::string& bytes) {
+  planner::detail::write_whole_file(file, [&](std::ostream& stream) {
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+// Little-endian on every machine.
+void append(std::string& bytes, std::uint32_t word) {
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    bytes.push_back(static_cast<char>((word >> shift) & 0xFFU));
+}
+
+}  // namespace
+
+void write_csv(const std::filesystem::path& file, const Lattice& lattice,
+               std::span<const planner::RenderedCell> cells) {
+  std::string out = "key_x,key_y,key_z,x,y,z,distance,gain,standard_error,quality,hits,yaw\n";
+  for (const planner::RenderedCell& cell : cells) {
+    const VoxelKey& key = cell.cell;
+    for (const std::uint16_t k : {key.x, key.y, key.z}) out += std::to_string(k) + ',';
+    for (const std::uint16_t k : {key.x, key.y, key.z}) out += rounded(lattice.center(k)) + ',';
+    for (const double number : {cell.distance, cell.gain, cell.standard_error, cell.quality})
+      out += to_text(number) + ',';
+    out += std::to_string(cell.hits) + ',' + to_text(cell.yaw) + '\n';
+  }
+  write(file, out);
+}
+
+void write_ply(const std::filesystem::path& file, const Lattice& lattice,
+               std::span<const planner::RenderedCell> cells) {
+  std::string out =
+      "ply\nformat binary_little_endian 1.0\ncomment frontlux view quality: metres, z up\nelement vertex " +
+      std::to_string(cells.size()) + '\n';
+  for (const char* name : {"x", "y", "z", "distance", "gain", "standard_error", "quality", "yaw"})
+    out += std::string("property float ") + name + '\n';
+  out += "property uint hits\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  double best = 0.0;
+  for (const planner::RenderedCell& cell : cells) best = std::max(best, cell.quality);
+  for (const planner::RenderedCell& cell : cells) {
+    for (const double number :
+         {lattice.center(cell.cell.x), lattice.center(cell.cell.y), lattice.center(cell.cell.z),
+          cell.distance, cell.gain, cell.standard_error, cell.quality, cell.yaw})
+      append(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
+    append(out, cell.hits);
+    const Color color = color_of_share(best > 0.0 ? cell.quality / best : 0.0);
+    for (const std::uint8_t part : {color.red, color.green, color.blue})
+      out.push_back(static_cast<char>(part));
+  }
+  write(file, out);
+}
+
+}  // namespace frontlux::app

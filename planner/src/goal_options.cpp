@@ -1,0 +1,74 @@
+#include <frontlux/planner/goal_selection.hpp>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::planner {
+namespace {
+
+void check_number(const char* name, double value, double low, const char* unit) {
+  if (!(value >= low && std::isfinite(value)))
+    throw std::invalid_argument(std::string("goal selection: ") + name + " is " + std::to_string(value) +
+                                " " + unit + ", but has to be finite and at least " + std::to_string(low));
+}
+
+}  // namespace
+
+void GoalOptions::check() const {
+  if (rule > GoalRule::kNearest)
+    throw std::invalid_argument("goal selection: rule is " + std::to_string(static_cast<int>(rule)) +
+                                ", which is none of the values of GoalRule");
+  if (distance > TravelDistance::kStraight)
+    throw std::invalid_argument("goal selection: distance is " + std::to_string(static_cast<int>(distance)) +
+                                ", which is none of the values of TravelDistance");
+  check_number("lambda", lambda, 0.0, "per metre");
+  check_number("min_distance", min_distance, 0.0, "m");
+  check_number("viewpoint_spacing", viewpoint_spacing, 0.0, "m");
+  check_number("cluster_edge", cluster_edge, 0.0, "m");
+  if (surroundings < 0 || surroundings > 64)
+    throw std::invalid_argument("goal selection: surroundings is " + std::to_string(surroundings) +
+                                ", but has to be 0 to 64");
+  if (refined < 0)
+    throw std::invalid_argument("goal selection: refined is " + std::to_string(refined) +
+                                ", but has to be 0 or more");
+  rendering.check();
+}
+
+GoalOptions goal_options(const Robot& robot, Method method) {
+  const bool on_plane = robot.travel.motion == Motion::kPlane;
+  GoalOptions options;
+  options.rendering.azimuth_bins = 36;
+  if (method == Method::kPaper) {
+    options.distance = TravelDistance::kStraight;
+    options.rule = on_plane ? GoalRule::kViewQuality : GoalRule::kClusters;
+    options.rendering.estimator = ViewQualityOptions::Estimator::kPaper;
+    options.refined = on_plane ? 0 : 4096;  // all cells that see a frontier
+  } else if (!on_plane) {
+    options.rendering.sampling = ViewQualityOptions::Sampling::kBuckets;
+    options.viewpoint_spacing = 0.6;
+  }
+  return options;
+}
+
+std::string_view name_of(GoalState state) {
+  switch (state) {
+    case GoalState::kOwn:
+      return "own";
+    case GoalState::kReleased:
+      return "released";
+    case GoalState::kLeftOver:
+      return "left_over";
+    case GoalState::kNoCorridor:
+      return "no_corridor";
+    case GoalState::kNoFrontiers:
+      return "no_frontiers";
+    case GoalState::kNothingAssigned:
+      return "nothing_assigned";
+    case GoalState::kNothingVisible:
+      return "nothing_visible";
+  }
+  return "unknown";
+}
+
+}  // namespace frontlux::planner

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <frontlux/planner/goal_selection.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace frontlux::planner::detail {
+
+/// What a rule needs to find a goal for one robot.
+struct GoalQuery {
+  const RayCaster& caster;
+  const Lattice& lattice;
+  const TravelCorridor& corridor;
+  const FieldOfView& view;
+  const GoalOptions& options;
+  Eigen::Vector3d position;           ///< [m] of the robot's sensor
+  std::span<const VoxelKey> targets;  ///< its frontiers, sorted
+
+  /// Number of azimuth bins to render with; 0 if the robot sees all around.
+  [[nodiscard]] int bins() const {
+    return view.shape == FieldOfView::Shape::kSpinning ? 0 : options.rendering.azimuth_bins;
+  }
+
+  [[nodiscard]] Eigen::Vector3d center(const VoxelKey& key) const {
+    return {lattice.center(key.x), lattice.center(key.y), lattice.center(key.z)};
+  }
+
+  /// [m] from the robot to a cell of the corridor, as eq. 1 takes it.
+  [[nodiscard]] double distance(const VoxelKey& cell) const {
+    return options.distance == TravelDistance::kPath ? corridor.distance(cell).value()
+                                                     : (center(cell) - position).norm();
+  }
+
+  /// Whether a distance [m] is far enough for a goal.
+  [[nodiscard]] bool far_enough(double distance) const {
+    constexpr double kRounding = 1e-6;  // 0.6 m are two voxels of 0.3 m, whatever the sum says
+    return distance >= options.min_distance - kRounding;
+  }
+
+  /// Eq. 1.
+  [[nodiscard]] double quality(double distance, double gain) const {
+    return std::exp(-options.lambda * distance) * gain;
+  }
+
+  /// From one voxel to another [m].
+  [[nodiscard]] Eigen::Vector3d offset(const VoxelKey& from, const VoxelKey& to) const {
+    return Eigen::Vector3d(to.x - from.x, to.y - from.y, to.z - from.z) * lattice.resolution();
+  }
+
+  /// The yaw [rad] that looks along an offset.
+  [[nodiscard]] static double yaw_along(const Eigen::Vector3d& offset) {
+    return std::atan2(offset.y(), offset.x());
+  }
+};
+
+}  // namespace frontlux::planner::detail

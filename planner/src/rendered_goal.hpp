@@ -1,0 +1,32 @@
+#pragma once
+
+#include "goal_query.hpp"
+
+#include <frontlux/view_quality.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// What a rendered viewpoint is worth: of all it may see, or, if its robot does not see all around, of what
+/// the best yaw shows.
+/// @param containing  if given, only yaws that show this voxel count
+[[nodiscard]] RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
+                                const VoxelKey* containing = nullptr);
+
+/// The best cell of an image by eq. 1, of equals the one with the smallest key; nothing if no cell that is
+/// far enough sees a target. With `refined` the best cells by the image are rendered again with all their
+/// targets, and while that shows no gain, all others which the image does not exclude.
+/// @param containing  if given, a target that has to be in view
+[[nodiscard]] std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityImage& image,
+                                                    const VoxelKey* containing = nullptr);
+
+/// An image of some cells, and the random numbers that the options ask for.
+[[nodiscard]] ViewQualityImage render_cells(const GoalQuery& query, std::span<const VoxelKey> cells,
+                                            const ViewQualityOptions& rendering);
+
+/// The options of a rendering that takes all targets.
+[[nodiscard]] ViewQualityOptions all_targets(const GoalQuery& query);
+
+}  // namespace frontlux::planner::detail
