@@ -348,6 +348,12 @@ std::vector<VoxelKey> Mapping::mark_free(const Cylinder& cylinder) {
       });
 }
 
+std::vector<VoxelKey> Mapping::mark_free(std::span<const VoxelKey> voxels) {
+  for (const VoxelKey& key : voxels)
+    if (state_->bounds.contains(key)) state_->tree.set_free(key, state_->changes);
+  return state_->follow_changes();
+}
+
 const octomap::OcTree& Mapping::tree() const { return state_->tree; }
 const VoxelGrid& Mapping::grid() const { return state_->grid; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
