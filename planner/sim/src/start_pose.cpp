@@ -145,8 +145,10 @@ Eigen::Vector3d free_start(const World& world, double resolution, bool faces_awa
   // What lies on a voxel's face, but for rounding, is in the voxel below.
   constexpr double kOnFace = 1e-3;  // [m]
   const auto floor_layer = floor ? lattice.key(*floor - kOnFace) : std::nullopt;
-  if (layer && floor_layer && *floor_layer >= *layer && *layer < Lattice::kKeysPerAxis - 1) {
-    free.z() = lattice.center(static_cast<std::uint16_t>(*layer + 1));
+  const bool on_floor = floor && start.z() - *floor < kOnFace;
+  if (layer && floor_layer && (on_floor || *floor_layer >= *layer) &&
+      *floor_layer < Lattice::kKeysPerAxis - 1) {
+    free.z() = lattice.center(static_cast<std::uint16_t>(*floor_layer + 1));
     const auto still = floor_below(world.mesh, free);
     if (!world.bounds.contains(free) || !still || *still > *floor + kOnFace)
       refuse("has no room above the floor that it is on, at z = " + std::to_string(*floor));
