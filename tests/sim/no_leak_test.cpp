@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -53,17 +52,6 @@ void for_each_key(const KeyBox& box, const Visit& visit) {
       for (unsigned z = box.min.z; z <= box.max.z; ++z)
         visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                        static_cast<std::uint16_t>(z)});
-}
-
-KeyBox around(const VoxelKey& key, int reach, const KeyBox& bounds) {
-  const auto low = [&](std::uint16_t at, std::uint16_t bound) {
-    return static_cast<std::uint16_t>(std::max<int>(at - reach, bound));
-  };
-  const auto high = [&](std::uint16_t at, std::uint16_t bound) {
-    return static_cast<std::uint16_t>(std::min<int>(at + reach, bound));
-  };
-  return {{low(key.x, bounds.min.x), low(key.y, bounds.min.y), low(key.z, bounds.min.z)},
-          {high(key.x, bounds.max.x), high(key.y, bounds.max.y), high(key.z, bounds.max.z)}};
 }
 
 // The voxels that a surface comes within 2 mm of, triangle by triangle.
@@ -170,7 +158,8 @@ class FinerTruth {
 };
 
 struct Mapped {
-  std::size_t free = 0, occupied = 0, cleared = 0, slivers = 0;
+  std::size_t free = 0, occupied = 0;
+  std::size_t cleared = 0;  // surface that is mapped free
 };
 
 // Checks every voxel of a map.
@@ -200,7 +189,6 @@ Mapped expect_no_leak(const World& world, const GroundTruth& truth, const Eigen:
           ++mapped.cleared;
           return;
         }
-        ++mapped.slivers;
         if (!finer) finer.emplace(world, truth, start, views);
         if (complaints < 5 && !finer->reaches(key)) complain("beyond a wall lies the free", key);
         return;
@@ -228,9 +216,8 @@ Mapped sweep_and_check(const World& world, double resolution, double spacing, bo
   const Mapped mapped = expect_no_leak(world, truth, start, views, mapping);
   EXPECT_GT(mapped.free, 0U);
   EXPECT_GT(mapped.occupied, 0U);
-  if (std::getenv("FRONTLUX_SHOW") != nullptr)
-    std::printf("%s %g m: %zu scans, free %zu, occupied %zu, cleared %zu, slivers %zu\n", world.name.c_str(),
-                resolution, views.size(), mapped.free, mapped.occupied, mapped.cleared, mapped.slivers);
+  // Rays that graze a surface clear some of its voxels; not many.
+  EXPECT_LT(static_cast<double>(mapped.cleared), 0.12 * static_cast<double>(mapped.occupied));
   return mapped;
 }
 
