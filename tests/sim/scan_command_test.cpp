@@ -105,8 +105,8 @@ TEST_F(ScanCommand, RefusesPosesByLine) {
   };
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"1,2\n", "line 1: has 2 fields instead of 4"},
-           {"x,y,z,yaw\n8,8,1,nan\n", "line 2: \"nan\" is no finite number"},
-           {"8.4,8.3,1,0\n\n8,8,1,east\n", "line 3: \"east\" is no finite number"},
+           {"x,y,z,yaw\n8,8,1,nan\n", "line 2: 'nan' is no finite number"},
+           {"8.4,8.3,1,0\n\n8,8,1,east\n", "line 3: 'east' is no finite number"},
            {"8.4,8.3,1,0\n8.4,8.3,99,0\n", "line 2: the sensor at 8.4, 8.3, 99 m is outside"},
            {"8.4,8.3,1,0\n8.4,8.3,-0.1,0\n", "line 2: the sensor at 8.4, 8.3, -0.1 m is in a wall"},
            {"8.4,8.3,1e999,0\n", "line 1"},

@@ -202,7 +202,7 @@ TEST(Sweep, LooksFromEveryCubeThatHasAPlace) {
                       .contains(view.sensor_pose.position));
     }
   EXPECT_NEAR(uav[3].sensor_pose.yaw, 1.5 * std::numbers::pi, 1e-12);
-  for (const double spacing : {0.0, -1.0, std::nan(""), INFINITY})
+  for (const double spacing : {0.0, -1.0, std::nan(""), HUGE_VAL})
     EXPECT_THROW(static_cast<void>(sweep(truth, Robot::kUav, {{3.15, 3.15, 1.35}}, spacing)),
                  std::invalid_argument);
 }
