@@ -17,13 +17,7 @@ namespace frontlux::synthetic {
 namespace {
 
 constexpr std::array kRecipes{
-    MapRecipe{"room_0.05m", ".bt", SceneKind::kRoom, 0.05},
-    MapRecipe{"room_0.1m", ".bt", SceneKind::kRoom, 0.1},
-    MapRecipe{"room_0.2m", ".ot", SceneKind::kRoom, 0.2},
     MapRecipe{"color_room_0.2m", ".ot", SceneKind::kRoom, 0.2, true},
-    MapRecipe{"corridor_0.1m", ".bt", SceneKind::kCorridor, 0.1},
-    MapRecipe{"hall_0.2m", ".bt", SceneKind::kHall, 0.2},
-    MapRecipe{"hall_0.3m", ".bt", SceneKind::kHall, 0.3},
     MapRecipe{"building_0.5m", ".bt", SceneKind::kBuilding, 0.5},
     MapRecipe{"building_0.3m", ".bt", SceneKind::kBuilding, 0.3},
     MapRecipe{"building_0.2m", ".bt", SceneKind::kBuilding, 0.2},
@@ -47,10 +41,6 @@ Survey plan_survey(SceneKind kind, double resolution, std::uint64_t seed) {
   switch (kind) {
     case SceneKind::kRoom:
       return survey(make_room_scene(seed), 3, 1.0, 5.0, resolution);
-    case SceneKind::kCorridor:
-      return survey(make_corridor_scene(seed), 5, 2.0, 8.0, resolution);
-    case SceneKind::kHall:
-      return survey(make_hall_scene(seed), 4, 4.0, 9.0, resolution);
     case SceneKind::kBuilding:
       break;
   }

@@ -49,31 +49,4 @@ Scene make_room_scene(std::uint64_t seed) {
   return std::move(draft).finish();
 }
 
-Scene make_corridor_scene(std::uint64_t seed) {
-  Random random(seed);
-  Draft draft({-100, -45, 100, 45}, 27);
-  draft.add_wall({false, -10, -100, 100}, {door(-90, -50, random), door(-40, 0, random), {60, 85, 0, 27}});
-  draft.add_wall({false, 10, -100, 100}, {door(-90, -30, random), door(-10, 90, random)});
-  for (const int x : {-45, 5, 50}) draft.add_wall({true, x, -45, -10}, {});
-  draft.add_wall({true, -20, 10, 45}, {door(14, 40, random)});
-  for (int x = -95; x < 95; x += 25) draft.solids.add({x, 6, x + 3, 9}, {0, 27});
-  draft.solids.add_furniture({-100, -45, -45, -10}, 0, 8, draft.passages, random);
-  draft.solids.add_furniture({-45, -45, 5, -10}, 0, 8, draft.passages, random);
-  draft.solids.add_furniture({-100, 10, -20, 45}, 0, 8, draft.passages, random);
-  draft.solids.add_furniture({-20, 10, 100, 45}, 0, 8, draft.passages, random);
-  return std::move(draft).finish();
-}
-
-Scene make_hall_scene(std::uint64_t seed) {
-  Random random(seed);
-  Draft draft({-90, -70, 90, 70}, 64);
-  for (int x = -50; x <= 50; x += 50) {
-    for (const int y : {-30, 30}) draft.solids.add({x - 2, y - 2, x + 2, y + 2}, {0, 64});
-  }
-  draft.solids.add({-90, 45, 90, 70}, {29, 31});
-  draft.solids.add({-90, 45, 90, 46}, {31, 40});
-  draft.solids.add_furniture({-90, -70, 90, 70}, 0, 40, {}, random);
-  return std::move(draft).finish();
-}
-
 }  // namespace frontlux::synthetic

@@ -1,9 +1,11 @@
 #include "bad_input.hpp"
 #include "cast_command.hpp"
 #include "info_command.hpp"
+#include "interrupt.hpp"
 #include "map_command.hpp"
 #include "plan_command.hpp"
 #include "render_command.hpp"
+#include "scan_command.hpp"
 #include "world_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -19,13 +21,14 @@
 
 namespace {
 
-constexpr int kBadInput = 2, kFailure = 1;
+constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 15> kNumeric = {
-      "--from", "--to",         "--direction", "--range", "--start", "--ground",     "--scale",
-      "--seed", "--resolution", "--bounds",    "--at",    "--yaw",   "--iterations", "--min-height", "--floor"};
+  constexpr std::array<std::string_view, 18> kNumeric = {
+      "--from",       "--to",         "--direction",  "--range",  "--start",   "--ground",
+      "--scale",      "--seed",       "--resolution", "--bounds", "--at",      "--yaw",
+      "--iterations", "--min-height", "--floor",      "--noise",  "--dropout", "--sweep"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -55,11 +58,13 @@ int run(int argc, const char* const* argv) {
       "  frontlux info building.bt\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux world station --seed 3 -o station.ply\n"
+      "  frontlux scan station --seed 3 -o station.bt\n"
       "Each command's --help says more. Lengths are in metres. Exit code: 0 if the question was answered,\n"
-      "2 if the input was not usable, 1 if anything else went wrong.");
+      "2 if the input was not usable, 130 after Ctrl-C, 1 if anything else went wrong.");
   frontlux::app::add_info_command(app);
   frontlux::app::add_cast_command(app);
   frontlux::app::add_world_command(app);
+  frontlux::app::add_scan_command(app);
   frontlux::app::add_map_command(app);
   frontlux::app::add_plan_command(app);
   frontlux::app::add_render_command(app);
@@ -87,6 +92,8 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const frontlux::app::BadInput& error) {
     return complain(error.what(), kBadInput);
+  } catch (const frontlux::app::Interrupted& stop) {
+    return complain(stop.what(), kInterrupted);
   } catch (const std::bad_alloc&) {
     return complain("not enough memory", kFailure);
   } catch (const std::exception& error) {

@@ -1,6 +1,8 @@
 #include "map_command.hpp"
 
 #include "bad_input.hpp"
+#include "map_output.hpp"
+#include "progress_line.hpp"
 #include "text.hpp"
 
 #include <frontlux/planner/mapping.hpp>
@@ -19,7 +21,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <unistd.h>
 #include <vector>
 
 namespace frontlux::app {
@@ -77,51 +78,18 @@ KeyBox parse_bounds(const Lattice& lattice, std::string_view text) {
   }
 }
 
-double parse_length(const char* name, const std::string& text) {
-  const double length = parse_number(name, text);
-  if (!(length > 0.0)) throw BadInput(std::string(name) + ": " + text + " m is no length; give one above 0");
-  return length;
-}
-
 MappingOptions mapping_options(const Options& options) {
   MappingOptions mapping;
-  mapping.resolution = parse_length("--resolution", options.resolution);
-  if (mapping.resolution < 1e-3 || mapping.resolution > 1e3)
-    throw BadInput("--resolution: " + options.resolution +
-                   " m is no voxel to map with; give 0.001 to 1000 m");
+  mapping.resolution = parse_resolution(options.resolution);
   if (!options.bounds.empty()) mapping.bounds = parse_bounds(Lattice(mapping.resolution), options.bounds);
   return mapping;
 }
 
-// What would fail in the end fails before the work.
-void check_output(const std::filesystem::path& file) {
-  if (file.extension() != ".bt" && file.extension() != ".ot")
-    throw BadInput("--output: " + file.string() + " is no name for a map; give one that ends in .bt or .ot");
-  std::error_code error;
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder, error))
-    throw BadInput("--output: there is no folder " + folder.string() + "; make it first");
-}
-
-// A line that replaces itself, if there is a terminal to see it.
-class Progress {
- public:
-  void show(std::size_t done, std::size_t all) const {
-    if (visible_) std::cerr << "\rscan " << done << " of " << all << std::flush;
-  }
-  ~Progress() {
-    if (visible_) std::cerr << "\r\033[K" << std::flush;
-  }
-
- private:
-  bool visible_ = ::isatty(STDERR_FILENO) != 0;
-};
-
 std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& mapping) {
-  const Progress progress;
+  const ProgressLine progress;
   std::uint64_t points = 0;
   for (std::size_t i = 0; i < recording.scans; ++i) {
-    progress.show(i + 1, recording.scans);
+    progress.show("scan " + std::to_string(i + 1) + " of " + std::to_string(recording.scans));
     const RecordedScan scan = recording.scan(i);
     const Eigen::Vector3f origin = scan.T_world_sensor.translation().cast<float>();
     if (!mapping.grid().lattice().key(origin))
@@ -137,7 +105,7 @@ void map(const Options& options) {
   const MappingOptions mapping_with = mapping_options(options);
   const double max_range = options.max_range.empty() ? std::numeric_limits<double>::infinity()
                                                      : parse_length("--max-range", options.max_range);
-  check_output(options.output);
+  check_map_output(options.output);
   try {
     const Recording recording = std::filesystem::is_directory(options.scans)
                                     ? open_folder(options.scans, options.poses)

@@ -76,6 +76,20 @@ double parse_number(std::string_view name, std::string_view text) {
   throw BadInput(std::string(name) + ": '" + std::string(text) + "' is not a finite number");
 }
 
+double parse_length(std::string_view name, std::string_view text) {
+  const double length = parse_number(name, text);
+  if (!(length > 0.0))
+    throw BadInput(std::string(name) + ": " + std::string(text) + " m is no length; give one above 0");
+  return length;
+}
+
+double parse_resolution(std::string_view text) {
+  const double resolution = parse_length("--resolution", text);
+  if (resolution < 1e-3 || resolution > 1e3)
+    throw BadInput("--resolution: " + std::string(text) + " m is no voxel to map with; give 0.001 to 1000 m");
+  return resolution;
+}
+
 Eigen::Vector3f parse_vector(std::string_view name, std::string_view text) {
   Eigen::Vector3f vector;
   std::string_view rest = text;

@@ -34,6 +34,14 @@ namespace frontlux::app {
 /// @throws BadInput
 [[nodiscard]] double parse_number(std::string_view name, std::string_view text);
 
+/// A finite number above 0 [m].
+/// @throws BadInput
+[[nodiscard]] double parse_length(std::string_view name, std::string_view text);
+
+/// The edge of a map's voxel, 1 mm to 1 km, from the option --resolution.
+/// @throws BadInput
+[[nodiscard]] double parse_resolution(std::string_view text);
+
 /// Three finite numbers with commas between them.
 /// @param name of the option, for the message
 /// @throws BadInput

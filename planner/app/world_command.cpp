@@ -6,7 +6,9 @@
 
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
+#include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/mesh_file.hpp>
+#include <frontlux/sim/start_pose.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -47,6 +49,22 @@ std::string start_text(const sim::World& world) {
          (floor ? "above a floor at z = " + rounded(*floor) + " m" : "with no floor below");
 }
 
+std::string observable_text(const SourcedWorld& sourced, double resolution) {
+  if (!sourced.world.start) return "not known: give --start";
+  if (sourced.voxels > kManyVoxels) return "not counted: too many voxels; give a larger --resolution";
+  try {
+    const sim::GroundTruth truth(
+        sourced.world, resolution,
+        sim::free_start(sourced.world, resolution, sourced.kind != WorldKind::kMesh));
+    const double voxel = resolution * resolution * resolution;
+    return rounded(static_cast<double>(truth.observable_voxels()) * voxel) +
+           " m^3: " + std::to_string(truth.free_voxels()) + " free voxels and " +
+           std::to_string(truth.surface_voxels()) + " on their surface";
+  } catch (const std::exception& error) {
+    return std::string("not known: ") + error.what();
+  }
+}
+
 void print_text(const SourcedWorld& sourced, const WorldSource& source) {
   const sim::World& world = sourced.world;
   const Eigen::Vector3d size = world.bounds.sizes();
@@ -60,8 +78,8 @@ void print_text(const SourcedWorld& sourced, const WorldSource& source) {
          axis("bounds x", 0) + axis("       y", 1) + axis("       z", 2) +
          row("triangles", std::to_string(world.mesh.triangles.size())) +
          row("surface", rounded(sim::surface_area(world.mesh)) + " m^2") +
-         row("free", free_volume_text(world)) + row("start", start_text(world));
-  // The observable volume, from sim/ground_truth.hpp, comes here.
+         row("free", free_volume_text(world)) + row("start", start_text(world)) +
+         row("observable", observable_text(sourced, source.resolution));
   if (source.ground) out += row("ground", "moved by " + rounded(sourced.ground_shift) + " m along z");
   std::cout << out;
 }
@@ -77,14 +95,7 @@ void add_world_command(CLI::App& app) {
       "A built-in world, a mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or an OctoMap file (.bt, .ot); "
       "without it, the built-in worlds are listed");
   command->add_option("--seed", source.seed, "Which of a built-in world's layouts; 1 if not given");
-  command->add_option("--scale", source.scale, "Metres per unit of a mesh file");
-  command->add_option("--up", source.up, "Axis of a mesh file that points up: x, y or z");
-  command->add_option("--start", source.start,
-                      "Where robots start, x,y,z in metres, before the ground is aligned");
-  command->add_option(
-      "--ground", source.ground,
-      "Shift the world so that its floor, at this height or (auto) below the start, lies right "
-      "for mapping; the start and all heights shown are those after the shift");
+  add_world_options(*command, source);
   command->add_option("--resolution", options->resolution,
                       "Edge of a voxel of the map to be made, in metres");
   command->add_option("-o,--output", options->output, "Write the surface to this PLY file");
@@ -94,7 +105,7 @@ void add_world_command(CLI::App& app) {
       "prints what the seventh factory measures and writes it as a mesh.");
   command->callback([options] {
     if (options->source.world.empty()) return print_list();
-    options->source.resolution = parse_number("--resolution", options->resolution);
+    options->source.resolution = parse_resolution(options->resolution);
     const SourcedWorld sourced = make_world(options->source);
     if (!options->output.empty()) {
       try {

@@ -8,6 +8,8 @@
 #include <frontlux/sim/ground.hpp>
 #include <frontlux/sim/map_world.hpp>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -20,15 +22,10 @@
 namespace frontlux::app {
 namespace {
 
-constexpr double kMostVoxels = 0x1p31, kManyVoxels = 2e8;
-
-bool is_built_in(std::string_view name) {
-  const auto worlds = sim::built_in_worlds();
-  return std::any_of(worlds.begin(), worlds.end(), [&](const auto& world) { return world.name == name; });
-}
+constexpr double kMostVoxels = 0x1p31;
 
 WorldKind kind_of(const std::string& name) {
-  if (is_built_in(name)) return WorldKind::kBuiltIn;
+  if (is_built_in_world(name)) return WorldKind::kBuiltIn;
   const auto ending = std::filesystem::path(name).extension();
   if (ending == ".bt" || ending == ".ot") return WorldKind::kMap;
   if (ending.empty() && !std::filesystem::exists(name)) {
@@ -48,14 +45,6 @@ void check_options(const WorldSource& source, WorldKind kind) {
   only_for(source.seed.has_value(), WorldKind::kBuiltIn, "--seed", "built-in worlds");
   only_for(source.scale.has_value(), WorldKind::kMesh, "--scale", "mesh files");
   only_for(source.up.has_value(), WorldKind::kMesh, "--up", "mesh files");
-}
-
-std::uint64_t parse_seed(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
-    throw BadInput("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
-  return seed;
 }
 
 sim::MeshOptions mesh_options(const WorldSource& source) {
@@ -115,6 +104,30 @@ double align_ground(const WorldSource& source, sim::World& world) {
 }
 
 }  // namespace
+
+bool is_built_in_world(const std::string& name) {
+  const auto worlds = sim::built_in_worlds();
+  return std::any_of(worlds.begin(), worlds.end(), [&](const auto& world) { return world.name == name; });
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
+    throw BadInput("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
+  return seed;
+}
+
+void add_world_options(CLI::App& command, WorldSource& source) {
+  command.add_option("--scale", source.scale, "Metres per unit of a mesh file");
+  command.add_option("--up", source.up, "Axis of a mesh file that points up: x, y or z");
+  command.add_option("--start", source.start,
+                     "Where robots start, x,y,z in metres, before the ground is aligned");
+  command.add_option(
+      "--ground", source.ground,
+      "Shift the world so that its floor, at this height or (auto) below the start, lies right "
+      "for mapping; the start and all heights shown are those after the shift");
+}
 
 SourcedWorld make_world(const WorldSource& source) {
   if (!(source.resolution > 0.0))

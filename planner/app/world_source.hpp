@@ -7,6 +7,10 @@
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace frontlux::app {
 
 /// Where a world comes from, as the user names it.
@@ -29,6 +33,17 @@ struct SourcedWorld {
   double ground_shift = 0.0;  ///< [m] along z, already applied to everything in `world`
   double voxels = 0.0;        ///< that its bounds hold
 };
+
+/// Adds the options that fill a source, but for the resolution and the seed, to a command.
+void add_world_options(CLI::App& command, WorldSource& source);
+
+[[nodiscard]] bool is_built_in_world(const std::string& name);
+
+/// @throws BadInput unless the text is a whole number from 0 to 2^64 - 1
+[[nodiscard]] std::uint64_t parse_seed(const std::string& text);
+
+/// A world's number of voxels that takes much memory.
+inline constexpr double kManyVoxels = 2e8;
 
 /// Makes or reads a world, puts the start where the user wants it and aligns the ground, in this order. Warns
 /// on standard error about sizes that will take much memory.

@@ -348,6 +348,12 @@ std::vector<VoxelKey> Mapping::mark_free(const Cylinder& cylinder) {
       });
 }
 
+std::vector<VoxelKey> Mapping::mark_free(std::span<const VoxelKey> voxels) {
+  for (const VoxelKey& key : voxels)
+    if (state_->bounds.contains(key)) state_->tree.set_free(key, state_->changes);
+  return state_->follow_changes();
+}
+
 const octomap::OcTree& Mapping::tree() const { return state_->tree; }
 const VoxelGrid& Mapping::grid() const { return state_->grid; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
@@ -359,14 +365,21 @@ void Mapping::write(const std::filesystem::path& file) const {
   const bool binary = file.extension() == ".bt";
   if (!binary && file.extension() != ".ot")
     throw std::invalid_argument(file.string() + ": a map's file name ends in .bt or .ot");
-  const ScanTree& tree = state_->tree;
-  detail::write_whole_file(file, [&](std::ostream& out) {
-    out << (binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file") << "\nid "
-        << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << shortest(tree.getResolution())
-        << "\ndata\n";
-    if (tree.size() == 0) return;
-    binary ? tree.writeBinaryNode(out, tree.getRoot()) : tree.writeData(out);
-  });
+  const auto write_tree = [&](const octomap::OcTree& tree) {
+    detail::write_whole_file(file, [&](std::ostream& out) {
+      out << (binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file") << "\nid "
+          << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << shortest(tree.getResolution())
+          << "\ndata\n";
+      if (tree.size() == 0) return;
+      binary ? tree.writeBinaryNode(out, tree.getRoot()) : tree.writeData(out);
+    });
+  };
+  if (!binary) return write_tree(state_->tree);
+  // Voxels that differ in their probability only are one leaf in such a file.
+  octomap::OcTree likely(state_->tree);
+  likely.toMaxLikelihood();
+  likely.prune();
+  write_tree(likely);
 }
 
 }  // namespace frontlux::planner

@@ -1,6 +1,7 @@
 #include "input_file.hpp"
 #include "recorded_pose.hpp"
 
+#include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/recorded_scan.hpp>
 
 #include <algorithm>
@@ -13,6 +14,7 @@ namespace frontlux::planner {
 namespace {
 
 constexpr const char* kFormat = "write file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw";
+constexpr const char* kListFormat = "write x,y,z,yaw";
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t";
@@ -30,44 +32,74 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+[[noreturn]] void fail_at(const std::filesystem::path& file, std::size_t line, const std::string& what,
+                          const char* format) {
+  detail::fail(file, "line " + std::to_string(line) + ": " + what, format);
+}
+
+double finite(const std::filesystem::path& file, std::size_t line, std::string_view field,
+              const char* format) {
+  const auto number = detail::to_number(field);
+  if (!number || !std::isfinite(*number))
+    fail_at(file, line, detail::quoted(field) + " is no finite number", format);
+  return *number;
+}
+
 RecordedPose pose_of(const std::filesystem::path& file, std::size_t line,
                      const std::vector<std::string_view>& fields) {
-  const auto fail_here = [&](const std::string& what) {
-    detail::fail(file, "line " + std::to_string(line) + ": " + what, kFormat);
-  };
   if (fields.size() != 5 && fields.size() != 8)
-    fail_here("has " + std::to_string(fields.size()) + " fields instead of 5 or 8");
-  if (fields[0].empty()) fail_here("names no file");
+    fail_at(file, line, "has " + std::to_string(fields.size()) + " fields instead of 5 or 8", kFormat);
+  if (fields[0].empty()) fail_at(file, line, "names no file", kFormat);
   std::array<double, 7> n{};
-  for (std::size_t i = 1; i < fields.size(); ++i) {
-    const auto number = detail::to_number(fields[i]);
-    if (!number || !std::isfinite(*number)) fail_here(detail::quoted(fields[i]) + " is no finite number");
-    n[i - 1] = *number;
-  }
+  for (std::size_t i = 1; i < fields.size(); ++i) n[i - 1] = finite(file, line, fields[i], kFormat);
   const bool has_yaw = fields.size() == 5;
   const Eigen::Quaterniond orientation =
       has_yaw ? Eigen::Quaterniond(Eigen::AngleAxisd(n[3], Eigen::Vector3d::UnitZ()))
               : Eigen::Quaterniond(n[6], n[3], n[4], n[5]);
   const auto pose = detail::pose_from({n[0], n[1], n[2]}, orientation);
-  if (!pose) fail_here("the quaternion is not of length 1");
+  if (!pose) fail_at(file, line, "the quaternion is not of length 1", kFormat);
   return {std::string(fields[0]), line, *pose};
 }
 
-}  // namespace
-
-std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file) {
+// Calls `take(line, fields)` for every line that holds something, but for one of names at the beginning,
+// which has no number in its field `numeric`.
+template <class Take>
+void for_each_row(const std::filesystem::path& file, std::string_view name, std::size_t numeric,
+                  const Take& take) {
   const std::string text = detail::read_input_file(file);
-  std::vector<RecordedPose> poses;
   detail::Lines lines(text);
   bool first = true;
   while (const auto line = lines.next()) {
     if (trimmed(*line).empty() || trimmed(*line).starts_with('#')) continue;
     const auto fields = fields_of(*line);
-    const bool names = first && fields[0] == "file" && fields.size() > 1 && !detail::to_number(fields[1]);
+    const bool names =
+        first && fields[0] == name && fields.size() > numeric && !detail::to_number(fields[numeric]);
     first = false;
-    if (!names) poses.push_back(pose_of(file, lines.number(), fields));
+    if (!names) take(lines.number(), fields);
   }
+}
+
+}  // namespace
+
+std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file) {
+  std::vector<RecordedPose> poses;
+  for_each_row(file, "file", 1, [&](std::size_t line, const std::vector<std::string_view>& fields) {
+    poses.push_back(pose_of(file, line, fields));
+  });
   if (poses.empty()) detail::fail(file, "holds no pose", kFormat);
+  return poses;
+}
+
+std::vector<ListedPose> read_pose_list(const std::filesystem::path& file) {
+  std::vector<ListedPose> poses;
+  for_each_row(file, "x", 0, [&](std::size_t line, const std::vector<std::string_view>& fields) {
+    if (fields.size() != 4)
+      fail_at(file, line, "has " + std::to_string(fields.size()) + " fields instead of 4", kListFormat);
+    std::array<double, 4> n{};
+    for (std::size_t i = 0; i < 4; ++i) n[i] = finite(file, line, fields[i], kListFormat);
+    poses.push_back({{{n[0], n[1], n[2]}, n[3]}, line});
+  });
+  if (poses.empty()) detail::fail(file, "holds no pose", kListFormat);
   return poses;
 }
 

@@ -12,6 +12,9 @@ class CounterRandom {
  public:
   CounterRandom(std::uint64_t seed, std::uint64_t index) : key_(scrambled(scrambled(seed) + index)) {}
 
+  /// 64 random bits, the seed of something else.
+  [[nodiscard]] std::uint64_t bits(std::uint64_t draw) const { return scrambled(key_ + draw * kStep); }
+
   /// Between 0 and 1, neither of them included. `draw` numbers the draws for one index.
   [[nodiscard]] double uniform(std::uint64_t draw) const {
     return (static_cast<double>(scrambled(key_ + draw * kStep) >> 12) + 0.5) * 0x1p-52;

@@ -153,6 +153,17 @@ bool GroundTruth::holds_surface(const VoxelKey& key) const {
   return bounds_.contains(key) && (cells_[index(key)] & cell::kSolid) != 0;
 }
 
+bool GroundTruth::open(const VoxelKey& key, std::size_t axis) const {
+  const std::array<std::uint16_t, 3> at_axis{key.x, key.y, key.z},
+      last{bounds_.max.x, bounds_.max.y, bounds_.max.z};
+  if (axis > 2 || !bounds_.contains(key) || at_axis[axis] == last[axis]) return false;
+  VoxelKey next = key;
+  (axis == 0 ? next.x : axis == 1 ? next.y : next.z) += 1;
+  const std::uint8_t above = cells_[index(next)];
+  const unsigned wall = unsigned{cell::kWallBelow} << axis;
+  return (cells_[index(key)] & above & cell::kReached) != 0 && (above & wall) == 0;
+}
+
 void GroundTruth::for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const {
   for (unsigned z = bounds_.min.z; z <= bounds_.max.z; ++z)
     for (unsigned y = bounds_.min.y; y <= bounds_.max.y; ++y)

@@ -1,14 +1,11 @@
+#include "whole_file.hpp"
+
 #include <frontlux/sim/mesh_file.hpp>
 
 #include <bit>
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
+#include <ostream>
 #include <string>
-#include <string_view>
-#include <system_error>
 
 namespace frontlux::sim {
 namespace {
@@ -35,36 +32,13 @@ std::string ply_of(const TriangleMesh& mesh) {
   return bytes;
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, std::string_view why) {
-  throw std::runtime_error(file.string() + ": cannot be written: " + std::string(why));
-}
-
 }  // namespace
 
 void write_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  std::error_code error;
-  if (file.filename().empty() || std::filesystem::is_directory(file, error))
-    fail(file, "not the name of a file");
   const std::string bytes = ply_of(mesh);
-  std::filesystem::path part = file;
-  part += ".part";
-  {
-    std::ofstream stream(part, std::ios::binary | std::ios::trunc);
-    if (!stream) fail(file, std::strerror(errno));
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) {
-      const std::string why = std::strerror(errno);
-      std::filesystem::remove(part, error);
-      fail(file, why);
-    }
-  }
-  std::filesystem::rename(part, file, error);
-  if (error) {
-    const std::string why = error.message();
-    std::filesystem::remove(part, error);
-    fail(file, why);
-  }
+  planner::detail::write_whole_file(file, [&](std::ostream& out) {
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
 }
 
 }  // namespace frontlux::sim

@@ -92,6 +92,8 @@ class Mapping {
   std::vector<VoxelKey> mark_free(const Eigen::AlignedBox3d& box);
   std::vector<VoxelKey> mark_free(const Ball& ball);
   std::vector<VoxelKey> mark_free(const Cylinder& cylinder);
+  /// The same for chosen voxels; those outside the bounds are left out.
+  std::vector<VoxelKey> mark_free(std::span<const VoxelKey> voxels);
 
   /// The map itself. Its change detection is off, since insertion reports changes by itself.
   [[nodiscard]] const octomap::OcTree& tree() const;

@@ -12,7 +12,7 @@
 namespace frontlux::synthetic {
 
 /// What a map shows: see `make_room_scene` and its like.
-enum class SceneKind : std::uint8_t { kRoom, kCorridor, kHall, kBuilding };
+enum class SceneKind : std::uint8_t { kRoom, kBuilding };
 
 /// A map that this project makes itself.
 struct MapRecipe {
@@ -25,7 +25,7 @@ struct MapRecipe {
   [[nodiscard]] std::string file_name() const { return std::string(name) + std::string(extension); }
 };
 
-/// All of them: the small ones kept in `data/maps`, then the large ones made where they are needed.
+/// All of them: the coloured one kept in `data/maps`, then the large ones made where they are needed.
 [[nodiscard]] std::span<const MapRecipe> map_recipes();
 
 /// @throws std::invalid_argument naming the known maps, if this is none of them

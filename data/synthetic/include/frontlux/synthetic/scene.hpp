@@ -11,8 +11,8 @@ namespace frontlux::synthetic {
 ///
 /// No face coincides with a voxel face of a map whose resolution is a multiple of 0.05 m. The building's lie
 /// 3 cm within their solid, seen from a multiple of 0.3 m, the lowest floor's top at z = -0.03 m: inside the
-/// solid's first layer of voxels at 0.1 m and 0.3 m, so that surfaces come out smooth. Those of the small
-/// scenes lie 3 cm above a multiple of 0.1 m, the floor's top at z = -0.07 m: some amid a voxel.
+/// solid's first layer of voxels at 0.1 m and 0.3 m, so that surfaces come out smooth. Those of the room
+/// lie 3 cm above a multiple of 0.1 m, the floor's top at z = -0.07 m: some amid a voxel.
 struct Scene {
   BoxSet solids;
   Box room;                    ///< inside of the outer walls, floor and roof [m]
@@ -26,11 +26,5 @@ struct Scene {
 
 /// 6 x 5 x 3 m: a furnished room and a side room behind a door.
 [[nodiscard]] Scene make_room_scene(std::uint64_t seed);
-
-/// 20 x 9 x 3 m: a corridor with pillars along one wall and side rooms, one of them without a door.
-[[nodiscard]] Scene make_corridor_scene(std::uint64_t seed);
-
-/// 18 x 14 x 7 m: a hall with columns, crates and a gallery.
-[[nodiscard]] Scene make_hall_scene(std::uint64_t seed);
 
 }  // namespace frontlux::synthetic

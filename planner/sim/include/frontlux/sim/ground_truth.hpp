@@ -57,6 +57,9 @@ class GroundTruth {
   [[nodiscard]] bool contains(const VoxelKey& key) const { return at(key) != Truth::kHidden; }
   /// Whether a surface passes through the voxel, deeper than the margin; observable or not.
   [[nodiscard]] bool holds_surface(const VoxelKey& key) const;
+  /// Whether one can go from this voxel to the next one up an axis: both are free, without a wall between.
+  /// @param axis 0, 1 or 2
+  [[nodiscard]] bool open(const VoxelKey& key, std::size_t axis) const;
 
   [[nodiscard]] std::uint64_t free_voxels() const { return free_voxels_; }
   [[nodiscard]] std::uint64_t surface_voxels() const { return surface_voxels_; }

@@ -1,0 +1,310 @@
+// With exact sensing a map invents nothing: every occupied voxel touches a true surface, and every free one
+// can be seen into from where the robot was, without looking through a wall.
+#include "support/maps.hpp"
+
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/ground.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+#include <frontlux/sim/scan_world.hpp>
+#include <frontlux/sim/start_pose.hpp>
+#include <frontlux/sim/triangle_overlap.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+using planner::Mapping;
+
+Eigen::AlignedBox3d box_of(const Lattice& lattice, const KeyBox& keys, double grown = 0.0) {
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(lattice.resolution() / 2 + grown);
+  const auto center = [&](const VoxelKey& key) {
+    return Eigen::Vector3d(lattice.center(key.x), lattice.center(key.y), lattice.center(key.z));
+  };
+  return {center(keys.min) - half, center(keys.max) + half};
+}
+
+std::vector<TriangleOverlap> triangles_of(const TriangleMesh& mesh) {
+  std::vector<TriangleOverlap> triangles;
+  for (const auto& [a, b, c] : mesh.triangles)
+    triangles.emplace_back(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
+                           mesh.vertices[c].cast<double>());
+  return triangles;
+}
+
+template <class Visit>
+void for_each_key(const KeyBox& box, const Visit& visit) {
+  for (unsigned x = box.min.x; x <= box.max.x; ++x)
+    for (unsigned y = box.min.y; y <= box.max.y; ++y)
+      for (unsigned z = box.min.z; z <= box.max.z; ++z)
+        visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                       static_cast<std::uint16_t>(z)});
+}
+
+// The voxels that a surface comes within 2 mm of, triangle by triangle.
+std::set<VoxelKey> touched_voxels(const World& world, const GroundTruth& truth) {
+  constexpr double kNear = 2e-3;
+  std::set<VoxelKey> touched;
+  for (const TriangleOverlap& triangle : triangles_of(world.mesh)) {
+    const Eigen::Vector3d room = Eigen::Vector3d::Constant(kNear);
+    KeyBox reach =
+        planner::voxels_of(truth.lattice(), {triangle.bounds().min() - room, triangle.bounds().max() + room});
+    const KeyBox& all = truth.bounds();
+    reach.min = {std::max(reach.min.x, all.min.x), std::max(reach.min.y, all.min.y),
+                 std::max(reach.min.z, all.min.z)};
+    reach.max = {std::min(reach.max.x, all.max.x), std::min(reach.max.y, all.max.y),
+                 std::min(reach.max.z, all.max.z)};
+    for_each_key(reach, [&](const VoxelKey& key) {
+      if (triangle.touches(box_of(truth.lattice(), {key, key}, kNear))) touched.insert(key);
+    });
+  }
+  return touched;
+}
+
+// Gaps that are narrower than a voxel let rays through, so what the ground truth does not reach at the map's
+// resolution may be seen into all the same. It is if some small part of it can be reached without crossing a
+// surface, or some point of it is in the line of sight of a sensor that looked.
+class FinerTruth {
+ public:
+  FinerTruth(const World& world, const GroundTruth& truth, const Eigen::Vector3d& start,
+             const std::vector<View>& views)
+      : truth_(truth),
+        finer_(world, truth.lattice().resolution() / parts_of(truth), start),
+        surface_(world.mesh),
+        views_(views) {
+    for (const View& view : views)
+      if (sensors_.empty() || view.sensor_pose.position != sensors_.back())
+        sensors_.push_back(view.sensor_pose.position);
+  }
+
+  [[nodiscard]] bool reaches(const VoxelKey& voxel) const {
+    const Eigen::AlignedBox3d box = box_of(truth_.lattice(), {voxel, voxel});
+    bool reached = false;
+    for_each_key(voxels_within(box, finer_.lattice()),
+                 [&](const VoxelKey& part) { reached = reached || finer_.at(part) == Truth::kFree; });
+    return reached ||
+           std::any_of(sensors_.begin(), sensors_.end(),
+                       [&](const Eigen::Vector3d& sensor) {
+                         constexpr double kRange = 10.0;  // [m] the longer one's
+                         return box.exteriorDistance(sensor) < kRange && sees_into(sensor, box);
+                       }) ||
+           std::any_of(views_.begin(), views_.end(), [&](const View& view) { return crosses(view, box); });
+  }
+
+ private:
+  static int parts_of(const GroundTruth& truth) {
+    constexpr std::uint64_t kMost = 60'000'000;
+    for (int parts = 4; parts > 1; --parts)
+      if (truth.bounding_voxels() * static_cast<std::uint64_t>(parts * parts * parts) < kMost) return parts;
+    return 1;
+  }
+
+  // Whether a ray of this view enters the box by more than a rounding before it meets a surface.
+  [[nodiscard]] bool crosses(const View& view, const Eigen::AlignedBox3d& box) const {
+    const Sensor sensor = view.robot == Robot::kUav ? depth_camera() : lidar();
+    if (box.exteriorDistance(view.sensor_pose.position) > sensor.field_of_view().max_range) return false;
+    const planner::Scan scan = sense(surface_, sensor, view.sensor_pose, 1);
+    constexpr double kRounding = 1e-5;  // [m] of the end points, which are floats
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+      double enters = 0.0, leaves = std::min<double>(scan.ranges[i], scan.max_range) + kRounding;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double at = scan.origin[axis], along = scan.directions[i][axis];
+        const double a = (box.min()[axis] - kRounding - at) / along,
+                     b = (box.max()[axis] + kRounding - at) / along;
+        enters = std::max(enters, std::min(a, b));
+        leaves = std::min(leaves, std::max(a, b));
+      }
+      if (enters <= leaves) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool sees_into(const Eigen::Vector3d& sensor, const Eigen::AlignedBox3d& box) const {
+    constexpr int kSamples = 12;  // along each axis
+    std::vector<Surface::Ray> rays;
+    for (int x = 0; x < kSamples; ++x)
+      for (int y = 0; y < kSamples; ++y)
+        for (int z = 0; z < kSamples; ++z) {
+          const Eigen::Array3d share = (Eigen::Array3d(x, y, z) + 0.5) / kSamples;
+          const Eigen::Vector3d point = box.min() + (share * box.sizes().array()).matrix();
+          const Eigen::Vector3f from = sensor.cast<float>();
+          const Eigen::Vector3f way = point.cast<float>() - from;
+          rays.push_back({from, way, static_cast<double>(way.norm())});
+        }
+    std::vector<Surface::Hit> hits(rays.size());
+    surface_.cast(rays, hits);
+    return std::any_of(hits.begin(), hits.end(),
+                       [](const Surface::Hit& hit) { return hit.triangle == Surface::kNone; });
+  }
+
+  const GroundTruth& truth_;
+  GroundTruth finer_;
+  Surface surface_;
+  const std::vector<View>& views_;
+  std::vector<Eigen::Vector3d> sensors_;
+};
+
+struct Mapped {
+  std::size_t free = 0, occupied = 0;
+  std::size_t cleared = 0;  // surface that is mapped free
+};
+
+// Checks every voxel of a map.
+Mapped expect_no_leak(const World& world, const GroundTruth& truth, const Eigen::Vector3d& start,
+                      const std::vector<View>& views, const Mapping& mapping) {
+  const std::set<VoxelKey> touched = touched_voxels(world, truth);
+  std::optional<FinerTruth> finer;
+  Mapped mapped;
+  int complaints = 0;
+  const auto complain = [&](const char* what, const VoxelKey& key) {
+    if (++complaints <= 5)
+      ADD_FAILURE() << what << " voxel at " << truth.lattice().center(key).transpose() << " of " << world.name
+                    << " at " << truth.lattice().resolution() << " m";
+  };
+  for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+    switch (mapping.grid().at(key)) {
+      case Occupancy::kUnknown:
+        return;
+      case Occupancy::kOccupied:
+        ++mapped.occupied;
+        if (!touched.contains(key)) complain("no surface touches the occupied", key);
+        return;
+      case Occupancy::kFree:
+        ++mapped.free;
+        if (truth.at(key) == Truth::kFree) return;
+        if (truth.at(key) == Truth::kSurface) {
+          ++mapped.cleared;
+          return;
+        }
+        if (!finer) finer.emplace(world, truth, start, views);
+        if (complaints < 5 && !finer->reaches(key)) complain("beyond a wall lies the free", key);
+        return;
+    }
+  });
+  EXPECT_EQ(complaints, 0);
+  return mapped;
+}
+
+// What both robots map on a sweep from the world's start, bubbles included.
+Mapped sweep_and_check(const World& world, double resolution, double spacing, bool faces_away) {
+  const Eigen::Vector3d start = free_start(world, resolution, faces_away);
+  const GroundTruth truth(world, resolution, start);
+  Mapping mapping({.resolution = resolution, .bounds = truth.bounds()});
+  std::vector<View> views;
+  const auto ugv = find_ugv_start(truth, start);
+  const auto uav = find_uav_start(truth, start, ugv);
+  for (const auto& [robot, pose] : {std::pair{Robot::kUgv, ugv}, std::pair{Robot::kUav, uav}}) {
+    if (!pose) continue;
+    mapping.mark_free(start_bubble(truth, robot, *pose));
+    for (const View& view : sweep(truth, robot, *pose, spacing)) views.push_back(view);
+  }
+  EXPECT_FALSE(views.empty());
+  EXPECT_EQ(scan_world(Surface(world.mesh), views, {}, mapping), views.size());
+  const Mapped mapped = expect_no_leak(world, truth, start, views, mapping);
+  EXPECT_GT(mapped.free, 0U);
+  EXPECT_GT(mapped.occupied, 0U);
+  // Rays that graze a surface clear some of its voxels; not many.
+  EXPECT_LT(static_cast<double>(mapped.cleared), 0.12 * static_cast<double>(mapped.occupied));
+  return mapped;
+}
+
+TEST(NoLeak, BuiltInWorlds) {
+  for (const auto& [name, description] : built_in_worlds())
+    sweep_and_check(make_world(name, 2), 0.3, test::long_mode() ? 2.0 : 6.0, true);
+  sweep_and_check(make_world("room", 2), 0.1, 4.0, true);
+}
+
+TEST(NoLeakLong, BuiltInWorldsInDetail) {
+  for (const auto& [name, description] : built_in_worlds())
+    for (const std::uint64_t seed : {1, 3}) {
+      sweep_and_check(make_world(name, seed), 0.3, 1.5, true);
+      sweep_and_check(make_world(name, seed), 0.1, 3.0, true);
+    }
+}
+
+// Meshes made by others. A mesh does not say where it is free, so a file starts.csv beside them does, a line
+// for each: file,x,y,z.
+TEST(NoLeak, ExtraWorlds) {
+  const char* folder = std::getenv("FRONTLUX_EXTRA_WORLDS");
+  if (folder == nullptr) GTEST_SKIP() << "FRONTLUX_EXTRA_WORLDS names no folder of meshes";
+  const auto list = std::filesystem::path(folder) / "starts.csv";
+  std::ifstream lines(list);
+  ASSERT_TRUE(lines) << list;
+  int worlds = 0;
+  for (std::string line; std::getline(lines, line); ++worlds) {
+    std::istringstream fields(line);
+    std::string name;
+    Eigen::Vector3d start;
+    char comma = 0;
+    std::getline(fields, name, ',');
+    fields >> start.x() >> comma >> start.y() >> comma >> start.z();
+    ASSERT_FALSE(fields.fail()) << line;
+    World world = read_mesh_world(std::filesystem::path(folder) / name);
+    world.start = start;
+    align_ground(world, std::nullopt, 0.3);
+    sweep_and_check(world, 0.3, 3.0, false);
+    if (test::long_mode()) sweep_and_check(world, 0.1, 5.0, false);
+  }
+  EXPECT_GT(worlds, 0);
+}
+
+// A closed box of 12 x 9 x 3 m, its walls rectangles without thickness, with a closed room inside of it and a
+// screen that ends in the open; all at `shift` from the voxel faces.
+World thin_rooms(double shift) {
+  World world;
+  world.name = "thin rooms shifted by " + std::to_string(shift);
+  const auto add = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+    const auto first = static_cast<std::uint32_t>(world.mesh.vertices.size());
+    for (const Eigen::Vector3d& p :
+         {corner, Eigen::Vector3d(corner + u), Eigen::Vector3d(corner + v), Eigen::Vector3d(corner + u + v)})
+      world.mesh.vertices.push_back((p + Eigen::Vector3d::Constant(shift)).cast<float>());
+    world.mesh.triangles.push_back({first, first + 1, first + 2});
+    world.mesh.triangles.push_back({first + 1, first + 3, first + 2});
+  };
+  const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& size) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d along = size[axis] * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d u = size[(axis + 1) % 3] * Eigen::Vector3d::Unit((axis + 1) % 3);
+      const Eigen::Vector3d v = size[(axis + 2) % 3] * Eigen::Vector3d::Unit((axis + 2) % 3);
+      add(low, u, v);
+      add(low + along, u, v);
+    }
+  };
+  add_box({0, 0, 0}, {12, 9, 3});
+  add_box({6, 0, 0}, {2.4, 3.6, 3});
+  add({3, 3, 0}, {0, 6, 0}, {0, 0, 2.1});
+  world.bounds = bounds_of(world.mesh);
+  world.bounds.extend(world.bounds.min() - Eigen::Vector3d::Constant(1.5));
+  world.bounds.extend(world.bounds.max() + Eigen::Vector3d::Constant(1.5));
+  world.start = Eigen::Vector3d(1.5, 1.5, 1.0) + Eigen::Vector3d::Constant(shift);
+  return world;
+}
+
+TEST(NoLeak, WallsWithoutThickness) {
+  for (const double resolution : {0.3, 0.1})
+    for (const double shift : {0.0, 0.0005, -0.0005, 0.05, 0.1234}) {
+      const World world = thin_rooms(shift);
+      const Mapped mapped = sweep_and_check(world, resolution, resolution == 0.1 ? 4.0 : 2.0, false);
+      const double voxel = resolution * resolution * resolution;
+      // All of the hall, not the closed room, nothing outside.
+      const double hall = (12 * 9 - 2.4 * 3.6) * 3;
+      EXPECT_LT(static_cast<double>(mapped.free) * voxel, hall * (shift == 0.0 ? 1.0 : 1.15)) << shift;
+      EXPECT_GT(static_cast<double>(mapped.free) * voxel, hall * 0.75) << shift;
+    }
+}
+
+}  // namespace
+}  // namespace frontlux::sim

@@ -1,0 +1,208 @@
+#include <frontlux/octomap.hpp>
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+
+#include <gtest/gtest.h>
+#include <octomap/OcTree.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+struct Answer {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class ScanCommand : public testing::Test {
+ protected:
+  ScanCommand()
+      : folder_(std::filesystem::temp_directory_path() / ("frontlux_scan_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_ / "maps");
+  }
+  ~ScanCommand() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string map(const std::string& name) const { return (folder_ / "maps" / name).string(); }
+
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+    return file(name);
+  }
+
+  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
+    std::string command = std::string("'") + FRONTLUX_COMMAND + "' scan";
+    for (const auto& word : words) command += " '" + word + "'";
+    command += " >'" + file("out") + "' 2>'" + file("err") + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(file("out")), content_of(file("err"))};
+  }
+
+  void expect_refusal(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
+    const Answer answer = run(words);
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    EXPECT_EQ(answer.out, "");
+    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
+    for (const auto& part : parts)
+      EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps")) << "something was written";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
+  const std::vector<std::string> words = {"room", "--sweep",   "5",   "--noise",
+                                          "0.01", "--dropout", "0.1", "-o"};
+  auto first = words, second = words;
+  first.push_back(map("a.ot"));
+  second.push_back(map("b.ot"));
+  const Answer answer = run(first);
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "");
+  for (const char* part :
+       {"world        room\n", "scans        ", "free         ", "occupied     ", "unknown      ",
+        "% of the observable space", "UGV          starts at", "UAV          starts at"})
+    EXPECT_NE(answer.out.find(part), std::string::npos) << part << "\nin\n" << answer.out;
+  EXPECT_EQ(run(second).code, 0);
+  EXPECT_TRUE(content_of(map("a.ot")) == content_of(map("b.ot")));
+  EXPECT_EQ(std::get<std::shared_ptr<octomap::OcTree>>(read_octree(map("a.ot")))->getResolution(), 0.3);
+  second.insert(second.end(), {"--seed", "2"});
+  EXPECT_EQ(run(second).code, 0);
+  EXPECT_FALSE(content_of(map("a.ot")) == content_of(map("b.ot")));
+}
+
+TEST_F(ScanCommand, LooksFromThePosesOfAFile) {
+  const World world = make_world("room", 1);
+  const std::string start = std::to_string(world.start->x()) + ", " + std::to_string(world.start->y());
+  const std::string poses =
+      write("poses.csv", "x,y,z,yaw\n# the start\n" + start + ",1,0\n\n" + start + ",1.5,3.1\n");
+  const Answer both = run({"room", "--poses", poses, "-o", map("both.bt")});
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_NE(both.out.find("scans        4\n"), std::string::npos) << both.out;
+  const Answer one = run({"room", "--poses", poses, "--robot", "uav", "-o", map("one.bt")});
+  EXPECT_NE(one.out.find("scans        2\n"), std::string::npos) << one.out;
+}
+
+TEST_F(ScanCommand, RefusesPosesByLine) {
+  const auto with = [&](const std::string& text) {
+    return std::vector<std::string>{"room", "--poses", write("poses.csv", text), "-o", map("no.bt")};
+  };
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
+           {"1,2\n", "line 1: has 2 fields instead of 4"},
+           {"x,y,z,yaw\n8,8,1,nan\n", "line 2: 'nan' is no finite number"},
+           {"8.4,8.3,1,0\n\n8,8,1,east\n", "line 3: 'east' is no finite number"},
+           {"8.4,8.3,1,0\n8.4,8.3,99,0\n", "line 2: the sensor at 8.4, 8.3, 99 m is outside"},
+           {"8.4,8.3,1,0\n8.4,8.3,-0.1,0\n", "line 2: the sensor at 8.4, 8.3, -0.1 m is in a wall"},
+           {"8.4,8.3,1e999,0\n", "line 1"},
+           {"# nothing\n", "holds no pose"},
+           {"", "holds no pose"}})
+    expect_refusal(with(text), {file("poses.csv"), part});
+  expect_refusal({"room", "--poses", file("none.csv"), "-o", map("no.bt")}, {file("none.csv")});
+  expect_refusal({"room", "--poses", folder_.string(), "-o", map("no.bt")}, {folder_.string()});
+  expect_refusal({"room", "--poses", file("none.csv"), "--sweep", "-o", map("no.bt")}, {"--sweep"});
+}
+
+TEST_F(ScanCommand, RefusesWhatItCannotUse) {
+  const std::string out = map("no.bt");
+  const auto expect = [&](std::vector<std::string> words, const std::vector<std::string>& parts) {
+    words.insert(words.end(), {"-o", out});
+    expect_refusal(words, parts);
+  };
+  expect({}, {"WORLD"});
+  expect({"attic"}, {"'attic'", "room"});
+  expect({file("none.ply")}, {file("none.ply")});
+  expect({folder_.string()}, {folder_.string()});
+  expect({"room", "--resolution", "0"}, {"--resolution", "0"});
+  expect({"room", "--resolution", "1e-9"}, {"--resolution", "1e-9"});
+  expect({"room", "--resolution", "0.003"}, {"too many"});
+  expect({"room", "--sweep", "0"}, {"--sweep", "0"});
+  expect({"room", "--sweep", "-1"}, {"--sweep", "-1"});
+  expect({"room", "--sweep", "wide"}, {"--sweep", "wide"});
+  expect({"room", "--robot", "tank"}, {"--robot", "'tank'"});
+  expect({"room", "--noise", "-1"}, {"--noise", "-1"});
+  expect({"room", "--noise", "nan"}, {"--noise", "nan"});
+  expect({"room", "--dropout", "1.5"}, {"--dropout", "1.5"});
+  expect({"room", "--seed", "x"}, {"--seed", "'x'"});
+  expect({"room", "--start", "99,0,0"}, {"--start", "99"});
+  expect({"room", "--start", "-0.1,6,1"}, {"room", "solid"});
+  write_ply(file("whole.ply"), make_world("room", 1).mesh);
+  expect({file("whole.ply")}, {"whole.ply", "--start"});
+  // In the wall, 2 cm from its surface.
+  expect({file("whole.ply"), "--start", "0.02,6,1"}, {"whole.ply", "in a wall: triangle"});
+  expect({write("half.ply", content_of(file("whole.ply")).substr(0, 5000)), "--start", "6,3,1"},
+         {"half.ply"});
+  expect({file("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"}, {"too many to map"});
+}
+
+TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
+  expect_refusal({"station", "-o", map("map.txt")}, {"--output", "map.txt"});
+  expect_refusal({"station", "-o", file("no/folder/map.bt")}, {"--output", "no/folder"});
+  std::filesystem::create_directories(file("folder.bt"));
+  expect_refusal({"station", "-o", file("folder.bt")}, {"--output", "folder.bt", "folder"});
+  expect_refusal({"station"}, {"--output"});
+}
+
+TEST_F(ScanCommand, WritesNothingWhenStopped) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::signal(SIGINT, SIG_DFL);
+    static_cast<void>(std::freopen(file("err").c_str(), "w", stderr));
+    execl(FRONTLUX_COMMAND, FRONTLUX_COMMAND, "scan", "station", "--sweep", "1", "-o",
+          map("stopped.bt").c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  sleep(3);
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  // Before the first scan the signal ends the program by itself, which a shell reports as 130 as well.
+  EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
+              (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
+      << status;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps"));
+}
+
+struct Kept {
+  const char* file;
+  std::vector<std::string> words;
+};
+
+// The commands of data/README.md.
+TEST_F(ScanCommand, MakesTheMapsThatAreKept) {
+  const std::vector<Kept> all = {
+      {"room_0.05m.bt", {"room", "--resolution", "0.05", "--robot", "uav", "--sweep", "6"}},
+      {"room_0.1m.bt", {"room", "--resolution", "0.1", "--sweep", "4"}},
+      {"room_0.2m.ot", {"room", "--resolution", "0.2", "--sweep", "4", "--noise", "0.02"}},
+      {"storage_0.2m.bt", {"storage", "--resolution", "0.2", "--sweep", "5"}},
+      {"storage_0.3m.bt", {"storage", "--resolution", "0.3", "--sweep", "5"}},
+      {"maze_0.3m.bt", {"maze", "--resolution", "0.3", "--robot", "ugv", "--sweep", "6"}},
+  };
+  for (const Kept& kept : all) {
+    auto words = kept.words;
+    words.insert(words.end(), {"-o", map(kept.file)});
+    EXPECT_EQ(run(words).code, 0) << kept.file;
+    EXPECT_TRUE(content_of(map(kept.file)) ==
+                content_of(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps" / kept.file))
+        << kept.file << " is not what the command makes now";
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::sim

@@ -1,0 +1,229 @@
+#include <frontlux/planner/mapping.hpp>
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/scan_world.hpp>
+#include <frontlux/sim/start_pose.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+// The surface of a box, a wall of no thickness on each side.
+void add_box(TriangleMesh& mesh, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const float z : {low.z(), high.z()})
+    for (const float y : {low.y(), high.y()})
+      for (const float x : {low.x(), high.x()}) mesh.vertices.emplace_back(x, y, z);
+  constexpr std::array<std::array<std::uint32_t, 3>, 12> kFaces = {{{0, 2, 1},
+                                                                    {1, 2, 3},
+                                                                    {4, 5, 6},
+                                                                    {5, 7, 6},
+                                                                    {0, 1, 4},
+                                                                    {1, 5, 4},
+                                                                    {2, 6, 3},
+                                                                    {3, 6, 7},
+                                                                    {0, 4, 2},
+                                                                    {2, 4, 6},
+                                                                    {1, 3, 5},
+                                                                    {3, 7, 5}}};
+  for (const auto& [a, b, c] : kFaces) mesh.triangles.push_back({first + a, first + b, first + c});
+}
+
+// A room of 6 x 6 x 3 m whose floor lies right; `things` stand in it.
+World room(std::initializer_list<std::pair<Eigen::Vector3f, Eigen::Vector3f>> things = {}) {
+  World world;
+  world.name = "test room";
+  add_box(world.mesh, {0, 0, -0.05F}, {6, 6, 2.95F});
+  for (const auto& [low, high] : things) add_box(world.mesh, low, high);
+  world.bounds = {Eigen::Vector3d(-1.5, -1.5, -1.5), Eigen::Vector3d(7.5, 7.5, 4.5)};
+  world.start = Eigen::Vector3d(3.15, 3.15, -0.05);
+  return world;
+}
+
+GroundTruth truth_of(const World& world) { return {world, 0.3, free_start(world, 0.3, false)}; }
+
+TEST(StartPose, LiftsAStartOnTheFloorIntoTheRoom) {
+  for (const double resolution : {0.05, 0.1, 0.3}) {
+    const Eigen::Vector3d start = free_start(room(), resolution, false);
+    EXPECT_DOUBLE_EQ(start.x(), 3.15);
+    EXPECT_GT(start.z(), -0.05);
+    EXPECT_LE(start.z(), resolution / 2 + 1e-9);
+  }
+  for (const auto& [name, description] : built_in_worlds())
+    for (const double resolution : {0.05, 0.1, 0.2, 0.3}) {
+      const World world = make_world(name, 3);
+      EXPECT_NEAR(free_start(world, resolution, true).z(), resolution == 0.05 ? -0.025 : resolution / 2, 1e-6)
+          << name << " " << resolution;
+    }
+}
+
+TEST(StartPose, RefusesStartsThatAreNone) {
+  World world = room();
+  const auto refusal = [&](bool faces_away) -> std::string {
+    try {
+      static_cast<void>(free_start(world, 0.3, faces_away));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  world.start.reset();
+  EXPECT_NE(refusal(false).find("no start"), std::string::npos);
+  world.start = Eigen::Vector3d(9, 3, 1);
+  EXPECT_NE(refusal(false).find("9, 3, 1 is outside"), std::string::npos);
+  world.start = Eigen::Vector3d(std::nan(""), 3, 1);
+  EXPECT_NE(refusal(false).find("outside"), std::string::npos);
+  // Inside of a locker, whose surface faces away from it, as the room's does not.
+  world = room({{{1, 1, 0}, {2, 2, 2}}});
+  world.start = Eigen::Vector3d(1.5, 1.5, 1.0);
+  EXPECT_EQ(refusal(false), "");
+  EXPECT_NE(refusal(true).find("within a solid"), std::string::npos);
+}
+
+TEST(StartPose, StandsOnTheFloorBesideObstacles) {
+  // A table over the start: the UGV has to go beside it, the UAV above.
+  const World world = room({{{2.4F, 2.4F, 0.35F}, {3.9F, 3.9F, 0.5F}}});
+  const GroundTruth truth = truth_of(world);
+  const auto ugv = find_ugv_start(truth, free_start(world, 0.3, false));
+  ASSERT_TRUE(ugv.has_value());
+  EXPECT_NEAR(ugv->position.z(), 0.75, 1e-9);
+  EXPECT_FALSE(obstacle_at(truth, Robot::kUgv, *ugv).has_value());
+  // By hand: the voxels of its body, two on each side of the middle one, clear the table's and the walls.
+  const auto apart = [](double a, double b) { return std::abs(a - b); };
+  const double off = std::max(apart(ugv->position.x(), 3.15), apart(ugv->position.y(), 3.15));
+  EXPECT_NEAR(off, 1.5, 1e-6);
+  const auto uav = find_uav_start(truth, free_start(world, 0.3, false), ugv);
+  ASSERT_TRUE(uav.has_value());
+  EXPECT_GE(uav->position.z(), 1.2);
+  EXPECT_FALSE(obstacle_at(truth, Robot::kUav, *uav).has_value());
+}
+
+TEST(StartPose, SaysWhatIsInTheWay) {
+  const World world = room({{{2.4F, 2.4F, 0.35F}, {3.9F, 3.9F, 0.5F}}});
+  const GroundTruth truth = truth_of(world);
+  const auto why = [&](Robot robot, double x, double y, double z) {
+    return obstacle_at(truth, robot, {{x, y, z}}).value_or("");
+  };
+  EXPECT_EQ(why(Robot::kUgv, 1.05, 1.05, 0.75), "");
+  EXPECT_NE(why(Robot::kUgv, 3.15, 3.15, 0.75).find("a surface passes through its voxel"), std::string::npos);
+  EXPECT_EQ(why(Robot::kUgv, 1.05, 1.05, 1.05), "there is no floor under all of it");
+  EXPECT_NE(why(Robot::kUgv, 0.1, 1.05, 0.75).find("cannot be reached"), std::string::npos);
+  EXPECT_NE(why(Robot::kUav, 7.4, 1.05, 1.5).find("beyond the world's bounds"), std::string::npos);
+  EXPECT_EQ(why(Robot::kUav, 1.05, 1.05, 1.35), "");
+}
+
+TEST(StartPose, FindsNothingWhereNothingFits) {
+  World world = room();
+  world.mesh = {};
+  add_box(world.mesh, {0, 0, -0.05F}, {0.9F, 6, 2.95F});
+  world.start = Eigen::Vector3d(0.45, 3, 0.5);
+  const GroundTruth truth(world, 0.3, *world.start);
+  EXPECT_FALSE(find_ugv_start(truth, *world.start).has_value());
+  EXPECT_TRUE(find_uav_start(truth, *world.start, std::nullopt).has_value());
+}
+
+TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
+  for (const auto& [name, description] : built_in_worlds())
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      const World world = make_world(name, seed);
+      const Eigen::Vector3d start = free_start(world, 0.3, true);
+      const GroundTruth truth(world, 0.3, start);
+      const auto ugv = find_ugv_start(truth, start);
+      ASSERT_TRUE(ugv.has_value()) << name << seed;
+      EXPECT_LT((ugv->position - start).head<2>().norm(), 0.3) << name << seed;
+      const auto uav = find_uav_start(truth, start, ugv);
+      ASSERT_TRUE(uav.has_value()) << name << seed;
+      const KeyBox a = body_voxels(truth.lattice(), Robot::kUgv, *ugv),
+                   b = body_voxels(truth.lattice(), Robot::kUav, *uav);
+      EXPECT_TRUE(a.max.z < b.min.z || a.max.x < b.min.x || b.max.x < a.min.x || a.max.y < b.min.y ||
+                  b.max.y < a.min.y);
+    }
+}
+
+TEST(StartBubble, StaysOnThisSideOfWalls) {
+  // A screen without thickness, exactly on voxel faces, 0.9 m from the robot.
+  World world = room();
+  const auto first = static_cast<std::uint32_t>(world.mesh.vertices.size());
+  for (const auto& [y, z] : {std::pair{0.F, -0.05F}, {6.F, -0.05F}, {0.F, 2.95F}, {6.F, 2.95F}})
+    world.mesh.vertices.emplace_back(3.9F, y, z);
+  world.mesh.triangles.push_back({first, first + 1, first + 2});
+  world.mesh.triangles.push_back({first + 1, first + 3, first + 2});
+  const GroundTruth truth = truth_of(world);
+  for (const auto& [robot, z, radius] :
+       {std::tuple{Robot::kUgv, 0.75, 2.3}, std::tuple{Robot::kUav, 1.35, 1.0}}) {
+    const planner::Pose pose{{2.85, 3.15, z}};
+    ASSERT_FALSE(obstacle_at(truth, robot, pose).has_value());
+    const auto bubble = start_bubble(truth, robot, pose);
+    const KeyBox body = body_voxels(truth.lattice(), robot, pose);
+    std::set<VoxelKey> expected;
+    for (int x = -30; x < 30; ++x)
+      for (int y = -30; y < 30; ++y)
+        for (int k = 0; k < 9; ++k) {
+          const Eigen::Vector3d center = 0.3 * (Eigen::Vector3d(x, y, k) + Eigen::Vector3d::Constant(0.5));
+          if (center.x() > 3.9 || center.x() < 0 || center.y() < 0 || center.y() > 6) continue;
+          const VoxelKey key{static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+                             static_cast<std::uint16_t>(32768 + k)};
+          const Eigen::Vector3d off = center - pose.position;
+          const bool in =
+              robot == Robot::kUgv ? off.head<2>().norm() <= radius && k < 3 : off.norm() <= radius;
+          if (in || body.contains(key)) expected.insert(key);
+        }
+    EXPECT_EQ(std::set<VoxelKey>(bubble.begin(), bubble.end()), expected);
+    planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
+    EXPECT_EQ(mapping.mark_free(bubble), bubble);
+    EXPECT_EQ(mapping.grid().count()[1], bubble.size());
+  }
+}
+
+TEST(Sweep, LooksFromEveryCubeThatHasAPlace) {
+  const World world = room();
+  const GroundTruth truth = truth_of(world);
+  const auto ugv = sweep(truth, Robot::kUgv, {{3.15, 3.15, 0.75}}, 1.5);
+  // 20 x 20 cells inside; cubes of 5 voxels from -1.5 m on; the robot's middle keeps 2 voxels from the walls.
+  EXPECT_EQ(ugv.size(), 16U);
+  const auto uav = sweep(truth, Robot::kUav, {{3.15, 3.15, 1.35}}, 1.5);
+  EXPECT_EQ(uav.size() % 4, 0U);
+  EXPECT_EQ(uav.size(), 4 * 16 * 2U);
+  for (const auto& views : {ugv, uav})
+    for (const View& view : views) {
+      EXPECT_FALSE(obstacle_at(truth, view.robot, view.sensor_pose).has_value());
+      EXPECT_TRUE(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 6, 2.95))
+                      .contains(view.sensor_pose.position));
+    }
+  EXPECT_NEAR(uav[3].sensor_pose.yaw, 1.5 * std::numbers::pi, 1e-12);
+  for (const double spacing : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THROW(static_cast<void>(sweep(truth, Robot::kUav, {{3.15, 3.15, 1.35}}, spacing)),
+                 std::invalid_argument);
+}
+
+TEST(ScanWorld, IsTheSameForTheSameSeedAndStopsWhenTold) {
+  const World world = room();
+  const GroundTruth truth = truth_of(world);
+  const auto views = sweep(truth, Robot::kUgv, {{3.15, 3.15, 0.75}}, 1.5);
+  const Surface surface(world.mesh);
+  const auto map = [&](std::uint64_t seed, std::size_t last) {
+    planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
+    const std::size_t done =
+        scan_world(surface, views, {.errors = {.sigma = 0.3, .dropout = 0.1}, .seed = seed}, mapping,
+                   [&](std::size_t n) { return n < last; });
+    EXPECT_EQ(done, std::min(last, views.size()));
+    return mapping.grid();
+  };
+  EXPECT_TRUE(map(1, 100) == map(1, 100));
+  EXPECT_FALSE(map(1, 100) == map(2, 100));
+  EXPECT_FALSE(map(1, 100) == map(1, 2));
+}
+
+}  // namespace
+}  // namespace frontlux::sim
