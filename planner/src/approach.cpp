@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 27;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;
 constexpr int kMaxHeight = 63;  // [voxels]
+constexpr double kRounding = 1e-6;
 
 std::uint64_t up_to(int height) {
   return height < 0 ? 0 : ~std::uint64_t{0} >> (kMaxHeight - std::min(height, kMaxHeight));
@@ -52,16 +54,24 @@ std::optional<Approach> Approach::make(const VoxelGrid& grid, std::span<const Vo
 // that it touches.
 Approach::Approach(const KeyBox& box, const KeyBox& corridor, const FeasibleRegion& region)
     : up_(box, false), down_(box, true), corridor_(corridor), reach_(region.reach()) {
+  constexpr double kWidth = std::numbers::pi / 2 / kSectors;
   for (int x = 0; x <= reach_; ++x)
     for (int y = 0; y <= reach_; ++y) {
-      Limit limit;
       const double range = squared(std::max(x - 0.5, 0.0)) + squared(std::max(y - 0.5, 0.0));
-      const double rise = 0.5 + region.slope() * std::hypot(x + 0.5, y + 0.5) + 1e-6;
-      if (range <= region.squared_range())
-        limit.crossed = up_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())));
-      limit.cells = up_to(region.height(x, y));
-      if (x == 0 && y == 0) limit.cells &= ~std::uint64_t{1};  // the target itself
-      limits_.push_back(limit);
+      const double rise = 0.5 + region.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
+      const std::uint64_t crossed =
+          range <= region.squared_range()
+              ? up_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())))
+              : 0;
+      std::uint64_t cells = up_to(region.height(x, y));
+      if (x == 0 && y == 0) cells &= ~std::uint64_t{1};  // the target itself
+      const double azimuth = std::atan2(y, x), low = std::atan2(y - 0.5, x + 0.5) - kRounding,
+                   high = std::atan2(y + 0.5, x - 0.5) + kRounding;
+      for (std::size_t sector = 0; sector < kSectors; ++sector) {
+        const double from = kWidth * static_cast<double>(sector), to = from + kWidth;
+        const bool ours = azimuth >= from && (azimuth < to || sector + 1 == kSectors);
+        limits_[sector].push_back({low <= to && high >= from ? crossed : 0, ours ? cells : 0});
+      }
     }
 }
 
@@ -90,11 +100,13 @@ void Approach::add_walls(const VoxelGrid& grid) {
 void Approach::cells(const VoxelKey& target, Row& row, std::vector<VoxelKey>& cells) const {
   for (const int x : {1, -1})
     for (const int y : {1, -1})
-      for (const int z : {1, -1}) this->cells(target, {x, y, z}, row, cells);
+      for (const int z : {1, -1})
+        for (std::size_t sector = 0; sector < kSectors; ++sector)
+          this->cells(target, {x, y, z}, sector, row, cells);
 }
 
 // Column by column, away from the target; heights come from the column before along x, and along y.
-void Approach::cells(const VoxelKey& target, const std::array<int, 3>& side, Row& row,
+void Approach::cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector, Row& row,
                      std::vector<VoxelKey>& cells) const {
   // How far it is to the last cell: nothing is to be found beyond. Offsets of zero belong to the sides that
   // ascend.
@@ -115,9 +127,10 @@ void Approach::cells(const VoxelKey& target, const std::array<int, 3>& side, Row
   row[0] = 1;
   int first = 0, last = 0;  // columns of the row that are reached
   std::uint64_t start = 1;  // a target may be occupied itself
-  const std::uint64_t* words_of_row = columns.at(target);
-  for (int x = 0; x <= size[0] && first <= last; ++x, words_of_row += step_x) {
-    const Limit* limits = &limits_[static_cast<std::size_t>(x) * static_cast<std::size_t>(reach_ + 1)];
+  const std::uint64_t* const words_of_target = columns.at(target);
+  for (int x = 0; x <= size[0] && first <= last; ++x) {
+    const Limit* limits =
+        &limits_[sector][static_cast<std::size_t>(x) * static_cast<std::size_t>(reach_ + 1)];
     int first_here = size[1] + 1, last_here = -1;
     std::uint64_t reached = 0;
     for (int y = first; y <= size[1]; ++y) {
@@ -129,7 +142,7 @@ void Approach::cells(const VoxelKey& target, const std::array<int, 3>& side, Row
         if (y > last) break;
         continue;
       }
-      const std::uint64_t* words = words_of_row + y * step_y;
+      const std::uint64_t* words = words_of_target + x * step_x + y * step_y;
       reached = fill(seeds, (~VoxelColumns::read(words, shift) | start) & limits[y].crossed & heights);
       start = 0;
       here = reached;

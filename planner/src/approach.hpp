@@ -17,9 +17,9 @@ namespace frontlux::planner::detail {
 /// Finds the cells of a corridor from which a ray to a target may arrive at all.
 ///
 /// A ray between voxels steps along one axis at a time and never back, so all that it crosses is connected
-/// to the target by faces, within one octant around it. What is connected so through voxels that are not
-/// occupied, and no farther above or below than rays of the region come, is found for 64 voxels of a column
-/// at a time; no cell that sees the target is missed.
+/// to the target by such steps, within one sector of one octant around it. What is connected so through
+/// voxels that are not occupied, and no farther above or below than rays of the region come, is found for 64
+/// voxels of a column at a time. No cell that sees the target is missed; some that do not see it remain.
 class Approach {
  public:
   /// Nothing if the region is higher than a word has bits, or the tables would be larger than they are worth.
@@ -37,8 +37,11 @@ class Approach {
  private:
   Approach(const KeyBox& box, const KeyBox& corridor, const FeasibleRegion& region);
   void add_walls(const VoxelGrid& grid);
-  void cells(const VoxelKey& target, const std::array<int, 3>& side, Row& row,
+  void cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector, Row& row,
              std::vector<VoxelKey>& cells) const;
+
+  // Parts of a quadrant by azimuth: the narrower, the less is connected that no ray connects.
+  static constexpr std::size_t kSectors = 4;
 
   // Of a column at an offset along x and y: heights at which rays of the region may cross it, and from which
   // the target may be in view.
@@ -49,7 +52,7 @@ class Approach {
   VoxelColumns up_, down_;
   KeyBox corridor_;  // around the cells
   int reach_;
-  std::vector<Limit> limits_;  // for x, y
+  std::array<std::vector<Limit>, kSectors> limits_;  // for x, y
 };
 
 }  // namespace frontlux::planner::detail

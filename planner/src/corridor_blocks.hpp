@@ -54,13 +54,13 @@ class CorridorBlocks {
 
   [[nodiscard]] bool contains(const VoxelKey& key) const;
 
-  /// False only if there is no cell within a distance of a voxel.
-  [[nodiscard]] bool may_be_near(const VoxelKey& voxel, int distance) const {
-    const auto near = [distance](int k, int low, int high) {
+  /// False only if there is no cell within these distances of a voxel: along x and y, and along z.
+  [[nodiscard]] bool may_be_near(const VoxelKey& voxel, int across, int height) const {
+    const auto near = [](int k, int distance, int low, int high) {
       return k + distance >= low && k - distance <= high;
     };
-    return near(voxel.x, box_.min.x, box_.max.x) && near(voxel.y, box_.min.y, box_.max.y) &&
-           near(voxel.z, box_.min.z, box_.max.z);
+    return near(voxel.x, across, box_.min.x, box_.max.x) && near(voxel.y, across, box_.min.y, box_.max.y) &&
+           near(voxel.z, height, box_.min.z, box_.max.z);
   }
 
   /// Whether most cells have others above and below them.

@@ -36,42 +36,32 @@ struct Search {
   FeasibleRegion region;
   CorridorBlocks blocks;
   std::optional<Approach> approach;
-  Shadow shadow;  // only without `approach`
+  Shadow shadow;  // without `approach`
   std::vector<std::array<int, 3>> nearby, spread;
 };
 
 // Decides some frontiers by rounds of rays, a few for each that is undecided: from cells nearby, from where
-// its neighbours are seen, from one cell of each block in which there are any, from all others.
+// its neighbours are seen, from some cells of everywhere, from all others.
 class Piece {
  public:
   Piece(const Search& search, std::size_t begin, std::size_t end)
       : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
-    open_.resize(end - begin);
-    for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = begin; i < end; ++i)
+      if (search.blocks.may_be_near(search.frontiers[i], search.region.reach(),
+                                    search.region.greatest_height()))
+        open_.push_back(static_cast<std::uint32_t>(i - begin));
   }
 
   void decide() {
     for (const std::uint32_t i : open_)
-      if (search_.blocks.may_be_near(frontier(i), kNearby)) try_offsets(i, search_.nearby, 2);
+      if (search_.blocks.may_be_near(frontier(i), kNearby, kNearby)) try_offsets(i, search_.nearby, 2);
     cast();
     ask_neighbours();
     ask_neighbours();
-    if (search_.approach) {
-      for (const std::uint32_t i : open_) try_offsets(i, search_.spread, kSpread);
-      cast();
-      ask_neighbours();
-    }
-    for (const std::uint32_t i : open_)
-      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
-    if (search_.approach) return decide_one_by_one();
-    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
-      cast();
-      ask_neighbours();
-    }
-    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
-      cast();
-      ask_neighbours();
-    }
+    if (search_.approach)
+      decide_by_approach();
+    else
+      decide_by_blocks();
   }
 
   [[nodiscard]] const std::vector<std::optional<VoxelKey>>& seen_from() const { return seen_from_; }
@@ -144,16 +134,16 @@ class Piece {
     cast();
   }
 
-  // What is still open now mostly stays so: only for it is it worth it to find out where rays may arrive
-  // from.
-  void decide_one_by_one() {
+  // Where cells are many: what none of some cells from everywhere sees mostly stays undecided to the end, and
+  // only for it is it worth it to find out where rays may arrive from.
+  void decide_by_approach() {
+    for (const std::uint32_t i : open_) try_offsets(i, search_.spread, kSpread);
+    cast();
+    ask_neighbours();
     std::vector<std::uint32_t> open = std::move(open_);
     Approach::Row row;
     std::vector<VoxelKey> cells;
     for (const std::uint32_t i : open) {
-      const bool any = left_[i].next_cube < left_[i].cubes.size() || !left_[i].blocks.empty();
-      left_[i] = {};
-      if (!any) continue;
       open_ = {i};
       ask_neighbours();
       if (open_.empty()) continue;
@@ -171,6 +161,20 @@ class Piece {
       }
     }
     open_.clear();
+  }
+
+  // Where cells are few, or their region is too high for columns of bits.
+  void decide_by_blocks() {
+    for (const std::uint32_t i : open_)
+      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
+    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
+      cast();
+      ask_neighbours();
+    }
+    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
+      cast();
+      ask_neighbours();
+    }
   }
 
   // From the next cubes, this many. Whether there was anything left to take.
