@@ -1,6 +1,7 @@
 #include "corridor_blocks.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ CorridorBlocks::CorridorBlocks(std::span<const VoxelKey> cells) {
     min = {std::min(min.x, key.x), std::min(min.y, key.y), std::min(min.z, key.z)};
     max = {std::max(max.x, key.x), std::max(max.y, key.y), std::max(max.z, key.z)};
   }
+  box_ = {min, max};
   low_ = {min.x >> kCubeLog2, min.y >> kCubeLog2, min.z >> kCubeLog2};
   size_ = {(max.x >> kCubeLog2) - low_[0] + 1, (max.y >> kCubeLog2) - low_[1] + 1,
            (max.z >> kCubeLog2) - low_[2] + 1};
@@ -47,6 +49,9 @@ CorridorBlocks::CorridorBlocks(std::span<const VoxelKey> cells) {
     cube.filled |= std::uint64_t{1} << block;
     cube.blocks[block] |= std::uint64_t{1} << bit_of(key);
   }
+  std::uint64_t blocks_filled = 0;
+  for (const Cube& cube : cubes_) blocks_filled += static_cast<std::uint64_t>(std::popcount(cube.filled));
+  deep_ = cells.size() > 16 * blocks_filled;
 }
 
 std::size_t CorridorBlocks::slot(int x, int y, int z) const {

@@ -54,12 +54,26 @@ class CorridorBlocks {
 
   [[nodiscard]] bool contains(const VoxelKey& key) const;
 
+  /// False only if there is no cell within these distances of a voxel: along x and y, and along z.
+  [[nodiscard]] bool may_be_near(const VoxelKey& voxel, int across, int height) const {
+    const auto near = [](int k, int distance, int low, int high) {
+      return k + distance >= low && k - distance <= high;
+    };
+    return near(voxel.x, across, box_.min.x, box_.max.x) && near(voxel.y, across, box_.min.y, box_.max.y) &&
+           near(voxel.z, height, box_.min.z, box_.max.z);
+  }
+
+  /// Whether most cells have others above and below them.
+  [[nodiscard]] bool deep() const { return deep_; }
+
   /// Appends the cubes that the region of a voxel may meet, those nearest to it first.
   void cubes_near(const VoxelKey& voxel, const FeasibleRegion& region, std::vector<const Cube*>& cubes) const;
 
  private:
   [[nodiscard]] std::size_t slot(int x, int y, int z) const;
 
+  KeyBox box_;  // around all cells; only if there are any
+  bool deep_ = false;
   std::array<int, 3> low_{}, size_{};  // of the cubes, along each axis
   std::vector<std::uint32_t> slots_;   // 1 plus the place of the cube, 0 for none
   std::vector<Cube> cubes_;

@@ -45,6 +45,7 @@ FeasibleRegion::FeasibleRegion(const FieldOfView& view, double resolution)
       heights_.push_back(low);
       if (low < 0) continue;
       squared_range_ = std::max(squared_range_, static_cast<double>(x * x + y * y + low * low));
+      greatest_height_ = std::max(greatest_height_, low);
       slope_ = std::max(slope_, low / std::hypot(x, y));
     }
 }
@@ -69,6 +70,22 @@ std::vector<std::array<int, 3>> FeasibleRegion::offsets(int length) const {
   std::sort(offsets.begin(), offsets.end(), [&](const auto& a, const auto& b) {
     return std::tuple(squared(a), a) < std::tuple(squared(b), b);
   });
+  return offsets;
+}
+
+// Points of a rank-1 lattice in the box around the region: spread evenly, without a pattern along an axis.
+std::vector<std::array<int, 3>> FeasibleRegion::spread_offsets(std::size_t count) const {
+  const std::array<int, 3> reach = {reach_, reach_, std::max(greatest_height_, 1)};
+  constexpr std::array<double, 3> kStep = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  std::vector<std::array<int, 3>> offsets;
+  for (std::size_t i = 0; offsets.size() < count && i < 16 * count; ++i) {
+    std::array<int, 3> o{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double at = 0.5 + static_cast<double>(i) * kStep[a];
+      o[a] = static_cast<int>(std::lround((2.0 * (at - std::floor(at)) - 1.0) * reach[a]));
+    }
+    if (contains(o[0], o[1], o[2])) offsets.push_back(o);
+  }
   return offsets;
 }
 

@@ -31,17 +31,28 @@ class FeasibleRegion {
     return (x != 0 || y != 0 || z != 0) && (z < 0 ? -z : z) <= height(x, y);
   }
 
+  /// [voxels] Greatest height at any offset.
+  [[nodiscard]] int greatest_height() const { return greatest_height_; }
+  /// [voxels^2] No offset is longer.
+  [[nodiscard]] double squared_range() const { return squared_range_; }
+  /// No offset has a greater height over its length along x and y.
+  [[nodiscard]] double slope() const { return slope_; }
+
   /// False only if the region of a voxel holds none of a box.
   [[nodiscard]] bool may_meet(const VoxelKey& voxel, const KeyBox& box) const;
 
   /// All offsets of at most this length [voxels] that it contains, the shortest first.
   [[nodiscard]] std::vector<std::array<int, 3>> offsets(int length) const;
 
+  /// Some offsets from all over it, as many as asked for or a few less.
+  [[nodiscard]] std::vector<std::array<int, 3>> spread_offsets(std::size_t count) const;
+
  private:
   int reach_;
   std::vector<int> heights_;
-  double squared_range_ = 0.0;  // [voxels^2]
-  double slope_ = 0.0;          // greatest height over the distance along x and y
+  double squared_range_ = 0.0;
+  double slope_ = 0.0;
+  int greatest_height_ = 0;
 };
 
 }  // namespace frontlux::planner::detail

@@ -1,3 +1,4 @@
+#include "approach.hpp"
 #include "corridor_blocks.hpp"
 #include "feasible_region.hpp"
 #include "shadow.hpp"
@@ -17,13 +18,16 @@
 namespace frontlux::planner {
 namespace {
 
+using detail::Approach;
 using detail::BlockCells;
 using detail::CorridorBlocks;
 using detail::FeasibleRegion;
 using detail::Shadow;
 
-constexpr std::size_t kPiece = 256;  // frontiers that are decided together, on one thread
-constexpr int kNearby = 4;           // [voxels] how far the first cells tried may be
+constexpr std::size_t kPiece = 256;             // frontiers that are decided together, on one thread
+constexpr std::size_t kSome = 48, kMany = 512;  // rays for one frontier at a time
+constexpr std::size_t kSpread = 64;             // cells from all over the region, tried before any are listed
+constexpr int kNearby = 4;                      // [voxels] how far the first cells tried may be
 
 // What all frontiers of an agent need.
 struct Search {
@@ -31,35 +35,33 @@ struct Search {
   std::span<const VoxelKey> frontiers;
   FeasibleRegion region;
   CorridorBlocks blocks;
-  Shadow shadow;
-  std::vector<std::array<int, 3>> nearby;
+  std::optional<Approach> approach;
+  Shadow shadow;  // without `approach`
+  std::vector<std::array<int, 3>> nearby, spread;
 };
 
 // Decides some frontiers by rounds of rays, a few for each that is undecided: from cells nearby, from where
-// its neighbours are seen, from one cell of each block in which there are any, from all others.
+// its neighbours are seen, from some cells of everywhere, from all others.
 class Piece {
  public:
   Piece(const Search& search, std::size_t begin, std::size_t end)
       : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
-    open_.resize(end - begin);
-    for (std::size_t i = 0; i < open_.size(); ++i) open_[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = begin; i < end; ++i)
+      if (search.blocks.may_be_near(search.frontiers[i], search.region.reach(),
+                                    search.region.greatest_height()))
+        open_.push_back(static_cast<std::uint32_t>(i - begin));
   }
 
   void decide() {
-    for (const std::uint32_t i : open_) try_nearby(i);
+    for (const std::uint32_t i : open_)
+      if (search_.blocks.may_be_near(frontier(i), kNearby, kNearby)) try_offsets(i, search_.nearby, 2);
     cast();
     ask_neighbours();
     ask_neighbours();
-    for (const std::uint32_t i : open_)
-      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
-    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
-      cast();
-      ask_neighbours();
-    }
-    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
-      cast();
-      ask_neighbours();
-    }
+    if (search_.approach)
+      decide_by_approach();
+    else
+      decide_by_blocks();
   }
 
   [[nodiscard]] const std::vector<std::optional<VoxelKey>>& seen_from() const { return seen_from_; }
@@ -97,17 +99,17 @@ class Piece {
     owners_.clear();
   }
 
-  void try_nearby(std::uint32_t i) {
+  void try_offsets(std::uint32_t i, const std::vector<std::array<int, 3>>& offsets, std::size_t most) {
     const VoxelKey& f = frontier(i);
-    int found = 0;
-    for (const auto& offset : search_.nearby) {
+    std::size_t found = 0;
+    for (const auto& offset : offsets) {
       const int x = f.x - offset[0], y = f.y - offset[1], z = f.z - offset[2];
       if (((x | y | z) & ~0xFFFF) != 0) continue;
       const VoxelKey cell{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                           static_cast<std::uint16_t>(z)};
       if (!search_.blocks.contains(cell)) continue;
       add(i, cell);
-      if (++found == 2) return;
+      if (++found == most) return;
     }
   }
 
@@ -130,6 +132,49 @@ class Piece {
         if (ask(k)) break;
     }
     cast();
+  }
+
+  // Where cells are many: what none of some cells from everywhere sees mostly stays undecided to the end, and
+  // only for it is it worth it to find out where rays may arrive from.
+  void decide_by_approach() {
+    for (const std::uint32_t i : open_) try_offsets(i, search_.spread, kSpread);
+    cast();
+    ask_neighbours();
+    std::vector<std::uint32_t> open = std::move(open_);
+    Approach::Row row;
+    std::vector<VoxelKey> cells;
+    for (const std::uint32_t i : open) {
+      open_ = {i};
+      ask_neighbours();
+      if (open_.empty()) continue;
+      cells.clear();
+      search_.approach->cells(frontier(i), row, cells);
+      // Some of everywhere first.
+      const std::size_t stride = std::max<std::size_t>(1, cells.size() / kSome);
+      for (std::size_t k = stride / 2; k < cells.size(); k += stride) add(i, cells[k]);
+      cast();
+      if (stride == 1) continue;
+      for (std::size_t k = 0; k < cells.size() && !open_.empty();) {
+        for (const std::size_t end = std::min(cells.size(), k + kMany); k < end; ++k)
+          if (k % stride != stride / 2) add(i, cells[k]);
+        cast();
+      }
+    }
+    open_.clear();
+  }
+
+  // Where cells are few, or their region is too high for columns of bits.
+  void decide_by_blocks() {
+    for (const std::uint32_t i : open_)
+      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
+    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
+      cast();
+      ask_neighbours();
+    }
+    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
+      cast();
+      ask_neighbours();
+    }
   }
 
   // From the next cubes, this many. Whether there was anything left to take.
@@ -220,9 +265,19 @@ FrontierShare find_visible_frontiers(const RayCaster& caster, const VoxelGrid& g
   if (frontiers.empty() || agent.corridor.empty()) return {};
   const KeyBox box = box_around(frontiers, region.reach());
   auto nearby = region.offsets(kNearby);
-  const Search search{
-      caster,           frontiers, std::move(region), CorridorBlocks(agent.corridor), Shadow(grid, box),
-      std::move(nearby)};
+  auto spread = region.spread_offsets(kSpread);
+  CorridorBlocks blocks(agent.corridor);
+  auto approach =
+      blocks.deep() ? Approach::make(grid, agent.corridor, region, box_around(frontiers, 0)) : std::nullopt;
+  Shadow shadow = approach ? Shadow() : Shadow(grid, box);
+  const Search search{caster,
+                      frontiers,
+                      std::move(region),
+                      std::move(blocks),
+                      std::move(approach),
+                      std::move(shadow),
+                      std::move(nearby),
+                      std::move(spread)};
   const std::size_t pieces = (frontiers.size() + kPiece - 1) / kPiece;
   std::vector<FrontierShare> found(pieces);
   tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t p) {

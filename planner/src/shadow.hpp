@@ -12,6 +12,9 @@ namespace frontlux::planner::detail {
 /// Tells of whole boxes at once that occupied voxels hide a target from them.
 class Shadow {
  public:
+  /// Hides nothing.
+  Shadow() = default;
+
   /// @param box  blockers outside are not regarded; none at all if the box is too large to be worth it
   Shadow(const VoxelGrid& grid, const KeyBox& box);
 

@@ -35,13 +35,14 @@ struct Scene {
   std::vector<VoxelKey> cells, frontiers;
 };
 
-// Rooms of random size with walls that have holes, or noise.
-Scene random_scene(std::uint64_t seed) {
+// Rooms of random size with walls that have holes, or noise. A dense one has a corridor of most free voxels
+// and some others, and few frontiers, in any state.
+Scene random_scene(std::uint64_t seed, bool dense = false) {
   Random random(seed);
   Scene scene;
   const int room = 4 + random.below(9), hole = 5 + random.below(40);
   const bool noise = random.one_in(4);
-  const int keep_cells = 1 + random.below(12), keep_frontiers = 1 + random.below(6);
+  const int keep_cells = 1 + random.below(12), keep_frontiers = dense ? 8 : 1 + random.below(6);
   for (int x = -24; x < 24; ++x)
     for (int y = -20; y < 20; ++y)
       for (int z = -8; z < 8; ++z) {
@@ -51,9 +52,11 @@ Scene random_scene(std::uint64_t seed) {
           scene.grid.set(key, Occupancy::kOccupied);
         else if (!random.one_in(8))
           scene.grid.set(key, Occupancy::kFree);
-        if (scene.grid.at(key) == Occupancy::kFree && random.one_in(4 * keep_cells))
+        const Occupancy state = scene.grid.at(key);
+        if (dense ? (state == Occupancy::kFree ? !random.one_in(5) : random.one_in(40))
+                  : state == Occupancy::kFree && random.one_in(4 * keep_cells))
           scene.cells.push_back(key);
-        if (scene.grid.at(key) == Occupancy::kUnknown && random.one_in(keep_frontiers))
+        if (state == Occupancy::kUnknown ? random.one_in(keep_frontiers) : dense && random.one_in(300))
           scene.frontiers.push_back(key);
       }
   if (random.one_in(2))  // a corridor in one corner only: most frontiers fail
@@ -84,30 +87,56 @@ std::vector<std::uint32_t> naive(const Scene& scene, const FieldOfView& view) {
   return agents;
 }
 
+// What is found is what the algorithm as printed finds, and `seen_from` proves it.
+void expect_as_printed(const Scene& scene, const FieldOfView& view, const RayCaster& caster,
+                       std::size_t& taken, std::size_t& left) {
+  const FrontierShare share =
+      find_visible_frontiers(caster, scene.grid, scene.frontiers, {scene.cells, view});
+  ASSERT_EQ(share.frontiers, naive(scene, view));
+  ASSERT_EQ(share.seen_from.size(), share.frontiers.size());
+  const std::set<VoxelKey> cells(scene.cells.begin(), scene.cells.end());
+  const auto judge = make_grid_ray_caster(scene.grid);
+  for (std::size_t i = 0; i < share.frontiers.size(); ++i) {
+    const KeySegment segment{share.seen_from[i], scene.frontiers[share.frontiers[i]]};
+    std::uint8_t visible = 0;
+    judge->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
+    ASSERT_EQ(visible, 1);
+    ASSERT_TRUE(cells.contains(segment.from));
+    ASSERT_TRUE(in_view(view, segment.from, segment.to, 0.3));
+  }
+  taken += share.frontiers.size();
+  left += scene.frontiers.size() - share.frontiers.size();
+}
+
+FieldOfView some_view(std::uint64_t seed) {
+  return seed % 3 == 0   ? lidar(3.0 + 0.3 * static_cast<double>(seed % 10))
+         : seed % 3 == 1 ? camera(5.0)
+                         : sonar(4.0);
+}
+
 TEST(FrontierDistribution, EqualsTheAlgorithmAsPrinted) {
   std::size_t taken = 0, left = 0;
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     const Scene scene = random_scene(seed);
-    const FieldOfView view = seed % 3 == 0   ? lidar(3.0 + 0.3 * static_cast<double>(seed % 10))
-                             : seed % 3 == 1 ? camera(5.0)
-                                             : sonar(4.0);
     const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_embree_ray_caster(scene.grid);
-    const FrontierShare share =
-        find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view});
-    ASSERT_EQ(share.frontiers, naive(scene, view)) << "seed " << seed;
-    ASSERT_EQ(share.seen_from.size(), share.frontiers.size());
-    const std::set<VoxelKey> cells(scene.cells.begin(), scene.cells.end());
-    const auto judge = make_grid_ray_caster(scene.grid);
-    for (std::size_t i = 0; i < share.frontiers.size(); ++i) {
-      const KeySegment segment{share.seen_from[i], scene.frontiers[share.frontiers[i]]};
-      std::uint8_t visible = 0;
-      judge->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
-      ASSERT_EQ(visible, 1);
-      ASSERT_TRUE(cells.contains(segment.from));
-      ASSERT_TRUE(in_view(view, segment.from, segment.to, 0.3));
-    }
-    taken += share.frontiers.size();
-    left += scene.frontiers.size() - share.frontiers.size();
+    SCOPED_TRACE(seed);
+    expect_as_printed(scene, some_view(seed), *caster, taken, left);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(taken, 1'000U);
+  EXPECT_GT(left, 1'000U);
+}
+
+TEST(FrontierDistribution, EqualsTheAlgorithmAsPrintedInDeepCorridors) {
+  std::size_t taken = 0, left = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Scene scene = random_scene(100 + seed, true);
+    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_embree_ray_caster(scene.grid);
+    // The last ones reach higher than a word has bits.
+    const FieldOfView view = seed <= 12 ? some_view(seed) : camera(30.0);
+    SCOPED_TRACE(seed);
+    expect_as_printed(scene, view, *caster, taken, left);
+    if (HasFatalFailure()) return;
   }
   EXPECT_GT(taken, 1'000U);
   EXPECT_GT(left, 1'000U);
@@ -134,8 +163,11 @@ TEST(FrontierDistribution, GivesTheSecondAgentWhatTheFirstDoesNotSee) {
   EXPECT_FALSE(uav.empty());
 }
 
-TEST(FrontierDistribution, IsTheSameOnAnyNumberOfThreads) {
-  const Scene scene = random_scene(9);
+class FrontierDistributionThreads : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(DenseOrNot, FrontierDistributionThreads, testing::Bool());
+
+TEST_P(FrontierDistributionThreads, AnyNumberGivesTheSame) {
+  const Scene scene = random_scene(9, GetParam());
   const auto caster = make_embree_ray_caster(scene.grid);
   std::vector<FrontierShare> shares;
   for (const int threads : {1, 2, 3}) {
