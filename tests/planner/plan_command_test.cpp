@@ -303,6 +303,9 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(with("--optimize", "yes"), "--optimize: 'yes'");
   expect_refused(with("--mode", "fast"), "--mode: 'fast'");
   expect_refused(with("--move", "maybe"), "--move: 'maybe'");
+  auto still = with("--move", "on");
+  still.insert(still.end(), {"--optimize", "off"});
+  expect_refused(still, "--move: on needs --optimize on");
   expect_refused(with("-o", path("path.txt")), "path.txt is no name for a path");
   expect_refused(with("-o", path("none/path.csv")), "there is no folder");
   std::filesystem::create_directory(path("folder.csv"));
