@@ -9,6 +9,7 @@
 #include <frontlux/planner/path_file.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
+#include <frontlux/planner/position_refinement.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -48,7 +49,7 @@ struct Options {
   std::string map, robot, from, to, output;  // as written
   std::string search = "rrt", seed = "1", ground = "on", min_height = "1.2";
   std::string iterations;
-  std::string optimize = "on", mode = "default";
+  std::string optimize = "on", mode = "default", move = "off";
 };
 
 std::vector<double> parse_numbers(std::string_view name, std::string_view text) {
@@ -200,6 +201,13 @@ planner::PathOptimizerOptions optimizer_options(const Options& options) {
   return {};
 }
 
+void check_move(const Options& options) {
+  if (options.move != "on" && options.move != "off")
+    throw BadInput("--move: '" + options.move + "' is neither on nor off");
+  if (options.move == "on" && options.optimize == "off")
+    throw BadInput("--move: on needs --optimize on, since viewpoints that move also turn");
+}
+
 // The part of the known map from which frontiers can be in view somewhere along the path.
 KeyBox surroundings(const VoxelGrid& grid, const std::vector<Pose>& viewpoints, double range) {
   KeyBox box = *grid.known_bounds();
@@ -220,23 +228,36 @@ KeyBox surroundings(const VoxelGrid& grid, const std::vector<Pose>& viewpoints, 
 
 struct Turned {
   planner::OptimizedPath path;
-  double milliseconds = 0.0;
+  std::optional<planner::RefinedPath> moved;
+  double milliseconds = 0.0, moving_milliseconds = 0.0;
 };
 
-// Turns the viewpoints between the ends so that they see more, if that is wanted.
-Turned turn(const Options& options, const planner::PathOptimizerOptions& optimizer, const VoxelGrid& grid,
+double milliseconds_since(std::chrono::steady_clock::time_point before) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+}
+
+// Turns the viewpoints between the ends so that they see more, and then moves them, if that is wanted.
+Turned turn(const Options& options, const planner::PositionOptions& position, const VoxelGrid& grid,
+            const TravelCorridor& corridor, const planner::TravelOptions& travel,
             std::vector<Pose>& viewpoints) {
+  const bool move = options.move == "on";
   const FieldOfView view = view_of(options.robot);
   const auto caster = make_embree_ray_caster(grid);
-  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, view.max_range));
-  const auto before = std::chrono::steady_clock::now();
+  const double range = view.max_range + (move ? position.max_shift : 0.0);
+  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
+  auto before = std::chrono::steady_clock::now();
   const auto pairs = planner::visible_pairs(*caster, grid, viewpoints, frontiers.keys(), view);
   const auto centers = planner::centers(grid.lattice(), frontiers.keys());
   Turned turned;
-  turned.path = planner::optimize_path(viewpoints, centers, pairs, view, optimizer);
-  turned.milliseconds =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+  turned.path = planner::optimize_path(viewpoints, centers, pairs, view, position.optimizer);
+  turned.milliseconds = milliseconds_since(before);
   for (std::size_t i = 0; i < viewpoints.size(); ++i) viewpoints[i].yaw = turned.path.yaws[i];
+  if (!move) return turned;
+  before = std::chrono::steady_clock::now();
+  turned.moved = planner::refine_positions(viewpoints, frontiers.keys(), *caster, grid, corridor,
+                                           {options.robot, travel, view}, position);
+  turned.moving_milliseconds = milliseconds_since(before);
+  viewpoints = turned.moved->viewpoints;
   return turned;
 }
 
@@ -245,7 +266,10 @@ void plan(const Options& options) {
   const TravelOptions travel = travel_options(options);
   const auto seed = parse_whole<std::uint64_t>("--seed", options.seed, 0, UINT64_MAX);
   const Place from = parse_place("--from", options.from, true), to = parse_place("--to", options.to, false);
-  const planner::PathOptimizerOptions optimizer = optimizer_options(options);
+  planner::PositionOptions position;
+  position.optimizer = optimizer_options(options);
+  position.spacing = path.spacing;
+  check_move(options);
   check_output(options.output);
 
   const VoxelGrid grid = make_voxel_grid(read_map_file(options.map));
@@ -266,9 +290,10 @@ void plan(const Options& options) {
   std::optional<Turned> turned;
   if (options.optimize == "on") {
     const double first = found.viewpoints.front().yaw, last = found.viewpoints.back().yaw;
-    turned = turn(options, optimizer, grid, found.viewpoints);
+    turned = turn(options, position, grid, corridor, travel, found.viewpoints);
     found.viewpoints.front().yaw = first;  // to the last bit, by how many turns whatever
     found.viewpoints.back().yaw = last;
+    found.length = turned->moved ? planner::path_length(found.viewpoints) : found.length;
   }
 
   try {
@@ -286,7 +311,7 @@ void plan(const Options& options) {
                                   std::to_string(found.iterations) + " iterations")
             << row("time", rounded(std::round(time.count() * 1e3) / 1e3) + " ms");
   if (turned) {
-    const auto& [path_turned, milliseconds] = *turned;
+    const auto& [path_turned, moved, milliseconds, moving_milliseconds] = *turned;
     std::cout << row("gain", std::to_string(path_turned.tangent.distinct) + " frontiers in view before, " +
                                  std::to_string(path_turned.result.distinct) + " after; fuzzy " +
                                  rounded(path_turned.tangent.fuzzy) + " before, " +
@@ -294,6 +319,13 @@ void plan(const Options& options) {
               << row("optimiser", std::string(planner::describe(path_turned.end)) + ", " +
                                       std::to_string(path_turned.evaluations) + " evaluations, " +
                                       rounded(std::round(milliseconds * 1e3) / 1e3) + " ms");
+    if (moved)
+      std::cout << row("moved", std::to_string(moved->before.distinct) + " frontiers in view before, " +
+                                    std::to_string(moved->after.distinct) + " after; fuzzy " +
+                                    rounded(moved->before.fuzzy) + " before, " + rounded(moved->after.fuzzy) +
+                                    " after; " + std::to_string(moved->outer_iterations) +
+                                    " iterations kept, " + std::to_string(moved->rays) + " rays, " +
+                                    rounded(std::round(moving_milliseconds * 1e3) / 1e3) + " ms");
   }
   if (!options.output.empty()) std::cout << row("written", options.output);
 }
@@ -338,6 +370,11 @@ void add_plan_command(CLI::App& app) {
           "--optimize", options->optimize,
           "Turn the viewpoints between the ends so that they see more frontiers (on), or let them look "
           "ahead (off)")
+      ->type_name("ON|OFF")
+      ->capture_default_str();
+  command
+      ->add_option("--move", options->move,
+                   "Also move the viewpoints between the ends, by 0.6 m at most (on), or not (off)")
       ->type_name("ON|OFF")
       ->capture_default_str();
   command

@@ -8,7 +8,7 @@
 
 namespace frontlux::planner::detail {
 
-/// Another caster, and how many segments between voxels it was asked about.
+/// Another caster, and of how many segments it was asked whether something stands between.
 class CountingRayCaster final : public RayCaster {
  public:
   /// @param counted  has to outlive this
@@ -25,6 +25,7 @@ class CountingRayCaster final : public RayCaster {
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
+    rays_.fetch_add(segments.size(), std::memory_order_relaxed);
     counted_.visible(segments, visible, unknown);
   }
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {

@@ -227,6 +227,14 @@ TEST_F(PlanCommandTest, TurnsThePathToSeeMoreFrontiers) {
               std::string::npos)
         << before << ", " << after << " in\n"
         << out;
+    const std::string with_moves = run_with({"on", "--mode", mode, "--move", "on"});
+    const std::uint64_t moved = seen(grid, poses_in(content_of(path("path.csv"))));
+    EXPECT_GE(moved, after);
+    EXPECT_NE(with_moves.find("\nmoved        " + std::to_string(after) + " frontiers in view before, " +
+                              std::to_string(moved) + " after"),
+              std::string::npos)
+        << after << ", " << moved << " in\n"
+        << with_moves;
   }
 }
 
@@ -294,6 +302,10 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(with("--require-ground", "maybe"), "--require-ground: 'maybe'");
   expect_refused(with("--optimize", "yes"), "--optimize: 'yes'");
   expect_refused(with("--mode", "fast"), "--mode: 'fast'");
+  expect_refused(with("--move", "maybe"), "--move: 'maybe'");
+  auto still = with("--move", "on");
+  still.insert(still.end(), {"--optimize", "off"});
+  expect_refused(still, "--move: on needs --optimize on");
   expect_refused(with("-o", path("path.txt")), "path.txt is no name for a path");
   expect_refused(with("-o", path("none/path.csv")), "there is no folder");
   std::filesystem::create_directory(path("folder.csv"));
