@@ -30,11 +30,13 @@ bool FieldOfView::contains(const Eigen::Vector3d& offset, double yaw) const {
   const double forward = offset.x() * std::cos(yaw) + offset.y() * std::sin(yaw);
   const double left = offset.y() * std::cos(yaw) - offset.x() * std::sin(yaw);
   switch (shape) {
-    case Shape::kSpinning: return contains_at_some_yaw(offset);
+    case Shape::kSpinning:
+      return contains_at_some_yaw(offset);
     case Shape::kPyramid:
       return std::fabs(left) <= std::tan(horizontal / 2) * forward &&
              std::fabs(offset.z()) <= std::tan(vertical / 2) * forward;
-    case Shape::kCone: return forward >= std::cos(horizontal / 2) * std::sqrt(squared);
+    case Shape::kCone:
+      return forward >= std::cos(horizontal / 2) * std::sqrt(squared);
   }
   return false;
 }

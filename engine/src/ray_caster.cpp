@@ -62,8 +62,8 @@ void RayCaster::update(const VoxelGrid& grid) {
 }
 
 std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid, std::uint64_t expected_rays) {
-  // Building takes time by the bricks of mixed states; each ray then saves a tenth to a third of a microsecond
-  // (docs/benchmarking.md).
+  // Building takes time by the bricks of mixed states; each ray then saves a tenth to a third of a
+  // microsecond (docs/benchmarking.md).
   constexpr std::uint64_t kRaysPerBrick = 12;
   std::uint64_t bricks = 0;
   grid.for_each_block(

@@ -49,8 +49,7 @@ std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, c
 }
 
 // The walk of a packet, for one ray: a packet would leave all lanes but one empty. Neither step nor look-up
-// branches on which axis is next, and times stay in vector registers: it is their way from step to step that
-// takes the time.
+// branches on which axis is next, and times stay in vector registers.
 std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray) {
   const auto& bits = table.layout().bits;
   const auto load = [](double t) { return _mm_set_sd(t); };

@@ -103,8 +103,10 @@ class RayCaster {
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
 
-/// The one of the two that is sooner done: the grid's walk for a few rays, Embree once they repay its building.
-/// @param expected_rays  how many rays will be cast, about, before the map changes everywhere or the caster goes
+/// The one of the two that is sooner done: the grid's walk for a few rays, Embree once they repay its
+/// building.
+/// @param expected_rays  how many rays will be cast, about, before the map changes everywhere or the caster
+/// goes
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid, std::uint64_t expected_rays);
 

@@ -16,8 +16,9 @@ struct Scan {
   std::vector<float> ranges;
 };
 
-/// @throws std::invalid_argument naming the value, if the sizes differ, the origin is not finite, the range is
-/// not positive, a direction is not of unit length, or a range is negative or finite and beyond `max_range`
+/// @throws std::invalid_argument naming the value, if the sizes differ, the origin is not finite, the range
+/// is not positive, a direction is not of unit length, or a range is negative or finite and beyond
+/// `max_range`
 void check(const Scan& scan);
 
 }  // namespace frontlux::planner
