@@ -36,9 +36,8 @@ std::string ply_of(const TriangleMesh& mesh) {
 
 void write_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   const std::string bytes = ply_of(mesh);
-  planner::detail::write_whole_file(file, [&](std::ostream& out) {
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  });
+  planner::detail::write_whole_file(
+      file, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
 }
 
 }  // namespace frontlux::sim
