@@ -1,0 +1,157 @@
+#pragma once
+
+#include <frontlux/planner/goal_selection.hpp>
+#include <frontlux/planner/mapping.hpp>
+#include <frontlux/planner/path_optimizer.hpp>
+#include <frontlux/planner/path_planner.hpp>
+#include <frontlux/planner/pose.hpp>
+#include <frontlux/planner/scan.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// What answers the planner's visibility queries.
+enum class CasterKind : std::uint8_t {
+  kEmbree,   ///< `make_embree_ray_caster`
+  kGrid,     ///< `make_grid_ray_caster`; the same answers
+  kOctomap,  ///< `make_octomap_ray_caster`, the baseline; in rare cases it rounds to another answer
+};
+
+struct ExplorationOptions {
+  std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
+  CasterKind caster = CasterKind::kEmbree;
+  bool distribute = true;  ///< off: every robot goes for all frontiers that it can see
+  bool optimize = true;    ///< off: robots look where they go
+  PathOptions path;
+  PathOptimizerOptions optimizer;
+  std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
+
+  double epsilon = 10.0;     ///< a step whose paths promise fewer frontiers than this is a quiet one
+  int quiet_steps = 3;       ///< so many quiet steps in a row end the exploration
+  int max_steps = 1000;      ///< and so does this many steps
+  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is dropped
+  int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
+
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  void check() const;
+};
+
+/// Where a robot begins, and what it knows to be free there without having seen it.
+struct ExplorationStart {
+  Pose pose;  ///< of its sensor
+  std::vector<VoxelKey> known_free;
+};
+
+/// A voxel that became unknown, free or occupied and was not so before.
+struct VoxelChange {
+  VoxelKey key;
+  Occupancy before = Occupancy::kUnknown, after = Occupancy::kUnknown;
+  friend constexpr auto operator<=>(const VoxelChange&, const VoxelChange&) = default;
+};
+
+/// What one robot planned, did and learnt in one step.
+struct RobotStep {
+  Goal goal;                        ///< also says why there is none
+  std::vector<RenderedCell> image;  ///< of a robot on a plane: the cells rendered for its goal
+  PathOutcome path = PathOutcome::kNoCorridor;
+  std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
+  /// Distinct frontiers of its own that the path has in view, with the robot looking where it goes and as
+  /// optimised.
+  std::uint64_t gain_tangent = 0, gain_predicted = 0;
+  std::size_t travelled = 0;         ///< viewpoints of `planned` that it came to, the first included
+  double length = 0.0;               ///< [m] that it travelled
+  std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans made known
+  std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
+  std::vector<VoxelKey> stubborn;    ///< in view of its viewpoints, and still unknown; sorted
+};
+
+/// What a step spends its time on. Planning is all but the last.
+enum class Phase : std::uint8_t { kFrontiers, kCaster, kGoals, kPaths, kOptimization, kMoving };
+inline constexpr std::size_t kPhases = 6;
+/// "frontiers", "caster", "goals", "paths", "optimization", "moving"
+[[nodiscard]] std::string_view name_of(Phase phase);
+
+struct ExplorationStep {
+  std::uint64_t number = 0;       ///< 0: the start, where robots only look around
+  std::size_t frontiers = 0;      ///< in the map when the step was planned
+  std::size_t unassigned = 0;     ///< of them, those that no robot could make anything of
+  std::size_t dropped = 0;        ///< of them, those no longer tried, since they stay unknown when looked at
+  std::uint64_t rays = 0;         ///< cast to plan the step
+  std::vector<RobotStep> robots;  ///< in the team's order
+  std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
+
+  [[nodiscard]] double planning_seconds() const;
+};
+
+/// Why an exploration is over.
+enum class ExplorationEnd : std::uint8_t {
+  kQuiet,        ///< the paths promised too little for some steps
+  kNothingToDo,  ///< no robot has a goal
+  kStepLimit,
+};
+/// One of the words "quiet", "nothing_to_do", "step_limit".
+[[nodiscard]] std::string_view name_of(ExplorationEnd end);
+/// In words, as a sentence.
+[[nodiscard]] std::string_view describe(ExplorationEnd end);
+
+/// Brings a robot's sensor straight from where it is to a viewpoint, and tells what the sensor measures
+/// there; nothing if the robot could not go. The one thing that a real or a simulated robot has to offer.
+using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& viewpoint)>;
+
+/// The paper's Alg. 1, step by step: a team of robots explores what the bounds of a map hold.
+///
+///     Exploration exploration(options, std::move(mapping));
+///     exploration.begin(starts, drive);
+///     while (!exploration.end()) exploration.step(drive);
+///
+/// Depends on the options, the starts and the scans only: not on time, not on the number of threads, not on
+/// the choice between the embree and the grid caster. Works in TBB's current arena.
+/// Thread safety: as a standard container.
+class Exploration {
+ public:
+  /// @param mapping  the map to be filled; empty, or what is known already
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  Exploration(ExplorationOptions options, Mapping mapping);
+  ~Exploration();
+  Exploration(Exploration&&) noexcept;
+  Exploration& operator=(Exploration&&) noexcept;
+
+  /// Alg. 1, lines 1 and 2: takes the robots to their starts, where each looks all around.
+  /// @throws std::invalid_argument if there is not one start for each robot, or one is not finite
+  /// @pre called once, before all else
+  ExplorationStep begin(std::span<const ExplorationStart> starts, const Drive& drive);
+
+  /// Alg. 1, lines 4 to 11. @pre begun, and not at its end
+  ExplorationStep step(const Drive& drive);
+
+  /// Goes through a step that was planned before, as recorded, without planning it again: afterwards the
+  /// exploration is where it was after that step.
+  /// @return false if the robots did not learn what they learnt before: another world, or other options
+  bool repeat(const ExplorationStep& recorded, const Drive& drive);
+
+  /// Alg. 1, line 3: why it is over; nothing as long as it is not.
+  [[nodiscard]] std::optional<ExplorationEnd> end() const;
+
+  [[nodiscard]] const ExplorationOptions& options() const;
+  [[nodiscard]] const Mapping& mapping() const;
+  /// Of the robots' sensors.
+  [[nodiscard]] std::span<const Pose> poses() const;
+  /// Of the map as it is, dropped ones included; sorted.
+  [[nodiscard]] std::span<const VoxelKey> frontiers() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frontlux::planner
