@@ -4,7 +4,7 @@ import math
 import sys
 from pathlib import Path
 
-sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+sys.path.insert(1, str(Path(__file__).resolve().parent.parent))  # of all plots
 
 from recorded import PHASES
 from runs import VARIANTS, WORLDS
@@ -26,9 +26,9 @@ COLOURS = {
 DASHES = {"team": "", "uav": "7 3", "ugv": "2 3", "cluster": "7 3", "nearest": "2 3"}
 TITLES = {"uav": "UAV", "ugv": "UGV"}
 
-AXIS, GAP, PANEL_HEIGHT, TOP = 40, 24, 200, 124
+AXIS, GAP, PANEL_HEIGHT, TOP = 40, 24, 200, 142
 PANEL_WIDTH = (WIDTH - 2 * MARGIN - 3 * AXIS - 2 * GAP) / 3
-SAMPLES = 240  # along a curve
+SAMPLES = 160  # along a curve
 
 
 def round_step(largest, most):
@@ -45,8 +45,8 @@ class Panel:
         self.left = MARGIN + AXIS + column * (PANEL_WIDTH + AXIS + GAP)
         self.top = TOP + row * (PANEL_HEIGHT + 92)
         self.right, self.bottom = self.left + PANEL_WIDTH, self.top + PANEL_HEIGHT
-        drawing.text(self.left - AXIS + 6, self.top - 24, title, "map")
-        drawing.text(self.left - AXIS + 6, self.top - 9, y_title, "faint")
+        drawing.text(self.left - AXIS + 6, self.top - 28, title, "map")
+        drawing.text(self.left - AXIS + 6, self.top - 13, y_title, "faint")
         drawing.text((self.left + self.right) / 2, self.bottom + 35, x_title, "faint", "middle")
         for step, end, horizontal in ((round_step(y_end, 5), y_end, True), (round_step(x_end, 5), x_end, False)):
             for i in range(int(end / step * (1 + 1e-9)) + 1):
@@ -116,8 +116,8 @@ def finish(drawing, title, names, rows=1):
 
 def progress(results, names, title, measure, x_title):
     """Coverage against what `measure` gives by step: thin lines by seed, a thick one for their mean."""
-    drawing = chart(title, "Thin: each seed; thick: their mean, a run that is over staying at its end; cut where "
-                    "the team's longest run has ended three times", names, {n: VARIANTS[n].title for n in names})
+    drawing = chart(title, "Thin: each seed; thick: their mean, a run that is over counting with its end; cut at three "
+                    "times the team's longest run", names, {n: VARIANTS[n].title for n in names})
     for column, world in enumerate(WORLDS):
         runs = {name: results.of(world, name) for name in names}
         ends = [(name, measure(run)[-1]) for name in names for run in runs[name]]
@@ -139,7 +139,7 @@ def steps_of(run):
 
 def contributions(results):
     names, title = ("ugv", "uav"), "What each robot made known first"
-    drawing = chart(title, "Means over seeds, a run that is over staying at its end", names, TITLES, False)
+    drawing = chart(title, "Means over seeds, a run that is over counting with its end", names, TITLES, False)
     for row, variant in enumerate(("team", "unoptimised")):
         for column, world in enumerate(WORLDS):
             runs = results.of(world, variant)
@@ -159,12 +159,13 @@ def contributions(results):
 
 def planning_time(results):
     title = "Planning time of each step"
-    drawing = chart(title, "Both robots; one run for each world, alone on the machine, 2 threads; thin lines are the "
-                    "means", PHASES, {name: name for name in PHASES}, False)
+    drawing = chart(title, "Both robots; one run for each world, alone on the machine, 2 threads; dashed lines are "
+                    "the means", PHASES, {name: name for name in PHASES}, False)
     for column, world in enumerate(WORLDS):
         run = results.timed(world)
         sums = [1e3 * s for s in run.seconds("planning_s")] if run else []
-        x_end, y_end = max(len(sums), 1), max(max(sums, default=0) * 1.05, 1e-3)
+        highest = max(max(sums, default=1), 1e-3)
+        x_end, y_end = max(len(sums), 1), math.ceil(highest / round_step(highest, 5)) * round_step(highest, 5)
         panel = Panel(drawing, column, 0, x_end, y_end, world, "steps", "planning [ms]")
         lower = [0.0] * len(sums)
         for phase in PHASES if sums else ():

@@ -162,7 +162,7 @@ class Results:
                 self.runs[run] = Recorded(run, folder / run.name)
             except FileNotFoundError as error:
                 self.broken[run.name] = f"{error.filename} is missing"
-            except (OSError, ValueError, RecursionError, csv.Error) as error:
+            except (OSError, ValueError, csv.Error) as error:
                 self.broken[run.name] = str(error) or type(error).__name__
 
     def of(self, world, variant):

@@ -65,7 +65,10 @@ def refuse_constant(name):
 
 def read_facts(folder):
     """run.json. Raises OSError or ValueError."""
-    facts = json.loads((folder / "run.json").read_text(encoding="utf-8"), parse_constant=refuse_constant)
+    try:
+        facts = json.loads((folder / "run.json").read_text(encoding="utf-8"), parse_constant=refuse_constant)
+    except RecursionError as error:
+        raise ValueError("run.json is nested too deeply") from error
     if not isinstance(facts, dict):
         raise ValueError("run.json holds no object")
     return facts

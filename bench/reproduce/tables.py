@@ -27,7 +27,8 @@ def steps_to_90(runs):
     counted = mean_of(spread(run.steps_or_limit(0.9) for run in runs), 1)
     if not runs or len(reached) == len(runs):
         return counted
-    return f"{counted} ({mean_of(spread(reached), 1)} in the {len(reached)} of {len(runs)} that got there)"
+    there = mean_of(spread(reached), 1) + " in " if reached else ""
+    return f"{counted} ({there}{len(reached)} of {len(runs)} that got there)"
 
 
 def coverage_table(results):
@@ -39,7 +40,7 @@ def coverage_table(results):
         rows.append([world, percent(aim), spread_of(spread(r.coverage[-1] for r in runs), 1, 100, " %"),
                      str(paper.STEPS[world]), spread_of(spread(r.steps for r in runs), 1),
                      spread_of(spread(got_there), 1) + f", {len(got_there)} of {len(runs)} runs",
-                     spread_of(spread(r.steps_to(0.9) for r in runs), 1)])
+                     steps_to_90(runs)])
     return table(["world", "coverage, paper", "ours", "steps, paper", "ours", "ours, to the paper's coverage",
                   "ours, to 90 %"], rows)
 
@@ -52,7 +53,7 @@ def team_table(results):
         lengths = [spread(r.travelled("uav")[-1] for w in worlds for r in results.of(w, v)) for v in ("uav", "team")]
         rows.append([world, *(steps_to_90([r for w in worlds for r in results.of(w, v)]) for v in ("team", "uav", "ugv")),
                      spread_of(counted, 1, 100, " %"),
-                     mean_of(reached, 1, 100, " %") + f" ({reached.count if reached else 0} pairs)",
+                     mean_of(reached, 1, 100, " %") + f" ({reached.count if reached else 0} of {counted.count if counted else 0})",
                      *(spread_of(length, 0, 1, " m") for length in lengths)])
     return table(["world", "steps to 90 %: team", "UAV alone", "UGV alone", "saved by the team", "where both got there",
                   "UAV's path alone", "in the team"], rows)

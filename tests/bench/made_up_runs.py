@@ -61,7 +61,7 @@ def explore(arguments):
                  "distribute": given.get("--distribute", "on") == "on", "optimize": given.get("--optimize", "on") == "on",
                  "robots": ["ugv", "uav"] if team == "uav+ugv" else [team]}
     world, seed = facts["world"], facts["seed"]
-    slow = {"maze": 18, "factory": 22, "station": 40}[world] * (1 + 0.06 * math.sin(7 * seed))
+    slow = {"maze": 18, "factory": 22, "station": 40}[world] * (1 + 0.12 * math.sin(7 * seed))
     slow *= 1.6 if len(facts["robots"]) == 1 else 1.25 if facts["goal"] != "render" else 1.0
     limit = 0.55 if facts["robots"] == ["ugv"] else 0.975 - 0.004 * seed
     coverage = [round(limit * (1 - 0.93 * math.exp(-i / slow)), 6) for i in range(int(4.5 * slow))]
