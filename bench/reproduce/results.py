@@ -34,7 +34,7 @@ def main():
     parser.add_argument("--seeds", type=at_least_one, default=3, help="so many for every variant (3)")
     parser.add_argument("--jobs", type=at_least_one, default=os.cpu_count() or 1, help="runs at a time (one per core)")
     parser.add_argument("--command", type=Path, default=Path("build/release/bin/frontlux"), metavar="FRONTLUX")
-    parser.add_argument("--runs", type=Path, default=Path("out/reproduce"), metavar="FOLDER", help="where runs are kept")
+    parser.add_argument("--runs", type=Path, default=Path("out/reproduce"), metavar="FOLDER", help="of all runs")
     parser.add_argument("--results", type=Path, default=Path("docs/results.md"), metavar="FILE.md")
     parser.add_argument("--images", type=Path, default=Path("docs/images/results"), metavar="FOLDER")
     parser.add_argument("--tables-only", action="store_true", help="run nothing, take the runs that are there")

@@ -45,16 +45,19 @@ def coverage_table(results):
                   "ours, to 90 %"], rows)
 
 
+def uav_path(runs):
+    return spread_of(spread(r.travelled("uav")[-1] for r in runs), 0, 1, " m")
+
+
 def team_table(results):
     rows = []
     for world in (*WORLDS, "all"):
         worlds = WORLDS if world == "all" else [world]
+        team, uav, ugv = ([r for w in worlds for r in results.of(w, v)] for v in ("team", "uav", "ugv"))
         counted, reached = savings(results, "team", "uav", worlds)
-        lengths = [spread(r.travelled("uav")[-1] for w in worlds for r in results.of(w, v)) for v in ("uav", "team")]
-        rows.append([world, *(steps_to_90([r for w in worlds for r in results.of(w, v)]) for v in ("team", "uav", "ugv")),
-                     spread_of(counted, 1, 100, " %"),
-                     mean_of(reached, 1, 100, " %") + f" ({reached.count if reached else 0} of {counted.count if counted else 0})",
-                     *(spread_of(length, 0, 1, " m") for length in lengths)])
+        pairs = f" ({reached.count if reached else 0} of {counted.count if counted else 0})"
+        rows.append([world, *(steps_to_90(runs) for runs in (team, uav, ugv)), spread_of(counted, 1, 100, " %"),
+                     mean_of(reached, 1, 100, " %") + pairs, uav_path(uav), uav_path(team)])
     return table(["world", "steps to 90 %: team", "UAV alone", "UGV alone", "saved by the team", "where both got there",
                   "UAV's path alone", "in the team"], rows)
 
@@ -85,9 +88,10 @@ def optimisation_table(results):
         rows.append([world, *(mean_of(g, 0) for g in gains), value(ratio or None, 2, "×"),
                      mean_of(spread(g for r in before for g in r.gains("uav", "gained")), 0),
                      "{} / {} m".format(*paper.UAV_LENGTH[world]),
-                     *(spread_of(spread(r.travelled("uav")[-1] for r in runs), 0, 1, " m") for runs in (before, after))])
+                     uav_path(before), uav_path(after)])
     return table(["world", "frontiers per path, before", "after", "gained", "after / before",
-                  "gained without optimisation", "UAV's path, paper, before / after", "ours, before", "ours, after"], rows)
+                  "gained without optimisation", "UAV's path, paper, before / after", "ours, before", "ours, after"],
+                 rows)
 
 
 def planning_table(results):
@@ -97,8 +101,9 @@ def planning_table(results):
         run = results.timed(world)
         beside = spread(r.planning_mean for r in results.of(world, "team"))
         phases = [mean_of(spread(run.seconds(f"{p}_s")), 1, 1e3) if run else NOTHING for p in PHASES]
-        rows.append([world, *phases, value(run and 1e3 * run.planning_mean, 1), value(run and 1e3 * run.planning_max, 1),
-                     both, value(run and paper.UAV_PLANNING[world] / max(run.planning_mean, 1e-9), 0, "×"),
+        rows.append([world, *phases, value(run and 1e3 * run.planning_mean, 1),
+                     value(run and 1e3 * run.planning_max, 1), both,
+                     value(run and paper.UAV_PLANNING[world] / max(run.planning_mean, 1e-9), 0, "×"),
                      mean_of(beside, 1, 1e3)])
     return table(["world", *PHASES, "planning, mean [ms]", "max", "paper, UAV and UGV", "paper's UAV / ours",
                   "mean of the runs side by side, 1 thread"], rows)
@@ -138,8 +143,9 @@ def variant_table(results):
             runs = results.of(world, name)
             ends = [run.end for run in runs]
             rows.append([world, variant.title, spread_of(spread(r.coverage[-1] for r in runs), 1, 100, " %"),
-                         mean_of(spread(r.coverage_box for r in runs), 1, 100, " %"), mean_of(spread(r.steps for r in runs), 1),
-                         steps_to_90(runs), mean_of(spread(r.travelled()[-1] for r in runs), 0, 1, " m"),
+                         mean_of(spread(r.coverage_box for r in runs), 1, 100, " %"),
+                         mean_of(spread(r.steps for r in runs), 1), steps_to_90(runs),
+                         mean_of(spread(r.travelled()[-1] for r in runs), 0, 1, " m"),
                          mean_of(spread(r.planning_mean for r in runs), 1, 1e3),
                          ", ".join(f"{ends.count(e)} × {plain(e)}" for e in sorted(set(ends))) or NOTHING,
                          value(sum(r.collisions for r in runs) if runs else None)])
@@ -153,8 +159,8 @@ def origin(results):
         return "; ".join(values) or "unknown"
 
     seeds = sorted({run.run.seed for run in results.runs.values() if not run.run.timed})
-    return (f"{len(results.runs)} of {results.wanted} runs, seeds {', '.join(map(str, seeds)) or 'none'} (of world and run "
-            f"alike), version {said('version')}, voxels of {said('resolution_m')} m, on {said('machine')}.")
+    return (f"{len(results.runs)} of {results.wanted} runs, seeds {', '.join(map(str, seeds)) or 'none'} (of world and "
+            f"run alike), version {said('version')}, voxels of {said('resolution_m')} m, on {said('machine')}.")
 
 
 def broken_list(results):

@@ -33,9 +33,10 @@ def write_run(folder, world, seed, coverage, robots=("ugv", "uav"), uav_part=0.7
             goal = "3.5,2.5,1.2,0.1,150" if step else ",,,,"
             gain = "{},{},{}".format(*gains) if step else "0,0,0"
             times = ",".join(map(str, (*phases, sum(phases), 0.05)))
-            lines.append(f"{step},{robot},{covered},{covered * 0.8},{covered * parts[robot]},{covered * 0.8 * parts[robot]},"
-                         f"900,3,0,chosen,400,0,0,50,{goal},planned,{9 if step else 0},{length},{length * step},{gain},"
-                         f"0,0,50000,{times}")
+            part = covered * parts[robot]
+            lines.append(f"{step},{robot},{covered},{covered * 0.8},{part},{part * 0.8},900,3,0,"
+                         f"chosen,400,0,0,50,{goal},planned,{9 if step else 0},{length},{length * step},{gain},0,0,"
+                         f"50000,{times}")
     (folder / "steps.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     total = {"version": "9.9", "world": world, "seed": seed, "mode": "default", "goal": "render", "distribute": True,
              "optimize": True, "caster": "embree", "threads": 1, "resolution_m": 0.3, "robots": list(robots),
@@ -57,8 +58,9 @@ def explore(arguments):
         folder = Path(given["-o"])
         team = given.get("--team", "uav+ugv")
         facts = {"world": arguments[1], "seed": int(given["--seed"]), "threads": int(given["--threads"]),
-                 "caster": given["--caster"], "mode": given.get("--mode", "default"), "goal": given.get("--goal", "render"),
-                 "distribute": given.get("--distribute", "on") == "on", "optimize": given.get("--optimize", "on") == "on",
+                 "caster": given["--caster"], "mode": given.get("--mode", "default"),
+                 "goal": given.get("--goal", "render"), "distribute": given.get("--distribute", "on") == "on",
+                 "optimize": given.get("--optimize", "on") == "on",
                  "robots": ["ugv", "uav"] if team == "uav+ugv" else [team]}
     world, seed = facts["world"], facts["seed"]
     slow = {"maze": 18, "factory": 22, "station": 40}[world] * (1 + 0.12 * math.sin(7 * seed))

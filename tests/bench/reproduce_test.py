@@ -133,7 +133,8 @@ class Document(Made):
         return Results(runs, self.folder, failures or {})
 
     def test_cells(self):
-        runs = [self.make(Run("maze", "team", 1), reaching(6, 0.975)), self.make(Run("maze", "team", 2), reaching(8, 0.965)),
+        runs = [self.make(Run("maze", "team", 1), reaching(6, 0.975)),
+                self.make(Run("maze", "team", 2), reaching(8, 0.965)),
                 self.make(Run("maze", "uav", 1), reaching(12)), self.make(Run("maze", "uav", 2), [0.1, 0.8]),
                 self.make(Run("maze", "unoptimised", 1), CURVE, uav_part=0.6, optimize=False),
                 self.make(Run("maze", "team", 1, "embree", 2, True), reaching(6, 0.975), threads=2),
@@ -182,8 +183,8 @@ class Document(Made):
         self.assertEqual(len(results.broken), len(bad))
         reasons = list(results.broken.values())
         for reason, part in zip(reasons, ("cells, not", "every robot in every step", "not within", "not within 0 and 1",
-                                          "no column planning_s", "no column", "3 steps, steps.csv of 1", "NaN is no number",
-                                          "wall_s is inf", "not finished")):
+                                          "no column planning_s", "no column", "3 steps, steps.csv of 1",
+                                          "NaN is no number", "wall_s is inf", "not finished", "too deeply")):
             self.assertIn(part, reason)
         text = document(results, "images")
         for run, reason in zip(bad, reasons):
@@ -259,7 +260,8 @@ class Running(Made):
         calls = sorted(self.reproduce(0))
         self.assertEqual(len(calls), 3)
         self.assertEqual(calls[0], f"explore --resume {self.runs / 'factory_ugv_1'} --report off")
-        self.assertIn("explore maze --seed 1 --threads 1 --caster embree --max-steps 1000 --team uav --report off", calls[1])
+        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --seed 1 --threads 1 --caster embree "
+                         "--max-steps 1000 --team uav --report off")
         self.assertRegex(calls[2], r"^explore station .*--mode paper.* --force$")
         self.assertIn("None.", (self.folder / "docs/results.md").read_text())
         self.assertEqual(self.reproduce(0), [])
@@ -287,7 +289,8 @@ class Running(Made):
         for facts, expected in (({"goal": "nearest"}, "keep"), ({"goal": "render"}, "force"), ({}, "force"),
                                 ({"goal": "nearest", "threads": 2}, "force"), ({"goal": "nearest", "seed": 2}, "force"),
                                 ({"goal": "nearest", "optimize": False}, "force"),
-                                ({"goal": "nearest", "end": "stopped"}, "resume"), ({"goal": "nearest", "end": None}, "resume")):
+                                ({"goal": "nearest", "end": "stopped"}, "resume"),
+                                ({"goal": "nearest", "end": None}, "resume")):
             with self.subTest(facts):
                 write_run(self.runs / run.name, "maze", facts.pop("seed", 1), CURVE, **facts)
                 self.assertEqual(how_to_go_on(run, self.runs / run.name, "9.9"), expected)
