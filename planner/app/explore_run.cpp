@@ -39,8 +39,8 @@ using planner::Recording;
 
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";
-constexpr std::array kFiles = {kRecording, "run.json", "steps.csv", "paths.csv", "map.ot", "map.bt",
-                               "report.html"};
+constexpr std::array kFiles = {kRecording, "run.json", "steps.csv",  "paths.csv",
+                               "map.ot",   "map.bt",   "report.html"};
 
 void prepare_folder(const ExploreRun& run) {
   std::error_code error;
@@ -52,12 +52,12 @@ void prepare_folder(const ExploreRun& run) {
   if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))
     refuse("cannot be made: " + (error ? error.message() : "no folder to make it in") +
            "; name a folder whose parent exists and may be written to");
-  if (::access(run.folder.c_str(), W_OK | X_OK) != 0)
-    refuse("cannot be written to; check its permissions");
+  if (::access(run.folder.c_str(), W_OK | X_OK) != 0) refuse("cannot be written to; check its permissions");
   if (!fs::is_empty(run.folder, error)) {
     if (!run.force)
-      refuse("is not empty; name another folder, go on with the run in it by --resume, or replace that run by "
-             "--force");
+      refuse(
+          "is not empty; name another folder, go on with the run in it by --resume, or replace that run by "
+          "--force");
     for (const char* file : kFiles) fs::remove(run.folder / file, error);
   }
 }
@@ -117,9 +117,8 @@ class Run {
 
  private:
   [[nodiscard]] planner::Drive drive() {
-    return [this](std::size_t robot, const planner::Pose& viewpoint) {
-      return robots_.drive(robot, viewpoint);
-    };
+    return
+        [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
   }
 
   void note(ExplorationStep step) {
@@ -170,9 +169,11 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   JsonObject json;
   json.add("version", FRONTLUX_VERSION).add("world", setup.head.world).add("seed", setup.exploration.seed);
   json.add("robots", std::span<const std::string>(names)).add("mode", options.mode);
-  json.add("goal", options.goal.empty() ? "by mode" : options.goal).add("distribute", setup.exploration.distribute);
+  json.add("goal", options.goal.empty() ? "by mode" : options.goal)
+      .add("distribute", setup.exploration.distribute);
   json.add("optimize", setup.exploration.optimize).add("caster", options.caster);
-  json.add("planner", planner::name(setup.exploration.path.search)).add("resolution_m", setup.head.resolution);
+  json.add("planner", planner::name(setup.exploration.path.search))
+      .add("resolution_m", setup.head.resolution);
   json.add("max_steps", static_cast<std::uint64_t>(setup.exploration.max_steps));
   json.add("epsilon", setup.exploration.epsilon);
   json.add("threads", static_cast<std::uint64_t>(run.threads)).add("machine", machine_name());
@@ -193,8 +194,8 @@ void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunFi
     out += row(setup.head.robots[r].robot.name,
                "travelled " + rounded(std::round(files.travelled()[r] * 10) / 10) + " m");
   out += row("collisions", std::to_string(files.collisions())) +
-         row("planning", milli(files.planning_mean()) + " s a step, at most " + milli(files.planning_max()) +
-                             " s") +
+         row("planning",
+             milli(files.planning_mean()) + " s a step, at most " + milli(files.planning_max()) + " s") +
          row("time", milli(seconds) + " s");
   std::cout << out;
 }
@@ -254,8 +255,9 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw BadInput(std::string(error.what()) + "; what is recorded is kept, and frontlux explore --resume " +
-                     run.folder.string() + " goes on with it");
+      throw BadInput(std::string(error.what()) +
+                     "; what is recorded is kept, and frontlux explore --resume " + run.folder.string() +
+                     " goes on with it");
     }
   });
   if (InterruptNote::taken())

@@ -60,7 +60,8 @@ std::vector<RobotDescription> parse_team(const std::string& text, Method method)
     const std::string_view name = word.substr(static_cast<std::size_t>(end - word.data()));
     if ((error != std::errc{} && end != word.data()) || count < 1 || count > kMaxRobots ||
         (name != "uav" && name != "ugv"))
-      throw BadInput("--team: '" + text + "' is no team; give uav, ugv, or several with + between them, as in " +
+      throw BadInput("--team: '" + text +
+                     "' is no team; give uav, ugv, or several with + between them, as in " +
                      "uav+ugv or 2uav+ugv");
     for (std::size_t i = 0; i < count; ++i)
       robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
@@ -129,8 +130,8 @@ void find_starts(const ExploreOptions& options, const Eigen::Vector3d& around, E
       throw BadInput(setup.sourced.world.name + ": the robot '" + robots[r].robot.name +
                      "' has no place within 15 m of the start; give another --start, or its --pose");
     if (robots[r].robot.travel.motion == Motion::kPlane)
-      ground = std::max(ground.value_or(-1e300),
-                        starts[r]->position.z() - robots[r].robot.travel.sensor_height);
+      ground =
+          std::max(ground.value_or(-1e300), starts[r]->position.z() - robots[r].robot.travel.sensor_height);
   }
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (robots[r].robot.travel.motion == Motion::kSpace)

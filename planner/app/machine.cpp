@@ -1,7 +1,8 @@
 #include "machine.hpp"
 
-#include <fstream>
 #include <sys/resource.h>
+
+#include <fstream>
 #include <thread>
 
 namespace frontlux::app {

@@ -73,8 +73,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 RecordedStep with_known_voxels(ExplorationStep step, const RecordedStep* before,
                                const sim::GroundTruth& truth) {
   RecordedStep recorded;
-  recorded.known =
-      before != nullptr ? before->known : std::vector<planner::KnownVoxels>(step.robots.size());
+  recorded.known = before != nullptr ? before->known : std::vector<planner::KnownVoxels>(step.robots.size());
   for (std::size_t r = 0; r < step.robots.size(); ++r)
     for (const planner::VoxelChange& change : step.robots[r].changed) {
       if (change.before != Occupancy::kUnknown) continue;
@@ -94,7 +93,8 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       seconds_(planner::kPhases) {
   std::string header =
       "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,dropped,"
-      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,path,"
+      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "path,"
       "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,stubborn,collisions,rays";
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
     const auto name = planner::name_of(static_cast<planner::Phase>(phase));
