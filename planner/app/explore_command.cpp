@@ -110,7 +110,16 @@ void add_explore_command(CLI::App& app) {
       "N");
   add("--max-steps", words->max_steps, "End after so many steps; 1000 if not given", "N");
   add("--epsilon", options.epsilon,
-      "End when three steps in a row promise fewer frontiers than this; 10 if not given", "N");
+      "End when three steps in a row promise fewer frontiers than this; 10, or 1 with --goal nearest, if not "
+      "given",
+      "N");
+  add("--lambda", options.lambda,
+      "How much less a goal is worth by the metre [1/m], eq. 1; by the mode if not given", "L");
+  add("--advance", options.advance,
+      "Goals nearer than this [m] are worth less in proportion; 0: they are not; by the mode if not given",
+      "M");
+  add("--min-distance", options.min_distance, "Nearer places are no goals [m]; 0.6 if not given", "M");
+  add("--samples", options.samples, "Frontiers drawn for each viewpoint; 64 if not given", "N");
   add("--resolution", options.resolution, "Edge of a voxel in metres; 0.3 if not given", "M");
   add("--noise", options.noise, "Standard deviation of a range in metres; 0 if not given", "M");
   add("--dropout", options.dropout, "Probability that a ray gives no measurement; 0 if not given", "P");

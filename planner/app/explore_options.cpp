@@ -31,6 +31,10 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("seed", options.seed);
   visit("max_steps", options.max_steps);
   visit("epsilon", options.epsilon);
+  visit("lambda", options.lambda);
+  visit("advance", options.advance);
+  visit("min_distance", options.min_distance);
+  visit("samples", options.samples);
   visit("resolution", options.resolution);
   visit("noise", options.noise);
   visit("dropout", options.dropout);

@@ -108,6 +108,8 @@ class Run {
                      " the robots see another world than the one recorded; has " + setup_.head.world +
                      " changed since?");
     last_ = recorded;
+    begun_ = true;
+    collisions_ = robots_.total().physical;
     files_.add(recorded);
   }
 

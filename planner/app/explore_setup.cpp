@@ -152,6 +152,16 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                             {{"render", planner::GoalRule::kViewQuality},
                                              {"cluster", planner::GoalRule::kClusters},
                                              {"nearest", planner::GoalRule::kNearest}});
+    if (!options.lambda.empty()) goal.lambda = parse_number("--lambda", options.lambda);
+    if (!options.advance.empty()) goal.advance = parse_number("--advance", options.advance);
+    if (!options.min_distance.empty())
+      goal.min_distance = parse_number("--min-distance", options.min_distance);
+    if (!options.samples.empty()) goal.rendering.samples = parse_count("--samples", options.samples, 1);
+    try {
+      goal.check();
+    } catch (const std::invalid_argument& error) {
+      throw BadInput(error.what());
+    }
     exploration.team.push_back({robot.robot, goal});
   }
   using planner::PathSearch;
@@ -170,7 +180,10 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                                     {"grid", planner::CasterKind::kGrid},
                                                     {"octomap", planner::CasterKind::kOctomap}});
   exploration.max_steps = parse_count("--max-steps", options.max_steps, 0);
-  exploration.epsilon = parse_number("--epsilon", options.epsilon);
+  if (!options.epsilon.empty())
+    exploration.epsilon = parse_number("--epsilon", options.epsilon);
+  else if (options.goal == "nearest")
+    exploration.epsilon = 1.0;  // the nearest frontiers are few, and worth going to by this rule
   try {
     exploration.check();
   } catch (const std::invalid_argument& error) {

@@ -26,10 +26,11 @@ constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 21> kNumeric = {
-      "--from",  "--to",         "--direction", "--range", "--start",   "--ground",     "--scale",
-      "--seed",  "--resolution", "--bounds",    "--at",    "--yaw",     "--iterations", "--min-height",
-      "--floor", "--noise",      "--dropout",   "--sweep", "--epsilon", "--max-steps",  "--threads"};
+  constexpr std::array<std::string_view, 25> kNumeric = {
+      "--from",   "--to",         "--direction",    "--range",  "--start",   "--ground",     "--scale",
+      "--seed",   "--resolution", "--bounds",       "--at",     "--yaw",     "--iterations", "--min-height",
+      "--floor",  "--noise",      "--dropout",      "--sweep",  "--epsilon", "--max-steps",  "--threads",
+      "--lambda", "--advance",    "--min-distance", "--samples"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
