@@ -111,6 +111,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
       for (int i = random.below(size); i > 0; --i)
         robot.stubborn.push_back(random_key(random, planner::kAllVoxels));
       std::sort(robot.stubborn.begin(), robot.stubborn.end());
+      robot.stubborn.erase(std::unique(robot.stubborn.begin(), robot.stubborn.end()), robot.stubborn.end());
       for (int i = random.below(size); i > 0; --i)
         robot.image.push_back({random_key(random, planner::kAllVoxels), random.uniform(0, 9),
                                random.uniform(0, 9), random.uniform(0, 9), random.uniform(0, 9),

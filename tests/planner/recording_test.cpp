@@ -259,6 +259,10 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
     s.step.robots[0].changed = {{head_.bounds.max, Occupancy::kUnknown, Occupancy::kFree},
                                 {head_.bounds.min, Occupancy::kUnknown, Occupancy::kFree}};
   });
+  refuses("each voxel once", [&](RecordedStep& s) {
+    s.step.robots[0].changed = {{head_.bounds.max, Occupancy::kUnknown, Occupancy::kFree},
+                                {head_.bounds.max, Occupancy::kFree, Occupancy::kOccupied}};
+  });
   refuses("stubborn voxels are not sorted", [](RecordedStep& s) {
     s.step.robots[0].stubborn = {{1, 0, 0}, {0, 9, 9}};
   });
