@@ -226,10 +226,11 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   arena.execute([&] {
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     try {
-      Run going(setup, run);
+      // First the recording, which is locked: the files may be those of a process that is at it.
       const fs::path file = run.folder / kRecording;
       planner::RecordingWriter writer =
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
+      Run going(setup, run);
       if (recording)
         for (const RecordedStep& step : recording->steps) going.repeat(step);
       const auto record = [&] {

@@ -111,7 +111,7 @@ struct Exploration::State {
   std::vector<std::optional<TravelCorridor>> ways = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
-  Keys unread = {};                            // changed since the frontiers were last brought up to date
+  Keys unread = {};                            // changed since the corridors were last brought up to date
   std::uint64_t number = 0;
   int quiet = 0;
   bool idle = false;
@@ -142,6 +142,7 @@ struct Exploration::State {
   Plan optimize(std::size_t robot, const RayCaster& counting, RobotStep& planned);
   void go(std::size_t robot, const Plan& plan, const Drive& drive, RobotStep& step);
   void take(const RobotStep& step, std::size_t robot);
+  void follow(const ExplorationStep& step);
   void close(const ExplorationStep& step);
 };
 
@@ -167,7 +168,6 @@ TeamGoals Exploration::State::select_goals(ExplorationStep& step) {
   Keys wanted, large;
   {
     const PhaseClock clock(step, Phase::kFrontiers);
-    frontiers.update(grid, unread);
     for (std::optional<TravelCorridor>& way : ways) {
       const auto robot = static_cast<std::size_t>(&way - ways.data());
       const auto cell = cell_at(poses[robot].position);
@@ -265,11 +265,19 @@ void Exploration::State::go(std::size_t robot, const Plan& plan, const Drive& dr
 
 // What a robot's part of a step leaves behind.
 void Exploration::State::take(const RobotStep& step, std::size_t robot) {
-  for (const VoxelChange& change : step.changed) unread.push_back(change.key);
   stubborn.visited(step.stubborn);
   for (std::size_t i = trails[robot].empty() ? 0 : 1; i < step.travelled; ++i)
     trails[robot].push_back(step.planned[i]);
   if (step.travelled > 0) poses[robot] = step.planned[step.travelled - 1];
+}
+
+// Brings the frontiers up to date with what the robots changed.
+void Exploration::State::follow(const ExplorationStep& step) {
+  Keys changed;
+  for (const RobotStep& robot : step.robots)
+    for (const VoxelChange& change : robot.changed) changed.push_back(change.key);
+  frontiers.update(mapping.grid(), changed);
+  unread.insert(unread.end(), changed.begin(), changed.end());
 }
 
 // Line 3: what the end depends on.
@@ -361,6 +369,7 @@ Exploration& Exploration::operator=(Exploration&&) noexcept = default;
 
 ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, const Drive& drive) {
   State& state = *state_;
+  if (state.selection) refuse("it has begun already");
   if (starts.size() != state.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.size()) + " robots");
   std::vector<Pose> poses;
@@ -372,20 +381,24 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
 
   ExplorationStep step;
   step.robots.resize(starts.size());
-  const PhaseClock clock(step, Phase::kMoving);
-  for (std::size_t r = 0; r < starts.size(); ++r) {
-    RobotStep& robot = step.robots[r];
-    const VoxelGrid before = state.mapping.grid();
-    Keys touched = state.mapping.mark_free(starts[r].known_free);
-    // The first look is the way's first viewpoint, at which `travel` does not measure.
-    robot.planned = look_around(starts[r].pose, state.options.team[r].robot.view);
-    robot.planned.insert(robot.planned.begin(), starts[r].pose);
-    const detail::Journey journey = detail::travel(r, robot.planned, nullptr, drive, state.mapping);
-    robot.travelled = journey.travelled;
-    for (const VoxelChange& change : journey.changed) touched.push_back(change.key);
-    robot.changed = detail::differences(before, state.mapping.grid(), std::move(touched));
-    state.take(robot, r);
+  {
+    const PhaseClock clock(step, Phase::kMoving);
+    for (std::size_t r = 0; r < starts.size(); ++r) {
+      RobotStep& robot = step.robots[r];
+      const VoxelGrid before = state.mapping.grid();
+      Keys touched = state.mapping.mark_free(starts[r].known_free);
+      // The first look is the way's first viewpoint, at which `travel` does not measure.
+      robot.planned = look_around(starts[r].pose, state.options.team[r].robot.view);
+      robot.planned.insert(robot.planned.begin(), starts[r].pose);
+      const detail::Journey journey = detail::travel(r, robot.planned, nullptr, drive, state.mapping);
+      robot.travelled = journey.travelled;
+      for (const VoxelChange& change : journey.changed) touched.push_back(change.key);
+      robot.changed = detail::differences(before, state.mapping.grid(), std::move(touched));
+      state.take(robot, r);
+    }
   }
+  const PhaseClock clock(step, Phase::kFrontiers);
+  state.follow(step);
   state.number = 1;
   return step;
 }
@@ -393,6 +406,7 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
 // Alg. 1, one round of the loop that begins at line 3.
 ExplorationStep Exploration::step(const Drive& drive) {
   State& state = *state_;
+  if (!state.selection) refuse("a step before its beginning");
   ExplorationStep step;
   step.number = state.number;
   step.robots.resize(state.size());
@@ -412,10 +426,16 @@ ExplorationStep Exploration::step(const Drive& drive) {
     plans[r] = state.optimize(r, counting, robot);  // Alg. 1, line 7
   }
   step.rays += counting.rays();
-  const PhaseClock clock(step, Phase::kMoving);
-  for (std::size_t r = 0; r < state.size(); ++r) {
-    state.go(r, plans[r], drive, step.robots[r]);  // Alg. 1, lines 8 to 11
-    state.take(step.robots[r], r);
+  {
+    const PhaseClock clock(step, Phase::kMoving);
+    for (std::size_t r = 0; r < state.size(); ++r) {
+      state.go(r, plans[r], drive, step.robots[r]);  // Alg. 1, lines 8 to 11
+      state.take(step.robots[r], r);
+    }
+  }
+  {
+    const PhaseClock clock(step, Phase::kFrontiers);
+    state.follow(step);
   }
   state.close(step);
   return step;
@@ -423,14 +443,17 @@ ExplorationStep Exploration::step(const Drive& drive) {
 
 bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   State& state = *state_;
+  if (!state.selection) refuse("a step before its beginning");
   if (recorded.number != state.number || recorded.robots.size() != state.size()) return false;
   for (std::size_t r = 0; r < state.size(); ++r) {
     const RobotStep& robot = recorded.robots[r];
+    if (robot.travelled > robot.planned.size()) return false;
     const auto way = std::span<const Pose>(robot.planned).first(robot.travelled);
     const detail::Journey journey = detail::travel(r, way, nullptr, drive, state.mapping);
     if (journey.travelled != robot.travelled || journey.changed != robot.changed) return false;
     state.take(robot, r);
   }
+  state.follow(recorded);
   state.close(recorded);
   return true;
 }

@@ -1,12 +1,12 @@
+#include "support/command.hpp"
+
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
 
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -19,24 +19,11 @@
 
 namespace {
 
+using frontlux::test::Answer;
+using frontlux::test::content_of;
+
 constexpr double kResolution = 0.1;
 constexpr int kOrigin = 32768;
-
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out += "'";
-}
 
 octomap::OcTreeKey key(int x, int y, int z) {
   const auto along = [](int i) { return static_cast<octomap::key_type>(kOrigin + i); };
@@ -73,11 +60,7 @@ class AppTest : public testing::Test {
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
   [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = quoted(FRONTLUX_COMMAND);
-    for (const auto& word : words) command += " " + quoted(word);
-    command += " >" + quoted(file("out")) + " 2>" + quoted(file("err"));
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(file("out")), content_of(file("err"))};
+    return frontlux::test::run_frontlux(words, folder_);
   }
 
   [[nodiscard]] Answer cast(const std::vector<std::string>& words) const {

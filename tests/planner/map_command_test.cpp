@@ -1,3 +1,4 @@
+#include "support/command.hpp"
 #include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 
@@ -7,12 +8,9 @@
 
 #include <gtest/gtest.h>
 #include <octomap/ScanGraph.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -24,17 +22,10 @@
 namespace frontlux::planner {
 namespace {
 
+using test::Answer;
+using test::content_of;
+
 using octomap::OcTree;
-
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 class MapCommandTest : public testing::Test {
  protected:
@@ -72,11 +63,9 @@ class MapCommandTest : public testing::Test {
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = std::string(FRONTLUX_COMMAND) + " map";
-    for (const auto& word : words) command += " '" + word + "'";
-    const int status = std::system((command + " >'" + path("out") + "' 2>'" + path("err") + "'").c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(path("out")), content_of(path("err"))};
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "map");
+    return test::run_frontlux(words, folder_);
   }
 
   void expect_refused(std::vector<std::string> words, const std::string& part) const {

@@ -1,3 +1,4 @@
+#include "support/command.hpp"
 #include "support/quiet_octomap.hpp"
 
 #include <frontlux/octomap.hpp>
@@ -9,13 +10,11 @@
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -27,15 +26,8 @@
 namespace frontlux::planner {
 namespace {
 
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::Answer;
+using test::content_of;
 
 std::vector<Pose> poses_in(const std::string& csv) {
   std::istringstream lines(csv);
@@ -82,11 +74,9 @@ class PlanCommandTest : public testing::Test {
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = std::string(FRONTLUX_COMMAND) + " plan";
-    for (const auto& word : words) command += " '" + word + "'";
-    const int status = std::system((command + " >'" + path("out") + "' 2>'" + path("err") + "'").c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(path("out")), content_of(path("err"))};
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "plan");
+    return test::run_frontlux(words, folder_);
   }
 
   [[nodiscard]] std::set<std::string> files() const {

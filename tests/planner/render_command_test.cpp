@@ -1,16 +1,15 @@
 // `frontlux render` from the outside: its files against brute force, and what it refuses.
 
 #include "planner/goal_room.hpp"
+#include "support/command.hpp"
 #include "support/quiet_octomap.hpp"
 
 #include <frontlux/octomap.hpp>
 
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,16 +20,6 @@
 
 namespace frontlux::test {
 namespace {
-
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 class RenderCommand : public testing::Test {
  protected:
@@ -55,12 +44,9 @@ class RenderCommand : public testing::Test {
 
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
-  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = std::string("'") + FRONTLUX_COMMAND + "' render";
-    for (const auto& word : words) command += " '" + word + "'";
-    command += " >'" + file("out") + "' 2>'" + file("err") + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(file("out")), content_of(file("err"))};
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "render");
+    return run_frontlux(words, folder_);
   }
 
   [[nodiscard]] Answer render(const std::string& robot, const std::string& at, const std::string& output,

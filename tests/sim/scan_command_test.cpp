@@ -1,3 +1,5 @@
+#include "support/command.hpp"
+
 #include <frontlux/octomap.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/mesh_file.hpp>
@@ -7,10 +9,8 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -19,15 +19,8 @@
 namespace frontlux::sim {
 namespace {
 
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::Answer;
+using test::content_of;
 
 class ScanCommand : public testing::Test {
  protected:
@@ -45,12 +38,9 @@ class ScanCommand : public testing::Test {
     return file(name);
   }
 
-  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = std::string("'") + FRONTLUX_COMMAND + "' scan";
-    for (const auto& word : words) command += " '" + word + "'";
-    command += " >'" + file("out") + "' 2>'" + file("err") + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(file("out")), content_of(file("err"))};
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "scan");
+    return test::run_frontlux(words, folder_);
   }
 
   void expect_refusal(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {

@@ -1,3 +1,5 @@
+#include "support/command.hpp"
+
 #include <frontlux/octomap.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/map_world.hpp>
@@ -5,12 +7,9 @@
 
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -18,10 +17,8 @@
 namespace frontlux::sim {
 namespace {
 
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
+using test::Answer;
+using test::content_of;
 
 class WorldCommand : public testing::Test {
  protected:
@@ -33,17 +30,9 @@ class WorldCommand : public testing::Test {
 
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
-  static std::string content_of(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
-  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
-    std::string command = std::string("'") + FRONTLUX_COMMAND + "' world";
-    for (const auto& word : words) command += " '" + word + "'";
-    command += " >'" + file("out") + "' 2>'" + file("err") + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(file("out")), content_of(file("err"))};
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "world");
+    return test::run_frontlux(words, folder_);
   }
 
   void expect_refusal(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {

@@ -131,16 +131,18 @@ class Exploration {
   Exploration& operator=(Exploration&&) noexcept;
 
   /// Alg. 1, lines 1 and 2: takes the robots to their starts, where each looks all around.
-  /// @throws std::invalid_argument if there is not one start for each robot, or one is not finite
-  /// @pre called once, before all else
+  /// @throws std::invalid_argument if there is not one start for each robot, one is not finite, or it has
+  /// begun already
   ExplorationStep begin(std::span<const ExplorationStart> starts, const Drive& drive);
 
-  /// Alg. 1, lines 4 to 11. @pre begun, and not at its end
+  /// Alg. 1, lines 4 to 11. At its end it may be called too, and goes on.
+  /// @throws std::invalid_argument before `begin`; so does `repeat`
   ExplorationStep step(const Drive& drive);
 
   /// Goes through a step that was planned before, as recorded, without planning it again: afterwards the
   /// exploration is where it was after that step.
-  /// @return false if the robots did not learn what they learnt before: another world, or other options
+  /// @return false if the robots did not learn what they learnt before: another world, or other options. The
+  /// exploration is of no more use then.
   bool repeat(const ExplorationStep& recorded, const Drive& drive);
 
   /// Alg. 1, line 3: why it is over; nothing as long as it is not.
@@ -150,7 +152,7 @@ class Exploration {
   [[nodiscard]] const Mapping& mapping() const;
   /// Of the robots' sensors.
   [[nodiscard]] std::span<const Pose> poses() const;
-  /// Of the map as it is, dropped ones included; sorted.
+  /// Of the map as it is after the last step, dropped ones included; sorted.
   [[nodiscard]] std::span<const VoxelKey> frontiers() const;
 
  private:

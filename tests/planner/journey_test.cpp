@@ -1,0 +1,140 @@
+#include "journey.hpp"
+
+#include "support/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+// A range along one direction, from a viewpoint.
+Scan scan_along(const Pose& from, const Eigen::Vector3f& direction, float range) {
+  Scan scan;
+  scan.origin = from.position.cast<float>();
+  scan.max_range = 10.0;
+  scan.directions = {direction};
+  scan.ranges = {range};
+  return scan;
+}
+
+// A free hall of 6 x 3 x 3 m whose lower corner is the origin, and a robot of 0.8 m that crosses it.
+class JourneyTest : public testing::Test {
+ protected:
+  JourneyTest() : mapping_({}) {
+    mapping_.mark_free(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 3, 3)));
+    for (int i = 0; i < 5; ++i) way_.push_back({{1.05 + 0.9 * i, 1.35, 1.35}, 0.1 * i});
+  }
+
+  Mapping mapping_;
+  std::vector<Pose> way_;
+  TravelOptions body_ = uav_travel();
+};
+
+TEST(Differences, AreThoseOfEveryVoxel) {
+  Random random(5);
+  const auto key = [&](int edge) {
+    const auto along = [&] { return static_cast<std::uint16_t>(32760 + random.below(edge)); };
+    return VoxelKey{along(), along(), along()};
+  };
+  VoxelGrid before(0.3);
+  for (int i = 0; i < 3000; ++i) before.set(key(16), static_cast<Occupancy>(random.below(3)));
+  VoxelGrid after = before;
+  for (int i = 0; i < 900; ++i) after.set(key(16), static_cast<Occupancy>(random.below(3)));
+  std::vector<VoxelKey> candidates;
+  for (int i = 0; i < 5000; ++i) candidates.push_back(key(20));
+  std::map<VoxelKey, VoxelChange> expected;
+  for (const VoxelKey& k : candidates)
+    if (before.at(k) != after.at(k)) expected[k] = {k, before.at(k), after.at(k)};
+  std::vector<VoxelChange> sorted;
+  for (const auto& [k, change] : expected) sorted.push_back(change);
+  EXPECT_GT(sorted.size(), 200U);
+  EXPECT_EQ(detail::differences(before, after, candidates), sorted);
+  EXPECT_TRUE(detail::differences(before, before, candidates).empty());
+  EXPECT_TRUE(detail::differences(before, after, {}).empty());
+}
+
+TEST_F(JourneyTest, MeasuresAtEveryViewpointButTheFirst) {
+  const VoxelGrid before = mapping_.grid();
+  std::vector<Pose> asked;
+  const Drive drive = [&](std::size_t robot, const Pose& to) {
+    EXPECT_EQ(robot, 3U);
+    asked.push_back(to);
+    return scan_along(to, {0, 1, 0}, 2.5F);
+  };
+  const detail::Journey journey = detail::travel(3, way_, &body_, drive, mapping_);
+  EXPECT_EQ(journey.travelled, 5U);
+  EXPECT_NEAR(journey.length, 3.6, 1e-12);
+  ASSERT_EQ(asked.size(), 4U);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    EXPECT_EQ(asked[i].position, way_[i + 1].position);
+    EXPECT_EQ(asked[i].yaw, way_[i + 1].yaw);
+  }
+  // Free from the viewpoint at y = 1.35 to the hall's end at 3 was known; 3 to 3.85 and a hit there is new:
+  // two free voxels and an occupied one, for each of the four columns.
+  EXPECT_EQ(journey.changed.size(), 12U);
+  for (const VoxelChange& change : journey.changed) {
+    EXPECT_EQ(change.before, before.at(change.key));
+    EXPECT_EQ(change.after, mapping_.grid().at(change.key));
+    EXPECT_NE(change.before, change.after);
+  }
+}
+
+TEST_F(JourneyTest, StopsWhereAScanShowsTheWayToBeBlocked) {
+  // From its second place it finds something 1.5 m ahead, so in the box around the fourth, 1.8 m ahead, and
+  // also in that around the third but for the voxel between: the third is 0.9 m ahead, 0.4 wide.
+  const auto run = [&](float distance, const TravelOptions* body) {
+    Mapping mapping({});
+    mapping.mark_free(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 3, 3)));
+    const Drive drive = [&](std::size_t, const Pose& to) {
+      return to.position == way_[1].position ? scan_along(to, {1, 0, 0}, distance)
+                                             : scan_along(to, {1, 0, 0}, kNothing);
+    };
+    return detail::travel(0, way_, body, drive, mapping);
+  };
+  // x of the hit: 1.95 + distance. Boxes of 3 voxels around 2.85, 3.75 and 4.65 begin at 2.4, 3.3 and 4.2.
+  EXPECT_EQ(run(2.5F, &body_).travelled, 4U);  // at 4.45: only the last is blocked
+  EXPECT_EQ(run(1.5F, &body_).travelled, 3U);  // at 3.45
+  EXPECT_EQ(run(0.6F, &body_).travelled, 2U);  // at 2.55
+  EXPECT_NEAR(run(0.6F, &body_).length, 0.9, 1e-12);
+  EXPECT_EQ(run(0.6F, nullptr).travelled, 5U) << "with no body the ways are not checked";
+}
+
+TEST_F(JourneyTest, StopsWhereTheRobotCouldNotGo) {
+  for (std::size_t refused = 1; refused <= 5; ++refused) {
+    std::size_t calls = 0;
+    const Drive drive = [&](std::size_t, const Pose& to) -> std::optional<Scan> {
+      if (++calls == refused) return std::nullopt;
+      return scan_along(to, {1, 0, 0}, kNothing);
+    };
+    const detail::Journey journey = detail::travel(0, way_, &body_, drive, mapping_);
+    EXPECT_EQ(journey.travelled, std::min<std::size_t>(refused, 5));
+    EXPECT_NEAR(journey.length, 0.9 * static_cast<double>(journey.travelled - 1), 1e-12);
+    EXPECT_TRUE(journey.changed.empty());
+  }
+}
+
+TEST_F(JourneyTest, OfOnePlaceOrNoneMeasuresNothing) {
+  const Drive drive = [&](std::size_t, const Pose&) -> std::optional<Scan> {
+    ADD_FAILURE() << "asked to drive";
+    return std::nullopt;
+  };
+  const detail::Journey none = detail::travel(0, {}, &body_, drive, mapping_);
+  EXPECT_EQ(none.travelled, 0U);
+  EXPECT_EQ(none.length, 0.0);
+  const detail::Journey one = detail::travel(0, std::span(way_).first(1), &body_, drive, mapping_);
+  EXPECT_EQ(one.travelled, 1U);
+  EXPECT_EQ(one.length, 0.0);
+}
+
+}  // namespace
+}  // namespace frontlux::planner
