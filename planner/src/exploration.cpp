@@ -325,8 +325,8 @@ ExplorationOptions exploration_options(Method method) {
 }
 
 double ExplorationStep::planning_seconds() const {
-  return std::accumulate(seconds.begin(), seconds.end(), 0.0) -
-         seconds[static_cast<std::size_t>(Phase::kMoving)];
+  static_assert(static_cast<std::size_t>(Phase::kMoving) + 1 == kPhases);
+  return std::accumulate(seconds.begin(), seconds.end() - 1, 0.0);
 }
 
 std::string_view name_of(Phase phase) {

@@ -32,18 +32,22 @@ using planner::RobotStep;
 /// A built-in world at 0.3 m, and robots at their starts in it.
 struct TeamInWorld {
   sim::World world;
+  Eigen::Vector3d around;
   sim::GroundTruth truth;
   std::vector<planner::RobotDescription> robots;
   std::vector<planner::ExplorationStart> starts;
 
   TeamInWorld(std::string_view name, std::uint64_t seed, std::vector<planner::RobotDescription> team)
-      : world(sim::make_world(name, seed)), truth(world, 0.3, *world.start), robots(std::move(team)) {
+      : world(sim::make_world(name, seed)),
+        around(sim::free_start(world, 0.3, true)),
+        truth(world, 0.3, around),
+        robots(std::move(team)) {
     std::vector<planner::Robot> bodies;
     for (auto& [robot, columns, rows] : robots) {
-      robot.travel.floor = sim::ground_below(truth, *world.start);
+      robot.travel.floor = sim::ground_below(truth, around);
       bodies.push_back(robot);
     }
-    const auto poses = sim::find_starts(truth, *world.start, bodies);
+    const auto poses = sim::find_starts(truth, around, bodies);
     for (std::size_t r = 0; r < poses.size(); ++r) {
       if (!poses[r]) throw std::runtime_error("no start for robot " + std::to_string(r));
       starts.push_back({*poses[r], sim::start_bubble(truth, bodies[r], *poses[r])});

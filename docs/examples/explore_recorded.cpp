@@ -1,0 +1,121 @@
+// Explores with scans that come from files: all that it takes to put a real robot in the simulator's place.
+//
+//     explore_recorded ROBOT.json FOLDER X Y Z YAW SECONDS
+//
+// The robot's sensor begins at X, Y, Z [m], YAW [rad]. Where it has to go next is in FOLDER/next.csv, which
+// the robot takes away. It answers with a scan, the .ply or .pcd file of its points in the sensor's frame
+// [m], and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where the scan was taken; rays that
+// met nothing are points beyond the sensor's range. The scan has to be complete before the line is there, and
+// poses.csv to be replaced as a whole. A robot that could not go there answers from where it is, or not at
+// all for SECONDS. What is in the folder already is taken at once: the same folder can be explored again
+// without a robot. The map comes to FOLDER/map.bt.
+
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/path_file.hpp>
+#include <frontlux/planner/recorded_scan.hpp>
+#include <frontlux/planner/robot_file.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <thread>
+
+using namespace frontlux;
+using namespace frontlux::planner;
+
+namespace {
+
+// The scan of a file, as the mapping takes it.
+Scan scan_of(const RecordedPose& recorded, const std::filesystem::path& folder, double max_range) {
+  Scan scan;
+  scan.origin = recorded.T_world_sensor.translation().cast<float>();
+  scan.max_range = max_range;
+  for (const Eigen::Vector3f& point : read_point_cloud(folder / recorded.file)) {
+    const Eigen::Vector3d ray = recorded.T_world_sensor.linear() * point.cast<double>();
+    const double range = ray.norm();
+    if (!std::isfinite(range) || range == 0.0) continue;  // not measured
+    scan.directions.push_back((ray / range).cast<float>());
+    scan.ranges.push_back(range <= max_range ? static_cast<float>(range)
+                                             : std::numeric_limits<float>::infinity());
+  }
+  return scan;
+}
+
+bool is_near(const Eigen::Isometry3d& T_world_sensor, const Pose& viewpoint) {
+  constexpr double kMetres = 0.05, kRadians = 0.05;
+  const Eigen::Vector3d forward = T_world_sensor.linear().col(0);
+  const double turn = std::atan2(forward.y(), forward.x()) - viewpoint.yaw;
+  return (T_world_sensor.translation() - viewpoint.position).norm() < kMetres &&
+         std::abs(std::remainder(turn, 2 * std::numbers::pi)) < kRadians;
+}
+
+// Sends the robot to a viewpoint and waits for its scan, the n-th of all. Here the driver of yours belongs.
+std::optional<Scan> drive(const std::filesystem::path& folder, std::size_t n, const Pose& viewpoint,
+                          double max_range, std::chrono::duration<double> patience) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (bool asked = false;; asked = true) {
+    if (std::filesystem::exists(folder / "poses.csv")) {
+      const auto recorded = read_pose_file(folder / "poses.csv");
+      if (recorded.size() > n) {
+        if (!is_near(recorded[n].T_world_sensor, viewpoint)) return std::nullopt;
+        return scan_of(recorded[n], folder, max_range);
+      }
+    }
+    if (!asked) write_path(folder / "next.csv", {&viewpoint, 1});
+    if (std::chrono::steady_clock::now() - begin >= patience) return std::nullopt;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+void explore(const RobotDescription& description, const std::filesystem::path& folder, const Pose& start,
+             double seconds) {
+  const Robot& robot = description.robot;
+  const Lattice lattice(0.3);
+  // What may be explored, 20 m around the start; and what the robot knows to be free, the voxels of its body.
+  const Eigen::Vector3d reach(20, 20, 5), body = Eigen::Vector3d::Constant(0.35);
+  const MappingOptions map{.resolution = lattice.resolution(),
+                           .bounds = voxels_of(lattice, {start.position - reach, start.position + reach})};
+  ExplorationStart begin{start, {}};
+  const KeyBox own = voxels_of(lattice, {start.position - body, start.position + body});
+  for (auto x = own.min.x; x <= own.max.x; ++x)
+    for (auto y = own.min.y; y <= own.max.y; ++y)
+      for (auto z = own.min.z; z <= own.max.z; ++z) begin.known_free.push_back({x, y, z});
+
+  ExplorationOptions options = exploration_options();
+  options.team.push_back({robot, goal_options(robot)});
+  Exploration exploration(options, Mapping(map));
+  std::size_t scans = 0;
+  const Drive by_files = [&](std::size_t, const Pose& viewpoint) {
+    return drive(folder, scans++, viewpoint, robot.view.max_range, std::chrono::duration<double>(seconds));
+  };
+  exploration.begin({&begin, 1}, by_files);
+  while (!exploration.end()) {
+    const ExplorationStep step = exploration.step(by_files);
+    std::cout << "step " << step.number << ": " << step.frontiers << " frontiers, " << step.robots[0].length
+              << " m, " << step.robots[0].gained << " gained\n";
+  }
+  exploration.mapping().write(folder / "map.bt");
+  std::cout << "end: " << describe(*exploration.end()) << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr int kWords = 8;
+  if (argc != kWords) {
+    std::cerr << "usage: explore_recorded ROBOT.json FOLDER X Y Z YAW SECONDS\n";
+    return 2;
+  }
+  try {
+    const auto number = [&](int i) { return std::stod(argv[i]); };
+    explore(read_robot(argv[1]), argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
+  } catch (const std::exception& error) {
+    std::cerr << "explore_recorded: " << error.what() << '\n';
+    return 2;
+  }
+}
