@@ -54,16 +54,18 @@ bool is_near(const Eigen::Isometry3d& T_world_sensor, const Pose& viewpoint) {
          std::abs(std::remainder(turn, 2 * std::numbers::pi)) < kRadians;
 }
 
-// Sends the robot to a viewpoint and waits for its scan, the n-th of all. Here the driver of yours belongs.
-std::optional<Scan> drive(const std::filesystem::path& folder, std::size_t n, const Pose& viewpoint,
+// Sends the robot to a viewpoint and waits for its scan. Here the driver of yours belongs.
+/// @param answers  of the robot so far
+std::optional<Scan> drive(const std::filesystem::path& folder, std::size_t& answers, const Pose& viewpoint,
                           double max_range, std::chrono::duration<double> patience) {
   const auto begin = std::chrono::steady_clock::now();
   for (bool asked = false;; asked = true) {
     if (std::filesystem::exists(folder / "poses.csv")) {
       const auto recorded = read_pose_file(folder / "poses.csv");
-      if (recorded.size() > n) {
-        if (!is_near(recorded[n].T_world_sensor, viewpoint)) return std::nullopt;
-        return scan_of(recorded[n], folder, max_range);
+      if (recorded.size() > answers) {
+        const RecordedPose& answer = recorded[answers++];
+        if (!is_near(answer.T_world_sensor, viewpoint)) return std::nullopt;
+        return scan_of(answer, folder, max_range);
       }
     }
     if (!asked) write_path(folder / "next.csv", {&viewpoint, 1});
@@ -89,9 +91,9 @@ void explore(const RobotDescription& description, const std::filesystem::path& f
   ExplorationOptions options = exploration_options();
   options.team.push_back({robot, goal_options(robot)});
   Exploration exploration(options, Mapping(map));
-  std::size_t scans = 0;
+  std::size_t answers = 0;
   const Drive by_files = [&](std::size_t, const Pose& viewpoint) {
-    return drive(folder, scans++, viewpoint, robot.view.max_range, std::chrono::duration<double>(seconds));
+    return drive(folder, answers, viewpoint, robot.view.max_range, std::chrono::duration<double>(seconds));
   };
   exploration.begin({&begin, 1}, by_files);
   while (!exploration.end()) {
