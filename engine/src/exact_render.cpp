@@ -111,20 +111,15 @@ class ColumnRenderer {
 
  private:
   void walk(std::span<const Placed> tile, std::span<std::uint32_t> bin_hits) {
-    TileBits viewpoints;
+    TileBits viewpoints{};
     for (const Placed& placed : tile) viewpoints.set(placed.place);
     const int z = tiling_.first_place(tile.front())[2];
     const std::byte* const targets = targets_.level(z);
     const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
     if (bins != 0) totals_.assign(tile.size(), 0);
     for (const PathTree::Sector& sector : tree_.sectors()) {
-      TileBits concerned;
-      for (std::uint32_t g = sector.groups_begin; g < sector.groups_end; ++g) {
-        const PathTree::Group& group = tree_.groups()[g];
-        scene_.walk.gather(tree_.targets().subspan(group.begin, group.end - group.begin), targets, viewpoints,
-                           in_view_, groups_[g]);
-        for (std::size_t w = 0; w < concerned.words.size(); ++w) concerned.words[w] |= groups_[g].words[w];
-      }
+      TileBits concerned{};
+      scene_.walk.gather(tree_, sector, targets, viewpoints, in_view_, groups_, concerned);
       if (!concerned.any()) continue;
       scene_.walk.count(tree_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
       if (bins == 0) continue;

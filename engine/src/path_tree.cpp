@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxSteps = std::size_t{1} << 27U;   // of all paths, before any are shared
 constexpr std::size_t kMaxWindow = std::size_t{1} << 28U;  // [bytes]
 constexpr std::size_t kGroupTargets = 24;                  // at most, in a group
-constexpr std::uint32_t kForkNodes = 6;                    // at least, behind a node that is looked at
+constexpr std::uint32_t kForkNodes = 4;                    // at least, behind a node that is looked at
 
 using Cell = std::array<int, 3>;
 

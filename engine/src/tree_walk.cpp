@@ -14,6 +14,7 @@
 #endif
 
 namespace frontlux::detail {
+
 namespace {
 
 using Bits [[gnu::vector_size(64)]] = std::uint64_t;

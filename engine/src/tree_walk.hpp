@@ -14,7 +14,7 @@ namespace frontlux::detail {
 
 /// A bit for each place of a tile.
 struct alignas(64) TileBits {
-  std::array<std::uint64_t, ViewTile::kBytes / 8> words{};
+  std::array<std::uint64_t, ViewTile::kBytes / 8> words;
 
   [[nodiscard]] static constexpr std::uint32_t place(int column, int row) {
     return static_cast<std::uint32_t>(row * ViewTile::kColumns + column);
@@ -32,7 +32,7 @@ struct alignas(64) TileBits {
 struct TileCounts {
   static constexpr std::size_t kPlanes = 32;
   std::array<TileBits, kPlanes> planes{};
-  std::size_t used = 0;  ///< planes that are not zero
+  std::size_t used = 0;  ///< planes that may not be zero
 
   void clear() {
     std::fill_n(planes.begin(), used, TileBits{});
@@ -57,9 +57,10 @@ struct SpreadFrom {
 struct TreeWalk {
   const char* instructions;
 
-  /// Adds to `counts` which of the viewpoints have a target at these places; returns those that have any.
-  void (*gather)(std::span<const std::int32_t> places, const std::byte* targets, const TileBits& viewpoints,
-                 TileCounts& counts, TileBits& any);
+  /// Adds to `counts` how many targets of a sector the viewpoints have around them, seen or not. Which of
+  /// them have any goes to `groups`, for each group, and to `any`.
+  void (*gather)(const PathTree& tree, const PathTree::Sector& sector, const std::byte* targets,
+                 const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any);
 
   /// Adds to `counts` how many targets of a sector the viewpoints see. What lies in a group of the tree is
   /// looked for only by the viewpoints in `groups`.

@@ -8,42 +8,53 @@
 }
 [[gnu::always_inline]] inline void store(void* to, const Bits& bits) { std::memcpy(to, &bits, sizeof(bits)); }
 
-// Adds bits to numbers in planes, fifteen at a time, so that most carries stay in registers.
+// Adds bits to numbers in planes, sixteen at a time, so that carries go beyond the lowest planes seldom.
 class Adder {
  public:
-  explicit Adder(TileCounts& counts) : counts_(counts) {}
+  static constexpr std::size_t kSize = 16;
+  using Waiting = std::array<TileBits, kSize>;
+
+  // Room beside this object, so that what is in here stays in registers.
+  Adder(TileCounts& counts, Waiting& waiting) : counts_(counts), waiting_(waiting) {}
+  ~Adder() { flush(counts_, waiting_, size_); }
+  Adder(const Adder&) = delete;
+  Adder& operator=(const Adder&) = delete;
 
   // Takes no branch on whether there is something to add.
-  [[gnu::always_inline]] void add(const Bits& bits, bool worth) {
+  [[gnu::always_inline]] void add(const Bits& bits, bool something) {
     store(&waiting_[size_], bits);
-    size_ += worth ? 1 : 0;
-    if (size_ == kSize) [[unlikely]]
-      flush();
-  }
-  [[gnu::noinline]] void flush() {
-    for (std::size_t i = size_; i < kSize; ++i) waiting_[i] = TileBits{};
-    Bits four[5], two[2];
-    std::size_t i = 0;
-    Bits one = load(&waiting_[i++]);
-    // 15 ones become 1 + 2 + 4 + 8, by adders of three bits.
-    Bits twos[7];
-    for (Bits& carry : twos) {
-      carry = add_three(one, load(&waiting_[i]), load(&waiting_[i + 1]));
-      i += 2;
+    std::size_t one = something ? 1 : 0;
+    __asm__("" : "+r"(one));  // else the compiler makes a branch of it, which nobody can foretell
+    size_ += one;
+    if (size_ == kSize) [[unlikely]] {
+      flush(counts_, waiting_, size_);
+      size_ = 0;
     }
-    Bits sum_two = twos[0];
-    for (std::size_t k = 0; k < 3; ++k) four[k] = add_three(sum_two, twos[2 * k + 1], twos[2 * k + 2]);
-    Bits sum_four = four[0];
-    two[0] = add_three(sum_four, four[1], four[2]);
-    ripple(0, one);
-    ripple(1, sum_two);
-    ripple(2, sum_four);
-    ripple(3, two[0]);
-    size_ = 0;
   }
 
  private:
-  static constexpr std::size_t kSize = 15;
+  static constexpr std::size_t kLowPlanes = 4;
+
+  [[gnu::noinline]] static void flush(TileCounts& counts, Waiting& waiting, std::size_t size) {
+    std::fill(waiting.begin() + static_cast<std::ptrdiff_t>(size), waiting.end(), TileBits{});
+    std::array<Bits, kSize> carries;
+    for (std::size_t i = 0; i < kSize; ++i) carries[i] = load(&waiting[i]);
+    std::size_t count = kSize;
+    for (std::size_t plane = 0; plane < kLowPlanes; ++plane) {
+      Bits sum = load(&counts.planes[plane]);
+      count /= 2;
+      for (std::size_t i = 0; i < count; ++i) carries[i] = add_three(sum, carries[2 * i], carries[2 * i + 1]);
+      store(&counts.planes[plane], sum);
+    }
+    counts.used = std::max(counts.used, kLowPlanes);
+    Bits carry = carries[0];
+    for (std::size_t plane = kLowPlanes; any_of(carry); ++plane) {
+      const Bits before = load(&counts.planes[plane]);
+      store(&counts.planes[plane], before ^ carry);
+      carry &= before;
+      counts.used = std::max(counts.used, plane + 1);
+    }
+  }
 
   // `sum` becomes the lower bit of the three; returns the upper.
   [[gnu::always_inline]] static Bits add_three(Bits& sum, const Bits& a, const Bits& b) {
@@ -52,39 +63,37 @@ class Adder {
     sum = differ ^ b;
     return carry;
   }
-  [[gnu::always_inline]] void ripple(std::size_t plane, const Bits& added) {
-    Bits carry = added;
-    for (; any_of(carry); ++plane) {
-      const Bits before = load(&counts_.planes[plane]);
-      store(&counts_.planes[plane], before ^ carry);
-      carry &= before;
-      counts_.used = std::max(counts_.used, plane + 1);
-    }
-  }
 
   TileCounts& counts_;
   std::size_t size_ = 0;
-  std::array<TileBits, kSize> waiting_;
+  Waiting& waiting_;
 };
 
-void gather(std::span<const std::int32_t> places, const std::byte* targets, const TileBits& viewpoints,
-            TileCounts& counts, TileBits& any) {
+void gather(const PathTree& tree, const PathTree::Sector& sector, const std::byte* targets,
+            const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any) {
   const Bits here = load(&viewpoints);
-  Bits found = here ^ here;
-  Adder adder(counts);
-  for (const std::int32_t place : places) {
-    const Bits there = here & load(targets + place);
-    found |= there;
-    adder.add(there, any_of(there));
+  Bits all = here ^ here;
+  Adder::Waiting waiting;
+  Adder adder(counts, waiting);
+  for (std::uint32_t g = sector.groups_begin; g < sector.groups_end; ++g) {
+    const PathTree::Group& group = tree.groups()[g];
+    Bits found = here ^ here;
+    for (std::uint32_t t = group.begin; t < group.end; ++t) {
+      const Bits there = here & load(targets + tree.targets()[t]);
+      found |= there;
+      adder.add(there, any_of(there));
+    }
+    store(&groups[g], found);
+    all |= found;
   }
-  adder.flush();
-  store(&any, found);
+  store(&any, all);
 }
 
 void count(const PathTree& tree, const PathTree::Sector& sector, const std::byte* free,
            const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
            std::span<TileBits> reached, TileCounts& counts) {
-  Adder adder(counts);
+  Adder::Waiting waiting;
+  Adder adder(counts, waiting);
   const Bits here = load(&viewpoints);
   const auto first = tree.groups()[sector.groups_begin].begin;
   for (const std::int32_t place : tree.targets().subspan(first, sector.adjacent)) {
@@ -100,13 +109,12 @@ void count(const PathTree& tree, const PathTree::Sector& sector, const std::byte
     const Bits first_steps = load(free + node.steps[0]) & load(free + node.steps[1]);
     const Bits steps = first_steps & load(free + node.steps[2]) & load(free + node.steps[3]);
     const Bits far = near & steps;
-    store(&at_depth[node.depth + 1], far);
+    store(&at_depth[node.depth + 1U], far);
     const Bits seen = far & load(targets + node.target);
     adder.add(seen, static_cast<bool>(node.is_target & static_cast<unsigned>(any_of(seen))));
     const bool leave = static_cast<bool>(node.is_fork & static_cast<unsigned>(!any_of(far)));
     n = leave ? node.end : n + 1;
   }
-  adder.flush();
 }
 
 void spread(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,
