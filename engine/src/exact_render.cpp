@@ -21,6 +21,7 @@ struct Placed {
   std::uint64_t order;
   std::uint32_t place;
   std::uint32_t index;
+  std::uint32_t number;  // among those that are sorted
 
   [[nodiscard]] std::uint64_t column() const { return order >> 16U; }
 };
@@ -29,7 +30,7 @@ struct Placed {
 struct Tiling {
   std::array<int, 3> corner{};
   std::array<int, 2> stride{1, 1};
-  int levels = 1;  // of viewpoints in a column of tiles
+  static constexpr int kLevels = 32;  // of viewpoints in a column of tiles
 
   explicit Tiling(std::span<const Viewpoint> viewpoints) {
     const VoxelKey first = cell_of_code(viewpoints.front().code);
@@ -45,14 +46,14 @@ struct Tiling {
       while (stride[a] < ViewTile::kMaxStride && apart[a] % (2 * stride[a]) == 0) stride[a] *= 2;
   }
 
-  [[nodiscard]] Placed place(const Viewpoint& viewpoint) const {
+  [[nodiscard]] Placed place(const Viewpoint& viewpoint, std::uint32_t number) const {
     const VoxelKey key = cell_of_code(viewpoint.code);
     const int column = (key.x - corner[0]) / stride[0], row = (key.y - corner[1]) / stride[1];
     const int level = key.z - corner[2];
-    const auto digits = [](int number) { return static_cast<std::uint64_t>(number); };
-    return {digits(level / levels) << 48U | digits(row / ViewTile::kRows) << 32U |
-                digits(column / ViewTile::kColumns) << 16U | digits(level % levels),
-            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index};
+    const auto digits = [](int part) { return static_cast<std::uint64_t>(part); };
+    return {digits(level / kLevels) << 48U | digits(row / ViewTile::kRows) << 32U |
+                digits(column / ViewTile::kColumns) << 16U | digits(level % kLevels),
+            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index, number};
   }
 
   // Voxel of a tile's first place.
@@ -60,7 +61,7 @@ struct Tiling {
     const auto digits = [&](unsigned shift) { return static_cast<int>(placed.order >> shift & 0xFFFFU); };
     return {corner[0] + digits(16) * ViewTile::kColumns * stride[0],
             corner[1] + digits(32) * ViewTile::kRows * stride[1],
-            corner[2] + digits(48) * levels + digits(0)};
+            corner[2] + digits(48) * kLevels + digits(0)};
   }
 };
 
@@ -162,25 +163,47 @@ std::shared_ptr<const PathTree> PathTrees::get(const ViewReach& reach, int azimu
   return known_.back().tree;
 }
 
-bool render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
-                    std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
-  if (viewpoints.empty()) return true;
-  Tiling tiling(viewpoints);
-  const auto tree = scene.trees.get(scene.reach, scene.azimuth_bins, tiling.stride[0], tiling.stride[1]);
-  if (!tree) return false;
-  tiling.levels = 2 * tree->layout().reach_z + 1;
+bool PathTrees::knows(int stride_x, int stride_y) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) {
+    return known.stride_x == stride_x && known.stride_y == stride_y;
+  });
+}
+
+std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
+                                      std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
+  std::vector<Viewpoint> left;
+  if (viewpoints.empty()) return left;
+  const Tiling tiling(viewpoints);
+  const auto [stride_x, stride_y] = tiling.stride;
   std::vector<Placed> placed(viewpoints.size());
-  for (std::size_t i = 0; i < placed.size(); ++i) placed[i] = tiling.place(viewpoints[i]);
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    placed[i] = tiling.place(viewpoints[i], static_cast<std::uint32_t>(i));
   tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return a.order < b.order || (a.order == b.order && a.index < b.index);
+    return a.order < b.order || (a.order == b.order && a.number < b.number);
   });
-  const std::vector<std::size_t> columns = runs(placed, [](const Placed& p) { return p.column(); });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {
-    ColumnRenderer renderer(scene, tiling, *tree);
-    for (std::size_t c = range.begin(); c < range.end(); ++c)
-      renderer.render(std::span(placed).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
-  });
-  return true;
+
+  std::vector<bool> walked(placed.size());
+  std::vector<Placed> dense;
+  const std::vector<std::size_t> tiles = runs(placed, [](const Placed& p) { return p.order; });
+  for (std::size_t t = 0; t + 1 < tiles.size(); ++t)
+    if (tiles[t + 1] - tiles[t] >= scene.thresholds.tile)
+      for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) dense.push_back(placed[i]);
+  const bool worth =
+      !dense.empty() && (dense.size() >= scene.thresholds.tree || scene.trees.knows(stride_x, stride_y));
+  const auto tree = worth ? scene.trees.get(scene.reach, scene.azimuth_bins, stride_x, stride_y) : nullptr;
+  if (tree) {
+    const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {
+      ColumnRenderer renderer(scene, tiling, *tree);
+      for (std::size_t c = range.begin(); c < range.end(); ++c)
+        renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
+    });
+    for (const Placed& one : dense) walked[one.number] = true;
+  }
+  for (std::size_t i = 0; i < viewpoints.size(); ++i)
+    if (!walked[i]) left.push_back(viewpoints[i]);
+  return left;
 }
 
 }  // namespace frontlux::detail

@@ -24,14 +24,21 @@ class PathTrees {
   /// Null if the paths are too many for a tree.
   [[nodiscard]] std::shared_ptr<const PathTree> get(const ViewReach& reach, int azimuth_bins, int stride_x,
                                                     int stride_y);
+  [[nodiscard]] bool knows(int stride_x, int stride_y) const;
 
  private:
   struct Known {
     int stride_x, stride_y;
     std::shared_ptr<const PathTree> tree;
   };
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<Known> known_;
+};
+
+/// From how many viewpoints on walks over a tree are sooner done than rays.
+struct WalkThresholds {
+  std::size_t tile = 24;    ///< in a tile
+  std::size_t tree = 2000;  ///< in all such tiles, to repay the making of the tree
 };
 
 /// What viewpoints are rendered with, exactly.
@@ -42,14 +49,18 @@ struct ExactScene {
   const TreeWalk& walk;
   PathTrees& trees;
   int azimuth_bins;
+  WalkThresholds thresholds = {};
 };
 
-/// Counts all targets in view and visible, for all viewpoints, by walks over the tree of paths, over the
-/// current task arena.
-/// @param values    written at `index` of each viewpoint
-/// @param bin_hits  likewise, `azimuth_bins` to a viewpoint
-/// @return false, and nothing is written, if the paths are too many for a tree
-bool render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
-                    std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits);
+/// Counts all targets in view and visible by walks over the tree of paths, over the current task arena, for
+/// those of the viewpoints for which that is worth while.
+/// @param viewpoints  sorted
+/// @param values      written at `index` of each viewpoint
+/// @param bin_hits    likewise, `azimuth_bins` to a viewpoint
+/// @return the others, for which nothing is written, sorted; all if the paths are too many for a tree
+[[nodiscard]] std::vector<Viewpoint> render_exactly(const ExactScene& scene,
+                                                    std::span<const Viewpoint> viewpoints,
+                                                    std::span<ViewQuality> values,
+                                                    std::span<std::uint32_t> bin_hits);
 
 }  // namespace frontlux::detail

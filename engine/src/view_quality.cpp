@@ -143,20 +143,22 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
     std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i] * bins), bins,
                 bin_hits.begin() + static_cast<std::ptrdiff_t>(viewpoint.index * bins));
   }
+  const std::size_t rendered = stale.size();
   const ViewQualityOptions options = effective(options_);
   const bool exact = options.renderer == ViewQualityOptions::Renderer::kExact;
-  const auto grid = exact ? caster.grid() : std::nullopt;
-  if (!grid || !detail::render_exactly(
-                   {*grid, *reach_, *targets, detail::tree_walks().front(), *trees_, options.azimuth_bins},
-                   stale, values, bin_hits))
-    detail::render_views({caster, *reach_, *targets, options}, stale, values, bin_hits);
+  if (const auto grid = exact ? caster.grid() : std::nullopt) {
+    const auto& walk = detail::tree_walks().front();
+    stale = detail::render_exactly({*grid, *reach_, *targets, walk, *trees_, options.azimuth_bins}, stale,
+                                   values, bin_hits);
+  }
+  detail::render_views({caster, *reach_, *targets, options}, stale, values, bin_hits);
 
   viewpoints_ = std::move(keys);
   order_ = std::move(order);
   targets_ = std::move(targets);
   values_ = std::move(values);
   bin_hits_ = std::move(bin_hits);
-  return stale.size();
+  return rendered;
 }
 
 ViewQualityImage render_view_quality(const RayCaster& caster, const Lattice& lattice,

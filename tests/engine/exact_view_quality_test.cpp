@@ -114,7 +114,29 @@ Truth brute_force(const Case& some, int bins) {
   return truth;
 }
 
+// By walks alone, however few the viewpoints.
+Truth walk_all(const Case& some, int bins, const detail::TreeWalk& walk) {
+  const detail::ViewReach reach(some.view, kResolution, bins);
+  const detail::TargetIndex targets(some.targets);
+  detail::PathTrees trees;
+  Truth mine;
+  mine.values.resize(some.viewpoints.size());
+  mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
+  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, bins, {1, 1}},
+                                           detail::sort_viewpoints(some.viewpoints), mine.values, mine.bins);
+  EXPECT_EQ(left.size(), 0U);
+  return mine;
+}
+
 ViewQualityOptions exact(int bins) { return {.renderer = Renderer::kExact, .azimuth_bins = bins}; }
+
+void expect_equal(const Truth& mine, const Truth& truth) {
+  for (std::size_t i = 0; i < truth.values.size(); ++i)
+    ASSERT_EQ(mine.values[i], truth.values[i])
+        << i << ": " << mine.values[i].hits << " of " << mine.values[i].population << ", not "
+        << truth.values[i].hits << " of " << truth.values[i].population;
+  ASSERT_EQ(mine.bins, truth.bins);
+}
 
 void expect_equal(const ViewQualityImage& image, const Truth& truth) {
   ASSERT_EQ(image.size(), truth.values.size());
@@ -146,6 +168,7 @@ TEST(ExactViewQuality, IsBruteForcesOnRandomMaps) {
     const auto image = render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets,
                                            some.view, exact(bins));
     expect_equal(image, truth);
+    expect_equal(walk_all(some, bins, detail::tree_walks().front()), truth);
     if (HasFatalFailure()) return;
     for (const ViewQuality& value : truth.values) {
       seen += value.hits;
@@ -163,18 +186,10 @@ TEST(ExactViewQuality, IsTheSameOnEveryInstructionSet) {
     const Case some = random_case(seed);
     const int bins = seed % 2 == 0 ? 0 : 12;
     const Truth truth = brute_force(some, bins);
-    const detail::ViewReach reach(some.view, kResolution, bins);
-    const detail::TargetIndex targets(some.targets);
-    const auto viewpoints = detail::sort_viewpoints(some.viewpoints);
     for (const detail::TreeWalk& walk : detail::tree_walks()) {
       SCOPED_TRACE(some.name + ", instructions " + walk.instructions);
-      detail::PathTrees trees;
-      std::vector<ViewQuality> values(viewpoints.size());
-      std::vector<std::uint32_t> hits(truth.bins.size());
-      ASSERT_TRUE(
-          detail::render_exactly({some.grid, reach, targets, walk, trees, bins}, viewpoints, values, hits));
-      ASSERT_EQ(values, truth.values);
-      ASSERT_EQ(hits, truth.bins);
+      expect_equal(walk_all(some, bins, walk), truth);
+      if (HasFatalFailure()) return;
     }
   }
 }
@@ -217,7 +232,9 @@ TEST(ExactViewQuality, SeesFromCornerToCornerOfTheKeyRange) {
   Case some{"corners", grid, {Shape::kSpinning, 0, 80 * kDegree, 6 * kResolution}, corners, neighbours};
   const auto caster = make_grid_ray_caster(grid);
   const auto image = render_view_quality(*caster, grid.lattice(), corners, neighbours, some.view, exact(8));
-  expect_equal(image, brute_force(some, 8));
+  const Truth truth = brute_force(some, 8);
+  expect_equal(image, truth);
+  expect_equal(walk_all(some, 8, detail::tree_walks().front()), truth);
   for (const ViewQuality& value : image.values()) EXPECT_EQ(value.hits, 1U);
 }
 
@@ -240,26 +257,49 @@ TEST(ExactViewQuality, OfNothingIsNothing) {
   const VoxelGrid unknown(kResolution);
   const auto dark = render_view_quality(*make_grid_ray_caster(unknown), lattice, some.viewpoints,
                                         some.targets, some.view, exact(4));
-  expect_equal(dark, brute_force({"", unknown, some.view, some.viewpoints, some.targets}, 4));
+  const Case in_the_dark{"", unknown, some.view, some.viewpoints, some.targets};
+  expect_equal(dark, brute_force(in_the_dark, 4));
+  expect_equal(walk_all(in_the_dark, 4, detail::tree_walks().front()), brute_force(in_the_dark, 4));
+  expect_equal(walk_all({"", unknown, some.view, {}, some.targets}, 4, detail::tree_walks().front()), {});
+  expect_equal(walk_all({"", some.grid, some.view, some.viewpoints, {}}, 4, detail::tree_walks().front()),
+               brute_force({"", some.grid, some.view, some.viewpoints, {}}, 4));
 }
 
-// Forty edits of a map: voxels of all states, targets that come and go, viewpoints likewise.
+// A hall with pillars and some voxels that were never seen, large enough for walks.
+Case hall(std::uint64_t seed, int stride) {
+  Random random(seed);
+  Case some{
+      "hall", VoxelGrid(kResolution), {Shape::kPyramid, 90 * kDegree, 72 * kDegree, 7 * kResolution}, {}, {}};
+  for (int x = 0; x < 96; ++x)
+    for (int y = 0; y < 80; ++y)
+      for (int z = 0; z < 10; ++z) {
+        const VoxelKey k{key(32700 + x), key(32740 + y), key(32768 + z)};
+        const bool pillar = (x / 3 + 5 * (y / 4)) % 11 == 0;
+        const bool unseen = !pillar && random.one_in(20);
+        some.grid.set(k, pillar ? Occupancy::kOccupied : unseen ? Occupancy::kUnknown : Occupancy::kFree);
+        if (unseen) some.targets.push_back(k);
+        if (!pillar && !unseen && x % stride == 0 && y % stride == 0 && z % stride == 0)
+          some.viewpoints.push_back(k);
+      }
+  return some;
+}
+
+// Edits of a map: voxels of all states, targets that come and go, viewpoints likewise.
 TEST(ExactViewQuality, FollowsChangesAsIfRenderedAnew) {
   for (const int bins : {0, 36}) {
-    Case some = random_case(bins == 0 ? 304 : 311);
-    some.view = {Shape::kPyramid, 90 * kDegree, 72 * kDegree, 7 * kResolution};
+    Case some = hall(3, bins == 0 ? 1 : 2);
+    ASSERT_GT(some.viewpoints.size(), 4000U);
     Random random(5);
     const auto caster = make_embree_ray_caster(some.grid);
     ViewQualityImage followed(some.grid.lattice(), some.view, exact(bins));
     followed.render(*caster, some.viewpoints, some.targets);
-    std::size_t rendered = 0;
-    constexpr int kSteps = 40;
-    for (int step = 0; step < kSteps; ++step) {
+    std::size_t rendered = 0, all = 0;
+    for (int step = 0; step < 16; ++step) {
       const VoxelGrid before = some.grid;
       const auto near =
           some.viewpoints[static_cast<std::size_t>(random.below(static_cast<int>(some.viewpoints.size())))];
-      for (int i = random.below(6); i > 0; --i) {
-        const auto off = [&](std::uint16_t k) { return key(std::clamp(k + random.below(5) - 2, 0, 65535)); };
+      for (int i = random.below(40); i > 0; --i) {
+        const auto off = [&](std::uint16_t k) { return key(k + random.below(7) - 3); };
         const VoxelKey k{off(near.x), off(near.y), off(near.z)};
         some.grid.set(k, static_cast<Occupancy>(random.below(3)));
         if (random.one_in(2)) some.targets.push_back(k);
@@ -271,26 +311,55 @@ TEST(ExactViewQuality, FollowsChangesAsIfRenderedAnew) {
       for_each_change(before, some.grid, [&](const Block& block) { changed.push_back(block); });
       caster->update(some.grid);
       rendered += followed.update(*caster, some.viewpoints, some.targets, changed);
-      expect_equal(followed, render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets,
-                                                 some.view, exact(bins)));
+      all += some.viewpoints.size();
+      const auto render = [&](const ViewQualityOptions& options) {
+        return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
+                                   options);
+      };
+      expect_equal(followed, render(exact(bins)));
+      expect_equal(followed, render({.samples = ViewQualityOptions::kAll, .azimuth_bins = bins}));
       if (HasFatalFailure()) return;
     }
-    expect_equal(followed, brute_force(some, bins));
-    EXPECT_LT(rendered, kSteps * some.viewpoints.size());
+    EXPECT_GT(rendered, 0U);
+    EXPECT_LT(rendered, all / 2);
   }
 }
 
 TEST(ExactViewQuality, DoesNotDependOnThreads) {
-  const Case some = random_case(401);
-  const auto caster = make_grid_ray_caster(some.grid);
-  const auto render = [&](int threads) {
-    tbb::task_arena arena(threads);
-    return arena.execute([&] {
-      return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
-                                 exact(36));
-    });
-  };
-  expect_equal(render(1), render(2));
+  for (const int stride : {1, 2}) {
+    const Case some = hall(4, stride);
+    const auto caster = make_grid_ray_caster(some.grid);
+    const auto render = [&](int threads) {
+      tbb::task_arena arena(threads);
+      return arena.execute([&] {
+        return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
+                                   exact(36));
+      });
+    };
+    expect_equal(render(1), render(2));
+  }
+}
+
+// Of viewpoints without neighbours, and of few, nothing is walked for.
+TEST(ExactViewQuality, LeavesToRaysWhatTheyDoSooner) {
+  Case some = hall(5, 2);
+  const VoxelKey alone{32700, 32740, 40000};
+  some.viewpoints.push_back(alone);
+  const detail::ViewReach reach(some.view, kResolution, 0);
+  const detail::TargetIndex targets(some.targets);
+  detail::PathTrees trees;
+  const auto& walk = detail::tree_walks().front();
+  std::vector<ViewQuality> values(some.viewpoints.size());
+  const auto all = detail::sort_viewpoints(some.viewpoints);
+  const auto few = std::span(all).first(1000);
+  EXPECT_EQ(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+            1000U);
+  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, all, values, {});
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(detail::cell_of_code(left.front().code), alone);
+  // Now that there is a tree, few are enough.
+  EXPECT_LT(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+            1000U);
 }
 
 TEST(ExactViewQuality, FallsBackOnRaysWherePathsAreTooMany) {
