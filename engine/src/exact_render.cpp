@@ -5,11 +5,13 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace frontlux::detail {
 namespace {
@@ -158,7 +160,10 @@ std::shared_ptr<const PathTree> PathTrees::get(const ViewReach& reach, int azimu
   const std::lock_guard lock(mutex_);
   for (const Known& known : known_)
     if (known.stride_x == stride_x && known.stride_y == stride_y) return known.tree;
-  auto tree = PathTree::make(reach, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y);
+  std::optional<PathTree> tree;
+  // Without isolation this thread could meet its own lock in a task it takes up while it waits.
+  tbb::this_task_arena::isolate(
+      [&] { tree = PathTree::make(reach, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
   known_.push_back({stride_x, stride_y, tree ? std::make_shared<const PathTree>(std::move(*tree)) : nullptr});
   return known_.back().tree;
 }

@@ -2,6 +2,8 @@
 
 #include "walk.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,32 +20,49 @@ constexpr std::uint32_t kForkNodes = 4;                    // at least, behind a
 using Cell = std::array<int, 3>;
 
 // A path on its way to an offset.
-struct Line {
-  Crossings<std::int64_t> crossings;
-  Cell to;
+class Line {
+ public:
+  explicit Line(const Cell& offset)
+      : crossings_(crossings_of(key({0, 0, 0}), key(offset))),
+        steps_left_(std::abs(offset[0]) + std::abs(offset[1]) + std::abs(offset[2])),
+        offset_(offset) {
+    look_ahead();
+  }
+  [[nodiscard]] const Cell& offset() const { return offset_; }
+  [[nodiscard]] int steps_left() const { return steps_left_; }
+  /// One of six, of the next step.
+  [[nodiscard]] std::uint32_t direction() const { return direction_; }
+  /// From the voxel where it is.
+  [[nodiscard]] Cell next(Cell at) const {
+    at[direction_ / 2] += crossings_.step[direction_ / 2];
+    return at;
+  }
+  void advance() {
+    crossings_.t_max[direction_ / 2] += crossings_.t_delta[direction_ / 2];
+    --steps_left_;
+    look_ahead();
+  }
 
-  // Along which axis the next step goes. Ties go to z before y before x (rule 5).
-  [[nodiscard]] std::size_t next_axis() const {
-    const auto& t = crossings.t_max;
-    const std::size_t across = t[0] < t[1] ? 0 : 1;
-    return t[across] < t[2] ? across : 2;
+ private:
+  static VoxelKey key(const Cell& offset) {
+    const auto along = [&](std::size_t a) {
+      return static_cast<std::uint16_t>(Lattice::kOrigin + offset[a]);
+    };
+    return {along(0), along(1), along(2)};
   }
-  // One of six.
-  [[nodiscard]] std::size_t next_direction() const {
-    const std::size_t axis = next_axis();
-    return 2 * axis + (crossings.step[axis] > 0 ? 1 : 0);
+  // Ties go to z before y before x (rule 5).
+  void look_ahead() {
+    const auto& t = crossings_.t_max;
+    const std::uint32_t across = t[0] < t[1] ? 0 : 1;
+    const std::uint32_t axis = t[across] < t[2] ? across : 2;
+    direction_ = 2 * axis + (crossings_.step[axis] > 0 ? 1 : 0);
   }
-  void advance(Cell& at) {
-    const std::size_t axis = next_axis();
-    crossings.t_max[axis] += crossings.t_delta[axis];
-    at[axis] += crossings.step[axis];
-  }
+
+  Crossings<std::int64_t> crossings_;
+  int steps_left_;
+  std::uint32_t direction_ = 0;
+  Cell offset_;
 };
-
-Line line_to(const Cell& offset) {
-  const auto key = [](int d) { return static_cast<std::uint16_t>(Lattice::kOrigin + d); };
-  return {crossings_of({key(0), key(0), key(0)}, {key(offset[0]), key(offset[1]), key(offset[2])}), offset};
-}
 
 template <class Visit>
 void for_each_offset(const ViewReach& reach, const Visit& visit) {
@@ -57,38 +76,26 @@ void for_each_offset(const ViewReach& reach, const Visit& visit) {
 
 }  // namespace
 
+// Makes the tree of one sector.
 class PathTreeBuilder {
  public:
-  explicit PathTreeBuilder(PathTree& tree) : tree_(tree) {}
+  PathTreeBuilder(PathTree& tree, std::vector<Line>& lines) : tree_(tree), lines_(lines) {}
 
-  // The tree of one sector.
-  void build(std::vector<Line> lines, int bin) {
-    lines_ = std::move(lines);
-    sector_ = PathTree::Sector{};
-    sector_.bin = bin;
-    sector_.nodes_begin = next(tree_.nodes_);
-    sector_.groups_begin = next(tree_.groups_);
-    tree_.groups_.emplace_back();
-    loose_.clear();
-    group_ = 0;
-
+  void build(int bin) {
+    tree_.groups_.resize(2);  // 0 is no group, 1 has the targets that belong to no other
     std::vector<std::uint32_t> all(lines_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
     // What is next to the viewpoint is seen whatever is free.
-    const auto far = std::partition(all.begin(), all.end(), [&](std::uint32_t l) {
-      const Cell& to = lines_[l].to;
-      return std::abs(to[0]) + std::abs(to[1]) + std::abs(to[2]) == 1;
-    });
-    sector_.adjacent = static_cast<std::uint32_t>(far - all.begin());
-    for (auto l = all.begin(); l != far; ++l) loose_.push_back(place(lines_[*l].to));
+    const auto far =
+        std::partition(all.begin(), all.end(), [&](std::uint32_t l) { return lines_[l].steps_left() == 1; });
+    for (auto l = all.begin(); l != far; ++l) loose_.push_back(place(lines_[*l].offset()));
+    const auto adjacent = static_cast<std::uint32_t>(loose_.size());
     fork({far, all.end()}, {}, {}, 0);
 
-    tree_.groups_[sector_.groups_begin].begin = next(tree_.targets_);
+    tree_.groups_[1].begin = count(tree_.targets_);
     tree_.targets_.insert(tree_.targets_.end(), loose_.begin(), loose_.end());
-    tree_.groups_[sector_.groups_begin].end = next(tree_.targets_);
-    sector_.nodes_end = next(tree_.nodes_);
-    sector_.groups_end = next(tree_.groups_);
-    tree_.sectors_.push_back(sector_);
+    tree_.groups_[1].end = count(tree_.targets_);
+    tree_.sectors_.push_back({bin, 0, count(tree_.nodes_), 1, count(tree_.groups_), adjacent});
   }
 
  private:
@@ -96,7 +103,7 @@ class PathTreeBuilder {
   using Lines = std::span<std::uint32_t>;
 
   template <class T>
-  static std::uint32_t next(const std::vector<T>& list) {
+  static std::uint32_t count(const std::vector<T>& list) {
     return static_cast<std::uint32_t>(list.size());
   }
   [[nodiscard]] std::int32_t place(const Cell& at) const { return tree_.layout_.offset(at[0], at[1], at[2]); }
@@ -113,7 +120,7 @@ class PathTreeBuilder {
       node.is_target = last && target ? 1 : 0;
       node.group = std::exchange(pending_group_, 0);
       node.depth = depth++;
-      added.push_back(next(tree_.nodes_));
+      added.push_back(count(tree_.nodes_));
       tree_.nodes_.push_back(node);
       tree_.depth_ = std::max<std::size_t>(tree_.depth_, depth);
     }
@@ -125,17 +132,17 @@ class PathTreeBuilder {
       return;
     }
     tree_.targets_.push_back(target);
-    tree_.groups_[group_].end = next(tree_.targets_);
+    tree_.groups_[group_].end = count(tree_.targets_);
   }
 
   // Lines that part at a voxel, perhaps.
   void fork(Lines lines, const Cell& at, const Piece& piece, std::uint16_t depth) {
-    const auto direction = [this](std::uint32_t l) { return lines_[l].next_direction(); };
-    std::stable_sort(lines.begin(), lines.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return direction(a) < direction(b); });
-    for (std::size_t begin = 0, end = 0; begin < lines.size(); begin = end) {
-      for (end = begin; end < lines.size() && direction(lines[end]) == direction(lines[begin]);) ++end;
-      follow(lines.subspan(begin, end - begin), at, piece, depth);
+    auto rest = lines.begin();
+    for (std::uint32_t direction = 0; direction < 6 && rest != lines.end(); ++direction) {
+      const auto begin = rest;
+      rest = std::partition(rest, lines.end(),
+                            [&](std::uint32_t l) { return lines_[l].direction() == direction; });
+      if (rest != begin) follow({begin, rest}, at, piece, depth);
     }
   }
 
@@ -144,18 +151,15 @@ class PathTreeBuilder {
     std::vector<std::uint32_t> nodes;
     const bool opens_group = group_ == 0 && lines.size() <= kGroupTargets;
     if (opens_group) {
-      group_ = pending_group_ = next(tree_.groups_);
-      tree_.groups_.push_back({next(tree_.targets_), next(tree_.targets_)});
+      group_ = pending_group_ = count(tree_.groups_);
+      tree_.groups_.push_back({count(tree_.targets_), count(tree_.targets_)});
     }
     while (!lines.empty()) {
       const Cell before = at;
-      for (const std::uint32_t l : lines) {
-        Cell moved = before;
-        lines_[l].advance(moved);
-        at = moved;
-      }
-      const auto ends =
-          std::find_if(lines.begin(), lines.end(), [&](std::uint32_t l) { return lines_[l].to == at; });
+      at = lines_[lines.front()].next(before);
+      for (const std::uint32_t l : lines) lines_[l].advance();
+      const auto ends = std::find_if(lines.begin(), lines.end(),
+                                     [&](std::uint32_t l) { return lines_[l].steps_left() == 0; });
       if (ends != lines.end()) {
         if (piece.empty()) piece.push_back(place(before));  // a fork, which is known to be free
         depth = add(piece, place(at), depth, nodes);
@@ -165,15 +169,15 @@ class PathTreeBuilder {
         lines = lines.first(lines.size() - 1);
       }
       piece.push_back(place(at));
-      const bool parts = lines.size() > 1 && std::any_of(lines.begin(), lines.end(), [&](std::uint32_t l) {
-                           return lines_[l].next_direction() != lines_[lines.front()].next_direction();
-                         });
+      const bool parts = std::any_of(lines.begin(), lines.end(), [&](std::uint32_t l) {
+        return lines_[l].direction() != lines_[lines.front()].direction();
+      });
       if (!parts) continue;
       depth = add(piece, std::nullopt, depth, nodes);
       fork(lines, at, {}, depth);
       break;
     }
-    const std::uint32_t end = next(tree_.nodes_);
+    const std::uint32_t end = count(tree_.nodes_);
     for (const std::uint32_t n : nodes) {
       tree_.nodes_[n].end = end;
       tree_.nodes_[n].is_fork = end - n > kForkNodes ? 1 : 0;
@@ -182,15 +186,31 @@ class PathTreeBuilder {
   }
 
   PathTree& tree_;
-  std::vector<Line> lines_;
-  PathTree::Sector sector_;
+  std::vector<Line>& lines_;
   std::vector<std::int32_t> loose_;
   std::uint32_t group_ = 0, pending_group_ = 0;
 };
 
+void PathTree::append(const PathTree& sector) {
+  const auto nodes = static_cast<std::uint32_t>(nodes_.size());
+  const auto groups = static_cast<std::uint32_t>(groups_.size()) - 1;  // all share group 0
+  const auto targets = static_cast<std::uint32_t>(targets_.size());
+  for (Node node : sector.nodes_) {
+    node.end += nodes;
+    node.group += node.group == 0 ? 0 : groups;
+    nodes_.push_back(node);
+  }
+  for (std::size_t g = 1; g < sector.groups_.size(); ++g)
+    groups_.push_back({sector.groups_[g].begin + targets, sector.groups_[g].end + targets});
+  targets_.insert(targets_.end(), sector.targets_.begin(), sector.targets_.end());
+  for (const Sector& s : sector.sectors_)
+    sectors_.push_back({s.bin, s.nodes_begin + nodes, s.nodes_end + nodes, s.groups_begin + groups,
+                        s.groups_end + groups, s.adjacent});
+  depth_ = std::max(depth_, sector.depth_);
+}
+
 std::optional<PathTree> PathTree::make(const ViewReach& reach, int azimuth_bins, int stride_x, int stride_y) {
-  PathTree tree;
-  WindowLayout& layout = tree.layout_;
+  WindowLayout layout;
   layout.stride_x = stride_x;
   layout.stride_y = stride_y;
   std::size_t steps = 0;
@@ -203,15 +223,21 @@ std::optional<PathTree> PathTree::make(const ViewReach& reach, int azimuth_bins,
   const auto levels = static_cast<std::size_t>(2 * layout.reach_z + 1);
   if (steps > kMaxSteps || levels * layout.level_bytes() > kMaxWindow) return std::nullopt;
 
-  std::vector<std::vector<Line>> sectors(static_cast<std::size_t>(azimuth_bins));
+  std::vector<std::vector<Line>> lines(static_cast<std::size_t>(azimuth_bins));
   for_each_offset(reach, [&](int dx, int dy, int height) {
-    auto& lines = sectors[static_cast<std::size_t>(azimuth_bin(std::atan2(dy, dx), azimuth_bins))];
-    for (int dz = -height; dz <= height; ++dz) lines.push_back(line_to({dx, dy, dz}));
+    auto& sector = lines[static_cast<std::size_t>(azimuth_bin(std::atan2(dy, dx), azimuth_bins))];
+    for (int dz = -height; dz <= height; ++dz) sector.emplace_back(Cell{dx, dy, dz});
   });
-  tree.groups_.emplace_back();  // 0 is no group
-  PathTreeBuilder builder(tree);
-  for (std::size_t bin = 0; bin < sectors.size(); ++bin)
-    if (!sectors[bin].empty()) builder.build(std::move(sectors[bin]), static_cast<int>(bin));
+  std::vector<PathTree> sectors(lines.size());
+  tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t bin) {
+    if (lines[bin].empty()) return;
+    sectors[bin].layout_ = layout;
+    PathTreeBuilder(sectors[bin], lines[bin]).build(static_cast<int>(bin));
+  });
+  PathTree tree;
+  tree.layout_ = layout;
+  tree.groups_.emplace_back();
+  for (const PathTree& sector : sectors) tree.append(sector);
   return tree;
 }
 

@@ -59,9 +59,11 @@ class PathTree {
 
  private:
   friend class PathTreeBuilder;
+  void append(const PathTree& sector);
+
   WindowLayout layout_;
   std::vector<Node> nodes_;
-  std::vector<Group> groups_;
+  std::vector<Group> groups_;  // 0 is none
   std::vector<std::int32_t> targets_;
   std::vector<Sector> sectors_;
   std::size_t depth_ = 0;
