@@ -17,17 +17,15 @@ namespace frontlux::detail {
 
 namespace {
 
-using Bits [[gnu::vector_size(64)]] = std::uint64_t;
-
 // A body for each instruction set. The target holds for everything up to the pop, lambdas and templates
 // included, which an attribute on a function does not.
 #ifdef FRONTLUX_TREE_WALKS
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")
 namespace avx512 {
-[[gnu::always_inline]] inline bool any_of(const Bits& bits) {
-  const auto all = reinterpret_cast<__m512i>(bits);
-  return _mm512_test_epi64_mask(all, all) != 0;
+using Part = __m512i;
+[[gnu::always_inline]] inline bool any_of(const Part& part) {
+  return _mm512_test_epi64_mask(part, part) != 0;
 }
 #include "tree_walk_body.inl"
 }  // namespace avx512
@@ -36,23 +34,16 @@ namespace avx512 {
 #pragma GCC push_options
 #pragma GCC target("avx2")
 namespace avx2 {
-[[gnu::always_inline]] inline bool any_of(const Bits& bits) {
-  __m256i halves[2];
-  std::memcpy(halves, &bits, sizeof(bits));
-  const __m256i all = _mm256_or_si256(halves[0], halves[1]);
-  return _mm256_testz_si256(all, all) == 0;
-}
+using Part = __m256i;
+[[gnu::always_inline]] inline bool any_of(const Part& part) { return _mm256_testz_si256(part, part) == 0; }
 #include "tree_walk_body.inl"
 }  // namespace avx2
 #pragma GCC pop_options
 #endif
 
 namespace plain {
-[[gnu::always_inline]] inline bool any_of(const Bits& bits) {
-  std::uint64_t all = 0;
-  for (int i = 0; i < 8; ++i) all |= bits[i];
-  return all != 0;
-}
+using Part [[gnu::vector_size(16)]] = std::uint64_t;
+[[gnu::always_inline]] inline bool any_of(const Part& part) { return (part[0] | part[1]) != 0; }
 #include "tree_walk_body.inl"
 }  // namespace plain
 

@@ -1,12 +1,44 @@
 // The walk itself. Included by tree_walk.cpp once for each instruction set, inside a namespace that defines
-// `any_of(const Bits&)`. Bits are 64 bytes everywhere: the compiler makes of them what the processor has.
+// `Part`, a vector of the processor's, and `any_of` it.
+
+// The bits of a tile.
+struct Bits {
+  static constexpr std::size_t kParts = ViewTile::kBytes / sizeof(Part);
+  Part parts[kParts];
+
+  [[gnu::always_inline]] Bits& operator&=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] &= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] Bits& operator|=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] |= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] Bits& operator^=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] ^= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] friend Bits operator&(Bits a, const Bits& b) { return a &= b; }
+  [[gnu::always_inline]] friend Bits operator|(Bits a, const Bits& b) { return a |= b; }
+  [[gnu::always_inline]] friend Bits operator^(Bits a, const Bits& b) { return a ^= b; }
+};
+
+[[gnu::always_inline]] inline bool any_of(const Bits& bits) {
+  Part all = bits.parts[0];
+  for (std::size_t i = 1; i < Bits::kParts; ++i) all |= bits.parts[i];
+  return any_of(all);
+}
 
 [[gnu::always_inline]] inline Bits load(const void* from) {
   Bits bits;
-  std::memcpy(&bits, from, sizeof(bits));
+  for (std::size_t i = 0; i < Bits::kParts; ++i)
+    std::memcpy(&bits.parts[i], static_cast<const std::byte*>(from) + i * sizeof(Part), sizeof(Part));
   return bits;
 }
-[[gnu::always_inline]] inline void store(void* to, const Bits& bits) { std::memcpy(to, &bits, sizeof(bits)); }
+[[gnu::always_inline]] inline void store(void* to, const Bits& bits) {
+  for (std::size_t i = 0; i < Bits::kParts; ++i)
+    std::memcpy(static_cast<std::byte*>(to) + i * sizeof(Part), &bits.parts[i], sizeof(Part));
+}
 
 // Adds bits to numbers in planes, sixteen at a time, so that carries go beyond the lowest planes seldom.
 class Adder {
