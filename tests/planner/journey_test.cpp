@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace frontlux::planner {
@@ -109,17 +111,58 @@ TEST_F(JourneyTest, StopsWhereAScanShowsTheWayToBeBlocked) {
   EXPECT_EQ(run(0.6F, nullptr).travelled, 5U) << "with no body the ways are not checked";
 }
 
-TEST_F(JourneyTest, StopsWhereTheRobotCouldNotGo) {
-  for (std::size_t refused = 1; refused <= 5; ++refused) {
-    std::size_t calls = 0;
+// It does not come to the place that it was refused, turns to it from where it is, looks, and ends there.
+TEST_F(JourneyTest, LooksAtWhatIsInItsWay) {
+  const Lattice& lattice = mapping_.grid().lattice();
+  for (std::size_t refused = 1; refused < way_.size(); ++refused) {
+    std::vector<Pose> way = way_, asked;
+    way[1].position.y() += 0.6;  // so that not all ways have the same direction
     const Drive drive = [&](std::size_t, const Pose& to) -> std::optional<Scan> {
-      if (++calls == refused) return std::nullopt;
+      asked.push_back(to);
+      if (asked.size() == refused) return std::nullopt;
       return scan_along(to, {1, 0, 0}, kNothing);
     };
-    const detail::Journey journey = detail::travel(0, way_, &body_, drive, mapping_);
-    EXPECT_EQ(journey.travelled, std::min<std::size_t>(refused, 5));
-    EXPECT_NEAR(journey.length, 0.9 * static_cast<double>(journey.travelled - 1), 1e-12);
+    const std::vector<Pose> planned = way;
+    const detail::Journey journey = detail::travel(0, way, &body_, drive, mapping_);
+    ASSERT_EQ(asked.size(), refused + 1);
+    EXPECT_EQ(journey.travelled, refused + 1);
     EXPECT_TRUE(journey.changed.empty());
+    const Pose &from = planned[refused - 1], &to = planned[refused];
+    EXPECT_EQ(asked.back().position, from.position);
+    const Eigen::Vector3d on = to.position - from.position;
+    EXPECT_NEAR(asked.back().yaw, std::atan2(on.y(), on.x()), 1e-12);
+    EXPECT_EQ(way[refused].position, asked.back().position);
+    EXPECT_EQ(way[refused].yaw, asked.back().yaw);
+    double length = 0.0;
+    for (std::size_t i = 1; i < refused; ++i)
+      length += (planned[i].position - planned[i - 1].position).norm();
+    EXPECT_NEAR(journey.length, length, 1e-12);
+    // Blocked: what points along the way lie in, but where it begins.
+    const auto key_at = [&](const Eigen::Vector3d& at) { return lattice.key(at.cast<float>()).value(); };
+    std::set<VoxelKey> expected;
+    for (int part = 0; part <= 10'000; ++part) expected.insert(key_at(from.position + on * part / 10'000));
+    expected.erase(key_at(from.position));
+    const std::set<VoxelKey> blocked(journey.blocked.begin(), journey.blocked.end());
+    EXPECT_TRUE(std::ranges::includes(blocked, expected)) << "way " << refused;
+    EXPECT_TRUE(std::ranges::is_sorted(journey.blocked));
+    EXPECT_FALSE(blocked.contains(key_at(from.position)));
+    EXPECT_LE(blocked.size(), expected.size() + 2) << "besides, such as it only touches";
+  }
+}
+
+TEST_F(JourneyTest, EndsWithARobotThatNeitherGoesNorLooks) {
+  for (std::size_t refused = 1; refused < way_.size(); ++refused) {
+    std::vector<Pose> way = way_;
+    std::size_t calls = 0;
+    const Drive drive = [&](std::size_t, const Pose& to) -> std::optional<Scan> {
+      if (++calls >= refused) return std::nullopt;
+      return scan_along(to, {1, 0, 0}, kNothing);
+    };
+    const detail::Journey journey = detail::travel(0, way, &body_, drive, mapping_);
+    EXPECT_EQ(calls, refused + 1);
+    EXPECT_EQ(journey.travelled, refused);
+    EXPECT_NEAR(journey.length, 0.9 * static_cast<double>(refused - 1), 1e-12);
+    EXPECT_FALSE(journey.blocked.empty());
   }
 }
 

@@ -63,8 +63,8 @@ struct TeamInWorld {
   [[nodiscard]] planner::Mapping empty_map() const {
     return planner::Mapping({.resolution = 0.3, .bounds = truth.bounds()});
   }
-  [[nodiscard]] sim::SimulatedRobots bodies() const {
-    return sim::SimulatedRobots(world, truth, robots, {}, 1);
+  [[nodiscard]] sim::SimulatedRobots bodies(sim::AtContact at_contact = sim::AtContact::kGoOn) const {
+    return sim::SimulatedRobots(world, truth, robots, {}, 1, at_contact);
   }
 };
 
@@ -115,6 +115,7 @@ inline void expect_same(const ExplorationStep& a, const ExplorationStep& b) {
     EXPECT_EQ(x.length, y.length);
     EXPECT_EQ(x.gained, y.gained);
     EXPECT_TRUE(x.changed == y.changed) << "step " << a.number << ", robot " << r;
+    EXPECT_EQ(x.blocked, y.blocked);
     EXPECT_EQ(x.stubborn, y.stubborn);
   }
 }
