@@ -21,6 +21,7 @@
 #include <cmath>
 #include <iostream>
 #include <ostream>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -90,7 +91,13 @@ class Run {
                 sim::AtContact::kStay),
         exploration_(setup.exploration,
                      planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
-        files_(run.folder, setup.head) {}
+        folder_(run.folder) {}
+
+  /// Begins the tables anew, with the steps so far. @pre called before `begin` and `step`
+  void open_files(std::span<const RecordedStep> steps) {
+    files_.emplace(folder_, setup_.head);
+    for (const RecordedStep& step : steps) files_->add(step);
+  }
 
   void begin() { note(exploration_.begin(setup_.head.starts, drive())); }
   void step() { note(exploration_.step(drive())); }
@@ -111,11 +118,10 @@ class Run {
     last_ = recorded;
     begun_ = true;
     collisions_ = robots_.total().physical;
-    files_.add(recorded);
   }
 
   [[nodiscard]] const Exploration& exploration() const { return exploration_; }
-  [[nodiscard]] const RunFiles& files() const { return files_; }
+  [[nodiscard]] const RunFiles& files() const { return *files_; }
   [[nodiscard]] const RecordedStep& last() const { return last_; }
 
  private:
@@ -130,14 +136,15 @@ class Run {
     last_ = with_known_voxels(std::move(step), step_known(), *setup_.truth);
     last_.collisions = collisions_ - before;
     begun_ = true;
-    files_.add(last_);
+    files_->add(last_);
   }
   [[nodiscard]] const RecordedStep* step_known() const { return begun_ ? &last_ : nullptr; }
 
   ExploreSetup& setup_;
   sim::SimulatedRobots robots_;
   Exploration exploration_;
-  RunFiles files_;
+  fs::path folder_;
+  std::optional<RunFiles> files_;
   RecordedStep last_;
   bool begun_ = false;
   std::uint64_t collisions_ = 0;
@@ -223,17 +230,20 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   if (!recording) prepare_folder(run);
 
   const InterruptNote note;
+  bool stopped = false;
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     try {
+      Run going(setup, run);
+      std::span<const RecordedStep> before;
+      if (recording) before = recording->steps;
+      for (const RecordedStep& step : before) going.repeat(step);  // if that is refused, all stays as it is
       // First the recording, which is locked: the files may be those of a process that is at it.
       const fs::path file = run.folder / kRecording;
       planner::RecordingWriter writer =
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
-      Run going(setup, run);
-      if (recording)
-        for (const RecordedStep& step : recording->steps) going.repeat(step);
+      going.open_files(before);
       const auto record = [&] {
         writer.write(going.last());
         show(going.last().step, going.files(), setup.head);
@@ -247,6 +257,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         record();
       }
       const auto reason = going.exploration().end();
+      stopped = !reason;
       const std::string end = reason ? std::string(planner::name_of(*reason)) : kStopped;
       writer.write_end(end);
       going.exploration().mapping().write(run.folder / "map.ot");
@@ -264,8 +275,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
                      " goes on with it");
     }
   });
-  if (InterruptNote::taken())
-    throw Interrupted("stopped; frontlux explore --resume " + run.folder.string() + " goes on");
+  if (stopped) throw Interrupted("stopped; frontlux explore --resume " + run.folder.string() + " goes on");
 }
 
 }  // namespace frontlux::app

@@ -452,6 +452,9 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   State& state = *state_;
   if (!state.selection) refuse("a step before its beginning");
   if (recorded.number != state.number || recorded.robots.size() != state.size()) return false;
+  // For what the selection keeps from step to step: how many rays the next one casts depends on it.
+  ExplorationStep again;
+  static_cast<void>(state.select_goals(again));
   for (std::size_t r = 0; r < state.size(); ++r) {
     const RobotStep& robot = recorded.robots[r];
     if (robot.travelled > robot.planned.size()) return false;

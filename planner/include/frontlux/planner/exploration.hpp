@@ -141,8 +141,9 @@ class Exploration {
   /// @throws std::invalid_argument before `begin`; so does `repeat`
   ExplorationStep step(const Drive& drive);
 
-  /// Goes through a step that was planned before, as recorded, without planning it again: afterwards the
-  /// exploration is where it was after that step.
+  /// Goes through a step that was planned before, as recorded: afterwards the exploration is where it was
+  /// after that step, and goes on with the same steps as then. Takes about as long as the step did, but for
+  /// paths.
   /// @return false if the robots did not learn what they learnt before: another world, or other options. The
   /// exploration is of no more use then.
   bool repeat(const ExplorationStep& recorded, const Drive& drive);
