@@ -3,7 +3,7 @@ import { el, swatch } from "./dom.js";
 import { DASHES, PHASES, SCENE, robotColor } from "./palette.js";
 import { percent, seconds, whole } from "./run_numbers.js";
 
-const HEIGHT = 190;
+const HEIGHT = 170;
 
 /**
  * The charts of the run that is replayed, with the other runs' coverage beside. A line marks the step that
@@ -79,13 +79,15 @@ export class Charts {
     const style = getComputedStyle(document.documentElement);
     const ink = style.getPropertyValue("--muted").trim(), grid = { stroke: style.getPropertyValue("--line").trim(), width: 1 };
     const font = "12px system-ui, sans-serif", bars = spec.stacked ? uPlot.paths.bars({ size: [0.9, 40], align: 0 }) : undefined;
+    const integers = (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? String(tick) : ""));
     const axis = { stroke: ink, grid, ticks: { show: false }, font, labelFont: font };
     return {
       width: this.width, height: HEIGHT, padding: [8, 12, 0, 0], legend: { show: false },
+      hooks: { ready: [() => this.mark(this.timeline.position.step)] },
       cursor: { y: false, drag: { x: false, y: false }, points: { show: !spec.stacked } },
       scales: { x: { time: false, range: spec.stacked ? (_, low, high) => [low - 0.6, Math.max(high, low + 1) + 0.6] : (_, low, high) => [low, high > low ? high : low + 1] }, y: { range: (_, low, high) => [0, spec.share ? 1 : high > 0 ? high * 1.06 : 1] } },
       axes: [
-        { ...axis, size: 34, label: spec.x === "m" ? "path length, m" : "step", labelSize: 14, labelGap: 0, gap: 2 },
+        { ...axis, size: 22, label: spec.x === "m" ? "path length, m" : "step", labelSize: 16, labelGap: -2, gap: 2, values: integers, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] },
         { ...axis, size: 56, values: (_, ticks) => ticks.map((tick) => (spec.unit === percent ? percent(tick, 0) : spec.unit === seconds ? (tick === 0 ? "0" : seconds(tick)) : whole(tick))) },
       ],
       series: [{}, ...spec.series.map((series) => ({

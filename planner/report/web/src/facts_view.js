@@ -45,9 +45,9 @@ export function header(runs, written) {
         tile("collisions", whole(result.collisions)))
     : null;
   return [
-    el("p", { class: "kicker", text: `Exploration run${single ? "" : "s"} recorded by frontlux ${written}` }),
-    el("h1", { text: single ? `${facts.world}, explored by ${teamName(facts)}` : `${runs.length} runs compared` }),
+    el("div", { class: "title" }, el("h1", { text: single ? `${facts.world}, explored by ${teamName(facts)}` : `${runs.length} runs compared` }),
     el("p", { class: "lead", text: single ? headline(runs[0]) : runs.map((run) => `${run.name}: ${percent(run.numbers.result.coverage)} in ${run.numbers.result.steps} steps`).join("; ") + "." }),
+    ),
     tiles,
     facts.truncated ? el("p", { class: "warning", text: "The recording's last step is unfinished and was left out." }) : null,
   ].filter(Boolean);

@@ -28,6 +28,7 @@ class Page {
     dark.addEventListener("change", () => this.setTheme());
     addKeys(this);
     this.select(0);
+    addEventListener("resize", () => this.fit());
   }
 
   get run() {
@@ -54,6 +55,12 @@ class Page {
       el("details", { class: "fold" }, el("summary", { text: "Words used here" }), glossary()),
       el("details", { class: "fold" }, el("summary", { text: "Mouse and keys" }), keyTable()));
     for (const child of [...document.getElementById("app").childNodes]) if (child.nodeType === Node.TEXT_NODE) child.remove();
+  }
+
+  /** The stage fills what the header leaves of the window, and all of it once that is scrolled away. */
+  fit() {
+    const top = this.stage.parentElement.offsetTop;
+    root.style.setProperty("--head", `${Math.min(top, innerHeight / 3)}px`);
   }
 
   makeScene() {
@@ -84,6 +91,7 @@ class Page {
   /** Replays another run. */
   select(i) {
     this.shown = i;
+    this.fit();
     const { run } = this, theme = themeNow();
     this.toolbar?.bar.remove();
     this.toolbar?.key.remove();

@@ -3,8 +3,8 @@ import { LAYERS } from "./scene.js";
 import { SCENE, scaleGradient, shareStops, robotColor } from "./palette.js";
 
 const NAMES = {
-  voxels: "Occupied voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
-  views: "Fields of view", travelled: "Travelled", planned: "Planned", goals: "Goals",
+  voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
+  views: "Fields of view", travelled: "Trails", planned: "Plans", goals: "Goals",
 };
 
 /** What is shown, in which colours and from where. */
@@ -34,12 +34,11 @@ export function makeToolbar(scene, facts) {
       strip.style.background = scaleGradient(colors);
       return el("div", {}, el("span", { text: name }), el("span", { class: "note", text: from }), strip, el("span", { class: "note", text: to }));
     };
-    const dot = (color, text, kind) => el("div", {}, swatch(color, kind), el("span", { text }));
+    const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text);
     key.replaceChildren(
       ...(scene.byOwner ? [] : [bar(SCENE[theme].heights, `${((low - 32768) * size).toFixed(1)} m`, `${((high + 1 - 32768) * size).toFixed(1)} m`, "height")]),
       ...(scene.images.length > 0 ? [bar(shareStops(), "low", "high", "view quality")] : []),
-      dot(SCENE[theme].frontier, "frontier", "dot"),
-      ...facts.robots.map((robot, r) => dot(robotColor(r, theme), robot.name)));
+      el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot, r) => dot(robotColor(r, theme), robot.name))));
   };
   drawKey();
   const bar = el("div", { class: "toolbar" },

@@ -20,14 +20,14 @@ export class VoxelStore {
     for (let c = 0; c < chunks.length; ++c)
       for (let side = 0; side < 6; ++side) this.neighbours[6 * c + side] = this.findNeighbour(c, side);
     this.occupied = new Int32Array(chunks.length); // voxels in each chunk
-    this.known = new Int32Array(chunks.length);
     this.before = new Uint8Array(run.locals.length); // what a change finds and leaves
     this.after = new Uint8Array(run.locals.length);
     this.dirty = new Uint8Array(chunks.length);
     this.step = -1; // nothing is known
     for (let s = 0; s < run.steps; ++s) this.learn(s);
     this.measure();
-    this.seek(-1);
+    for (const voxels of this.chunks) voxels.fill(0);
+    this.step = -1;
     this.dirty.fill(1);
   }
 
@@ -105,13 +105,12 @@ export class VoxelStore {
 
   replace(g, bytes) {
     const { run, dirty, neighbours } = this, c = run.groups[g], voxels = this.chunks[c];
-    let occupied = 0, known = 0;
+    let occupied = 0;
     dirty[c] = 1;
     for (let i = run.begins[g]; i < run.begins[g + 1]; ++i) {
       const l = run.locals[i], old = voxels[l] & STATE, now = bytes[i] & STATE;
       voxels[l] = bytes[i];
       occupied += (now === OCCUPIED) - (old === OCCUPIED);
-      known += (now !== 0) - (old !== 0);
       const x = l & 31, y = (l >> 5) & 31, z = l >> 10;
       if (x === 0) mark(dirty, neighbours[6 * c]);
       if (x === 31) mark(dirty, neighbours[6 * c + 1]);
@@ -121,7 +120,6 @@ export class VoxelStore {
       if (z === 31) mark(dirty, neighbours[6 * c + 5]);
     }
     this.occupied[c] += occupied;
-    this.known[c] += known;
   }
 
   /** The byte of a voxel. */

@@ -121,7 +121,7 @@ export class VoxelView {
 
   /** @param pixels height of the view @param slope tangent of half the camera's opening angle */
   setPointScale(pixels, slope) {
-    this.pointsMaterial.uniforms.size.value = (0.75 * this.resolution * pixels) / (2 * slope);
+    this.pointsMaterial.uniforms.size.value = (0.6 * this.resolution * pixels) / (2 * slope);
   }
 
   countFrontiers() {
