@@ -24,6 +24,7 @@ void GoalOptions::check() const {
                                 ", which is none of the values of TravelDistance");
   check_number("lambda", lambda, 0.0, "per metre");
   check_number("min_distance", min_distance, 0.0, "m");
+  check_number("advance", advance, 0.0, "m");
   check_number("viewpoint_spacing", viewpoint_spacing, 0.0, "m");
   check_number("cluster_edge", cluster_edge, 0.0, "m");
   if (surroundings < 0 || surroundings > 64)

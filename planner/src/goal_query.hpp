@@ -42,9 +42,10 @@ struct GoalQuery {
     return distance >= options.min_distance - kRounding;
   }
 
-  /// Eq. 1.
+  /// Eq. 1, and what `GoalOptions::advance` makes of it.
   [[nodiscard]] double quality(double distance, double gain) const {
-    return std::exp(-options.lambda * distance) * gain;
+    const double advanced = distance < options.advance ? distance / options.advance : 1.0;
+    return std::exp(-options.lambda * distance) * advanced * gain;
   }
 
   /// From one voxel to another [m].

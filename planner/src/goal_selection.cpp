@@ -84,8 +84,9 @@ void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> p
   seen = grid;
 }
 
-GoalSelection::GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds)
-    : state_(std::make_unique<State>(State{std::move(team), lattice, bounds, {}, {}})) {
+GoalSelection::GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
+                             bool distribute)
+    : state_(std::make_unique<State>(State{std::move(team), lattice, bounds, distribute, {}, {}})) {
   for (std::size_t r = 0; r < state_->team.size(); ++r) {
     const TeamMember& member = state_->team[r];
     check(member);

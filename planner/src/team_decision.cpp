@@ -95,12 +95,20 @@ void GoalSelection::State::distribute(const RayCaster& caster, const VoxelGrid& 
   std::vector<FrontierAgent> agents;
   for (std::size_t r = 0; r < members.size(); ++r)
     agents.push_back({members[r].corridor.cells(), team[r].robot.view});
-  const FrontierDistribution distribution = distribute_frontiers(caster, grid, frontiers, agents);
-  for (std::size_t r = 0; r < members.size(); ++r) {
-    members[r].share = picked(frontiers, distribution.shares[r].frontiers);
-    result.goals[r].assigned = members[r].share.size();
+  if (distributes) {
+    const FrontierDistribution distribution = distribute_frontiers(caster, grid, frontiers, agents);
+    for (std::size_t r = 0; r < members.size(); ++r)
+      members[r].share = picked(frontiers, distribution.shares[r].frontiers);
+    result.unassigned = distribution.unassigned.size();
+  } else {
+    Keys anyones;
+    for (std::size_t r = 0; r < members.size(); ++r) {
+      members[r].share = seen_by(caster, grid, r, frontiers);
+      anyones = both(anyones, members[r].share);
+    }
+    result.unassigned = frontiers.size() - anyones.size();
   }
-  result.unassigned = distribution.unassigned.size();
+  for (std::size_t r = 0; r < members.size(); ++r) result.goals[r].assigned = members[r].share.size();
 }
 
 void GoalSelection::State::set_goal(Goal& goal, std::size_t robot, const RenderedCell& best) const {

@@ -31,6 +31,7 @@ struct GoalSelection::State {
   std::vector<TeamMember> team;
   Lattice lattice;
   KeyBox bounds;
+  bool distributes;  // else every robot goes for all that it sees
   std::vector<Member> members;
   std::optional<VoxelGrid> seen;  // the map that the corridors follow
 

@@ -282,6 +282,12 @@ bool TravelCorridor::passable(const VoxelKey& key) const {
   return state_->distances && state_->distances->open(key);
 }
 
+KeyBox TravelCorridor::box_around(const VoxelKey& cell) const {
+  const auto& [low, high] = state_->window;
+  return {{clamped(cell.x + low[0]), clamped(cell.y + low[1]), clamped(cell.z + low[2])},
+          {clamped(cell.x + high[0]), clamped(cell.y + high[1]), clamped(cell.z + high[2])}};
+}
+
 VoxelKey TravelCorridor::cell_of(const VoxelKey& voxel) const { return state_->cell_of(voxel); }
 
 }  // namespace frontlux::planner

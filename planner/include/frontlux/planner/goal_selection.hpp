@@ -38,6 +38,10 @@ struct GoalOptions {
   TravelDistance distance = TravelDistance::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
   double min_distance = 0.6;  ///< [m] nearer cells are no goals
+  /// [m] Not 0: the quality of cells at distance d that are nearer than this is eq. 1 times d / advance. What
+  /// lies behind the frontiers is uncovered about as far as the robot moves on, so that of two cells that
+  /// see as many, one far enough to uncover something is worth the step.
+  double advance = 0.0;
 
   /// How viewpoints are rendered. `azimuth_bins` matters for robots that do not see all around: their gain is
   /// what the best window of bins holds.
@@ -128,9 +132,11 @@ struct TeamMember {
 /// Thread safety: as a standard container. Works in TBB's current arena.
 class GoalSelection {
  public:
-  /// @param bounds  where collision boxes have to be, as `TravelCorridor` takes them
+  /// @param bounds      where collision boxes have to be, as `TravelCorridor` takes them
+  /// @param distribute  whether a frontier is one robot's, by Alg. 2; else it is every robot's that sees it
   /// @throws std::invalid_argument naming the robot and the value that is out of bounds
-  GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds);
+  GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
+                bool distribute = true);
   ~GoalSelection();
   GoalSelection(GoalSelection&&) noexcept;
   GoalSelection& operator=(GoalSelection&&) noexcept;

@@ -116,6 +116,9 @@ class TravelCorridor {
   /// Whether a cell is passable, connected or not. In constant time.
   [[nodiscard]] bool passable(const VoxelKey& key) const;
 
+  /// The voxels that have to be free for a cell to be passable: the collision box, or the node.
+  [[nodiscard]] KeyBox box_around(const VoxelKey& cell) const;
+
   /// The key of the cell that holds a voxel: itself, except among nodes.
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const;
 

@@ -1,0 +1,61 @@
+#include "journey.hpp"
+
+#include "straight_way.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace frontlux::planner::detail {
+namespace {
+
+bool is_free(const VoxelGrid& grid, const KeyBox& box) {
+  for (unsigned x = box.min.x; x <= box.max.x; ++x)
+    for (unsigned y = box.min.y; y <= box.max.y; ++y)
+      for (unsigned z = box.min.z; z <= box.max.z; ++z)
+        if (grid.at({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                     static_cast<std::uint16_t>(z)}) != Occupancy::kFree)
+          return false;
+  return true;
+}
+
+// The corridor is as old as the step; the map has learnt since.
+bool is_still_free(const VoxelGrid& grid, const TravelCorridor& corridor, const Pose& from, const Pose& to) {
+  return StraightWay(grid.lattice(), from.position, to.position).holds([&](const VoxelKey& key) {
+    return is_free(grid, corridor.box_around(key));
+  });
+}
+
+}  // namespace
+
+std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& after,
+                                     std::vector<VoxelKey> candidates) {
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  std::vector<VoxelChange> changed;
+  for (const VoxelKey& key : candidates) {
+    const Occupancy was = before.at(key), is = after.at(key);
+    if (was != is) changed.push_back({key, was, is});
+  }
+  return changed;
+}
+
+Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelCorridor* corridor,
+               const Drive& drive, Mapping& mapping) {
+  Journey journey;
+  if (viewpoints.empty()) return journey;
+  const VoxelGrid before = mapping.grid();
+  std::vector<VoxelKey> touched;
+  for (journey.travelled = 1; journey.travelled < viewpoints.size(); ++journey.travelled) {
+    const Pose &from = viewpoints[journey.travelled - 1], &to = viewpoints[journey.travelled];
+    if (corridor != nullptr && !is_still_free(mapping.grid(), *corridor, from, to)) break;
+    const auto scan = drive(robot, to);
+    if (!scan) break;
+    const auto keys = mapping.insert(*scan);
+    touched.insert(touched.end(), keys.begin(), keys.end());
+  }
+  journey.length = path_length(viewpoints.first(journey.travelled));
+  journey.changed = differences(before, mapping.grid(), std::move(touched));
+  return journey;
+}
+
+}  // namespace frontlux::planner::detail
