@@ -18,7 +18,7 @@ export class ImageView {
     this.texture = new DataTexture(this.texels, columns, rows);
     this.texture.magFilter = this.texture.minFilter = NearestFilter;
     this.texture.colorSpace = SRGBColorSpace;
-    this.material = new MeshBasicMaterial({ map: this.texture, transparent: true, opacity: 0.92, side: DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
+    this.material = new MeshBasicMaterial({ map: this.texture, transparent: true, side: DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
     this.mesh = new Mesh(new PlaneGeometry(1, 1), this.material);
     const size = facts.resolution;
     this.mesh.scale.set(columns * size, rows * size, 1);
@@ -38,7 +38,7 @@ export class ImageView {
     for (let i = 0; i < image.count; ++i) {
       const at = 4 * (image.x[i] - low[0] + columns * (image.y[i] - low[1])), color = this.colors[image.quality[i]];
       for (let k = 0; k < 3; ++k) this.texels[at + k] = color[k];
-      this.texels[at + 3] = 255;
+      this.texels[at + 3] = 70 + 0.72 * image.quality[i]; // what is worth nothing does not hide the floor
     }
     this.texture.needsUpdate = true;
     this.mesh.position.z = this.floor(image.z[0]) + 0.04;

@@ -71,7 +71,12 @@ export function optionsOf(facts) {
   return rows;
 }
 
-export const percent = (share, digits = 1) => (Number.isFinite(share) ? `${(100 * share).toFixed(digits)} %` : "unknown");
+/** What is not all does not read as 100 %. */
+export function percent(share, digits = 1) {
+  if (!Number.isFinite(share)) return "unknown";
+  const text = (100 * share).toFixed(digits), step = 10 ** -digits;
+  return `${share < 1 && Number(text) === 100 ? (100 - step).toFixed(digits) : text} %`;
+}
 export const metres = (length) => (Number.isFinite(length) ? `${length.toFixed(length < 100 ? 1 : 0)} m` : "unknown");
 export function seconds(time) {
   if (!Number.isFinite(time)) return "unknown";

@@ -197,7 +197,7 @@ export class ReplayScene {
       q.transformDirection(turned).multiplyScalar(length);
       distance = Math.max(distance, q.z + Math.abs(q.y) / SLOPE, q.z + Math.abs(q.x) / (SLOPE * this.camera.aspect));
     }
-    this.camera.position.copy(target).addScaledVector(from, 1.06 * distance);
+    this.camera.position.copy(target).addScaledVector(from, 1.02 * distance);
     const size = Math.hypot(...half);
     this.camera.near = Math.max(0.1, size / 400);
     this.camera.far = distance * 4 + size * 8;

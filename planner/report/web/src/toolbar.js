@@ -32,7 +32,7 @@ export function makeToolbar(scene, facts) {
     const bar = (colors, from, to, name) => {
       const strip = el("span", { class: "strip", "aria-hidden": "true" });
       strip.style.background = scaleGradient(colors);
-      return el("div", {}, el("span", { text: name }), el("span", { class: "note", text: from }), strip, el("span", { class: "note", text: to }));
+      return el("div", {}, el("span", { text: name }), el("span", { class: "note from", text: from }), strip, el("span", { class: "note", text: to }));
     };
     const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text);
     key.replaceChildren(
