@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace frontlux::planner::detail {
+
+/// The first line of a recording, but for the number of its format and the line's end.
+inline constexpr std::string_view kRecordingTitle = "frontlux recording, format ";
+inline constexpr int kRecordingFormat = 1;
+
+inline constexpr std::string_view kHeadTag = "head", kStepTag = "step", kEndTag = "end ";
+
+/// A record as it is in the file: tag, compressed and plain size and the checksum of these, then the
+/// compressed bytes and their checksum.
+/// @throws std::invalid_argument if there are more than a gigabyte of them
+[[nodiscard]] std::string packed_record(std::string_view tag, const std::string& bytes);
+
+struct Record {
+  std::string_view tag;
+  std::string bytes;
+  std::size_t end = 0;  ///< where the next one begins
+};
+
+/// The record that begins at a byte of the file; nothing if the file ends before it does.
+/// @throws BadRecord if there is something else
+[[nodiscard]] std::optional<Record> record_at(std::string_view file, std::size_t begin);
+
+}  // namespace frontlux::planner::detail
