@@ -11,7 +11,8 @@ from collections import defaultdict
 from pathlib import Path
 from typing import NamedTuple
 
-from plot import MARGIN, WIDTH, Drawing, digits, ratio_text, save, svg
+from plot import colours_of, digits, ratio_text
+from svg_chart import MARGIN, WIDTH, Drawing, save, svg
 
 ROW = re.compile(r"(?P<axis>[^/]+)/(?P<query>[^/]+)/(?P<map>[^/]+)/(?P<label>[^/]+)/(?P<caster>[^/]+)/"
                  r"threads:(?P<threads>\d+)")
@@ -223,7 +224,7 @@ def draw_panels(axis, panels, facts):
         together = panels if axis != "cost" else [p for p in panels if p.unit == panel.unit]
         values = [y for p in together for points in p.curves.values() for _, y in points]
         bottom = max(bottom, draw_panel(chart, panel, index, values, names))
-    return svg(TITLES[axis], bottom + MARGIN - 12, CASTERS, chart)
+    return svg(TITLES[axis], bottom + MARGIN - 12, colours_of(CASTERS), chart)
 
 
 def family(map_name):
@@ -304,7 +305,7 @@ def draw_order(rows, facts):
                 chart.lines.append(f'<text x="{max(scale(first[1]), scale(last[1])) + 9:.1f}" y="{y + 4:.1f}" '
                                    f'class="value faint">{last[1] / first[1]:.2f}×, {digits(last[1])}</text>')
         bottom = max(bottom, end + 24)
-    return svg(TITLES["order"], bottom + MARGIN - 12, CASTERS, chart)
+    return svg(TITLES["order"], bottom + MARGIN - 12, colours_of(CASTERS), chart)
 
 
 def disturbance(rows):

@@ -8,6 +8,7 @@
 #include "world_source.hpp"
 
 #include <frontlux/planner/mapping.hpp>
+#include <frontlux/planner/robot_file.hpp>
 #include <frontlux/sim/coverage.hpp>
 #include <frontlux/sim/scan_world.hpp>
 #include <frontlux/sim/start_pose.hpp>
@@ -28,8 +29,8 @@ namespace {
 
 using planner::Mapping;
 using planner::Pose;
+using planner::RobotDescription;
 using sim::GroundTruth;
-using sim::Robot;
 using sim::View;
 using Clock = std::chrono::steady_clock;
 
@@ -44,13 +45,17 @@ struct Options {
 
 // What is to be scanned: the start bubbles, and from where.
 struct Plan {
+  std::vector<RobotDescription> robots;
   std::vector<VoxelKey> bubble;
   std::vector<View> views;
   std::string starts;  // rows of the summary
 };
 
-bool takes_part(const Options& options, Robot robot) {
-  return options.robot == "both" || options.robot == (robot == Robot::kUgv ? "ugv" : "uav");
+std::vector<RobotDescription> robots_of(const Options& options) {
+  if (options.robot == "ugv") return {planner::ugv_description()};
+  if (options.robot == "uav") return {planner::uav_description()};
+  if (options.robot == "both") return {planner::ugv_description(), planner::uav_description()};
+  throw BadInput("--robot: '" + options.robot + "' is not ugv, uav or both");
 }
 
 sim::ScanWorldOptions scan_options(const Options& options) {
@@ -89,8 +94,7 @@ void add_listed_views(const Options& options, const std::vector<planner::ListedP
       refuse("is in a wall: a surface passes through its voxel; move it, or give a smaller --resolution");
     if (truth.at({*x, *y, *z}) != sim::Truth::kFree)
       refuse("cannot be reached from the start: it is in a solid, or in a closed room");
-    for (const Robot robot : {Robot::kUgv, Robot::kUav})
-      if (takes_part(options, robot)) plan.views.push_back({robot, pose});
+    for (std::size_t i = 0; i < plan.robots.size(); ++i) plan.views.push_back({i, pose});
   }
 }
 
@@ -98,30 +102,25 @@ void add_sweep(const Options& options, const GroundTruth& truth, const Eigen::Ve
   const double spacing = options.sweep.empty() || options.sweep[0].empty()
                              ? kSpacing
                              : parse_length("--sweep", options.sweep[0]);
-  std::optional<Pose> ugv;
+  std::vector<planner::Robot> robots;
+  for (const RobotDescription& robot : plan.robots) robots.push_back(robot.robot);
+  const auto starts = sim::find_starts(truth, around, robots);
   std::vector<View> after;
-  const auto start_at = [&](Robot robot, const char* name, const std::optional<Pose>& pose) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const char* name = robots[i].name == "ugv" ? "UGV" : "UAV";
+    const std::optional<Pose>& pose = starts[i];
     if (!pose) {
       std::string why = std::string(name) + ": the robot has no place within 15 m of the start";
-      if (options.robot != "both") throw BadInput(why + "; give another --start");
+      if (robots.size() == 1) throw BadInput(why + "; give another --start");
       plan.starts += row(name, why.substr(why.find("no place")) + ": left out");
-      return;
+      continue;
     }
     plan.starts += row(name, "starts at " + to_text(Eigen::Vector3f(pose->position.cast<float>())) + " m");
-    const auto bubble = sim::start_bubble(truth, robot, *pose);
+    const auto bubble = sim::start_bubble(truth, robots[i], *pose);
     plan.bubble.insert(plan.bubble.end(), bubble.begin(), bubble.end());
-    if (robot == Robot::kUgv) {
-      plan.views.push_back({robot, *pose});
-    } else {
-      const auto views = sim::look_around(*pose);
-      plan.views.insert(plan.views.end(), views.begin(), views.end());
-    }
-    const auto views = sim::sweep(truth, robot, *pose, spacing);
-    after.insert(after.end(), views.begin(), views.end());
-  };
-  if (takes_part(options, Robot::kUgv))
-    start_at(Robot::kUgv, "UGV", ugv = sim::find_ugv_start(truth, around));
-  if (takes_part(options, Robot::kUav)) start_at(Robot::kUav, "UAV", sim::find_uav_start(truth, around, ugv));
+    for (const Pose& view : sim::look_around(robots[i].view, *pose)) plan.views.push_back({i, view});
+    for (const Pose& view : sim::sweep(truth, robots[i], *pose, spacing)) after.push_back({i, view});
+  }
   if (plan.views.empty())
     throw BadInput(options.source.world +
                    ": neither robot has a place within 15 m of the start; give another --start");
@@ -148,7 +147,7 @@ void scan(const SourcedWorld& sourced, const GroundTruth& truth, const Plan& pla
     return !InterruptNote::taken();
   };
   mapping.mark_free(plan.bubble);
-  sim::scan_world(sim::Surface(sourced.world.mesh), plan.views, options, mapping, report);
+  sim::scan_world(sim::Surface(sourced.world.mesh), plan.robots, plan.views, options, mapping, report);
   if (InterruptNote::taken()) throw Interrupted();
 }
 
@@ -175,8 +174,8 @@ void print_summary(const Options& options, const SourcedWorld& sourced, const Gr
 void run(Options& options) {
   const auto begin = Clock::now();
   options.source.resolution = parse_resolution(options.resolution);
-  if (options.robot != "ugv" && options.robot != "uav" && options.robot != "both")
-    throw BadInput("--robot: '" + options.robot + "' is not ugv, uav or both");
+  Plan plan;
+  plan.robots = robots_of(options);
   const sim::ScanWorldOptions scan_with = scan_options(options);
   if (is_built_in_world(options.source.world)) options.source.seed = options.seed;
   check_map_output(options.output);
@@ -197,7 +196,6 @@ void run(Options& options) {
   if (!sourced.world.start)
     throw BadInput(sourced.world.name + ": no start is known; give --start in free space");
   const GroundTruth truth = make_truth(sourced, options.source.resolution);
-  Plan plan;
   if (options.poses)
     add_listed_views(options, poses, truth, plan);
   else

@@ -111,7 +111,7 @@ struct Exploration::State {
   std::vector<std::optional<TravelCorridor>> ways = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
-  Keys unread = {};  // changed since the frontiers were last brought up to date
+  Keys unread = {};                            // changed since the frontiers were last brought up to date
   std::uint64_t number = 0;
   int quiet = 0;
   bool idle = false;
@@ -246,9 +246,11 @@ Exploration::State::Plan Exploration::State::optimize(std::size_t robot, const R
 
 // Lines 8 to 11.
 void Exploration::State::go(std::size_t robot, const Plan& plan, const Drive& drive, RobotStep& step) {
+  TravelOptions body = options.team[robot].robot.travel;
+  body.node_edge = 0.0;
   // The way back is that on which it came.
-  const TravelCorridor* corridor = step.goal.pose ? &way_of(robot) : nullptr;
-  detail::Journey journey = detail::travel(robot, step.planned, corridor, drive, mapping);
+  detail::Journey journey =
+      detail::travel(robot, step.planned, step.goal.pose ? &body : nullptr, drive, mapping);
   step.travelled = journey.travelled;
   step.length = journey.length;
   step.changed = std::move(journey.changed);

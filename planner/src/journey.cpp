@@ -19,10 +19,10 @@ bool is_free(const VoxelGrid& grid, const KeyBox& box) {
 }
 
 // The corridor is as old as the step; the map has learnt since.
-bool is_still_free(const VoxelGrid& grid, const TravelCorridor& corridor, const Pose& from, const Pose& to) {
-  return StraightWay(grid.lattice(), from.position, to.position).holds([&](const VoxelKey& key) {
-    return is_free(grid, corridor.box_around(key));
-  });
+bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
+  const Lattice& lattice = grid.lattice();
+  return StraightWay(lattice, from.position, to.position, reach_of(body, lattice))
+      .holds([&](const VoxelKey& key) { return is_free(grid, voxels_of_cell(body, lattice, key)); });
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& a
   return changed;
 }
 
-Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelCorridor* corridor,
+Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelOptions* body,
                const Drive& drive, Mapping& mapping) {
   Journey journey;
   if (viewpoints.empty()) return journey;
@@ -47,7 +47,7 @@ Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const Travel
   std::vector<VoxelKey> touched;
   for (journey.travelled = 1; journey.travelled < viewpoints.size(); ++journey.travelled) {
     const Pose &from = viewpoints[journey.travelled - 1], &to = viewpoints[journey.travelled];
-    if (corridor != nullptr && !is_still_free(mapping.grid(), *corridor, from, to)) break;
+    if (body != nullptr && !is_still_free(mapping.grid(), *body, from, to)) break;
     const auto scan = drive(robot, to);
     if (!scan) break;
     const auto keys = mapping.insert(*scan);

@@ -19,9 +19,9 @@ struct Journey {
 /// the map. It stops short where a scan has shown that the way on is not free after all, or where it could
 /// not go.
 /// @param viewpoints  the first is where it is; there it measures nothing
-/// @param corridor    of the robot, whose collision box the ways are checked with; null: they are not
-[[nodiscard]] Journey travel(std::size_t robot, std::span<const Pose> viewpoints,
-                             const TravelCorridor* corridor, const Drive& drive, Mapping& mapping);
+/// @param body  of the robot, with which the ways are checked; null: they are not
+[[nodiscard]] Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelOptions* body,
+                             const Drive& drive, Mapping& mapping);
 
 /// Voxels of `candidates`, in any order, that differ between two maps; sorted by key.
 [[nodiscard]] std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& after,

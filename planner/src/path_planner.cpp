@@ -80,15 +80,30 @@ std::vector<VoxelKey> cells_between(const TravelCorridor& corridor, const VoxelK
   return cells;
 }
 
+Eigen::Vector3d center_of(const Lattice& lattice, const VoxelKey& key) {
+  return {lattice.center(key.x), lattice.center(key.y), lattice.center(key.z)};
+}
+
+// The nearest place where a robot is sure to be free if its cell is passable: the middle of the voxel, along
+// the axes on which that matters.
+Eigen::Vector3d steady(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& point) {
+  return (corridor.reach().array() > 0.0).select(center_of(lattice, *voxel_of(lattice, point)), point);
+}
+
 // Free without a look: from cell to cell the corridor cuts no corner, so two of them that follow each other,
-// and what lies between, are free in every point.
+// and what lies between, are free in every point. A box that is smaller than a voxel does not leave them
+// between their middles; nor does it, on its way to the middle of a voxel, come to voxels that it was not in.
 Polyline corridor_way(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& start,
                       const Eigen::Vector3d& goal) {
   const auto cells = cells_between(corridor, *voxel_of(lattice, start), *voxel_of(lattice, goal));
   Polyline way = {start};
-  for (std::size_t i = 1; i + 1 < cells.size(); ++i)
-    way.emplace_back(lattice.center(cells[i].x), lattice.center(cells[i].y), lattice.center(cells[i].z));
-  way.push_back(goal);
+  const auto add = [&](const Eigen::Vector3d& point) {
+    if (point != way.back()) way.push_back(point);
+  };
+  add(steady(corridor, lattice, start));
+  for (std::size_t i = 1; i + 1 < cells.size(); ++i) add(center_of(lattice, cells[i]));
+  add(steady(corridor, lattice, goal));
+  add(goal);
   return way;
 }
 
@@ -130,6 +145,9 @@ std::optional<PathOutcome> obstacle(const TravelCorridor& corridor, const Lattic
   const auto from = voxel_of(lattice, start.position), to = voxel_of(lattice, goal.position);
   if (!from || !corridor.passable(*from)) return PathOutcome::kStartNotFree;
   if (!to || !corridor.passable(*to)) return PathOutcome::kGoalNotFree;
+  // A robot may turn where it is, free or not.
+  if (start.position != goal.position && !way_is_free(corridor, lattice, goal.position, goal.position))
+    return PathOutcome::kGoalNotFree;
   if (corridor.cells().empty()) return PathOutcome::kNoCorridor;
   if (!corridor.contains(*from) || !corridor.contains(*to)) return PathOutcome::kOutOfReach;
   return std::nullopt;
@@ -173,7 +191,7 @@ std::string_view describe(PathOutcome outcome) {
 
 bool way_is_free(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& from,
                  const Eigen::Vector3d& to) {
-  return detail::StraightWay(lattice, from, to).holds([&](const VoxelKey& key) {
+  return detail::StraightWay(lattice, from, to, corridor.reach()).holds([&](const VoxelKey& key) {
     return corridor.passable(key);
   });
 }
@@ -206,8 +224,10 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
   }
 
   detail::TreeQuery query;
-  query.start = start.position;
+  const bool begins_free = way_is_free(corridor, lattice, start.position, start.position);
+  query.start = begins_free ? start.position : steady(corridor, lattice, start.position);
   query.goal = goal.position;
+  query.reach = corridor.reach();
   query.cells = corridor.cells();
   query.plane = on_one_layer(query.cells);
   query.seed = seed_of(key);
@@ -229,10 +249,12 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
   if (way.empty()) way = corridor_way(corridor, lattice, query.start, query.goal);
   way.front() = query.start;
   way.back() = query.goal;
+  if (way.size() == 2 && way.front() == way.back()) way.pop_back();
 
   const double step = std::max(options.spacing / 2, lattice.resolution());  // a smaller one gains nothing
   way = detail::shortened(std::move(way), step, options.shortcut_rounds, is_free);
-  if (query.plane) set_heights(way, start.position.z(), goal.position.z());
+  if (query.plane) set_heights(way, query.start.z(), goal.position.z());
+  if (!begins_free) way.insert(way.begin(), start.position);
   way = detail::divided(way, options.spacing);
   plan.viewpoints = with_yaws(way, start, goal);
   plan.length = path_length(plan.viewpoints);

@@ -13,7 +13,7 @@
 
 namespace frontlux::planner::detail {
 
-/// Whether `open(key)` holds for every voxel that a segment enters.
+/// Whether `open(key)` holds for every voxel that a segment enters, or a small box that moves along it.
 ///
 /// Along each axis voxels are taken for wider than they are by kWiden on both sides, more than all rounding,
 /// so none is missed that the segment touches. Along an axis the segment never leaves the range of the
@@ -22,17 +22,21 @@ namespace frontlux::planner::detail {
 class StraightWay {
  public:
   /// @param from, to  [m]
-  StraightWay(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  /// @param reach  [m] of the box to each side of its middle, which goes from `from` to `to`
+  StraightWay(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+              const Eigen::Vector3d& reach = Eigen::Vector3d::Zero()) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto i = static_cast<Eigen::Index>(a);
-      const auto first = lattice.key(from[i]), last = lattice.key(to[i]);
+      const auto first = lattice.key(std::min(from[i], to[i]) - reach[i]),
+                 last = lattice.key(std::max(from[i], to[i]) + reach[i]);
       if (!first || !last) {
         inside_ = false;
         return;
       }
       Axis& axis = axes_[a];
-      axis.low = std::min(*first, *last);
-      axis.high = std::max(*first, *last);
+      axis.low = *first;
+      axis.high = *last;
+      axis.widen = kWiden + reach[i] / lattice.resolution();
       axis.start = from[i] / lattice.resolution() + Lattice::kOrigin;
       axis.length = (to[i] - from[i]) / lattice.resolution();
     }
@@ -58,8 +62,8 @@ class StraightWay {
   };
 
   struct Axis {
-    int low = 0, high = 0;             // voxels of the ends
-    double start = 0.0, length = 0.0;  // [voxels]
+    int low = 0, high = 0;                             // voxels of the ends
+    double start = 0.0, length = 0.0, widen = kWiden;  // [voxels]
 
     // Calls `visit(voxel, part of the segment in it)` until it returns false.
     template <class Visit>
@@ -70,9 +74,13 @@ class StraightWay {
         return static_cast<int>(
             std::clamp(std::floor(at), static_cast<double>(low), static_cast<double>(high)));
       };
-      const int last = voxel(std::max(a, b) + kWiden);
-      for (int k = voxel(std::min(a, b) - kWiden); k <= last; ++k) {
-        const double lower = (k - kWiden - start) / length, upper = (k + 1 + kWiden - start) / length;
+      const int last = voxel(std::max(a, b) + widen);
+      for (int k = voxel(std::min(a, b) - widen); k <= last; ++k) {
+        if (length == 0.0) {
+          if (!visit(k, part)) return false;
+          continue;
+        }
+        const double lower = (k - widen - start) / length, upper = (k + 1 + widen - start) / length;
         const Part in{std::max(part.begin, std::min(lower, upper)),
                       std::min(part.end, std::max(lower, upper))};
         if (in.begin <= in.end && !visit(k, in)) return false;

@@ -90,6 +90,15 @@ detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
   return window;
 }
 
+VoxelKey aligned(const TravelOptions& options, const detail::VoxelWindow& window, const VoxelKey& voxel) {
+  if (options.node_edge == 0.0) return voxel;
+  const int edge = window.high[0] - window.low[0] + 1;
+  const auto along = [&](std::uint16_t k) {
+    return static_cast<std::uint16_t>((k & ~(edge - 1)) - window.low[0]);
+  };
+  return {along(voxel.x), along(voxel.y), along(voxel.z)};
+}
+
 std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(key, 0, 0xFFFF)); }
 
 }  // namespace
@@ -111,6 +120,28 @@ TravelOptions uav_node_travel() {
   TravelOptions options = uav_travel();
   options.node_edge = 1.2;
   return options;
+}
+
+VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
+  return aligned(options, window_of(options, lattice.resolution()), voxel);
+}
+
+KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice, const VoxelKey& cell) {
+  const auto [low, high] = window_of(options, lattice.resolution());
+  return {{clamped(cell.x + low[0]), clamped(cell.y + low[1]), clamped(cell.z + low[2])},
+          {clamped(cell.x + high[0]), clamped(cell.y + high[1]), clamped(cell.z + high[2])}};
+}
+
+Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
+  constexpr double kLetGo = 1e-4;  // of a voxel: centres that were floats are in the middle, too
+  Eigen::Vector3d reach = Eigen::Vector3d::Zero();
+  if (options.node_edge > 0.0) return reach;
+  const double resolution = lattice.resolution();
+  for (Eigen::Index a = 0; a < (options.motion == Motion::kPlane ? 2 : 3); ++a) {
+    const double beyond = options.extents[a] / 2 - half_width(options.extents[a], resolution) * resolution;
+    if (beyond > kLetGo * resolution) reach[a] = std::min(beyond, (0.5 - kLetGo) * resolution);
+  }
+  return reach;
 }
 
 std::string_view describe(CorridorState state) {
@@ -141,6 +172,7 @@ struct TravelCorridor::State {
   Lattice lattice;
   KeyBox bounds;
   detail::VoxelWindow window;
+  Eigen::Vector3d reach;
 
   std::optional<std::uint16_t> plane;
   detail::CellFrame frame;
@@ -150,7 +182,7 @@ struct TravelCorridor::State {
   std::vector<VoxelKey> cells;
   CorridorState state = CorridorState::kNotUpdated;
 
-  [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const;
+  [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
   void lay_out(const VoxelKey& robot);
   void read(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
@@ -158,15 +190,6 @@ struct TravelCorridor::State {
   }
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
-
-VoxelKey TravelCorridor::State::cell_of(const VoxelKey& voxel) const {
-  if (options.node_edge == 0.0) return voxel;
-  const int edge = window.high[0] - window.low[0] + 1;
-  const auto along = [&](std::uint16_t k) {
-    return static_cast<std::uint16_t>((k & ~(edge - 1)) - window.low[0]);
-  };
-  return {along(voxel.x), along(voxel.y), along(voxel.z)};
-}
 
 void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   KeyBox box = bounds;
@@ -221,9 +244,9 @@ void TravelCorridor::State::read(const VoxelGrid& grid, std::span<const VoxelKey
 }
 
 CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {
-  KeyBox reach = bounds;
-  if (options.motion == Motion::kPlane) reach.min.z = reach.max.z = robot.z;
-  if (!reach.contains(robot)) return CorridorState::kOutside;
+  KeyBox within = bounds;
+  if (options.motion == Motion::kPlane) within.min.z = within.max.z = robot.z;
+  if (!within.contains(robot)) return CorridorState::kOutside;
   if (grid.at(robot) == Occupancy::kUnknown) return CorridorState::kUnknown;
   if (grid.at(robot) == Occupancy::kOccupied) return CorridorState::kOccupied;
   const VoxelKey cell = cell_of(robot);
@@ -240,6 +263,7 @@ TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& latt
                                          lattice,
                                          bounds,
                                          window_of(options, lattice.resolution()),
+                                         reach_of(options, lattice),
                                          {},
                                          {},
                                          {},
@@ -282,11 +306,7 @@ bool TravelCorridor::passable(const VoxelKey& key) const {
   return state_->distances && state_->distances->open(key);
 }
 
-KeyBox TravelCorridor::box_around(const VoxelKey& cell) const {
-  const auto& [low, high] = state_->window;
-  return {{clamped(cell.x + low[0]), clamped(cell.y + low[1]), clamped(cell.z + low[2])},
-          {clamped(cell.x + high[0]), clamped(cell.y + high[1]), clamped(cell.z + high[2])}};
-}
+const Eigen::Vector3d& TravelCorridor::reach() const { return state_->reach; }
 
 VoxelKey TravelCorridor::cell_of(const VoxelKey& voxel) const { return state_->cell_of(voxel); }
 

@@ -134,14 +134,19 @@ struct Neighbors {
   };
 };
 
-// Uniform over the cells, so that no sample is wasted on walls and rooms unseen.
+// Uniform over the cells, so that no sample is wasted on walls and rooms unseen. One too near to the side of
+// its cell moves towards the middle, so that passages of a single cell get their share.
 class CellSampler : public ob::StateSampler {
  public:
-  CellSampler(const ob::StateSpace* space, const Lattice& lattice, const TreeQuery& query)
+  CellSampler(const ob::StateSpace* space, const Lattice& lattice, const TreeQuery& query,
+              const WayIsFree& way_is_free)
       : ob::StateSampler(space),
         lattice_(lattice),
         cells_(query.cells),
         points_{query.plane, query.start.z()},
+        reaches_(query.reach != Eigen::Vector3d::Zero()),
+        sure_(Eigen::Vector3d::Ones() - 2.0 / lattice.resolution() * query.reach),
+        way_is_free_(way_is_free),
         state_(query.seed) {}
 
   void sampleUniform(ob::State* state) override {
@@ -152,6 +157,9 @@ class CellSampler : public ob::StateSampler {
     };
     const double x = within(cell.x), y = within(cell.y), z = within(cell.z);
     points_.write({x, y, z}, state);
+    if (!reaches_ || way_is_free_(points_(state), points_(state))) return;
+    const Eigen::Vector3d middle(lattice_.center(cell.x), lattice_.center(cell.y), lattice_.center(cell.z));
+    points_.write(middle + sure_.cwiseProduct(Eigen::Vector3d(x, y, z) - middle), state);
   }
   // No search here asks for these; they stay in the bounds of the space, cell or not.
   void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
@@ -188,6 +196,9 @@ class CellSampler : public ob::StateSampler {
   const Lattice& lattice_;
   std::span<const VoxelKey> cells_;
   Points points_;
+  bool reaches_;
+  Eigen::Vector3d sure_;  // part of a voxel, around its middle, in which only this voxel counts
+  const WayIsFree& way_is_free_;
   std::uint64_t state_;
 };
 
@@ -277,8 +288,9 @@ TreeAnswer search_tree(const Lattice& lattice, const TreeQuery& query, const Pat
   const Points points{query.plane, query.start.z()};
   const auto space = std::make_shared<ob::RealVectorStateSpace>(query.plane ? 2U : 3U);
   space->setBounds(bounds_of(lattice, query));
-  space->setStateSamplerAllocator(
-      [&](const ob::StateSpace* of) { return std::make_shared<CellSampler>(of, lattice, query); });
+  space->setStateSamplerAllocator([&](const ob::StateSpace* of) {
+    return std::make_shared<CellSampler>(of, lattice, query, way_is_free);
+  });
   const auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker(
       [&](const ob::State* state) { return way_is_free(points(state), points(state)); });

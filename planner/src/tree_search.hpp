@@ -18,6 +18,7 @@ struct TreeQuery {
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();   ///< [m]
   std::span<const VoxelKey> cells;                  ///< where samples are drawn, uniformly; not empty
+  Eigen::Vector3d reach = Eigen::Vector3d::Zero();  ///< [m] within which cells have to be passable, too
   bool plane = false;                               ///< search along x and y at the height of the start
   std::uint64_t seed = 0;
 };

@@ -114,7 +114,7 @@ class FinerTruth {
 
   // Whether a ray of this view enters the box by more than a rounding before it meets a surface.
   [[nodiscard]] bool crosses(const View& view, const Eigen::AlignedBox3d& box) const {
-    const Sensor sensor = view.robot == Robot::kUav ? depth_camera() : lidar();
+    const Sensor sensor = view.robot == 1 ? depth_camera() : lidar();
     if (box.exteriorDistance(view.sensor_pose.position) > sensor.field_of_view().max_range) return false;
     const planner::Scan scan = sense(surface_, sensor, view.sensor_pose, 1);
     constexpr double kRounding = 1e-5;  // [m] of the end points, which are floats
@@ -204,15 +204,17 @@ Mapped sweep_and_check(const World& world, double resolution, double spacing, bo
   const GroundTruth truth(world, resolution, start);
   Mapping mapping({.resolution = resolution, .bounds = truth.bounds()});
   std::vector<View> views;
-  const auto ugv = find_ugv_start(truth, start);
-  const auto uav = find_uav_start(truth, start, ugv);
-  for (const auto& [robot, pose] : {std::pair{Robot::kUgv, ugv}, std::pair{Robot::kUav, uav}}) {
-    if (!pose) continue;
-    mapping.mark_free(start_bubble(truth, robot, *pose));
-    for (const View& view : sweep(truth, robot, *pose, spacing)) views.push_back(view);
+  const std::vector<planner::RobotDescription> team = {planner::ugv_description(),
+                                                       planner::uav_description()};
+  const auto starts = find_starts(truth, start, std::vector{team[0].robot, team[1].robot});
+  for (std::size_t i = 0; i < team.size(); ++i) {
+    if (!starts[i]) continue;
+    mapping.mark_free(start_bubble(truth, team[i].robot, *starts[i]));
+    for (const planner::Pose& pose : sweep(truth, team[i].robot, *starts[i], spacing))
+      views.push_back({i, pose});
   }
   EXPECT_FALSE(views.empty());
-  EXPECT_EQ(scan_world(Surface(world.mesh), views, {}, mapping), views.size());
+  EXPECT_EQ(scan_world(Surface(world.mesh), team, views, {}, mapping), views.size());
   const Mapped mapped = expect_no_leak(world, truth, start, views, mapping);
   EXPECT_GT(mapped.free, 0U);
   EXPECT_GT(mapped.occupied, 0U);

@@ -1,4 +1,5 @@
 #include <frontlux/planner/mapping.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/scan_world.hpp>
 #include <frontlux/sim/start_pose.hpp>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -49,6 +51,12 @@ World room(std::initializer_list<std::pair<Eigen::Vector3f, Eigen::Vector3f>> th
   world.bounds = {Eigen::Vector3d(-1.5, -1.5, -1.5), Eigen::Vector3d(7.5, 7.5, 4.5)};
   world.start = Eigen::Vector3d(3.15, 3.15, -0.05);
   return world;
+}
+
+const planner::Robot kUgv = planner::ugv(), kUav = planner::uav();
+
+std::optional<planner::Pose> ugv_start(const GroundTruth& truth, const Eigen::Vector3d& around) {
+  return find_starts(truth, around, std::vector{kUgv}).front();
 }
 
 GroundTruth truth_of(const World& world) { return {world, 0.3, free_start(world, 0.3, false)}; }
@@ -95,32 +103,32 @@ TEST(StartPose, StandsOnTheFloorBesideObstacles) {
   // A table over the start: the UGV has to go beside it, the UAV above.
   const World world = room({{{2.4F, 2.4F, 0.35F}, {3.9F, 3.9F, 0.5F}}});
   const GroundTruth truth = truth_of(world);
-  const auto ugv = find_ugv_start(truth, free_start(world, 0.3, false));
+  const auto starts = find_starts(truth, free_start(world, 0.3, false), std::vector{kUav, kUgv});
+  const auto &uav = starts[0], &ugv = starts[1];
   ASSERT_TRUE(ugv.has_value());
   EXPECT_NEAR(ugv->position.z(), 0.75, 1e-9);
-  EXPECT_FALSE(obstacle_at(truth, Robot::kUgv, *ugv).has_value());
+  EXPECT_FALSE(obstacle_at(truth, kUgv, *ugv).has_value());
   // By hand: the voxels of its body, two on each side of the middle one, clear the table's and the walls.
   const auto apart = [](double a, double b) { return std::abs(a - b); };
   const double off = std::max(apart(ugv->position.x(), 3.15), apart(ugv->position.y(), 3.15));
   EXPECT_NEAR(off, 1.5, 1e-6);
-  const auto uav = find_uav_start(truth, free_start(world, 0.3, false), ugv);
   ASSERT_TRUE(uav.has_value());
   EXPECT_GE(uav->position.z(), 1.2);
-  EXPECT_FALSE(obstacle_at(truth, Robot::kUav, *uav).has_value());
+  EXPECT_FALSE(obstacle_at(truth, kUav, *uav).has_value());
 }
 
 TEST(StartPose, SaysWhatIsInTheWay) {
   const World world = room({{{2.4F, 2.4F, 0.35F}, {3.9F, 3.9F, 0.5F}}});
   const GroundTruth truth = truth_of(world);
-  const auto why = [&](Robot robot, double x, double y, double z) {
+  const auto why = [&](const planner::Robot& robot, double x, double y, double z) {
     return obstacle_at(truth, robot, {{x, y, z}}).value_or("");
   };
-  EXPECT_EQ(why(Robot::kUgv, 1.05, 1.05, 0.75), "");
-  EXPECT_NE(why(Robot::kUgv, 3.15, 3.15, 0.75).find("a surface passes through its voxel"), std::string::npos);
-  EXPECT_EQ(why(Robot::kUgv, 1.05, 1.05, 1.05), "there is no floor under all of it");
-  EXPECT_NE(why(Robot::kUgv, 0.1, 1.05, 0.75).find("cannot be reached"), std::string::npos);
-  EXPECT_NE(why(Robot::kUav, 7.4, 1.05, 1.5).find("beyond the world's bounds"), std::string::npos);
-  EXPECT_EQ(why(Robot::kUav, 1.05, 1.05, 1.35), "");
+  EXPECT_EQ(why(kUgv, 1.05, 1.05, 0.75), "");
+  EXPECT_NE(why(kUgv, 3.15, 3.15, 0.75).find("a surface passes through its voxel"), std::string::npos);
+  EXPECT_EQ(why(kUgv, 1.05, 1.05, 1.05), "there is no floor under all of it");
+  EXPECT_NE(why(kUgv, 0.1, 1.05, 0.75).find("cannot be reached"), std::string::npos);
+  EXPECT_NE(why(kUav, 7.4, 1.05, 1.5).find("beyond the world's bounds"), std::string::npos);
+  EXPECT_EQ(why(kUav, 1.05, 1.05, 1.35), "");
 }
 
 TEST(StartPose, FindsNothingWhereNothingFits) {
@@ -129,8 +137,8 @@ TEST(StartPose, FindsNothingWhereNothingFits) {
   add_box(world.mesh, {0, 0, -0.05F}, {0.9F, 6, 2.95F});
   world.start = Eigen::Vector3d(0.45, 3, 0.5);
   const GroundTruth truth(world, 0.3, *world.start);
-  EXPECT_FALSE(find_ugv_start(truth, *world.start).has_value());
-  EXPECT_TRUE(find_uav_start(truth, *world.start, std::nullopt).has_value());
+  EXPECT_FALSE(ugv_start(truth, *world.start).has_value());
+  EXPECT_TRUE(find_starts(truth, *world.start, std::vector{kUav})[0].has_value());
 }
 
 TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
@@ -139,13 +147,12 @@ TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
       const World world = make_world(name, seed);
       const Eigen::Vector3d start = free_start(world, 0.3, true);
       const GroundTruth truth(world, 0.3, start);
-      const auto ugv = find_ugv_start(truth, start);
+      const auto starts = find_starts(truth, start, std::vector{kUgv, kUav});
+      const auto &ugv = starts[0], &uav = starts[1];
       ASSERT_TRUE(ugv.has_value()) << name << seed;
       EXPECT_LT((ugv->position - start).head<2>().norm(), 0.3) << name << seed;
-      const auto uav = find_uav_start(truth, start, ugv);
       ASSERT_TRUE(uav.has_value()) << name << seed;
-      const KeyBox a = body_voxels(truth.lattice(), Robot::kUgv, *ugv),
-                   b = body_voxels(truth.lattice(), Robot::kUav, *uav);
+      const KeyBox a = body_voxels(truth.lattice(), kUgv, *ugv), b = body_voxels(truth.lattice(), kUav, *uav);
       EXPECT_TRUE(a.max.z < b.min.z || a.max.x < b.min.x || b.max.x < a.min.x || a.max.y < b.min.y ||
                   b.max.y < a.min.y);
     }
@@ -160,8 +167,8 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
   world.mesh.triangles.push_back({first, first + 1, first + 2});
   world.mesh.triangles.push_back({first + 1, first + 3, first + 2});
   const GroundTruth truth = truth_of(world);
-  for (const auto& [robot, z, radius] :
-       {std::tuple{Robot::kUgv, 0.75, 2.3}, std::tuple{Robot::kUav, 1.35, 1.0}}) {
+  for (const auto& [robot, z, radius] : {std::tuple{kUgv, 0.75, 2.3}, std::tuple{kUav, 1.35, 1.0}}) {
+    const bool drives = robot.travel.motion == planner::Motion::kPlane;
     const planner::Pose pose{{2.85, 3.15, z}};
     ASSERT_FALSE(obstacle_at(truth, robot, pose).has_value());
     const auto bubble = start_bubble(truth, robot, pose);
@@ -175,8 +182,7 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
           const VoxelKey key{static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
                              static_cast<std::uint16_t>(32768 + k)};
           const Eigen::Vector3d off = center - pose.position;
-          const bool in =
-              robot == Robot::kUgv ? off.head<2>().norm() <= radius && k < 3 : off.norm() <= radius;
+          const bool in = drives ? off.head<2>().norm() <= radius && k < 3 : off.norm() <= radius;
           if (in || body.contains(key)) expected.insert(key);
         }
     EXPECT_EQ(std::set<VoxelKey>(bubble.begin(), bubble.end()), expected);
@@ -189,33 +195,34 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
 TEST(Sweep, LooksFromEveryCubeThatHasAPlace) {
   const World world = room();
   const GroundTruth truth = truth_of(world);
-  const auto ugv = sweep(truth, Robot::kUgv, {{3.15, 3.15, 0.75}}, 1.5);
+  const auto ugv = sweep(truth, kUgv, {{3.15, 3.15, 0.75}}, 1.5);
   // 20 x 20 cells inside; cubes of 5 voxels from -1.5 m on; the robot's middle keeps 2 voxels from the walls.
   EXPECT_EQ(ugv.size(), 16U);
-  const auto uav = sweep(truth, Robot::kUav, {{3.15, 3.15, 1.35}}, 1.5);
+  const auto uav = sweep(truth, kUav, {{3.15, 3.15, 1.35}}, 1.5);
   EXPECT_EQ(uav.size() % 4, 0U);
   EXPECT_EQ(uav.size(), 4 * 16 * 2U);
   for (const auto& views : {ugv, uav})
-    for (const View& view : views) {
-      EXPECT_FALSE(obstacle_at(truth, view.robot, view.sensor_pose).has_value());
-      EXPECT_TRUE(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 6, 2.95))
-                      .contains(view.sensor_pose.position));
+    for (const planner::Pose& view : views) {
+      EXPECT_FALSE(obstacle_at(truth, view.position.z() == 0.75 ? kUgv : kUav, view).has_value());
+      EXPECT_TRUE(
+          Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 6, 2.95)).contains(view.position));
     }
-  EXPECT_NEAR(uav[3].sensor_pose.yaw, 1.5 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(uav[3].yaw, 1.5 * std::numbers::pi, 1e-12);
   for (const double spacing : {0.0, -1.0, std::nan(""), HUGE_VAL})
-    EXPECT_THROW(static_cast<void>(sweep(truth, Robot::kUav, {{3.15, 3.15, 1.35}}, spacing)),
-                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(sweep(truth, kUav, {{3.15, 3.15, 1.35}}, spacing)), std::invalid_argument);
 }
 
 TEST(ScanWorld, IsTheSameForTheSameSeedAndStopsWhenTold) {
   const World world = room();
   const GroundTruth truth = truth_of(world);
-  const auto views = sweep(truth, Robot::kUgv, {{3.15, 3.15, 0.75}}, 1.5);
+  std::vector<View> views;
+  for (const planner::Pose& pose : sweep(truth, kUgv, {{3.15, 3.15, 0.75}}, 1.5)) views.push_back({0, pose});
+  const std::vector<planner::RobotDescription> team = {planner::ugv_description()};
   const Surface surface(world.mesh);
   const auto map = [&](std::uint64_t seed, std::size_t last) {
     planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
     const std::size_t done =
-        scan_world(surface, views, {.errors = {.sigma = 0.3, .dropout = 0.1}, .seed = seed}, mapping,
+        scan_world(surface, team, views, {.errors = {.sigma = 0.3, .dropout = 0.1}, .seed = seed}, mapping,
                    [&](std::size_t n) { return n < last; });
     EXPECT_EQ(done, std::min(last, views.size()));
     return mapping.grid();

@@ -103,6 +103,10 @@ Sensor cone_sensor(double opening, double max_range, std::size_t rays, RangeErro
   return {{FieldOfView::Shape::kCone, opening, 0.0, max_range}, rays, 1, errors};
 }
 
+Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {
+  return {robot.robot.view, robot.columns, robot.rows, errors};
+}
+
 planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner::Pose& sensor_pose,
                     std::uint64_t seed) {
   const Eigen::Vector3f origin = sensor_pose.position.cast<float>();

@@ -15,10 +15,12 @@
 namespace frontlux::sim {
 namespace {
 
+using planner::Motion;
 using planner::Pose;
+using planner::Robot;
 
-constexpr double kSearched = 15.0;                  // [m] along each axis
-constexpr double kUgvBubble = 2.3, kUavBubble = 1;  // [m] radius
+constexpr double kSearched = 15.0;          // [m] along each axis
+constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
 
 std::string to_text(const Eigen::Vector3d& p) {
   std::ostringstream text;
@@ -88,20 +90,96 @@ bool has_floor(const GroundTruth& truth, const VoxelKey& key) {
          !truth.open({key.x, key.y, static_cast<std::uint16_t>(key.z - 1)}, 2);
 }
 
-}  // namespace
+bool drives(const Robot& robot) { return robot.travel.motion == Motion::kPlane; }
 
-KeyBox body_voxels(const Lattice& lattice, Robot robot, const Pose& sensor_pose) {
-  const Eigen::Vector3d& at = sensor_pose.position;
-  if (robot == Robot::kUav) {
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(kUavWidth / 2);
-    return planner::voxels_of(lattice, {at - half, at + half});
-  }
-  const Eigen::Vector3d half(kUgvWidth / 2, kUgvWidth / 2, 0.0);
-  const Eigen::Vector3d bottom = at - Eigen::Vector3d(0, 0, kUgvSensorHeight);
-  return planner::voxels_of(lattice, {bottom - half, bottom + half + Eigen::Vector3d(0, 0, kUgvHeight)});
+bool all_free(const GroundTruth& truth, const KeyBox& box) {
+  return all_of(box, [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; });
 }
 
-std::optional<std::string> obstacle_at(const GroundTruth& truth, Robot robot, const Pose& sensor_pose) {
+// Free voxels aside: one can go from each to the next.
+bool no_wall_in(const GroundTruth& truth, const KeyBox& box) {
+  return all_of(box, [&](const VoxelKey& key) {
+    return (key.x == box.max.x || truth.open(key, 0)) && (key.y == box.max.y || truth.open(key, 1)) &&
+           (key.z == box.max.z || truth.open(key, 2));
+  });
+}
+
+// The node that holds a voxel, if the robot moves through nodes and all of it is free.
+std::optional<KeyBox> free_node(const GroundTruth& truth, const Robot& robot, const VoxelKey& voxel) {
+  if (drives(robot) || robot.travel.node_edge == 0.0) return std::nullopt;
+  const Lattice& lattice = truth.lattice();
+  const KeyBox node = voxels_of_cell(robot.travel, lattice, cell_of(robot.travel, lattice, voxel));
+  if (!all_free(truth, node) || !no_wall_in(truth, node)) return std::nullopt;
+  return node;
+}
+
+// [m] what robots in space keep their height above, if no robot stands near
+double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around) {
+  auto below = key_of(truth.lattice(), around);
+  if (!below || truth.at(*below) != Truth::kFree) return lower_end(truth.lattice(), truth.bounds().min.z);
+  while (below->z > truth.bounds().min.z && !has_floor(truth, *below)) --below->z;
+  return lower_end(truth.lattice(), below->z);
+}
+
+// The body and, above it, the sensor.
+KeyBox taken_by(const Lattice& lattice, const Robot& robot, const Pose& sensor_pose) {
+  KeyBox taken = body_voxels(lattice, robot, sensor_pose);
+  taken.max.z = std::max(taken.max.z, key_of(lattice, sensor_pose.position).value().z);
+  return taken;
+}
+
+bool overlaps_one(const KeyBox& box, std::span<const KeyBox> others) {
+  return std::ranges::any_of(others, [&](const KeyBox& other) { return overlap(box, other); });
+}
+
+std::optional<Pose> find_on_floor(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
+                                  std::span<const KeyBox> taken) {
+  return find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
+    if (!has_floor(truth, key)) return std::nullopt;
+    Pose pose{center_of(truth.lattice(), key)};
+    pose.position.z() = lower_end(truth.lattice(), key.z) + robot.travel.sensor_height;
+    if (obstacle_at(truth, robot, pose)) return std::nullopt;
+    if (overlaps_one(taken_by(truth.lattice(), robot, pose), taken)) return std::nullopt;
+    return pose;
+  });
+}
+
+std::optional<Pose> find_in_space(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
+                                  double ground, std::span<const KeyBox> taken) {
+  const Lattice& lattice = truth.lattice();
+  constexpr double kRounding = 1e-9;
+  const auto good = [&](const VoxelKey& key) -> std::optional<Pose> {
+    const Pose pose{center_of(lattice, key)};
+    if (pose.position.z() < ground + robot.travel.min_height - kRounding) return std::nullopt;
+    if (obstacle_at(truth, robot, pose)) return std::nullopt;
+    if (overlaps_one(taken_by(lattice, robot, pose), taken)) return std::nullopt;
+    return pose;
+  };
+  if (robot.travel.node_edge > 0.0) {
+    const auto in_node = find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
+      if (cell_of(robot.travel, lattice, key) != key || !free_node(truth, robot, key)) return std::nullopt;
+      // It is the node's own centre, half a voxel below, that a corridor measures.
+      if (lower_end(lattice, key.z) < ground + robot.travel.min_height - kRounding) return std::nullopt;
+      return good(key);
+    });
+    if (in_node) return in_node;
+  }
+  return find(truth, around, good);
+}
+
+}  // namespace
+
+KeyBox body_voxels(const Lattice& lattice, const Robot& robot, const Pose& sensor_pose) {
+  const Eigen::Vector3d& at = sensor_pose.position;
+  const Eigen::Vector3d& extents = robot.travel.extents;
+  if (!drives(robot)) return planner::voxels_of(lattice, {at - extents / 2, at + extents / 2});
+  const Eigen::Vector3d half(extents.x() / 2, extents.y() / 2, 0.0);
+  const Eigen::Vector3d bottom = at - Eigen::Vector3d(0, 0, robot.travel.sensor_height);
+  return planner::voxels_of(lattice, {bottom - half, bottom + half + Eigen::Vector3d(0, 0, extents.z())});
+}
+
+std::optional<std::string> obstacle_at(const GroundTruth& truth, const Robot& robot,
+                                       const Pose& sensor_pose) {
   const KeyBox body = body_voxels(truth.lattice(), robot, sensor_pose);
   const auto sensor = key_of(truth.lattice(), sensor_pose.position);
   const KeyBox& all = truth.bounds();
@@ -116,12 +194,8 @@ std::optional<std::string> obstacle_at(const GroundTruth& truth, Robot robot, co
     return false;
   };
   if (!all_of(body, is_free) || !is_free(*sensor)) return why;
-  const bool no_wall = all_of(body, [&](const VoxelKey& key) {
-    return (key.x == body.max.x || truth.open(key, 0)) && (key.y == body.max.y || truth.open(key, 1)) &&
-           (key.z == body.max.z || truth.open(key, 2));
-  });
-  if (!no_wall) return "a wall would run through it";
-  if (robot == Robot::kUav) return why;
+  if (!no_wall_in(truth, body)) return "a wall would run through it";
+  if (!drives(robot)) return why;
   for (VoxelKey above = {sensor->x, sensor->y, body.max.z}; above.z < sensor->z; ++above.z)
     if (!truth.open(above, 2)) return "a ceiling would part it from its sensor";
   KeyBox feet = body;
@@ -172,53 +246,42 @@ Eigen::Vector3d free_start(const World& world, double resolution, bool faces_awa
   return free;
 }
 
-std::optional<Pose> find_ugv_start(const GroundTruth& truth, const Eigen::Vector3d& around) {
-  return find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
-    if (!has_floor(truth, key)) return std::nullopt;
-    Pose pose{center_of(truth.lattice(), key)};
-    pose.position.z() = lower_end(truth.lattice(), key.z) + kUgvSensorHeight;
-    if (obstacle_at(truth, Robot::kUgv, pose)) return std::nullopt;
-    return pose;
-  });
-}
-
-std::optional<Pose> find_uav_start(const GroundTruth& truth, const Eigen::Vector3d& around,
-                                   const std::optional<Pose>& ugv) {
-  const Lattice& lattice = truth.lattice();
-  double ground = lower_end(lattice, truth.bounds().min.z);
-  std::optional<KeyBox> taken;
-  if (ugv) {
-    ground = ugv->position.z() - kUgvSensorHeight;
-    taken = body_voxels(lattice, Robot::kUgv, *ugv);
-    const VoxelKey sensor = key_of(lattice, ugv->position).value();
-    taken->max.z = std::max(taken->max.z, sensor.z);
-  } else if (auto below = key_of(lattice, around); below && truth.at(*below) == Truth::kFree) {
-    while (below->z > truth.bounds().min.z && !has_floor(truth, *below)) --below->z;
-    ground = lower_end(lattice, below->z);
+std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eigen::Vector3d& around,
+                                             std::span<const Robot> robots) {
+  std::vector<std::optional<Pose>> starts(robots.size());
+  std::vector<KeyBox> taken;
+  std::optional<double> ground;  // [m] the highest that a robot stands on
+  const auto place = [&](std::size_t i, const std::optional<Pose>& pose) {
+    if (!pose) return;
+    starts[i] = pose;
+    taken.push_back(taken_by(truth.lattice(), robots[i], *pose));
+  };
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!drives(robots[i])) continue;
+    place(i, find_on_floor(truth, around, robots[i], taken));
+    if (!starts[i]) continue;
+    const double stands_on = starts[i]->position.z() - robots[i].travel.sensor_height;
+    ground = ground ? std::max(*ground, stands_on) : stands_on;
   }
-  constexpr double kRounding = 1e-9;
-  return find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
-    const Pose pose{center_of(lattice, key)};
-    if (pose.position.z() < ground + kUavClearance - kRounding) return std::nullopt;
-    if (obstacle_at(truth, Robot::kUav, pose)) return std::nullopt;
-    if (taken && overlap(*taken, body_voxels(lattice, Robot::kUav, pose))) return std::nullopt;
-    return pose;
-  });
+  if (!ground) ground = ground_below(truth, around);
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    if (!drives(robots[i])) place(i, find_in_space(truth, around, robots[i], *ground, taken));
+  return starts;
 }
 
-std::vector<VoxelKey> start_bubble(const GroundTruth& truth, Robot robot, const Pose& sensor_pose) {
+std::vector<VoxelKey> start_bubble(const GroundTruth& truth, const Robot& robot, const Pose& sensor_pose) {
   const Lattice& lattice = truth.lattice();
   const Eigen::Vector3d& at = sensor_pose.position;
   const KeyBox body = body_voxels(lattice, robot, sensor_pose);
-  const double radius = robot == Robot::kUgv ? kUgvBubble : kUavBubble;
+  const VoxelKey from = key_of(lattice, at).value();
+  const std::optional<KeyBox> node = free_node(truth, robot, from);
   constexpr double kRounding = 1e-9;
   const auto in_bubble = [&](const VoxelKey& key) {
-    if (body.contains(key)) return true;
+    if (body.contains(key) || (node && node->contains(key))) return true;
     const Eigen::Vector3d offset = center_of(lattice, key) - at;
-    if (robot == Robot::kUav) return offset.norm() <= radius + kRounding;
-    return offset.head<2>().norm() <= radius + kRounding && offset.z() <= kRounding && key.z >= body.min.z;
+    if (!drives(robot)) return offset.norm() <= kBall + kRounding;
+    return offset.head<2>().norm() <= kDisc + kRounding && offset.z() <= kRounding && key.z >= body.min.z;
   };
-  const VoxelKey from = key_of(lattice, at).value();
   std::vector<VoxelKey> bubble;
   walk_open(
       truth, from, search_box(truth, from),

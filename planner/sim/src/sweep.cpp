@@ -31,14 +31,19 @@ std::vector<Cell> from_the_middle(const Cell& size) {
 
 }  // namespace
 
-std::vector<View> look_around(const Pose& sensor_pose) {
-  std::vector<View> views;
-  for (int quarter = 0; quarter < 4; ++quarter)
-    views.push_back({Robot::kUav, {sensor_pose.position, sensor_pose.yaw + quarter * std::numbers::pi / 2}});
-  return views;
+std::vector<Pose> look_around(const FieldOfView& view, const Pose& sensor_pose) {
+  view.check();
+  if (view.shape == FieldOfView::Shape::kSpinning) return {sensor_pose};
+  constexpr double kRounding = 1e-9;
+  const double count = std::ceil(2 * std::numbers::pi / view.horizontal - kRounding);
+  std::vector<Pose> poses;
+  for (double i = 0; i < count; ++i)
+    poses.push_back({sensor_pose.position, sensor_pose.yaw + i * (2 * std::numbers::pi / count)});
+  return poses;
 }
 
-std::vector<View> sweep(const GroundTruth& truth, Robot robot, const Pose& start, double spacing) {
+std::vector<Pose> sweep(const GroundTruth& truth, const planner::Robot& robot, const Pose& start,
+                        double spacing) {
   if (!(std::isfinite(spacing) && spacing > 0.0))
     throw std::invalid_argument("sweep: a spacing of " + std::to_string(spacing) +
                                 " m is not finite and positive");
@@ -53,14 +58,14 @@ std::vector<View> sweep(const GroundTruth& truth, Robot robot, const Pose& start
     throw std::invalid_argument("sweep: a spacing of " + std::to_string(spacing) + " m is more than " +
                                 std::to_string(kLongestEdge) + " voxels");
 
-  const bool drives = robot == Robot::kUgv;
+  const bool drives = robot.travel.motion == planner::Motion::kPlane;
   const double height = drives ? start.position.z() : 0.0;
   const auto layer = drives ? lattice.key(height) : std::nullopt;
   const Cell size(edge, edge, drives ? 1 : edge);
   const int lowest = drives ? layer.value() : first.z(), highest = drives ? lowest : last.z();
   const std::vector<Cell> candidates = from_the_middle(size);
 
-  std::vector<View> views;
+  std::vector<Pose> views;
   for (int z = lowest; z <= highest; z += size.z())
     for (int y = first.y(); y <= last.y(); y += edge)
       for (int x = first.x(); x <= last.x(); x += edge)
@@ -73,12 +78,8 @@ std::vector<View> sweep(const GroundTruth& truth, Robot robot, const Pose& start
           const Pose pose{
               {lattice.center(key.x), lattice.center(key.y), drives ? height : lattice.center(key.z)}};
           if (obstacle_at(truth, robot, pose)) continue;
-          if (drives) {
-            views.push_back({robot, pose});
-          } else {
-            const auto around = look_around(pose);
-            views.insert(views.end(), around.begin(), around.end());
-          }
+          const auto around = look_around(robot.view, pose);
+          views.insert(views.end(), around.begin(), around.end());
           break;
         }
   return views;

@@ -69,9 +69,11 @@ struct PathPlan {
 
 /// Finds a way for a robot through its corridor.
 ///
-/// A position is free if the cell of the voxel that holds it is passable. The collision box of a cell is the
-/// same wherever in the voxel the robot is, so the box that is known free is that around the voxel, and a
-/// start or goal need not be the centre of a voxel. A way is free if `way_is_free` says so of each part.
+/// A position is free if all of the robot's body is known free there: not only has the cell of the voxel that
+/// holds it to be passable, but all cells that are within `reach()` of it, so positions need not be centres
+/// of voxels. A way is free if `way_is_free` says so of each part. From a start that is not free although its
+/// cell is passable, as when the map has changed around a robot, the way leads to the middle of that cell
+/// first.
 ///
 /// If start and goal are in the corridor, there is a path, since the corridor's own is the last resort; it is
 /// the shortest if the start is where the corridor begins, at the robot, else it may make a detour. On a
@@ -86,9 +88,10 @@ struct PathPlan {
 [[nodiscard]] PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const Pose& start,
                                  const Pose& goal, const PathKey& key, const PathOptions& options = {});
 
-/// Whether the straight way between two points [m] stays in passable cells: every voxel that it enters is
-/// looked at, and where it comes within a billionth of a voxel of an edge or corner, all that meet there and
-/// lie between those of its ends. False if an end is not finite or beyond the key range.
+/// Whether the body of a robot that goes straight from one point [m] to another stays in what is known free:
+/// every voxel that a box of the corridor's `reach()` around the robot enters on the way is looked at, and
+/// has to be a passable cell; where the box comes within a billionth of a voxel of an edge or corner, all
+/// that meet there and lie between those of its ends. False if an end is not finite or beyond the key range.
 [[nodiscard]] bool way_is_free(const TravelCorridor& corridor, const Lattice& lattice,
                                const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

@@ -60,6 +60,21 @@ struct TravelOptions {
 [[nodiscard]] TravelOptions uav_travel();
 [[nodiscard]] TravelOptions uav_node_travel();
 
+/// The key of the cell that holds a voxel: itself, except among nodes.
+[[nodiscard]] VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel);
+
+/// The voxels that have to be free for a robot in a cell: its collision box, or the cell's node. Cut off at
+/// the end of the key range.
+[[nodiscard]] KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice,
+                                    const VoxelKey& cell);
+
+/// How far a body that is not in the middle of a voxel may stick out of the collision box around the voxel,
+/// along each axis [m]. The body fits at a position if all cells are passable that a box of this half width
+/// around the position touches. 0 where the collision box has room for the body wherever in the voxel the
+/// robot is, on a plane along z, and among nodes. A ten thousandth of a voxel is let go, so that a body as
+/// wide as its collision box fits in the middle.
+[[nodiscard]] Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
+
 /// Why there is a corridor, or none.
 enum class CorridorState : std::uint8_t {
   kReady,
@@ -116,8 +131,8 @@ class TravelCorridor {
   /// Whether a cell is passable, connected or not. In constant time.
   [[nodiscard]] bool passable(const VoxelKey& key) const;
 
-  /// The voxels that have to be free for a cell to be passable: the collision box, or the node.
-  [[nodiscard]] KeyBox box_around(const VoxelKey& cell) const;
+  /// `reach_of` the corridor's options.
+  [[nodiscard]] const Eigen::Vector3d& reach() const;
 
   /// The key of the cell that holds a voxel: itself, except among nodes.
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const;

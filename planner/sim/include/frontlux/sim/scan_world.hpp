@@ -2,6 +2,7 @@
 
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/pose.hpp>
+#include <frontlux/planner/robot_file.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/start_pose.hpp>
@@ -18,24 +19,26 @@ namespace frontlux::sim {
 
 /// One look at the world: which robot's sensor, from where.
 struct View {
-  Robot robot = Robot::kUav;
+  std::size_t robot = 0;  ///< its number in the list of robots
   planner::Pose sensor_pose;
 };
 
-/// A depth camera's looks from one place that together see all azimuths: four, a quarter turn apart.
-[[nodiscard]] std::vector<View> look_around(const planner::Pose& sensor_pose);
+/// Looks from one place that together see all azimuths, the given one first: a single one of a spinning
+/// sensor, four a quarter turn apart of a camera of 90 degrees.
+[[nodiscard]] std::vector<planner::Pose> look_around(const FieldOfView& view,
+                                                     const planner::Pose& sensor_pose);
 
 /// Views from all over the free space. Space is divided into cubes of edge `spacing`; in each one where the
-/// robot finds a place, it looks from the place nearest to the middle. The UGV's places are on the layer that
-/// it starts on. In the order of the cubes: x fastest, z slowest.
+/// robot finds a place, it looks around from the place nearest to the middle. The places of a robot on a
+/// plane are on the layer that it starts on. In the order of the cubes: x fastest, z slowest.
 /// @param start   of the robot's sensor
 /// @param spacing [m], rounded to whole voxels, one at least
 /// @throws std::invalid_argument unless the spacing is finite, positive and 256 voxels at most
-[[nodiscard]] std::vector<View> sweep(const GroundTruth& truth, Robot robot, const planner::Pose& start,
-                                      double spacing);
+[[nodiscard]] std::vector<planner::Pose> sweep(const GroundTruth& truth, const planner::Robot& robot,
+                                               const planner::Pose& start, double spacing);
 
 struct ScanWorldOptions {
-  RangeErrors errors{};    ///< of both sensors
+  RangeErrors errors{};    ///< of all sensors
   std::uint64_t seed = 1;  ///< of the errors
 };
 
@@ -45,8 +48,10 @@ using ScanWorldProgress = std::function<bool(std::size_t done)>;
 /// Takes all views, in their order, into the map. The same arguments give the same map, on any number of
 /// threads.
 /// @return the number of scans taken: all, unless stopped
-/// @throws std::invalid_argument if a pose is not finite or outside the map's key range
-std::size_t scan_world(const Surface& surface, std::span<const View> views, const ScanWorldOptions& options,
+/// @throws std::invalid_argument if a robot's sensor cannot be, a view names no robot, or a pose is not
+/// finite or outside the map's key range
+std::size_t scan_world(const Surface& surface, std::span<const planner::RobotDescription> robots,
+                       std::span<const View> views, const ScanWorldOptions& options,
                        planner::Mapping& mapping, const ScanWorldProgress& progress = {});
 
 }  // namespace frontlux::sim

@@ -2,6 +2,7 @@
 
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
+#include <frontlux/planner/robot_file.hpp>
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/sim/surface.hpp>
 
@@ -58,6 +59,9 @@ class Sensor {
 /// @param opening [rad] full angle, in (0, pi)
 /// @param max_range [m]
 [[nodiscard]] Sensor cone_sensor(double opening, double max_range, std::size_t rays, RangeErrors errors = {});
+
+/// A robot's own. @throws std::invalid_argument as the sensor does
+[[nodiscard]] Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors = {});
 
 /// What the sensor measures from here. A hit within the sensor's range gives its range with noise, held
 /// within 0 and max_range; no hit gives infinity; a dropout, which may befall any ray, NaN. Errors are drawn
