@@ -3,9 +3,8 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground_truth.hpp>
-#include <frontlux/sim/sensor.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
 #include <frontlux/sim/start_pose.hpp>
-#include <frontlux/sim/surface.hpp>
 
 #include <algorithm>
 #include <set>
@@ -14,8 +13,6 @@
 
 namespace frontlux::test {
 namespace {
-
-using planner::Pose;
 
 constexpr double kResolution = 0.3;
 
@@ -46,9 +43,6 @@ planner::Recording explored_run(const std::string& world_name, int steps, bool u
   const sim::World world = sim::make_world(world_name, 1);
   const Eigen::Vector3d around = sim::free_start(world, kResolution, true);
   const sim::GroundTruth truth(world, kResolution, around);
-  const sim::Surface surface(world.mesh);
-  const Pose ugv = sim::find_ugv_start(truth, around).value();
-  const Pose uav = sim::find_uav_start(truth, around, ugv).value();
   planner::Recording recording;
   planner::RecordingHead& head = recording.head;
   head.world = world_name;
@@ -57,24 +51,28 @@ planner::Recording explored_run(const std::string& world_name, int steps, bool u
   head.observable = truth.observable_voxels();
   head.bounding = truth.bounding_voxels();
   head.options = R"({"seed": 1, "mode": "default", "path": {"spacing_m": 1.2}})";
+  if (!uav_alone) head.robots.push_back(planner::ugv_description());
+  head.robots.push_back(planner::uav_description());
+  std::vector<planner::Robot> robots;
   planner::ExplorationOptions options;
-  std::vector<sim::Sensor> sensors;
-  const auto join = [&](const planner::Robot& robot, sim::Robot kind, const Pose& start, sim::Sensor sensor) {
-    head.robots.push_back({robot, sensor.columns(), sensor.rows()});
-    head.starts.push_back({start, sim::start_bubble(truth, kind, start)});
-    options.team.push_back({robot, planner::goal_options(robot)});
-    sensors.push_back(std::move(sensor));
-  };
-  if (!uav_alone) join(planner::ugv(), sim::Robot::kUgv, ugv, sim::lidar());
-  join(planner::uav(), sim::Robot::kUav, uav, sim::depth_camera());
+  for (const planner::RobotDescription& description : head.robots) {
+    robots.push_back(description.robot);
+    options.team.push_back({description.robot, planner::goal_options(description.robot)});
+  }
+  const auto starts = sim::find_starts(truth, around, robots);
+  for (std::size_t r = 0; r < robots.size(); ++r)
+    head.starts.push_back({starts[r].value(), sim::start_bubble(truth, robots[r], starts[r].value())});
 
   Knowledge knowledge(truth, head.robots.size());
+  sim::SimulatedRobots simulated(world, truth, head.robots, {}, 1);
+  std::uint64_t collisions = 0;
   const auto record = [&](planner::ExplorationStep step) {
     const auto& known = knowledge.after(step);
-    recording.steps.push_back({std::move(step), known, 0});
+    recording.steps.push_back({std::move(step), known, simulated.total().physical - collisions});
+    collisions = simulated.total().physical;
   };
-  const planner::Drive drive = [&](std::size_t robot, const Pose& at) {
-    return std::optional(sim::sense(surface, sensors[robot], at, 1));
+  const planner::Drive drive = [&](std::size_t robot, const planner::Pose& at) {
+    return simulated.drive(robot, at);
   };
   planner::Exploration exploration(options,
                                    planner::Mapping({.resolution = kResolution, .bounds = truth.bounds()}));

@@ -1,24 +1,75 @@
-// Writes a report, for looks: make_report FILE STEPS WORLD...; a world with a + in front is for the UAV
-// alone.
+// For the test in a browser, and for looks: make_report FOLDER STEPS WORLD... explores the worlds and writes
+// FOLDER/report.html of all runs, and of each FOLDER/<name>/run.frontlux and the columns of a steps.csv that
+// follow from it. A + in front of a world is for the UAV alone.
 #include "explored_run.hpp"
 
 #include <frontlux/report/report.hpp>
 
 #include <cstdlib>
 #include <deque>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
+namespace {
+
+using frontlux::planner::Recording;
+
+void write_numbers(const std::filesystem::path& file, const Recording& recording) {
+  const auto& head = recording.head;
+  std::ofstream out(file);
+  out.precision(17);
+  out << "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
+         "dropped,"
+         "length_m,travelled_m,gain_predicted,gained,frontiers_s,caster_s,goals_s,paths_s,optimization_s,"
+         "planning_s\n";
+  std::vector<double> travelled(head.robots.size());
+  for (const auto& [step, known, collisions] : recording.steps) {
+    std::uint64_t observable = 0, bounding = 0;
+    for (const auto& part : known) {
+      observable += part.observable;
+      bounding += part.bounding;
+    }
+    const auto of = [](std::uint64_t part, std::uint64_t all) {
+      return static_cast<double>(part) / static_cast<double>(all);
+    };
+    for (std::size_t r = 0; r < head.robots.size(); ++r) {
+      const auto& robot = step.robots[r];
+      travelled[r] += robot.length;
+      out << step.number << ',' << head.robots[r].robot.name << ',' << of(observable, head.observable) << ','
+          << of(bounding, head.bounding) << ',' << of(known[r].observable, head.observable) << ','
+          << of(known[r].bounding, head.bounding) << ',' << step.frontiers << ',' << step.unassigned << ','
+          << step.dropped << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted << ','
+          << robot.gained;
+      for (std::size_t phase = 0; phase + 1 < step.seconds.size(); ++phase) out << ',' << step.seconds[phase];
+      out << ',' << step.planning_seconds() << '\n';
+    }
+  }
+}
+
+void record(const std::filesystem::path& folder, const Recording& recording) {
+  std::filesystem::create_directories(folder);
+  frontlux::planner::RecordingWriter writer(folder / "run.frontlux", recording.head);
+  for (const auto& step : recording.steps) writer.write(step);
+  writer.write_end(*recording.end);
+  write_numbers(folder / "steps.csv", recording);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   if (argc < 4) return EXIT_FAILURE;
-  std::deque<frontlux::planner::Recording> recordings;
+  const std::filesystem::path folder = argv[1];
+  std::deque<Recording> recordings;
   std::vector<frontlux::report::ReportedRun> runs;
   for (int i = 3; i < argc; ++i) {
-    const std::string world = argv[i];
-    const bool alone = world[0] == '+';
-    recordings.push_back(
-        frontlux::test::explored_run(alone ? world.substr(1) : world, std::stoi(argv[2]), alone));
-    runs.push_back({alone ? "uav alone" : "team", &recordings.back()});
+    const std::string given = argv[i];
+    const bool alone = given[0] == '+';
+    const std::string world = alone ? given.substr(1) : given, name = world + (alone ? "_uav_alone" : "");
+    recordings.push_back(frontlux::test::explored_run(world, std::stoi(argv[2]), alone));
+    runs.push_back({name, &recordings.back()});
+    record(folder / name, recordings.back());
   }
-  frontlux::report::write_report(argv[1], runs, "0.1.0");
+  frontlux::report::write_report(folder / "report.html", runs, "0.1.0");
 }
