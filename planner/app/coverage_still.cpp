@@ -25,7 +25,10 @@ struct Curve {
 
 std::string percent(double share, int digits) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f %%", digits, 100.0 * share);
+  // Rounded down: what is not all does not read as 100 %.
+  const double scale = std::pow(10.0, digits);
+  std::snprintf(text.data(), text.size(), "%.*f %%", digits,
+                std::floor(100.0 * share * scale + 1e-9) / scale);
   return text.data();
 }
 
@@ -73,7 +76,9 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
   const auto pixel_y = [](double share) { return kHeight - kBottom - (kHeight - kTop - kBottom) * share; };
 
   Canvas canvas(kWidth, kHeight, kPaper);
-  canvas.text(24, 24, name + ": " + recording.head.world + ", known " + of, kLetters, kInk);
+  canvas.text(24, 24,
+              (name == recording.head.world ? name : name + ": " + recording.head.world) + ", known " + of,
+              kLetters, kInk);
   int x = 24;
   for (const Curve& curve : curves) {
     canvas.fill(x, 58, 24, 5, curve.color);

@@ -172,10 +172,17 @@ std::string summary_of(const planner::Recording& recording) {
   std::array<char, 64> text{};
   const double total = static_cast<double>(recording.head.observable);
   if (total > 0)
+    // Rounded down: what is not all does not read as 100 %.
     std::snprintf(text.data(), text.size(), "%.1f %% known after step %llu",
-                  100.0 * static_cast<double>(known) / total,
+                  std::floor(1000.0 * static_cast<double>(known) / total) / 10.0,
                   static_cast<unsigned long long>(recording.steps.back().step.number));
   return text.data();
+}
+
+// What a run is called, and where it was, if the name does not say so.
+std::string title_of(const std::string& name, const planner::Recording& recording) {
+  const std::string& world = recording.head.world;
+  return name == world ? name + ": " : name + ": " + world + ", ";
 }
 
 }  // namespace
@@ -208,8 +215,7 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
   for (const Face& face : faces) fill_face(canvas, projection, face, face_color(face, low, high));
   for (std::size_t r = 0; r < ways.size(); ++r) draw_way(canvas, projection, ways[r], robot_color(r));
 
-  canvas.text(kMargin, kMargin, name + ": " + recording.head.world + ", " + summary_of(recording), kLetters,
-              kInk);
+  canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kLetters, kInk);
   for (std::size_t r = 0; r < ways.size(); ++r) {
     const int y = kMargin + kLine * (1 + static_cast<int>(r));
     canvas.fill(kMargin, y + 4, 26, 6, robot_color(r));

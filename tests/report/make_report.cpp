@@ -1,6 +1,6 @@
-// For the test in a browser, and for looks: make_report FOLDER STEPS WORLD... explores the worlds and writes
-// FOLDER/report.html of all runs, and of each FOLDER/<name>/run.frontlux and the columns of a steps.csv that
-// follow from it. A + in front of a world is for the UAV alone.
+// For the test in a browser, and for looks: make_report FOLDER STEPS [NAME=][+]WORLD... explores the worlds
+// and writes FOLDER/report.html of all runs, and of each, from 0, FOLDER/<number>/run.frontlux and the
+// columns of a steps.csv that follow from it. A + is for the UAV alone. A name goes wherever a name can go.
 #include "explored_run.hpp"
 
 #include <frontlux/report/report.hpp>
@@ -62,14 +62,24 @@ int main(int argc, char** argv) {
   if (argc < 4) return EXIT_FAILURE;
   const std::filesystem::path folder = argv[1];
   std::deque<Recording> recordings;
+  std::deque<std::string> names;
   std::vector<frontlux::report::ReportedRun> runs;
   for (int i = 3; i < argc; ++i) {
-    const std::string given = argv[i];
-    const bool alone = given[0] == '+';
-    const std::string world = alone ? given.substr(1) : given, name = world + (alone ? "_uav_alone" : "");
+    std::string world = argv[i];
+    const std::size_t split = world.rfind('=');
+    const bool named = split != std::string::npos;
+    std::string name = named ? world.substr(0, split) : world;
+    if (named) world.erase(0, split + 1);
+    const bool alone = world[0] == '+';
+    if (alone) world.erase(0, 1);
     recordings.push_back(frontlux::test::explored_run(world, std::stoi(argv[2]), alone));
-    runs.push_back({name, &recordings.back()});
-    record(folder / name, recordings.back());
+    if (named) {
+      recordings.back().head.world = name;
+      for (auto& description : recordings.back().head.robots) description.robot.name = name;
+    }
+    record(folder / std::to_string(i - 3), recordings.back());
+    names.push_back(std::move(name));
+    runs.push_back({names.back(), &recordings.back()});
   }
   frontlux::report::write_report(folder / "report.html", runs, "0.1.0");
 }

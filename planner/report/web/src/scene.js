@@ -19,6 +19,8 @@ export class NoWebGL extends Error {}
 export class ReplayScene {
   constructor(host) {
     this.host = host;
+    // Asked for first, since the renderer complains aloud.
+    if (!document.createElement("canvas").getContext("webgl2")) throw new NoWebGL("there is no WebGL 2");
     try {
       this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
     } catch (error) {
@@ -32,6 +34,7 @@ export class ReplayScene {
     this.controls.screenSpacePanning = false;
     this.controls.zoomToCursor = true;
     this.controls.minDistance = 1;
+    this.controls.addEventListener("start", () => (this.standing = null));
     this.controls.addEventListener("change", () => this.draw());
     this.scene = new Scene();
     this.scene.add(new AmbientLight(0xffffff, 1.9), makeSun());
@@ -40,6 +43,7 @@ export class ReplayScene {
     this.asPlanned = false; // the map before the step instead of after it
     this.follow = -1;
     this.theme = "light";
+    this.standing = null; // from where the whole map is looked at, until somebody moves the camera
     this.labels = [];
     this.drawn = 0; // frames, for tests
     this.position = { step: 0, along: 1 };
@@ -98,6 +102,7 @@ export class ReplayScene {
   setFollow(r) {
     this.follow = r;
     if (r < 0) return;
+    this.standing = null;
     const target = new Vector3(...this.robots[r].pose.subarray(0, 3));
     const back = this.camera.position.clone().sub(this.controls.target).clampLength(8, 22);
     this.controls.target.copy(target);
@@ -184,6 +189,7 @@ export class ReplayScene {
   look(from) {
     const { middle, half } = this.extent(), target = new Vector3(...middle);
     this.follow = -1;
+    this.standing = from.clone();
     this.controls.target.copy(target);
     this.camera.position.copy(target).add(from.normalize());
     this.camera.lookAt(target);
@@ -209,6 +215,7 @@ export class ReplayScene {
 
   /** For keys: angles [rad], shares of the distance. */
   orbit(turn, tilt) {
+    this.standing = null;
     const offset = this.camera.position.clone().sub(this.controls.target), length = offset.length();
     const azimuth = Math.atan2(offset.y, offset.x) + turn;
     const polar = Math.min(Math.max(Math.acos(offset.z / length) + tilt, 1e-3), Math.PI - 1e-3);
@@ -219,6 +226,7 @@ export class ReplayScene {
   }
 
   pan(right, ahead) {
+    this.standing = null;
     const offset = this.camera.position.clone().sub(this.controls.target), length = offset.length();
     const forward = new Vector3(-offset.x, -offset.y, 0);
     if (forward.length() < 1e-6) forward.set(0, 1, 0);
@@ -231,6 +239,7 @@ export class ReplayScene {
   }
 
   zoom(factor) {
+    this.standing = null;
     const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
     this.camera.position.copy(this.controls.target).add(offset);
     this.controls.update();
@@ -244,6 +253,7 @@ export class ReplayScene {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.voxels?.setPointScale(height * this.renderer.getPixelRatio(), SLOPE);
+    if (this.standing) this.look(this.standing);
     this.draw();
   }
 
