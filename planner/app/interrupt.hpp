@@ -1,13 +1,14 @@
 #pragma once
 
-#include <exception>
+#include <stdexcept>
+#include <string>
 
 namespace frontlux::app {
 
 /// The user stopped the work.
-class Interrupted : public std::exception {
+class Interrupted : public std::runtime_error {
  public:
-  [[nodiscard]] const char* what() const noexcept override { return "stopped; nothing is written"; }
+  explicit Interrupted(const std::string& what = "stopped; nothing is written") : std::runtime_error(what) {}
 };
 
 /// While it lives, Ctrl-C is noted instead of ending the program. One at a time.

@@ -82,6 +82,11 @@ JsonObject& JsonObject::add(std::string_view name, const Eigen::Vector3d& point)
 JsonObject& JsonObject::add(std::string_view name, const JsonObject& object) {
   return add_raw(name, object.text());
 }
+JsonObject& JsonObject::add(std::string_view name, std::span<const std::string> texts) {
+  std::string list;
+  for (const std::string& text : texts) list.append(list.empty() ? "" : ", ").append(quoted(text));
+  return add_raw(name, bracketed(list));
+}
 JsonObject& JsonObject::add_null(std::string_view name) { return add_raw(name, "null"); }
 
 }  // namespace frontlux::app

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,14 +24,15 @@ class JsonObject {
   JsonObject& add(std::string_view name, const Eigen::Vector3f& point);
   JsonObject& add(std::string_view name, const Eigen::Vector3d& point);
   JsonObject& add(std::string_view name, const JsonObject& object);
+  JsonObject& add(std::string_view name, std::span<const std::string> texts);
+  /// @param value  that is JSON itself
+  JsonObject& add_raw(std::string_view name, std::string_view value);
   JsonObject& add_null(std::string_view name);
 
   /// The object on one line.
   [[nodiscard]] std::string text() const { return std::string("{").append(members_) += "}"; }
 
  private:
-  JsonObject& add_raw(std::string_view name, std::string_view value);
-
   std::string members_;
 };
 

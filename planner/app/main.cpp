@@ -1,5 +1,6 @@
 #include "bad_input.hpp"
 #include "cast_command.hpp"
+#include "explore_command.hpp"
 #include "info_command.hpp"
 #include "interrupt.hpp"
 #include "map_command.hpp"
@@ -26,10 +27,11 @@ constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
 
 // CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
 std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 18> kNumeric = {
-      "--from",       "--to",         "--direction",  "--range",  "--start",   "--ground",
-      "--scale",      "--seed",       "--resolution", "--bounds", "--at",      "--yaw",
-      "--iterations", "--min-height", "--floor",      "--noise",  "--dropout", "--sweep"};
+  constexpr std::array<std::string_view, 25> kNumeric = {
+      "--from",   "--to",         "--direction",    "--range",  "--start",   "--ground",     "--scale",
+      "--seed",   "--resolution", "--bounds",       "--at",     "--yaw",     "--iterations", "--min-height",
+      "--floor",  "--noise",      "--dropout",      "--sweep",  "--epsilon", "--max-steps",  "--threads",
+      "--lambda", "--advance",    "--min-distance", "--samples"};
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -49,7 +51,7 @@ int complain(const std::string& message, int code) {
 }
 
 int run(int argc, const char* const* argv) {
-  CLI::App app("Makes OctoMap maps and asks what can be seen in them.");
+  CLI::App app("Makes OctoMap maps, asks what can be seen in them, and lets robots explore.");
   app.name("frontlux");
   app.set_version_flag("--version", std::string("frontlux ") + FRONTLUX_VERSION, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
@@ -60,6 +62,7 @@ int run(int argc, const char* const* argv) {
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux world station --seed 3 -o station.ply\n"
       "  frontlux scan station --seed 3 -o station.bt\n"
+      "  frontlux explore station --seed 3 -o station_run\n"
       "Each command's --help says more. Lengths are in metres. Exit code: 0 if the question was answered,\n"
       "2 if the input was not usable, 130 after Ctrl-C, 1 if anything else went wrong.");
   frontlux::app::add_info_command(app);
@@ -69,6 +72,7 @@ int run(int argc, const char* const* argv) {
   frontlux::app::add_map_command(app);
   frontlux::app::add_plan_command(app);
   frontlux::app::add_render_command(app);
+  frontlux::app::add_explore_command(app);
   frontlux::app::add_report_command(app);
   try {
     auto words = words_of(argc, argv);

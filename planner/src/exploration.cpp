@@ -307,6 +307,15 @@ void ExplorationOptions::check() const {
   optimizer.check();
 }
 
+ExplorationOptions exploration_options(Method method) {
+  ExplorationOptions options;
+  if (method == Method::kPaper)
+    options.optimizer = paper_path_options();
+  else
+    options.path.search = PathSearch::kCorridor;
+  return options;
+}
+
 double ExplorationStep::planning_seconds() const {
   return std::accumulate(seconds.begin(), seconds.end(), 0.0) -
          seconds[static_cast<std::size_t>(Phase::kMoving)];

@@ -169,6 +169,26 @@ std::string_view name(PathSearch search) {
   return "unknown";
 }
 
+std::string_view name_of(PathOutcome outcome) {
+  switch (outcome) {
+    case PathOutcome::kFound:
+      return "found";
+    case PathOutcome::kFellBack:
+      return "fell_back";
+    case PathOutcome::kInPlace:
+      return "in_place";
+    case PathOutcome::kNoCorridor:
+      return "no_corridor";
+    case PathOutcome::kStartNotFree:
+      return "start_not_free";
+    case PathOutcome::kGoalNotFree:
+      return "goal_not_free";
+    case PathOutcome::kOutOfReach:
+      return "out_of_reach";
+  }
+  return "unknown";
+}
+
 std::string_view describe(PathOutcome outcome) {
   switch (outcome) {
     case PathOutcome::kFound:

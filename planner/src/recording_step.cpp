@@ -3,7 +3,9 @@
 #include "recording_parts.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <type_traits>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -30,8 +32,9 @@ void code_changes(Bytes& bytes, Changes& changes, const KeyBox& bounds) {
     code_states(bytes, change);
     bytes.require(bounds.contains(change.key), "a voxel outside the bounds changes");
   }
-  const auto by_key = [](const VoxelChange& a, const VoxelChange& b) { return a.key < b.key; };
-  bytes.require(std::is_sorted(changes.begin(), changes.end(), by_key), "the changes are not sorted by key");
+  const auto not_below = [](const VoxelChange& a, const VoxelChange& b) { return a.key >= b.key; };
+  bytes.require(std::adjacent_find(changes.begin(), changes.end(), not_below) == changes.end(),
+                "the changes are not sorted by key, each voxel once");
 }
 
 template <class Bytes, class Image>
@@ -80,8 +83,9 @@ void code_robot(Bytes& bytes, Robot& robot, const KeyBox& bounds) {
   for (auto& pose : robot.planned) code_pose(bytes, pose);
   code_changes(bytes, robot.changed, bounds);
   code_keys(bytes, robot.stubborn);
-  bytes.require(std::is_sorted(robot.stubborn.begin(), robot.stubborn.end()),
-                "the stubborn voxels are not sorted");
+  bytes.require(std::adjacent_find(robot.stubborn.begin(), robot.stubborn.end(), std::greater_equal<>()) ==
+                    robot.stubborn.end(),
+                "the stubborn voxels are not sorted, each once");
   code_image(bytes, robot.image);
 }
 

@@ -29,7 +29,7 @@ class StraightWay {
       const auto i = static_cast<Eigen::Index>(a);
       const auto first = lattice.key(std::min(from[i], to[i]) - reach[i]),
                  last = lattice.key(std::max(from[i], to[i]) + reach[i]);
-      if (!first || !last) {
+      if (!first || !last || std::isnan(from[i]) || std::isnan(to[i])) {
         inside_ = false;
         return;
       }

@@ -158,6 +158,91 @@ TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
     }
 }
 
+TEST(StartPose, SeveralRobotsOfEachKindKeepApart) {
+  planner::Robot small = kUgv;
+  small.travel.extents = {0.5, 0.5, 0.4};
+  small.travel.sensor_height = 0.5;
+  const std::vector team{kUav, kUgv, small, kUav, kUgv};
+  for (const auto& [name, description] : built_in_worlds()) {
+    const World world = make_world(name, 2);
+    const Eigen::Vector3d start = free_start(world, 0.3, true);
+    const GroundTruth truth(world, 0.3, start);
+    const auto starts = find_starts(truth, start, team);
+    ASSERT_EQ(starts.size(), team.size());
+    for (std::size_t i = 0; i < team.size(); ++i) {
+      ASSERT_TRUE(starts[i].has_value()) << name << i;
+      EXPECT_FALSE(obstacle_at(truth, team[i], *starts[i]).has_value());
+      // By their true extents in metres, not by voxels.
+      const auto body = [&](std::size_t k) {
+        const Eigen::Vector3d half = team[k].travel.extents / 2;
+        Eigen::AlignedBox3d box(starts[k]->position - half, starts[k]->position + half);
+        if (team[k].travel.motion == planner::Motion::kPlane) {
+          box.min().z() = 0.0;
+          box.max().z() = team[k].travel.sensor_height;
+        }
+        return box;
+      };
+      for (std::size_t k = 0; k < i; ++k)
+        EXPECT_TRUE(body(i).intersection(body(k)).isEmpty()) << name << " " << i << " " << k;
+      if (team[i].travel.motion == planner::Motion::kSpace) {
+        EXPECT_GE(starts[i]->position.z(), 1.2);
+      }
+    }
+    // The first of a kind starts where it would without the others of its kind.
+    const auto two = find_starts(truth, start, std::vector{kUgv});
+    EXPECT_EQ(starts[1]->position, two[0]->position);
+  }
+}
+
+TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
+  const planner::Robot nodes = planner::uav(planner::Method::kPaper);
+  for (const auto& [name, description] : built_in_worlds()) {
+    const World world = make_world(name, 2);
+    const Eigen::Vector3d start = free_start(world, 0.3, true);
+    const GroundTruth truth(world, 0.3, start);
+    const auto starts = find_starts(truth, start, std::vector{kUgv, nodes});
+    ASSERT_TRUE(starts[1].has_value()) << name;
+    planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
+    const auto bubble = start_bubble(truth, nodes, *starts[1]);
+    for (const VoxelKey& key : bubble) EXPECT_EQ(truth.at(key), Truth::kFree);
+    mapping.mark_free(bubble);
+    // The judge: the corridor of nodes itself begins there.
+    planner::TravelCorridor corridor(nodes.travel, truth.lattice(), truth.bounds());
+    const Eigen::Vector3d& at = starts[1]->position;
+    const VoxelKey key{truth.lattice().key(at.x()).value(), truth.lattice().key(at.y()).value(),
+                       truth.lattice().key(at.z()).value()};
+    corridor.update(mapping.grid(), {}, key);
+    EXPECT_EQ(corridor.state(), planner::CorridorState::kReady) << name << describe(corridor.state());
+    EXPECT_TRUE(corridor.contains(key)) << name;
+  }
+  // Too low for a node of 1.2 m above 1.2 m: it starts where its box fits.
+  World low = room();
+  low.mesh = {};
+  add_box(low.mesh, {0, 0, -0.05F}, {6, 6, 2.2F});
+  const GroundTruth truth = truth_of(low);
+  const auto starts = find_starts(truth, {3.15, 3.15, 0.15}, std::vector{nodes});
+  ASSERT_TRUE(starts[0].has_value());
+  EXPECT_EQ(starts[0]->position, find_starts(truth, {3.15, 3.15, 0.15}, std::vector{kUav})[0]->position);
+}
+
+TEST(Sweep, LooksAroundAsOftenAsTheSensorNeeds) {
+  EXPECT_EQ(look_around(kUgv.view, {}).size(), 1U);
+  EXPECT_EQ(look_around(kUav.view, {}).size(), 4U);
+  FieldOfView narrow = kUav.view;
+  narrow.horizontal = 0.5;
+  const auto poses = look_around(narrow, {{1, 2, 3}, 0.25});
+  ASSERT_EQ(poses.size(), 13U);
+  EXPECT_EQ(poses[0].yaw, 0.25);
+  for (const planner::Pose& pose : poses) EXPECT_EQ(pose.position, Eigen::Vector3d(1, 2, 3));
+  // Every azimuth is in view of one of them.
+  for (double azimuth = 0.0; azimuth < 6.3; azimuth += 0.01) {
+    const Eigen::Vector3d offset(std::cos(azimuth), std::sin(azimuth), 0.0);
+    EXPECT_TRUE(std::ranges::any_of(poses, [&](const planner::Pose& pose) {
+      return narrow.contains(offset, pose.yaw);
+    })) << azimuth;
+  }
+}
+
 TEST(StartBubble, StaysOnThisSideOfWalls) {
   // A screen without thickness, exactly on voxel faces, 0.9 m from the robot.
   World world = room();

@@ -113,14 +113,6 @@ std::optional<KeyBox> free_node(const GroundTruth& truth, const Robot& robot, co
   return node;
 }
 
-// [m] what robots in space keep their height above, if no robot stands near
-double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around) {
-  auto below = key_of(truth.lattice(), around);
-  if (!below || truth.at(*below) != Truth::kFree) return lower_end(truth.lattice(), truth.bounds().min.z);
-  while (below->z > truth.bounds().min.z && !has_floor(truth, *below)) --below->z;
-  return lower_end(truth.lattice(), below->z);
-}
-
 // The body and, above it, the sensor.
 KeyBox taken_by(const Lattice& lattice, const Robot& robot, const Pose& sensor_pose) {
   KeyBox taken = body_voxels(lattice, robot, sensor_pose);
@@ -244,6 +236,13 @@ Eigen::Vector3d free_start(const World& world, double resolution, bool faces_awa
       refuse("is within a solid; give one in free space");
   }
   return free;
+}
+
+double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around) {
+  auto below = key_of(truth.lattice(), around);
+  if (!below || truth.at(*below) != Truth::kFree) return lower_end(truth.lattice(), truth.bounds().min.z);
+  while (below->z > truth.bounds().min.z && !has_floor(truth, *below)) --below->z;
+  return lower_end(truth.lattice(), below->z);
 }
 
 std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eigen::Vector3d& around,

@@ -46,6 +46,10 @@ struct ExplorationOptions {
   void check() const;
 };
 
+/// All but the team. By default robots take the corridor's own shortest paths, since those that a random
+/// search finds are longer; as printed, RRT's.
+[[nodiscard]] ExplorationOptions exploration_options(Method method = Method::kDefault);
+
 /// Where a robot begins, and what it knows to be free there without having seen it.
 struct ExplorationStart {
   Pose pose;  ///< of its sensor

@@ -51,6 +51,9 @@ enum class PathOutcome : std::uint8_t {
   kOutOfReach,    ///< it fits at both, but the corridor does not connect them
 };
 
+/// One of the words above, as it is written in logs: "found", "fell_back", ...
+[[nodiscard]] std::string_view name_of(PathOutcome outcome);
+
 /// In words, as the end of a sentence about the path.
 [[nodiscard]] std::string_view describe(PathOutcome outcome);
 

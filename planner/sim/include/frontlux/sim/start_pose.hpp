@@ -49,6 +49,10 @@ namespace frontlux::sim {
                                                                     const Eigen::Vector3d& around,
                                                                     std::span<const planner::Robot> robots);
 
+/// [m] The ground above which robots in space keep their height, where none stands on it: the layer boundary
+/// at or above the floor below a point, or the lower end of the bounds if the point is not free.
+[[nodiscard]] double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around);
+
 /// What a robot knows to be free at its start without having seen it, sorted: its body, and around it of one
 /// on a plane a disc of 2.3 m radius from the ground to the sensor's height, else a ball of 1 m, and its node
 /// if that is free to the last voxel. Only voxels that are free and reached from the body within this shape,

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Prints a line for each step of a run: read_recording.py DIR/run.frontlux. The format: docs/recording.md."""
+import struct
+import sys
+import zlib
+
+
+class Bytes:
+    def __init__(self, data): self.data, self.at = data, 0
+
+    def take(self, size):
+        self.at += size
+        return self.data[self.at - size:self.at]
+
+    def count(self):
+        value = shift = 0
+        while (byte := self.take(1)[0]) >= 0x80:
+            value, shift = value | (byte & 0x7F) << shift, shift + 7
+        return value | byte << shift
+
+    def counts(self, how_many): return [self.count() for _ in range(how_many)]
+    def doubles(self, how_many): return struct.unpack(f"<{how_many}d", self.take(8 * how_many))
+
+
+def step_line(step):
+    number, frontiers, _unassigned, _dropped, _rays, _collisions = step.counts(6)
+    step.doubles(6)  # seconds
+    known = [step.counts(2) for _ in range(step.count())]
+    line = f"step {number}: {frontiers} frontiers"
+    for robot in range(step.count()):
+        step.counts(4)  # gains, and the viewpoints travelled
+        (length,) = step.doubles(1)
+        step.counts(2)  # path outcome, goal state
+        step.doubles(4 if step.take(1)[0] else 0)  # goal: x, y, z, yaw
+        step.counts(3)  # its voxel
+        step.take(step.count())  # the goal's reason
+        step.doubles(4), step.counts(4)
+        planned = [step.doubles(4) for _ in range(step.count())]
+        changes = step.count()
+        step.counts(3 * changes)  # keys
+        after = [pair % 3 for pair in step.counts(changes)]
+        step.counts(3 * step.count())  # stubborn voxels
+        cells = step.count()
+        step.counts(3 * cells), step.doubles(5 * cells), step.counts(cells)  # the image
+        line += (f"; robot {robot}: {length:.2f} m, {len(planned)} viewpoints, {after.count(1)} voxels free, "
+                 f"{after.count(2)} occupied, knows {known[robot][0]}")
+    return line
+
+
+with open(sys.argv[1], "rb") as file:
+    if file.readline() != b"frontlux recording, format 1\n":
+        sys.exit(f"{sys.argv[1]}: not a recording of format 1")
+    while len(header := file.read(16)) == 16:
+        tag, packed, _plain, _checksum = struct.unpack("<4s3I", header)
+        payload, checksum = file.read(packed), file.read(4)
+        if len(checksum) < 4:
+            break  # the run was cut off here
+        if zlib.crc32(payload) != struct.unpack("<I", checksum)[0]:
+            sys.exit(f"{sys.argv[1]}: damaged before byte {file.tell()}")
+        record = Bytes(zlib.decompress(payload))
+        if tag == b"step":
+            print(step_line(record))
+        elif tag == b"end ":
+            print("end:", record.take(record.count()).decode())

@@ -1,0 +1,111 @@
+#include "support/random.hpp"
+
+#include <frontlux/planner/recorded_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+struct Known {
+  Occupancy state = Occupancy::kUnknown;
+  std::optional<std::size_t> seen_by;
+};
+using Oracle = std::map<VoxelKey, Known>;
+
+constexpr int kEdge = 20;  // [voxels] more than two bricks
+
+VoxelKey random_key(Random& random) {
+  const auto along = [&](int from) { return static_cast<std::uint16_t>(from + random.below(kEdge)); };
+  return {along(32760), along(0), along(65536 - kEdge)};
+}
+
+// Robots move one after the other, and what each changed comes to one entry for each voxel.
+RecordedStep play(Random& random, Oracle& oracle, int robots) {
+  RecordedStep recorded;
+  for (int robot = 0; robot < robots; ++robot) {
+    const Oracle before = oracle;
+    for (int scan = 0; scan < 300; ++scan)
+      oracle[random_key(random)].state = random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree;
+    RobotStep& step = recorded.step.robots.emplace_back();
+    for (auto& [key, known] : oracle) {
+      const auto entry = before.find(key);
+      const Occupancy was = entry == before.end() ? Occupancy::kUnknown : entry->second.state;
+      if (was != known.state) step.changed.push_back({key, was, known.state});
+      if (!known.seen_by) known.seen_by = static_cast<std::size_t>(robot);
+    }
+  }
+  return recorded;
+}
+
+void expect_equal(const RecordedMap& map, const Oracle& oracle) {
+  for (int x = 0; x < kEdge; ++x)
+    for (int y = 0; y < kEdge; ++y)
+      for (int z = 0; z < kEdge; ++z) {
+        const VoxelKey key{static_cast<std::uint16_t>(32760 + x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(65536 - kEdge + z)};
+        const auto entry = oracle.find(key);
+        const Known known = entry == oracle.end() ? Known{} : entry->second;
+        ASSERT_EQ(map.grid().at(key), known.state) << x << " " << y << " " << z;
+        ASSERT_EQ(map.first_seen_by(key), known.seen_by) << x << " " << y << " " << z;
+      }
+  std::array<std::uint64_t, 3> count{};
+  for (const auto& [key, known] : oracle) ++count[static_cast<std::size_t>(known.state)];
+  EXPECT_EQ(map.grid().count()[1], count[1]);
+  EXPECT_EQ(map.grid().count()[2], count[2]);
+}
+
+TEST(RecordedMap, FollowsTheSteps) {
+  for (const int robots : {1, 2, 5}) {
+    Random random(static_cast<std::uint64_t>(robots));
+    RecordedMap map(0.3);
+    Oracle oracle;
+    expect_equal(map, oracle);
+    for (int step = 0; step < 12; ++step) {
+      const VoxelGrid before = map.grid();
+      const auto count = before.count();
+      map.apply(play(random, oracle, robots));
+      expect_equal(map, oracle);
+      EXPECT_EQ(before.count(), count) << "a copy of the grid is a snapshot";
+    }
+  }
+}
+
+TEST(RecordedMap, RefusesChangesOfAnotherMap) {
+  const VoxelKey key{1, 1, 1}, other{1, 1, 2};
+  RecordedStep step;
+  step.step.number = 4;
+  step.step.robots.resize(2);
+  step.step.robots[0].changed = {{key, Occupancy::kUnknown, Occupancy::kFree}};
+  step.step.robots[1].changed = {{key, Occupancy::kFree, Occupancy::kOccupied},
+                                 {other, Occupancy::kOccupied, Occupancy::kFree}};
+  RecordedMap map(0.3);
+  try {
+    map.apply(step);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "recorded map: step 4, robot 1: voxel (1, 1, 2) is unknown and not, as the step says, "
+                 "occupied");
+  }
+  EXPECT_EQ(map.grid(), VoxelGrid(0.3)) << "as it was";
+  EXPECT_EQ(map.first_seen_by(key), std::nullopt);
+  step.step.robots[1].changed.pop_back();
+  map.apply(step);
+  EXPECT_EQ(map.grid().at(key), Occupancy::kOccupied);
+  EXPECT_EQ(map.first_seen_by(key), 0U);
+  EXPECT_THROW(map.apply(step), std::invalid_argument) << "a second time";
+}
+
+TEST(RecordedMap, RefusesAResolutionThatIsNoLength) { EXPECT_THROW(RecordedMap(0.0), std::invalid_argument); }
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,211 @@
+#include "support/random.hpp"
+
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
+#include <frontlux/sim/start_pose.hpp>
+#include <frontlux/sim/triangle_overlap.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+using planner::Pose;
+
+// A pane across x at 3.0 m, from y = 2 m on, two triangles of which a robot low and near y = 3 m meets one;
+// in an otherwise empty world with a floor.
+World pane(float top = 3.0F) {
+  World world;
+  world.name = "pane";
+  world.mesh.vertices = {{0, 0, -0.05F}, {6, 0, -0.05F}, {0, 6, -0.05F}, {6, 6, -0.05F},
+                         {3, 2, -0.05F}, {3, 6, -0.05F}, {3, 2, top},    {3, 6, top}};
+  world.mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {5, 7, 6}};
+  world.bounds = {Eigen::Vector3d(0, 0, -0.3), Eigen::Vector3d(6, 6, 3)};
+  world.start = Eigen::Vector3d(1.05, 1.05, 0.75);
+  return world;
+}
+
+bool same_bits(const planner::Scan& a, const planner::Scan& b) {
+  return std::ranges::equal(a.ranges, b.ranges, [](float x, float y) {
+    return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+  });
+}
+
+TEST(SweptBox, MeetsTheTrianglesThatABoxInManyStepsMeets) {
+  test::Random random(3);
+  int met = 0, passed = 0;
+  for (int i = 0; i < 4'000; ++i) {
+    const auto point = [&](double far) {
+      return Eigen::Vector3d(random.uniform(-far, far), random.uniform(-far, far), random.uniform(-far, far));
+    };
+    Eigen::Vector3d way = point(2.0), half = point(0.4).cwiseAbs() + Eigen::Vector3d::Constant(0.05);
+    if (random.one_in(4)) way[random.below(3)] = 0.0;
+    if (random.one_in(20)) way.setZero();
+    std::array<Eigen::Vector3d, 3> triangle{point(2.0), point(2.0), point(2.0)};
+    if (random.one_in(4)) triangle[2] = triangle[1];
+    if (random.one_in(4)) triangle[1].z() = triangle[0].z();
+    const Eigen::Vector3d start = point(1.0);
+    const bool swept = SweptBox({start - half, start + half}, way).touches(triangle);
+    const TriangleOverlap overlap(triangle[0], triangle[1], triangle[2]);
+    // A box of one step's size less is inside the swept space, one of a step more is around it.
+    constexpr int kSteps = 400;
+    const double step = way.norm() / kSteps + 1e-9;
+    bool inside = false, around = false;
+    for (int k = 0; k <= kSteps; ++k) {
+      const Eigen::Vector3d at = start + way * (static_cast<double>(k) / kSteps);
+      const Eigen::Vector3d more = half + Eigen::Vector3d::Constant(step);
+      inside = inside || overlap.touches({at - half, at + half});
+      around = around || overlap.touches({at - more, at + more});
+    }
+    EXPECT_TRUE(!inside || swept) << "case " << i;
+    EXPECT_TRUE(!swept || around) << "case " << i;
+    met += static_cast<int>(inside);
+    passed += static_cast<int>(!around);
+  }
+  EXPECT_GT(met, 400);
+  EXPECT_GT(passed, 400);
+}
+
+TEST(TriangleTree, CountsAsALoopOverAllTriangles) {
+  const World world = make_world("factory", 2);
+  const TriangleTree tree(world.mesh);
+  test::Random random(4);
+  std::uint64_t all = 0;
+  for (int i = 0; i < 300; ++i) {
+    Eigen::Vector3d at, way;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = random.uniform(world.bounds.min()[a], world.bounds.max()[a]);
+      way[a] = random.uniform(-1.5, 1.5);
+    }
+    const SweptBox box({at - Eigen::Vector3d::Constant(0.4), at + Eigen::Vector3d::Constant(0.4)}, way);
+    std::uint64_t count = 0;
+    for (const auto& [a, b, c] : world.mesh.triangles)
+      count += static_cast<std::uint64_t>(
+          box.touches({world.mesh.vertices[a].cast<double>(), world.mesh.vertices[b].cast<double>(),
+                       world.mesh.vertices[c].cast<double>()}));
+    EXPECT_EQ(tree.count(box), count);
+    all += count;
+  }
+  EXPECT_GT(all, 100U);
+  EXPECT_EQ(TriangleTree({}).count(SweptBox({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, {1, 1, 1})),
+            0U);
+}
+
+TEST(SimulatedRobots, CountWhatTheyRunInto) {
+  const World world = pane();
+  const GroundTruth truth(world, 0.3, *world.start);
+  SimulatedRobots robots(world, truth, {planner::ugv_description(), planner::uav_description()}, {}, 1);
+  const auto drive = [&](std::size_t robot, double x, double y, double z) {
+    EXPECT_TRUE(robots.drive(robot, {{x, y, z}}).has_value());
+    return robots.last();
+  };
+  // Appears, turns, and goes beside the pane: nothing. The pane lies on a face, x = 10 voxels.
+  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), Collisions());
+  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), Collisions());
+  EXPECT_EQ(drive(0, 2.25, 3.15, 0.75), Collisions());
+  // 0.5 m to each side: at 2.55 it is 5 cm into the pane. Seen on the lattice the pane is in no voxel.
+  EXPECT_EQ(drive(0, 2.55, 3.15, 0.75), (Collisions{0, 1}));
+  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), (Collisions{0, 1}));
+  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), Collisions());
+  // Right through, and back around the end.
+  EXPECT_EQ(drive(0, 4.05, 3.15, 0.75), (Collisions{0, 1}));
+  EXPECT_EQ(drive(0, 4.05, 1.05, 0.75), Collisions());
+  EXPECT_EQ(drive(0, 1.05, 1.05, 0.75), Collisions());
+  EXPECT_EQ(robots.of(0), (Collisions{0, 3}));
+  // The aerial one: 0.4 m to each side, and down to the floor.
+  EXPECT_EQ(drive(1, 1.05, 3.15, 1.35), Collisions());
+  EXPECT_EQ(drive(1, 2.59, 3.15, 1.35), Collisions());
+  EXPECT_EQ(drive(1, 2.61, 3.15, 1.35), (Collisions{0, 1}));
+  EXPECT_EQ(drive(1, 1.05, 3.15, 0.45), (Collisions{0, 1}));  // away from the pane
+  // Both triangles of the floor meet where x + y = 6, away from here.
+  EXPECT_EQ(drive(1, 1.05, 3.15, 0.3).physical, 1U);
+  EXPECT_EQ(robots.of(1).physical, 3U);
+  EXPECT_EQ(robots.total(), (Collisions{0, 6} += Collisions{robots.of(1).lattice, 0}));
+}
+
+TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
+  const World world = make_world("storage", 2);
+  const Eigen::Vector3d start = free_start(world, 0.3, true);
+  const GroundTruth truth(world, 0.3, start);
+  SimulatedRobots robots(world, truth, {planner::ugv_description(), planner::uav_description()}, {}, 1);
+  test::Random random(9);
+  std::array<Eigen::Vector3d, 2> at{Eigen::Vector3d(start.x(), start.y(), 0.75),
+                                    Eigen::Vector3d(start.x(), start.y(), 1.35)};
+  for (std::size_t robot = 0; robot < 2; ++robot) robots.drive(robot, {at[robot]});
+  std::uint64_t total = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t robot = static_cast<std::size_t>(i % 2);
+    // Along one axis, so that it is clear which voxels are on the way.
+    Eigen::Vector3d to = at[robot];
+    const int axis = random.below(robot == 0 ? 2 : 3);
+    to[axis] = std::clamp(to[axis] + random.uniform(-3.0, 3.0), world.bounds.min()[axis] + 1.0,
+                          world.bounds.max()[axis] - 1.0);
+    const int half = robot == 0 ? 2 : 1, below = robot == 0 ? 2 : 1, above = robot == 0 ? 0 : 1;
+    const auto index = [](double x) { return static_cast<int>(std::floor(x / 0.3)) + Lattice::kOrigin; };
+    std::uint64_t expected = 0;
+    for (int k = std::min(index(at[robot][axis]), index(to[axis]));
+         k <= std::max(index(at[robot][axis]), index(to[axis])); ++k) {
+      Eigen::Vector3i c(index(to.x()), index(to.y()), index(to.z()));
+      c[axis] = k;
+      bool hit = false;
+      for (int x = -half; x <= half; ++x)
+        for (int y = -half; y <= half; ++y)
+          for (int z = -below; z <= above; ++z)
+            hit = hit || truth.holds_surface({static_cast<std::uint16_t>(c.x() + x),
+                                              static_cast<std::uint16_t>(c.y() + y),
+                                              static_cast<std::uint16_t>(c.z() + z)});
+      expected += static_cast<std::uint64_t>(hit);
+    }
+    robots.drive(robot, {to});
+    EXPECT_EQ(robots.last().lattice, expected) << i;
+    total += expected;
+    at[robot] = to;
+  }
+  EXPECT_GT(total, 20U);
+  EXPECT_EQ(robots.total().lattice, total);
+}
+
+TEST(SimulatedRobots, ErrorsDependOnSeedRobotAndNumberOfItsScans) {
+  const World world = pane();
+  const GroundTruth truth(world, 0.3, *world.start);
+  const std::vector<planner::RobotDescription> team(2, planner::ugv_description());
+  const RangeErrors errors{.sigma = 0.05, .dropout = 0.1};
+  SimulatedRobots a(world, truth, team, errors, 7), b(world, truth, team, errors, 7),
+      c(world, truth, team, errors, 8);
+  const Pose pose{{1.05, 1.05, 0.75}};
+  const planner::Scan first = *a.drive(0, pose), second = *a.drive(0, pose), other = *a.drive(1, pose);
+  EXPECT_FALSE(same_bits(first, second));
+  EXPECT_FALSE(same_bits(first, other));
+  // In another order.
+  EXPECT_TRUE(same_bits(*b.drive(1, pose), other));
+  EXPECT_TRUE(same_bits(*b.drive(0, pose), first));
+  EXPECT_TRUE(same_bits(*b.drive(0, pose), second));
+  EXPECT_FALSE(same_bits(*c.drive(0, pose), first));
+  // Without errors it is what the sensor sees.
+  SimulatedRobots exact(world, truth, {planner::uav_description()}, {}, 1);
+  EXPECT_TRUE(same_bits(*exact.drive(0, pose), sense(Surface(world.mesh), depth_camera(), pose, 5)));
+}
+
+TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
+  const World world = pane();
+  const GroundTruth truth(world, 0.3, *world.start);
+  SimulatedRobots robots(world, truth, {planner::ugv_description()}, {}, 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(robots.drive(1, {{1, 1, 0.75}}), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(robots.of(1)), std::invalid_argument);
+  EXPECT_THROW(robots.drive(0, {{1, nan, 0.75}}), std::invalid_argument);
+  EXPECT_THROW(robots.drive(0, {{1, 1, 1e9}}), std::invalid_argument);
+  EXPECT_THROW(robots.drive(0, {{1, 1, 0.75}, nan}), std::invalid_argument);
+  EXPECT_EQ(robots.total(), Collisions());
+}
+
+}  // namespace
+}  // namespace frontlux::sim
