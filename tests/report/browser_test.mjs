@@ -1,8 +1,9 @@
-// Opens reports in headless Chromium: browser_test.mjs WEB CHROMIUM SHOTS REPORTS EVIL
+// Opens reports in headless Chromium: browser_test.mjs WEB CHROMIUM SHOTS REPORTS EVIL EXPLORED
 //   WEB      planner/report/web, where playwright-core is
 //   SHOTS    folder for screenshots
 //   REPORTS  what make_report has written: report.html and <number>/steps.csv for each run
 //   EVIL     the same of a run whose names are markup
+//   EXPLORED  a folder that frontlux explore has written
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import { mkdir, readFile } from "node:fs/promises";
@@ -10,7 +11,7 @@ import { createRequire } from "node:module";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [web, executablePath, shots, reports, evil] = process.argv.slice(2).map((path) => resolve(path));
+const [web, executablePath, shots, reports, evil, explored] = process.argv.slice(2).map((path) => resolve(path));
 const { chromium } = createRequire(`${web}/package.json`)("playwright-core");
 const kWithGraphics = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const kWithout = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"];
@@ -313,6 +314,14 @@ async function withGraphics() {
   }
 }
 
+/** A report of the command, compared with the steps.csv that the command has written. */
+async function commandIsRight(browser) {
+  const { page, trouble } = await open(browser, explored);
+  await chartsAreRight(page, await readTable(`${explored}/steps.csv`));
+  assert.deepEqual(trouble, []);
+  await page.close();
+}
+
 async function namesAreNoMarkup(browser) {
   const { page, trouble } = await open(browser, evil);
   assert.equal(await page.locator("img").count(), 0);
@@ -333,6 +342,7 @@ async function withoutGraphics() {
     await page.screenshot({ path: `${shots}/no_webgl.png` });
     assert.deepEqual(trouble, []);
     await namesAreNoMarkup(browser);
+    await commandIsRight(browser);
   } finally {
     await browser.close();
   }

@@ -15,7 +15,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -199,7 +198,7 @@ void expect_image(Reader& data, std::vector<planner::RenderedCell> cells) {
 
 TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   Decoded run = decode(packed_runs(page_of({{"room", &room()}})).at(0));
-  planner::RecordedMap map(room().head);
+  planner::RecordedMap map(room().head.resolution);
   Changes shown;
   std::size_t images = 0;
   for (const planner::RecordedStep& recorded : room().steps) {
@@ -227,26 +226,6 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   EXPECT_EQ(run.data.at, run.data.bytes.size());
   EXPECT_GT(images, 2U);
   EXPECT_GT(shown.size(), 10'000U);
-}
-
-TEST_F(ReportTest, TheStartIsShownWhetherStepZeroListsItOrNot) {
-  Recording bare;
-  bare.head = room().head;
-  bare.steps.resize(1);
-  bare.steps[0].step.robots.resize(2);
-  bare.steps[0].known.resize(2);
-  Decoded run = decode(packed_runs(page_of({{"bare", &bare}})).at(0));
-  std::set<VoxelKey> free;
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (const auto& [key, state] : read_changes(run.data)) {
-      EXPECT_EQ(state, Occupancy::kFree);
-      free.insert(key);
-    }
-    EXPECT_EQ(run.data.count() + run.data.count() + run.data.count(), 0U);
-  }
-  std::set<VoxelKey> known;
-  for (const auto& start : bare.head.starts) known.insert(start.known_free.begin(), start.known_free.end());
-  EXPECT_EQ(free, known);
 }
 
 TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {

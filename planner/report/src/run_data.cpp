@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -95,34 +94,16 @@ void write_path(ByteWriter& out, const planner::RobotStep& robot) {
   }
 }
 
-// Whether what robots know of their starts is listed among the changes of step 0 or not, it is shown.
-std::vector<planner::VoxelChange> with_start(const planner::RecordingHead& head,
-                                             const std::vector<planner::RobotStep>& robots,
-                                             std::size_t robot) {
-  std::vector<planner::VoxelChange> changes = robots[robot].changed;
-  if (robot >= head.starts.size()) return changes;
-  std::set<VoxelKey> listed;
-  for (std::size_t r = 0; r <= robot; ++r)
-    for (const planner::VoxelChange& change : robots[r].changed) listed.insert(change.key);
-  for (const VoxelKey& key : head.starts[robot].known_free)
-    if (head.bounds.contains(key) && listed.insert(key).second)
-      changes.push_back({key, Occupancy::kUnknown, Occupancy::kFree});
-  return changes;
-}
-
 }  // namespace
 
 std::string run_data(const planner::Recording& recording) {
   ByteWriter out;
-  for (const planner::RecordedStep& step : recording.steps) {
-    const std::vector<planner::RobotStep>& robots = step.step.robots;
-    const bool first = &step == &recording.steps.front() && step.step.number == 0;
-    for (std::size_t r = 0; r < robots.size(); ++r) {
-      write_changes(out, first ? with_start(recording.head, robots, r) : robots[r].changed);
-      write_image(out, robots[r].image);
-      write_path(out, robots[r]);
+  for (const planner::RecordedStep& step : recording.steps)
+    for (const planner::RobotStep& robot : step.step.robots) {
+      write_changes(out, robot.changed);
+      write_image(out, robot.image);
+      write_path(out, robot);
     }
-  }
   return out.bytes();
 }
 

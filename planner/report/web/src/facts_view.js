@@ -28,7 +28,12 @@ export function teamName(facts) {
 function headline(run) {
   const { facts, numbers } = run, { result } = numbers;
   const box = Number.isFinite(result.coverageBox) ? ` (${percent(result.coverageBox)} of the world's box)` : "";
-  return `${facts.robots.length > 1 ? `${facts.robots.length} robots` : "One robot"} came to know ${percent(result.coverage)} of what can be observed${box} in ${result.steps} steps. It ended because ${ending(facts)}.`;
+  return `${facts.robots.length > 1 ? "The team" : "The robot"} came to know ${percent(result.coverage)} of what can be observed${box} in ${result.steps} steps. It ended because ${ending(facts)}.`;
+}
+
+function worldsOf(runs) {
+  const worlds = [...new Set(runs.map((run) => run.facts.world))];
+  return `${worlds.length > 1 ? "Worlds" : "World"}: ${worlds.join(", ")}. The replay shows one of the runs at a time.`;
 }
 
 /** The first thing a reader sees: what was run and what came of it. */
@@ -46,42 +51,33 @@ export function header(runs, written) {
     : null;
   return [
     el("div", { class: "title" }, el("h1", { text: single ? `${facts.world}, explored by ${teamName(facts)}` : `${runs.length} runs compared` }),
-    el("p", { class: "lead", text: single ? headline(runs[0]) : runs.map((run) => `${run.name}: ${percent(run.numbers.result.coverage)} in ${run.numbers.result.steps} steps`).join("; ") + "." }),
+    el("p", { class: "lead", text: single ? headline(runs[0]) : worldsOf(runs) }),
     ),
     tiles,
-    facts.truncated ? el("p", { class: "warning", text: "The recording's last step is unfinished and was left out." }) : null,
+    runs.some((run) => run.facts.truncated) ? el("p", { class: "warning", text: "The recording's last step is unfinished and was left out." }) : null,
   ].filter(Boolean);
 }
 
-/** Runs side by side, against the first. */
+/** A run a line, against the first. */
 export function comparison(runs) {
-  const of = (name, value) => [name, ...runs.map((run) => value(run.numbers, run.facts))];
-  const reach = (share) => of(`steps to ${share * 100} %`, (numbers) => {
-    const s = stepOfCoverage(numbers, share);
-    return s < 0 ? "never" : numbers.steps[s];
-  });
-  const length = (share) => of(`metres to ${share * 100} %`, (numbers) => {
-    const s = stepOfCoverage(numbers, share);
-    return s < 0 ? "never" : metres(numbers.teamTravelled[s]);
-  });
   const first = runs[0].numbers.result;
-  return table("The runs side by side", ["", ...runs.map((run) => run.name)], [
-    of("world", (_, facts) => facts.world),
-    of("team", (_, facts) => teamName(facts)),
-    of("coverage", (numbers) => percent(numbers.result.coverage)),
-    of("steps", (numbers) => `${numbers.result.steps}${numbers.result === first ? "" : ` (${signed(numbers.result.steps, first.steps)})`}`),
-    reach(0.9), reach(0.95), length(0.9),
-    of("path length", (numbers) => `${metres(numbers.result.length)}${numbers.result === first ? "" : ` (${signed(numbers.result.length, first.length)})`}`),
-    of("of each robot", (numbers, facts) => facts.robots.map((robot, r) => `${robot.name} ${metres(numbers.result.lengths[r])}`).join(", ")),
-    of("share of each robot", (numbers, facts) => facts.robots.map((robot, r) => `${robot.name} ${percent(numbers.result.shares[r], 0)}`).join(", ")),
-    of("planning a step", (numbers) => `${seconds(numbers.result.planningMean)} (at most ${seconds(numbers.result.planningMost)})`),
-    of("collisions", (numbers) => whole(numbers.result.collisions)),
-    of("ended because", (_, facts) => ending(facts)),
-  ]);
+  const against = (result, name) => (result === first || !(first[name] > 0) ? "" : ` (${signed(result[name], first[name])})`);
+  const reached = (numbers, share, tell) => {
+    const s = stepOfCoverage(numbers, share);
+    return s < 0 ? "never" : tell(s);
+  };
+  const heads = ["run", "team", "coverage", "steps", "steps to 90 %", "to 95 %", "path length", "metres to 90 %", "planning a step", "collisions"];
+  return table("Side by side", heads, runs.map(({ name, facts, numbers }) => [
+    name, teamName(facts), percent(numbers.result.coverage),
+    `${numbers.result.steps}${against(numbers.result, "steps")}`,
+    reached(numbers, 0.9, (s) => numbers.steps[s]), reached(numbers, 0.95, (s) => numbers.steps[s]),
+    `${metres(numbers.result.length)}${against(numbers.result, "length")}`,
+    reached(numbers, 0.9, (s) => metres(numbers.teamTravelled[s])),
+    seconds(numbers.result.planningMean), whole(numbers.result.collisions),
+  ]));
 }
 
 function signed(value, reference) {
-  if (!(reference > 0)) return "";
   const share = (100 * (value - reference)) / reference;
   return `${share >= 0 ? "+" : "−"}${Math.abs(share).toFixed(0)} %`;
 }
@@ -98,7 +94,7 @@ export function details(run, written) {
   };
   const parts = [
     table("The run", [], [
-      ["World", facts.world], ["Voxels", `${facts.resolution} m`],
+      ["World", facts.world], ["Seed", optionsOf(facts).find(([name]) => name === "seed")?.[1] ?? "not recorded"], ["Voxels", `${facts.resolution} m`],
       ["Observable", facts.observable > 0 ? `${whole(facts.observable)} voxels` : "unknown"],
       ["Coverage", `${percent(result.coverage)} of the observable, ${percent(result.coverageBox)} of the box`],
       ["Steps", `${whole(result.steps)}, after the look around at the start`], ["Ended because", ending(facts)],

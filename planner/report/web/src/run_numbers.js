@@ -65,7 +65,7 @@ export function optionsOf(facts) {
   const rows = [];
   const visit = (prefix, value) => {
     if (value !== null && typeof value === "object" && !Array.isArray(value)) for (const [name, member] of Object.entries(value)) visit(prefix === "" ? name : `${prefix}.${name}`, member);
-    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") : String(value)]);
+    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") || "none" : value === "" ? "not given" : String(value)]);
   };
   if (options !== null && typeof options === "object" && !Array.isArray(options)) visit("", options);
   return rows;

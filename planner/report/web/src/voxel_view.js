@@ -114,14 +114,14 @@ export class VoxelView {
     uniforms.shade.value = scene.shade;
     uniforms.by_owner.value = byOwner;
     setVector(this.pointsMaterial.uniforms.tint.value, scene.frontier);
-    this.pointsMaterial.uniforms.glow.value = scene.additive ? 0.55 : 0.8;
+    this.pointsMaterial.uniforms.glow.value = scene.additive ? 0.55 : 0.7;
     this.pointsMaterial.blending = scene.additive ? AdditiveBlending : NormalBlending;
     this.pointsMaterial.needsUpdate = true;
   }
 
   /** @param pixels height of the view @param slope tangent of half the camera's opening angle */
   setPointScale(pixels, slope) {
-    this.pointsMaterial.uniforms.size.value = (0.6 * this.resolution * pixels) / (2 * slope);
+    this.pointsMaterial.uniforms.size.value = (0.5 * this.resolution * pixels) / (2 * slope);
   }
 
   countFrontiers() {
