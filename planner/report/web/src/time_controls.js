@@ -35,7 +35,8 @@ export function makeTimeControls(timeline, current) {
     slider.max = Math.max(0, timeline.steps - 1);
     slider.value = step;
     slider.style.setProperty("--done", `${timeline.steps > 1 ? (100 * step) / (timeline.steps - 1) : 100}%`);
-    const known = numbers.coverage[step], text = `Step ${number} of ${last}${Number.isFinite(known) ? ` · ${percent(known)} known` : ""}`;
+    // On the way the map is still the one that the step began with.
+    const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], text = `Step ${number} of ${last}${Number.isFinite(known) ? ` · ${percent(known)} known` : ""}`;
     told.textContent = text;
     slider.setAttribute("aria-valuetext", text);
     if (play.dataset.playing !== String(timeline.playing)) {
