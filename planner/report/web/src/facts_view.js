@@ -1,5 +1,5 @@
 import { el, table } from "./dom.js";
-import { metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
+import { NOT_GIVEN, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
 
 // Deng, Xu, Zhao and Shimada's results, by world: team's coverage and steps, planning of each robot in all and
 // per step, share of what the UAV saw and its path, both before and after optimisation.
@@ -111,7 +111,9 @@ export function details(run, written) {
   ];
   const paper = PAPER[Object.keys(PAPER).find((name) => facts.world.toLowerCase().startsWith(name))];
   if (paper) parts.push(besidePaper(facts, result, paper));
-  const options = optionsOf(facts);
+  const all = optionsOf(facts), options = all.filter(([, value]) => value !== NOT_GIVEN);
+  const left = all.filter(([, value]) => value === NOT_GIVEN).map(([name]) => name);
+  if (left.length > 0) options.push(["not given", left.join(", ")]);
   parts.push(options.length > 0 ? table("Options", [], options) : table("Options", [], [["as recorded", facts.options || "none"]]));
   return parts;
 }
@@ -135,7 +137,7 @@ export function stepTable(run) {
   const heads = ["step", "known", "frontiers", "nobody's", "planning", ...facts.robots.flatMap((robot) => ["part", "predicted", "gained", "path", "goal"].map((word) => `${robot.name} ${word}`))];
   const rows = facts.steps.map((step, s) => [
     step.number, percent(numbers.coverage[s], 2), numbers.frontiers[s], numbers.unassigned[s], seconds(numbers.planning[s]),
-    ...facts.robots.flatMap((_, r) => [percent(numbers.robotCoverage[r][s], 2), numbers.predicted[r][s], numbers.gained[r][s], metres(numbers.travelled[r][s]), step.robots[r].reason || step.robots[r].state]),
+    ...facts.robots.flatMap((_, r) => [percent(numbers.robotCoverage[r][s], 2), numbers.predicted[r][s], numbers.gained[r][s], metres(numbers.travelled[r][s]), step.number === 0 ? "looks around" : step.robots[r].reason || step.robots[r].state]),
   ]);
   return table("Every step", heads, rows);
 }

@@ -54,6 +54,8 @@ function runningSum(list) {
   return list.map((value) => (sum += value));
 }
 
+export const NOT_GIVEN = "not given";
+
 /** Options as [name, value] pairs, those of members as name.member; nothing if the text is not a JSON object. */
 export function optionsOf(facts) {
   let options;
@@ -65,7 +67,7 @@ export function optionsOf(facts) {
   const rows = [];
   const visit = (prefix, value) => {
     if (value !== null && typeof value === "object" && !Array.isArray(value)) for (const [name, member] of Object.entries(value)) visit(prefix === "" ? name : `${prefix}.${name}`, member);
-    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") || "none" : value === "" ? "not given" : String(value)]);
+    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") || "none" : value === "" ? NOT_GIVEN : String(value)]);
   };
   if (options !== null && typeof options === "object" && !Array.isArray(options)) visit("", options);
   return rows;
