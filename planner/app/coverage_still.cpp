@@ -1,13 +1,12 @@
 #include "coverage_still.hpp"
 
 #include "robot_color.hpp"
+#include "share_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <vector>
 
 namespace frontlux::app {
@@ -22,15 +21,6 @@ struct Curve {
   double thickness;
   std::vector<double> shares;
 };
-
-std::string percent(double share, int digits) {
-  std::array<char, 32> text{};
-  // Rounded down: what is not all does not read as 100 %.
-  const double scale = std::pow(10.0, digits);
-  std::snprintf(text.data(), text.size(), "%.*f %%", digits,
-                std::floor(100.0 * share * scale + 1e-9) / scale);
-  return text.data();
-}
 
 std::vector<Curve> curves_of(const planner::Recording& recording, std::string& of) {
   const planner::RecordingHead& head = recording.head;
@@ -82,14 +72,14 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
   int x = 24;
   for (const Curve& curve : curves) {
     canvas.fill(x, 58, 24, 5, curve.color);
-    const std::string text = curve.name + " " + percent(curve.shares.back(), 1);
+    const std::string text = curve.name + " " + share_text(curve.shares.back(), 1);
     canvas.text(x + 32, 54, text, kLetters, kInk);
     x += 32 + Canvas::text_width(text, kLetters) + 28;
   }
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = static_cast<int>(std::lround(pixel_y(tick / 4.0)));
     canvas.fill(kLeft, y, kWidth - kLeft - kRight, 1, kGrid);
-    const std::string text = percent(tick / 4.0, 0);
+    const std::string text = share_text(tick / 4.0, 0);
     canvas.text(kLeft - 10 - Canvas::text_width(text, kLetters), y - Canvas::kTextHeight, text, kLetters,
                 kMuted);
   }

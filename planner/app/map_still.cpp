@@ -1,6 +1,7 @@
 #include "map_still.hpp"
 
 #include "robot_color.hpp"
+#include "share_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -169,14 +170,10 @@ void draw_way(Canvas& canvas, const Projection& projection, const std::vector<Ei
 std::string summary_of(const planner::Recording& recording) {
   std::uint64_t known = 0;
   for (const planner::KnownVoxels& part : recording.steps.back().known) known += part.observable;
-  std::array<char, 64> text{};
   const double total = static_cast<double>(recording.head.observable);
-  if (total > 0)
-    // Rounded down: what is not all does not read as 100 %.
-    std::snprintf(text.data(), text.size(), "%.1f %% known after step %llu",
-                  std::floor(1000.0 * static_cast<double>(known) / total) / 10.0,
-                  static_cast<unsigned long long>(recording.steps.back().step.number));
-  return text.data();
+  const std::string step = "step " + std::to_string(recording.steps.back().step.number);
+  if (total == 0.0) return "after " + step;
+  return share_text(static_cast<double>(known) / total, 1) + " known after " + step;
 }
 
 // What a run is called, and where it was, if the name does not say so.

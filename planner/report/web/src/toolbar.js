@@ -47,7 +47,7 @@ export function makeToolbar(scene, facts) {
       view("view-home", "Whole", "all of the map from the side (H)", () => scene.home()), view("view-top", "Top", "from straight above (T)", () => scene.top()), follow, colors,
       el("label", { class: "field", title: "take away what is above" }, el("span", { text: "Cut at" }), cut),
       check("closed", "Back sides", "also the faces of voxels behind which nothing is known", (on) => scene.setClosed(on)),
-      check("as-planned", "Map before the step", "the map that the step was planned on, instead of what it led to", (on) => scene.setAsPlanned(on))));
+      check("as-planned", "Before the step", "the map that the step was planned on, instead of what it led to", (on) => scene.setAsPlanned(on))));
   return {
     bar, key, drawKey,
     toggleLayer(i) {
