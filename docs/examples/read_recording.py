@@ -40,6 +40,7 @@ def step_line(step):
         step.counts(3 * changes)  # keys
         after = [pair % 3 for pair in step.counts(changes)]
         step.counts(3 * step.count())  # stubborn voxels
+        step.counts(3 * step.count())  # blocked cells
         cells = step.count()
         step.counts(3 * cells), step.doubles(5 * cells), step.counts(cells)  # the image
         line += (f"; robot {robot}: {length:.2f} m, {len(planned)} viewpoints, {after.count(1)} voxels free, "

@@ -106,6 +106,8 @@ class EmbreeRayCaster final : public RayCaster {
     snapshot_.replace(std::make_shared<detail::Snapshot>(grid, *snapshot_.snapshot()));
   }
 
+  [[nodiscard]] std::optional<VoxelGrid> do_grid() const override { return snapshot_.snapshot()->grid(); }
+
   const detail::PacketWalk* packets_;
   std::shared_ptr<detail::BoxSceneDevice> device_;
   detail::Published<detail::Snapshot> snapshot_;

@@ -62,6 +62,8 @@ class GridRayCaster final : public RayCaster {
 
   void do_update(const VoxelGrid& grid) override { grid_.replace(std::make_shared<VoxelGrid>(grid)); }
 
+  [[nodiscard]] std::optional<VoxelGrid> do_grid() const override { return *grid_.snapshot(); }
+
   detail::Published<VoxelGrid> grid_;
 };
 

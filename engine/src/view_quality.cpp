@@ -1,4 +1,5 @@
 #include "changed_surroundings.hpp"
+#include "exact_render.hpp"
 #include "target_index.hpp"
 #include "view_reach.hpp"
 #include "view_render.hpp"
@@ -60,9 +61,21 @@ std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<c
   return kept;
 }
 
+// What the options amount to.
+ViewQualityOptions effective(ViewQualityOptions options) {
+  if (options.renderer != ViewQualityOptions::Renderer::kExact) return options;
+  options.samples = ViewQualityOptions::kAll;
+  options.sampling = ViewQualityOptions::Sampling::kFeasible;
+  options.estimator = ViewQualityOptions::Estimator::kUnbiased;
+  return options;
+}
+
 }  // namespace
 
 void ViewQualityOptions::check() const {
+  if (renderer > Renderer::kExact)
+    throw std::invalid_argument("view quality: renderer is " + std::to_string(static_cast<int>(renderer)) +
+                                ", which is none of the values of Renderer");
   if (samples < 1)
     throw std::invalid_argument("view quality: samples is " + std::to_string(samples) +
                                 ", but has to be at least 1");
@@ -86,6 +99,7 @@ ViewQualityImage::ViewQualityImage(const Lattice& lattice, const FieldOfView& fi
   options_.check();
   reach_ =
       std::make_shared<const detail::ViewReach>(field_of_view, lattice.resolution(), options.azimuth_bins);
+  trees_ = std::make_shared<detail::PathTrees>();
   targets_ = std::make_shared<const detail::TargetIndex>(std::span<const VoxelKey>());
   order_ = sorted({});
 }
@@ -102,7 +116,7 @@ std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const Vo
                                      std::span<const VoxelKey> targets, std::span<const Block> changed) {
   check_count(viewpoints.size());
   auto index = std::make_shared<const detail::TargetIndex>(targets);
-  const detail::ChangedSurroundings surroundings(changed, *targets_, *index, options_.sampling);
+  const detail::ChangedSurroundings surroundings(changed, *targets_, *index, effective(options_).sampling);
   const bool same = std::equal(viewpoints.begin(), viewpoints.end(), viewpoints_.begin(), viewpoints_.end());
   auto order = same ? order_ : sorted(viewpoints);
   const auto kept = find_kept(*order, *order_, *reach_, surroundings.boxes());
@@ -129,14 +143,22 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
     std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i] * bins), bins,
                 bin_hits.begin() + static_cast<std::ptrdiff_t>(viewpoint.index * bins));
   }
-  detail::render_views({caster, *reach_, *targets, options_}, stale, values, bin_hits);
+  const std::size_t rendered = stale.size();
+  const ViewQualityOptions options = effective(options_);
+  const bool exact = options.renderer == ViewQualityOptions::Renderer::kExact;
+  if (const auto grid = exact ? caster.grid() : std::nullopt) {
+    const auto& walk = detail::tree_walks().front();
+    stale = detail::render_exactly({*grid, *reach_, *targets, walk, *trees_, options.azimuth_bins}, stale,
+                                   values, bin_hits);
+  }
+  detail::render_views({caster, *reach_, *targets, options}, stale, values, bin_hits);
 
   viewpoints_ = std::move(keys);
   order_ = std::move(order);
   targets_ = std::move(targets);
   values_ = std::move(values);
   bin_hits_ = std::move(bin_hits);
-  return stale.size();
+  return rendered;
 }
 
 ViewQualityImage render_view_quality(const RayCaster& caster, const Lattice& lattice,

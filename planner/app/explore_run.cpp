@@ -87,7 +87,8 @@ class Run {
  public:
   Run(ExploreSetup& setup, const ExploreRun& run)
       : setup_(setup),
-        robots_(setup.sourced.world, *setup.truth, setup.head.robots, setup.errors, setup.exploration.seed),
+        robots_(setup.sourced.world, *setup.truth, setup.head.robots, setup.errors, setup.exploration.seed,
+                sim::AtContact::kStay),
         exploration_(setup.exploration,
                      planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
         files_(run.folder, setup.head) {}

@@ -254,19 +254,26 @@ void Exploration::State::go(std::size_t robot, const Plan& plan, const Drive& dr
   step.travelled = journey.travelled;
   step.length = journey.length;
   step.changed = std::move(journey.changed);
+  step.blocked = std::move(journey.blocked);
   step.gained = static_cast<std::uint64_t>(
       std::count_if(step.changed.begin(), step.changed.end(), [&](const VoxelChange& change) {
         return change.before == Occupancy::kUnknown && frontiers.contains(change.key);
       }));
+  // A look at what is in the way is not from where the path would have led.
+  const std::size_t reached = step.travelled - (step.blocked.empty() ? 0 : 1);
   if (plan.gain)
     step.stubborn = still_unknown(mapping.grid(), *plan.gain,
-                                  std::span<const Pose>(step.planned).first(step.travelled), plan.targets);
+                                  std::span<const Pose>(step.planned).first(reached), plan.targets);
 }
 
 // What a robot's part of a step leaves behind.
 void Exploration::State::take(const RobotStep& step, std::size_t robot) {
   for (const VoxelChange& change : step.changed) unread.push_back(change.key);
   stubborn.visited(step.stubborn);
+  if (!step.blocked.empty()) {
+    selection->close(robot, step.blocked);
+    if (ways[robot]) ways[robot]->close(step.blocked);
+  }
   for (std::size_t i = trails[robot].empty() ? 0 : 1; i < step.travelled; ++i)
     trails[robot].push_back(step.planned[i]);
   if (step.travelled > 0) poses[robot] = step.planned[step.travelled - 1];
@@ -426,7 +433,8 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   if (recorded.number != state.number || recorded.robots.size() != state.size()) return false;
   for (std::size_t r = 0; r < state.size(); ++r) {
     const RobotStep& robot = recorded.robots[r];
-    const auto way = std::span<const Pose>(robot.planned).first(robot.travelled);
+    std::vector<Pose> way(robot.planned.begin(),
+                          robot.planned.begin() + static_cast<std::ptrdiff_t>(robot.travelled));
     const detail::Journey journey = detail::travel(r, way, nullptr, drive, state.mapping);
     if (journey.travelled != robot.travelled || journey.changed != robot.changed) return false;
     state.take(robot, r);

@@ -46,6 +46,11 @@ TravelCorridor GoalSelection::State::new_corridor(const TeamMember& member) cons
   }
 }
 
+void GoalSelection::State::renew_corridor(std::size_t robot) {
+  members[robot].corridor = new_corridor(team[robot]);
+  members[robot].corridor.close(members[robot].closed);
+}
+
 // Corridors take changed voxels; changes of large blocks are met by reading the map again.
 void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> poses) {
   Keys changed;
@@ -71,11 +76,11 @@ void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> p
     member.share.clear();
     member.given_up.clear();
     member.targets.clear();
-    if (too_large) member.corridor = new_corridor(team[r]);
+    if (too_large) renew_corridor(r);
     const auto x = lattice.key(member.position.x()), y = lattice.key(member.position.y()),
                z = lattice.key(member.position.z());
     if (!x || !y || !z) {
-      member.corridor = new_corridor(team[r]);  // which, not updated, has no cells
+      renew_corridor(r);  // which, not updated, has no cells
       continue;
     }
     member.cell = {*x, *y, *z};
@@ -139,6 +144,12 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const VoxelGrid& grid,
   }
   result.rays = counting.rays();
   return result;
+}
+
+void GoalSelection::close(std::size_t robot, std::span<const VoxelKey> cells) {
+  State::Member& member = state_->members[robot];
+  member.closed.insert(member.closed.end(), cells.begin(), cells.end());
+  member.corridor.close(cells);
 }
 
 const std::vector<TeamMember>& GoalSelection::team() const { return state_->team; }

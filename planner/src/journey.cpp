@@ -3,6 +3,7 @@
 #include "straight_way.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -25,6 +26,27 @@ bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose&
       .holds([&](const VoxelKey& key) { return is_free(grid, voxels_of_cell(body, lattice, key)); });
 }
 
+// The voxels on a way, but for that which it begins in.
+std::vector<VoxelKey> cells_beyond(const Lattice& lattice, const Pose& from, const Pose& to) {
+  std::vector<VoxelKey> cells;
+  static_cast<void>(StraightWay(lattice, from.position, to.position).holds([&](const VoxelKey& key) {
+    cells.push_back(key);
+    return true;
+  }));
+  const auto x = lattice.key(from.position.x()), y = lattice.key(from.position.y()),
+             z = lattice.key(from.position.z());
+  if (x && y && z) std::erase(cells, VoxelKey{*x, *y, *z});
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+Pose look_towards(const Pose& from, const Pose& to) {
+  const Eigen::Vector3d on = to.position - from.position;
+  const bool level = on.x() != 0.0 || on.y() != 0.0;
+  return {from.position, level ? std::atan2(on.y(), on.x()) : to.yaw};
+}
+
 }  // namespace
 
 std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& after,
@@ -39,19 +61,30 @@ std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& a
   return changed;
 }
 
-Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelOptions* body,
-               const Drive& drive, Mapping& mapping) {
+Journey travel(std::size_t robot, std::span<Pose> viewpoints, const TravelOptions* body, const Drive& drive,
+               Mapping& mapping) {
   Journey journey;
   if (viewpoints.empty()) return journey;
   const VoxelGrid before = mapping.grid();
   std::vector<VoxelKey> touched;
   for (journey.travelled = 1; journey.travelled < viewpoints.size(); ++journey.travelled) {
-    const Pose &from = viewpoints[journey.travelled - 1], &to = viewpoints[journey.travelled];
+    const Pose& from = viewpoints[journey.travelled - 1];
+    Pose& to = viewpoints[journey.travelled];
     if (body != nullptr && !is_still_free(mapping.grid(), *body, from, to)) break;
-    const auto scan = drive(robot, to);
-    if (!scan) break;
+    auto scan = drive(robot, to);
+    const bool blocked = !scan;
+    if (blocked) {
+      journey.blocked = cells_beyond(mapping.grid().lattice(), from, to);
+      to = look_towards(from, to);
+      scan = drive(robot, to);
+      if (!scan) break;
+    }
     const auto keys = mapping.insert(*scan);
     touched.insert(touched.end(), keys.begin(), keys.end());
+    if (blocked) {
+      ++journey.travelled;
+      break;
+    }
   }
   journey.length = path_length(viewpoints.first(journey.travelled));
   journey.changed = differences(before, mapping.grid(), std::move(touched));

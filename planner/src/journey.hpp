@@ -13,6 +13,7 @@ struct Journey {
   std::size_t travelled = 0;         ///< viewpoints that it came to, the first included
   double length = 0.0;               ///< [m]
   std::vector<VoxelChange> changed;  ///< by the scans, sorted by key
+  std::vector<VoxelKey> blocked;     ///< cells on a way that it could not go, sorted
 };
 
 /// Alg. 1, lines 8 to 10: brings a robot from viewpoint to viewpoint and takes what it measures there into
@@ -20,7 +21,7 @@ struct Journey {
 /// not go.
 /// @param viewpoints  the first is where it is; there it measures nothing
 /// @param body  of the robot, with which the ways are checked; null: they are not
-[[nodiscard]] Journey travel(std::size_t robot, std::span<const Pose> viewpoints, const TravelOptions* body,
+[[nodiscard]] Journey travel(std::size_t robot, std::span<Pose> viewpoints, const TravelOptions* body,
                              const Drive& drive, Mapping& mapping);
 
 /// Voxels of `candidates`, in any order, that differ between two maps; sorted by key.

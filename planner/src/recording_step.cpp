@@ -37,6 +37,12 @@ void code_changes(Bytes& bytes, Changes& changes, const KeyBox& bounds) {
                 "the changes are not sorted by key, each voxel once");
 }
 
+template <class Bytes, class Keys>
+void code_sorted_keys(Bytes& bytes, Keys& keys, const char* what) {
+  code_keys(bytes, keys);
+  bytes.require(std::adjacent_find(keys.begin(), keys.end(), std::greater_equal<>()) == keys.end(), what);
+}
+
 template <class Bytes, class Image>
 void code_image(Bytes& bytes, Image& image) {
   bytes.length(image, kKeyBytes + 5 * sizeof(double) + 1);
@@ -82,10 +88,8 @@ void code_robot(Bytes& bytes, Robot& robot, const KeyBox& bounds) {
   bytes.require(robot.travelled <= robot.planned.size(), "it came to more viewpoints than were planned");
   for (auto& pose : robot.planned) code_pose(bytes, pose);
   code_changes(bytes, robot.changed, bounds);
-  code_keys(bytes, robot.stubborn);
-  bytes.require(std::adjacent_find(robot.stubborn.begin(), robot.stubborn.end(), std::greater_equal<>()) ==
-                    robot.stubborn.end(),
-                "the stubborn voxels are not sorted, each once");
+  code_sorted_keys(bytes, robot.stubborn, "the stubborn voxels are not sorted, each once");
+  code_sorted_keys(bytes, robot.blocked, "the blocked cells are not sorted, each once");
   code_image(bytes, robot.image);
 }
 
@@ -108,7 +112,7 @@ void code_known(Bytes& bytes, Known& known, const RecordingHead& head) {
 
 template <class Bytes, class Recorded>
 void code_step(Bytes& bytes, Recorded& recorded, const RecordingHead& head, std::uint64_t number) {
-  constexpr std::size_t kRobotBytes = 59;  // at least
+  constexpr std::size_t kRobotBytes = 60;  // at least
   auto& step = recorded.step;
   bytes.part("step " + std::to_string(number));
   bytes.count(step.number);

@@ -23,6 +23,7 @@ struct GoalSelection::State {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
     VoxelKey cell = {};                                  // that it is in
     Keys share = {};                                     // frontiers to choose from
+    Keys closed = {};                                    // cells it does not go through, in any order
     Keys given_up = {};                                  // frontiers it made nothing of
     Keys targets = {};                                   // those its goal was last chosen for
     bool rendered = false;                               // whether the image is that of `targets`
@@ -37,6 +38,7 @@ struct GoalSelection::State {
 
   // goal_selection.cpp
   [[nodiscard]] TravelCorridor new_corridor(const TeamMember& member) const;
+  void renew_corridor(std::size_t robot);
   void follow(const VoxelGrid& grid, std::span<const Pose> poses);
   [[nodiscard]] bool can_move(std::size_t robot) const {
     return members[robot].corridor.state() == CorridorState::kReady;

@@ -180,13 +180,15 @@ struct TravelCorridor::State {
   std::optional<detail::Ground> ground;
   std::optional<detail::PathDistances> distances;
   std::vector<VoxelKey> cells;
+  std::vector<VoxelKey> closed;  // sorted
   CorridorState state = CorridorState::kNotUpdated;
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
   void lay_out(const VoxelKey& robot);
   void read(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
-    return erosion->whole(cell) && (!ground || ground->carries(cell));
+    return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
+           (closed.empty() || !std::binary_search(closed.begin(), closed.end(), cell));
   }
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
@@ -270,6 +272,7 @@ TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& latt
                                          {},
                                          {},
                                          {},
+                                         {},
                                          CorridorState::kNotUpdated});
 }
 TravelCorridor::~TravelCorridor() = default;
@@ -286,6 +289,12 @@ void TravelCorridor::update(const VoxelGrid& grid, std::span<const VoxelKey> cha
   if (state_->state != CorridorState::kReady) return;
   state_->distances->spread(state_->cell_of(robot));
   state_->distances->reached(state_->cells);
+}
+
+void TravelCorridor::close(std::span<const VoxelKey> cells) {
+  std::vector<VoxelKey>& closed = state_->closed;
+  closed.insert(closed.end(), cells.begin(), cells.end());
+  std::sort(closed.begin(), closed.end());
 }
 
 CorridorState TravelCorridor::state() const { return state_->state; }

@@ -110,6 +110,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
       robot.changed = random_changes(random, head.bounds, random.below(size));
       for (int i = random.below(size); i > 0; --i)
         robot.stubborn.push_back(random_key(random, planner::kAllVoxels));
+      if (!robot.stubborn.empty()) robot.blocked = {robot.stubborn.front()};
       std::sort(robot.stubborn.begin(), robot.stubborn.end());
       robot.stubborn.erase(std::unique(robot.stubborn.begin(), robot.stubborn.end()), robot.stubborn.end());
       for (int i = random.below(size); i > 0; --i)
@@ -167,6 +168,8 @@ class Listing {
       }
       line("stubborn", r.stubborn.size());
       for (const auto& key : r.stubborn) add(key);
+      line("blocked", r.blocked.size());
+      for (const auto& key : r.blocked) add(key);
       for (const auto& c : r.image) {
         add(c.cell);
         line("image", c.distance, c.gain, c.standard_error, c.quality, c.yaw, c.hits);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace frontlux {
@@ -68,6 +69,9 @@ class RayCaster {
   /// @throws std::invalid_argument if the resolution differs from the one this caster was made with
   void update(const VoxelGrid& grid);
 
+  /// The map from which it answers at the moment; nothing of a caster that keeps no grid (OctoMap's).
+  [[nodiscard]] std::optional<VoxelGrid> grid() const { return do_grid(); }
+
   /// Bytes this caster holds beside the grid's own (acceleration structure; 0 for a caster without one).
   [[nodiscard]] virtual std::size_t memory_bytes() const { return 0; }
 
@@ -89,6 +93,7 @@ class RayCaster {
   virtual void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
                         UnknownPolicy unknown) const = 0;
   virtual void do_update(const VoxelGrid& grid) = 0;
+  [[nodiscard]] virtual std::optional<VoxelGrid> do_grid() const { return std::nullopt; }
 
   Lattice lattice_;
 };

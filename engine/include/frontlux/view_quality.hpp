@@ -17,6 +17,7 @@
 namespace frontlux {
 
 namespace detail {
+class PathTrees;
 class TargetIndex;
 class ViewReach;
 struct Viewpoint;
@@ -24,6 +25,13 @@ struct Viewpoint;
 
 /// How the view quality of a viewpoint is estimated.
 struct ViewQualityOptions {
+  /// How the visible are found.
+  enum class Renderer : std::uint8_t {
+    kRays,   ///< a ray to each of the targets that are drawn
+    kExact,  ///< every feasible target is looked at, for many viewpoints at once: the values of `kRays` with
+             ///< `kAll` and `Sampling::kFeasible`, many times sooner where viewpoints have neighbours.
+             ///< `samples`, `sampling`, `estimator` and `seed` mean nothing
+  };
   /// What the targets are drawn from.
   enum class Sampling : std::uint8_t {
     kFeasible,  ///< the targets that are in the field of view at some yaw; they are listed
@@ -38,6 +46,7 @@ struct ViewQualityOptions {
   /// For `samples`: never draw, always look at every target.
   static constexpr int kAll = std::numeric_limits<int>::max();
 
+  Renderer renderer = Renderer::kRays;
   int samples = 64;  ///< most targets drawn for a viewpoint; where there are no more, all are taken
   Sampling sampling = Sampling::kFeasible;
   Estimator estimator = Estimator::kUnbiased;
@@ -141,6 +150,7 @@ class ViewQualityImage {
   FieldOfView field_of_view_;
   ViewQualityOptions options_;
   std::shared_ptr<const detail::ViewReach> reach_;
+  std::shared_ptr<detail::PathTrees> trees_;
   std::shared_ptr<const detail::TargetIndex> targets_;
   std::vector<VoxelKey> viewpoints_;
   std::shared_ptr<const std::vector<detail::Viewpoint>> order_;  // the viewpoints, sorted by place

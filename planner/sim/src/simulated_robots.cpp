@@ -61,13 +61,14 @@ bool holds_surface(const GroundTruth& truth, const KeyBox& box) {
 
 SimulatedRobots::SimulatedRobots(const World& world, const GroundTruth& truth,
                                  std::vector<planner::RobotDescription> robots, const RangeErrors& errors,
-                                 std::uint64_t seed)
+                                 std::uint64_t seed, AtContact at_contact)
     : truth_(&truth),
       surface_(world.mesh),
       solids_(world.mesh),
       robots_(std::move(robots)),
       progress_(robots_.size()),
-      seed_(seed) {
+      seed_(seed),
+      at_contact_(at_contact) {
   for (const planner::RobotDescription& robot : robots_) sensors_.push_back(sensor_of(robot, errors));
 }
 
@@ -98,6 +99,11 @@ std::optional<planner::Scan> SimulatedRobots::drive(std::size_t robot, const pla
   Progress& now = progress_[robot];
   const Eigen::Vector3d from = now.pose ? now.pose->position : viewpoint.position;
   last_ = collisions_between(robots_[robot].robot.travel, from, viewpoint.position);
+  if (at_contact_ == AtContact::kStay && now.pose && last_.physical > 0) {
+    last_ = {};
+    ++held_back_;
+    return std::nullopt;
+  }
   now.collisions += last_;
   now.pose = viewpoint;
   const std::uint64_t errors = CounterRandom(CounterRandom(seed_, robot).bits(0), now.scans++).bits(0);

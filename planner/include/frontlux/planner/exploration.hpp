@@ -76,6 +76,7 @@ struct RobotStep {
   double length = 0.0;               ///< [m] that it travelled
   std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans made known
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
+  std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
   std::vector<VoxelKey> stubborn;    ///< in view of its viewpoints, and still unknown; sorted
 };
 
@@ -109,7 +110,8 @@ enum class ExplorationEnd : std::uint8_t {
 [[nodiscard]] std::string_view describe(ExplorationEnd end);
 
 /// Brings a robot's sensor straight from where it is to a viewpoint, and tells what the sensor measures
-/// there; nothing if the robot could not go. The one thing that a real or a simulated robot has to offer.
+/// there; nothing if the robot could not go, and is where it was. The one thing that a real or a simulated
+/// robot has to offer.
 using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& viewpoint)>;
 
 /// The paper's Alg. 1, step by step: a team of robots explores what the bounds of a map hold.

@@ -150,6 +150,10 @@ class GoalSelection {
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const VoxelGrid& grid,
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
 
+  /// From the next step on a robot does not go through these cells: see `TravelCorridor::close`.
+  /// @pre robot < team().size()
+  void close(std::size_t robot, std::span<const VoxelKey> cells);
+
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 
   /// Where a robot could go at the last step. @pre robot < team().size()

@@ -115,6 +115,10 @@ class TravelCorridor {
   /// @throws std::invalid_argument if the grid has another resolution
   void update(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
 
+  /// Takes these cells for impassable from the next update on, whatever the map says: something is there that
+  /// no sensor has shown.
+  void close(std::span<const VoxelKey> cells);
+
   /// If it is not `kReady`, there are no cells.
   [[nodiscard]] CorridorState state() const;
 

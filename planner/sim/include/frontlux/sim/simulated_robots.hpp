@@ -38,10 +38,16 @@ struct Collisions {
   friend constexpr bool operator==(const Collisions&, const Collisions&) = default;
 };
 
+/// What a robot does whose body is about to meet something.
+enum class AtContact : std::uint8_t {
+  kGoOn,  ///< it goes on, and the collision is counted
+  kStay,  ///< its bumper holds it back: it does not set out, and that is counted
+};
+
 /// Robots that go where they are told through a world that only they know. `drive` is what
 /// `planner::Exploration` asks for.
 ///
-/// A robot that collides is counted and goes on. Robots neither see nor touch each other, and that is not
+/// Robots neither see nor touch each other, and that is not
 /// counted. Thread safety: as a standard container.
 class SimulatedRobots {
  public:
@@ -50,11 +56,11 @@ class SimulatedRobots {
   /// @param seed   of the sensors' errors
   /// @throws std::invalid_argument if the mesh, a sensor or an error cannot be
   SimulatedRobots(const World& world, const GroundTruth& truth, std::vector<planner::RobotDescription> robots,
-                  const RangeErrors& errors, std::uint64_t seed);
+                  const RangeErrors& errors, std::uint64_t seed, AtContact at_contact = AtContact::kGoOn);
 
-  /// Moves a robot's sensor straight from where it is to a viewpoint, and tells what it measures there. The
-  /// first time the robot appears there. The errors depend on the seed, the robot, and how many scans it took
-  /// before, on nothing else.
+  /// Moves a robot's sensor straight from where it is to a viewpoint, and tells what it measures there;
+  /// nothing if its bumper holds it back. The first time the robot appears there. The errors depend on the
+  /// seed, the robot, and how many scans it took before, on nothing else.
   /// @throws std::invalid_argument if there is no such robot, or the viewpoint is not finite or outside the
   /// lattice's keys
   std::optional<planner::Scan> drive(std::size_t robot, const planner::Pose& viewpoint);
@@ -66,6 +72,8 @@ class SimulatedRobots {
   [[nodiscard]] const Collisions& of(std::size_t robot) const;
   /// Of all robots.
   [[nodiscard]] Collisions total() const;
+  /// How often a bumper has held a robot back.
+  [[nodiscard]] std::uint64_t held_back() const { return held_back_; }
 
  private:
   struct Progress {
@@ -85,6 +93,8 @@ class SimulatedRobots {
   std::vector<Sensor> sensors_;
   std::vector<Progress> progress_;
   std::uint64_t seed_;
+  AtContact at_contact_;
+  std::uint64_t held_back_ = 0;
   Collisions last_;
 };
 
