@@ -32,7 +32,7 @@ async function inflate(text) {
 }
 
 /** The cubes of voxels that a run touches, by number. */
-class ChunkTable {
+export class ChunkTable {
   constructor() {
     this.numbers = new Map();
     this.corners = new Pool(Int32Array); // x, y, z of each chunk's lowest voxel, as keys
