@@ -316,13 +316,16 @@ TEST_F(ReportTest, AsksNoHostForAnything) {
 }
 
 TEST_F(ReportTest, WrongCallsAndFilesAreRefused) {
-  Recording robotless;
+  Recording robotless = room(), stepless = room();
+  robotless.head.robots.clear();
+  stepless.steps.clear();
   Recording lacking = room();
   lacking.steps[1].known.pop_back();
   EXPECT_THROW(page_of({}), std::invalid_argument);
   EXPECT_THROW(page_of({{"none", nullptr}}), std::invalid_argument);
   EXPECT_THROW(page_of({{"robotless", &robotless}}), std::invalid_argument);
   EXPECT_THROW(page_of({{"lacking", &lacking}}), std::invalid_argument);
+  EXPECT_THROW(page_of({{"stepless", &stepless}}), std::invalid_argument);
   const std::vector<ReportedRun> runs = {{"room", &room()}};
   try {
     write_report(folder_ / "nowhere" / "report.html", runs, "1");

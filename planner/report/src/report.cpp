@@ -43,6 +43,7 @@ void check(std::span<const ReportedRun> runs) {
     if (run.recording == nullptr) throw std::invalid_argument(run.name + ": a run without a recording");
     const std::size_t robots = run.recording->head.robots.size();
     if (robots == 0) throw std::invalid_argument(run.name + ": a recording without robots");
+    if (run.recording->steps.empty()) throw std::invalid_argument(run.name + ": a recording without steps");
     for (const planner::RecordedStep& step : run.recording->steps)
       if (step.step.robots.size() != robots || step.known.size() != robots)
         throw std::invalid_argument(run.name + ": step " + std::to_string(step.step.number) + " tells of " +

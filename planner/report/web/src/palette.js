@@ -16,8 +16,8 @@ export const PHASES = {
 };
 
 export const SCENE = {
-  light: { background: "#eef1f5", frontier: "#c2187a", shade: 1.0, grid: "#b9c0ca", ink: "#1c2530", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] },
-  dark: { background: "#10141a", frontier: "#ff6fb5", shade: 0.92, grid: "#2c3541", ink: "#e8edf3", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] },
+  light: { background: "#eef1f5", frontier: "#c2187a", shade: 1.0, ink: "#1c2530", wall: "#e4e8ee", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] },
+  dark: { background: "#10141a", frontier: "#ff6fb5", shade: 0.92, ink: "#e8edf3", wall: "#4a5563", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] },
 };
 
 /** From dark violet (0) over teal to light yellow (1), as `frontlux render` draws view quality: [r, g, b], 0 to 255. */

@@ -110,7 +110,12 @@ export class VoxelView {
   setColors(theme, byOwner) {
     const scene = SCENE[theme], { uniforms } = this.facesMaterial;
     scene.heights.forEach((color, i) => setVector(uniforms.heights.value[i], color));
-    for (let i = 1; i < 16; ++i) setVector(uniforms.owners.value[i], robotColor(i - 1, theme));
+    // Paler than the robots themselves, so that their ways stand out.
+    setVector(wall, scene.wall);
+    for (let i = 1; i < 16; ++i) {
+      setVector(uniforms.owners.value[i], robotColor(i - 1, theme));
+      uniforms.owners.value[i].lerp(wall, 0.5);
+    }
     uniforms.shade.value = scene.shade;
     uniforms.by_owner.value = byOwner;
     setVector(this.pointsMaterial.uniforms.tint.value, scene.frontier);
@@ -145,7 +150,7 @@ function makeIndex(faces) {
   return new BufferAttribute(index, 1);
 }
 
-const color = new Color();
+const color = new Color(), wall = new Vector3();
 /** As the screen shows it, not as light adds up. */
 function setVector(vector, css) {
   color.set(css).convertLinearToSRGB();

@@ -19,7 +19,7 @@ struct ReportedRun {
 /// bytes.
 /// @param runs     at least one; the first is the one that the others are compared with
 /// @param version  of the program that writes it, for people
-/// @throws std::invalid_argument if there is no run, or a recording has no robots, or a step without one
+/// @throws std::invalid_argument if there is no run, or a recording has no robots or steps
 /// @throws std::runtime_error naming the file, if it cannot be written
 void write_report(const std::filesystem::path& file, std::span<const ReportedRun> runs,
                   const std::string& version);
