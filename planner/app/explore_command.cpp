@@ -99,6 +99,10 @@ void add_explore_command(CLI::App& app) {
       "NAME");
   add("--planner", options.search,
       "corridor (shortest paths), rrt, rrt-connect or rrt-star; by the mode if not given", "NAME");
+  add("--renderer", options.renderer,
+      "How view quality is rendered: exact (all frontiers), or rays (to drawn ones); by the mode if not "
+      "given",
+      "NAME");
   add("--distribute", options.distribute, "Give each frontier to one robot (on), or to all that see it (off)",
       "ON|OFF");
   add("--optimize", options.optimize,

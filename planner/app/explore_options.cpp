@@ -25,6 +25,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("mode", options.mode);
   visit("goal", options.goal);
   visit("planner", options.search);
+  visit("renderer", options.renderer);
   visit("distribute", options.distribute);
   visit("optimize", options.optimize);
   visit("caster", options.caster);

@@ -11,6 +11,7 @@
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
+#include <frontlux/report/report.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
 #include <tbb/task_arena.h>
@@ -263,6 +264,12 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       going.exploration().mapping().write(run.folder / "map.ot");
       going.exploration().mapping().write(run.folder / "map.bt");
       write_run_json(run, options, setup, going.files(), end, seconds());
+      if (run.report) {
+        const Recording whole = planner::read_recording(file);
+        const report::ReportedRun reported{
+            fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole};
+        report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
+      }
       print_summary(run, setup, going.files(),
                     reason ? end + ": " + std::string(planner::describe(*reason)) : end, seconds());
     } catch (const BadInput&) {

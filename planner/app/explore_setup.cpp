@@ -152,6 +152,10 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                             {{"render", planner::GoalRule::kViewQuality},
                                              {"cluster", planner::GoalRule::kClusters},
                                              {"nearest", planner::GoalRule::kNearest}});
+    if (!options.renderer.empty())
+      goal.rendering.renderer = chosen<ViewQualityOptions::Renderer>(
+          "--renderer", options.renderer,
+          {{"exact", ViewQualityOptions::Renderer::kExact}, {"rays", ViewQualityOptions::Renderer::kRays}});
     if (!options.lambda.empty()) goal.lambda = parse_number("--lambda", options.lambda);
     if (!options.advance.empty()) goal.advance = parse_number("--advance", options.advance);
     if (!options.min_distance.empty())

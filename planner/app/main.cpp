@@ -6,6 +6,7 @@
 #include "map_command.hpp"
 #include "plan_command.hpp"
 #include "render_command.hpp"
+#include "report_command.hpp"
 #include "scan_command.hpp"
 #include "world_command.hpp"
 
@@ -72,6 +73,7 @@ int run(int argc, const char* const* argv) {
   frontlux::app::add_plan_command(app);
   frontlux::app::add_render_command(app);
   frontlux::app::add_explore_command(app);
+  frontlux::app::add_report_command(app);
   try {
     auto words = words_of(argc, argv);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them

@@ -45,9 +45,17 @@ GoalOptions goal_options(const Robot& robot, Method method) {
     options.rule = on_plane ? GoalRule::kViewQuality : GoalRule::kClusters;
     options.rendering.estimator = ViewQualityOptions::Estimator::kPaper;
     options.refined = on_plane ? 0 : 4096;  // all cells that see a frontier
-  } else if (!on_plane) {
-    options.rendering.sampling = ViewQualityOptions::Sampling::kBuckets;
-    options.viewpoint_spacing = 0.6;
+  } else {
+    options.advance = 4.0;
+    if (on_plane) {
+      options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
+    } else {
+      // In space there are so many pairs that drawing some, and counting the best cells, is sooner done.
+      options.rendering.sampling = ViewQualityOptions::Sampling::kBuckets;
+      options.viewpoint_spacing = 0.6;
+      options.rendering.samples = 32;
+      options.refined = 64;
+    }
   }
   return options;
 }

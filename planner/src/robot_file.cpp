@@ -202,6 +202,17 @@ void read_sensor(const std::filesystem::path& file, const json& object, RobotDes
   members.expect_no_more();
 }
 
+void read_ground(Members& members, TravelOptions& travel) {
+  const json* ground = members.find("ground_m");
+  if (ground == nullptr) return;
+  if (!ground->is_array() || ground->size() != 2)
+    members.refuse("ground_m", "is " + Members::shown(*ground), "give two numbers in metres, along x and y");
+  travel.ground_extents.emplace();
+  for (std::size_t i = 0; i < 2; ++i)
+    (*travel.ground_extents)[static_cast<Eigen::Index>(i)] =
+        members.number("ground_m", (*ground)[i], "m along each axis", kBox);
+}
+
 void read_travel(Members& members, TravelOptions& travel) {
   const std::string motions = "\"plane\" or \"space\"";
   const std::string motion = members.text("motion", motions);
@@ -220,8 +231,9 @@ void read_travel(Members& members, TravelOptions& travel) {
     members.not_here({"min_height_m", "node_edge_m"}, "is for a robot with the motion \"space\"");
     travel.sensor_height = members.number("mount_height_m", "m", kHeight);
     travel.require_ground = members.flag("require_ground", travel.require_ground);
+    read_ground(members, travel);
   } else {
-    members.not_here({"mount_height_m", "require_ground"}, "is for a robot with the motion \"plane\"");
+    members.not_here({"mount_height_m", "require_ground", "ground_m"}, "is for a robot with the motion \"plane\"");
     travel.min_height = members.number("min_height_m", "m", kHeight, travel.min_height);
     if (members.find("node_edge_m") != nullptr)
       travel.node_edge = members.number("node_edge_m", "m", {travel.extents.maxCoeff(), kBox.high});

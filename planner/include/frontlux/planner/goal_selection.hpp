@@ -59,7 +59,8 @@ struct GoalOptions {
   void check() const;
 };
 
-/// View quality for all robots, drawn from buckets and at every second voxel for those in space; or as
+/// View quality for all robots: counted exactly on a plane; drawn from buckets, at every second voxel, and
+/// counted for the best, in space. Or as
 /// printed, for robots on a plane by hits among the drawn frontiers and for those in space by clusters.
 [[nodiscard]] GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 

@@ -1,0 +1,90 @@
+#include "compression.hpp"
+#include "page.hpp"
+#include "run_data.hpp"
+#include "run_facts.hpp"
+#include "whole_file.hpp"
+
+#include <frontlux/report/report.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace frontlux::report {
+namespace {
+
+// As text between tags.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+void check(std::span<const ReportedRun> runs) {
+  if (runs.empty()) throw std::invalid_argument("a report needs a run, but there is none");
+  for (const ReportedRun& run : runs) {
+    if (run.recording == nullptr) throw std::invalid_argument(run.name + ": a run without a recording");
+    const std::size_t robots = run.recording->head.robots.size();
+    if (robots == 0) throw std::invalid_argument(run.name + ": a recording without robots");
+    if (run.recording->steps.empty()) throw std::invalid_argument(run.name + ": a recording without steps");
+    for (const planner::RecordedStep& step : run.recording->steps)
+      if (step.step.robots.size() != robots || step.known.size() != robots)
+        throw std::invalid_argument(run.name + ": step " + std::to_string(step.step.number) + " tells of " +
+                                    std::to_string(step.step.robots.size()) + " robots instead of " +
+                                    std::to_string(robots));
+  }
+}
+
+// The facts and the data of a run: the length of the facts in four bytes, the lowest first, and both.
+std::string packed(const ReportedRun& run, const std::string& version) {
+  const std::string facts = detail::run_facts(run, version);
+  std::string bytes;
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    bytes += static_cast<char>(static_cast<std::uint8_t>(facts.size() >> shift));
+  bytes.append(facts).append(detail::run_data(*run.recording));
+  return detail::base64(detail::compressed(bytes));
+}
+
+std::string title_of(std::span<const ReportedRun> runs) {
+  std::string title;
+  for (const ReportedRun& run : runs) title.append(title.empty() ? "" : ", ").append(run.name);
+  return escaped(title + " - frontlux");
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& file, std::span<const ReportedRun> runs,
+                  const std::string& version) {
+  check(runs);
+  const std::string_view page = detail::page();
+  const std::size_t title = page.find(detail::kTitleMark), data = page.find(detail::kRunsMark);
+  if (title == std::string_view::npos || data == std::string_view::npos || data < title)
+    throw std::logic_error("the page that is built in lacks its marks");
+  planner::detail::write_whole_file(file, [&](std::ostream& out) {
+    out << page.substr(0, title) << title_of(runs);
+    const std::size_t after = title + detail::kTitleMark.size();
+    out << page.substr(after, data - after);
+    for (const ReportedRun& run : runs)
+      out << "<script type=\"text/plain\" class=\"run\">" << packed(run, version) << "</script>\n";
+    out << page.substr(data + detail::kRunsMark.size());
+  });
+}
+
+}  // namespace frontlux::report

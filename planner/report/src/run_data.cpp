@@ -1,0 +1,110 @@
+#include "run_data.hpp"
+
+#include "byte_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace frontlux::report::detail {
+namespace {
+
+constexpr unsigned kChunkBits = 5;
+constexpr unsigned kInChunk = (1U << kChunkBits) - 1;
+
+// A changed voxel by where the page keeps it.
+struct Placed {
+  std::uint64_t chunk;  // x, y, z of 16 bits each
+  std::uint32_t local;
+  Occupancy state;
+};
+
+void write_changes(ByteWriter& out, std::span<const planner::VoxelChange> changes) {
+  std::vector<Placed> placed;
+  placed.reserve(changes.size());
+  for (const auto& [key, before, after] : changes) {
+    const std::uint64_t chunk = std::uint64_t{key.x} >> kChunkBits << 32U |
+                                std::uint64_t{key.y} >> kChunkBits << 16U |
+                                std::uint64_t{key.z} >> kChunkBits;
+    const std::uint32_t local =
+        (key.x & kInChunk) | (key.y & kInChunk) << kChunkBits | (key.z & kInChunk) << 2 * kChunkBits;
+    placed.push_back({chunk, local, after});
+  }
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return std::tie(a.chunk, a.local) < std::tie(b.chunk, b.local);
+  });
+  std::size_t chunks = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (i == 0 || placed[i].chunk != placed[i - 1].chunk) ++chunks;
+  out.count(chunks);
+  for (std::size_t begin = 0, end = 0; begin < placed.size(); begin = end) {
+    const std::uint64_t chunk = placed[begin].chunk;
+    while (end < placed.size() && placed[end].chunk == chunk) ++end;
+    out.count(chunk >> 32U);
+    out.count(chunk >> 16U & 0xFFFFU);
+    out.count(chunk & 0xFFFFU);
+    out.count(end - begin);
+    std::uint32_t last = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      out.count(std::uint64_t{placed[i].local - last} << 2U | static_cast<unsigned>(placed[i].state));
+      last = placed[i].local;
+    }
+  }
+}
+
+std::uint8_t byte_of(double share) {
+  return static_cast<std::uint8_t>(share > 0.0 ? std::lround(255.0 * std::min(share, 1.0)) : 0);
+}
+
+void write_image(ByteWriter& out, std::vector<planner::RenderedCell> cells) {
+  out.count(cells.size());
+  if (cells.empty()) return;
+  std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.cell.z, a.cell.y, a.cell.x) < std::tie(b.cell.z, b.cell.y, b.cell.x);
+  });
+  double gain = 0.0, quality = 0.0;
+  for (const planner::RenderedCell& cell : cells) {
+    gain = std::max(gain, cell.gain);
+    quality = std::max(quality, cell.quality);
+  }
+  out.f32(gain);
+  out.f32(quality);
+  for (const auto axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
+    int last = 0;
+    for (const planner::RenderedCell& cell : cells) {
+      out.difference(cell.cell.*axis - last);
+      last = cell.cell.*axis;
+    }
+  }
+  for (const planner::RenderedCell& cell : cells) out.u8(byte_of(gain > 0.0 ? cell.gain / gain : 0.0));
+  for (const planner::RenderedCell& cell : cells)
+    out.u8(byte_of(quality > 0.0 ? std::sqrt(cell.quality / quality) : 0.0));
+}
+
+void write_path(ByteWriter& out, const planner::RobotStep& robot) {
+  out.count(robot.planned.size());
+  out.count(std::min(robot.travelled, robot.planned.size()));
+  for (const planner::Pose& pose : robot.planned) {
+    for (const double coordinate : pose.position) out.f32(coordinate);
+    out.f32(pose.yaw);
+  }
+}
+
+}  // namespace
+
+std::string run_data(const planner::Recording& recording) {
+  ByteWriter out;
+  for (const planner::RecordedStep& step : recording.steps)
+    for (const planner::RobotStep& robot : step.step.robots) {
+      write_changes(out, robot.changed);
+      write_image(out, robot.image);
+      write_path(out, robot);
+    }
+  return out.bytes();
+}
+
+}  // namespace frontlux::report::detail

@@ -1,0 +1,29 @@
+/**
+ * Makes an element. `text` is text, whatever it holds; `on` names listeners; the rest are attributes, left out
+ * where they are false or undefined.
+ */
+export function el(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name === "text") element.textContent = value;
+    else if (name === "on") for (const [event, listener] of Object.entries(value)) element.addEventListener(event, listener);
+    else if (value !== false && value !== undefined) element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** A coloured mark of a legend; the colour is set as a property, which no policy forbids. */
+export function swatch(color, kind = "") {
+  const mark = el("span", { class: `swatch ${kind}`, "aria-hidden": "true" });
+  mark.style.background = color;
+  return mark;
+}
+
+/** A table with a caption, a row of heads, and rows whose first cell is a head. */
+export function table(caption, heads, rows) {
+  return el("div", { class: "table-scroll" }, el("table", {},
+    el("caption", { text: caption }),
+    heads.length > 0 ? el("thead", {}, el("tr", {}, ...heads.map((text) => el("th", { scope: "col", text })))) : null,
+    el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((cell, i) => el(i === 0 ? "th" : "td", { scope: i === 0 ? "row" : undefined, text: String(cell) })))))));
+}

@@ -1,0 +1,82 @@
+import { DataTexture, Mesh, MeshBasicMaterial, NearestFilter, PlaneGeometry, SRGBColorSpace, DoubleSide } from "three";
+import { shareColor } from "./palette.js";
+
+const ORIGIN = 32768;
+const MOST = 4096; // texels along an edge
+
+/** The view quality of a robot on a plane: the cells rendered for its goal, painted on the floor. */
+export class ImageView {
+  constructor(run, robot) {
+    this.run = run;
+    this.robot = robot;
+    this.colors = Array.from({ length: 256 }, (_, i) => shareColor(i / 255));
+    this.box = boxOf(run, robot);
+    this.shown = undefined; // step
+    if (!this.box) return;
+    const { facts } = run, { low, columns, rows } = this.box;
+    this.texels = new Uint8Array(4 * columns * rows);
+    this.texture = new DataTexture(this.texels, columns, rows);
+    this.texture.magFilter = this.texture.minFilter = NearestFilter;
+    this.texture.colorSpace = SRGBColorSpace;
+    this.material = new MeshBasicMaterial({ map: this.texture, transparent: true, side: DoubleSide, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
+    this.mesh = new Mesh(new PlaneGeometry(1, 1), this.material);
+    const size = facts.resolution;
+    this.mesh.scale.set(columns * size, rows * size, 1);
+    this.mesh.position.set((low[0] - ORIGIN + columns / 2) * size, (low[1] - ORIGIN + rows / 2) * size, 0);
+    this.mesh.renderOrder = 1;
+  }
+
+  /** Shows the image of a step; nothing if it has none. */
+  show(step) {
+    if (!this.box || this.shown === step) return;
+    this.shown = step;
+    const image = step < 0 ? null : this.run.images[step * this.run.robots + this.robot];
+    this.mesh.visible = image !== null;
+    if (!image) return;
+    const { low, columns } = this.box;
+    this.texels.fill(0);
+    for (let i = 0; i < image.count; ++i) {
+      const at = 4 * (image.x[i] - low[0] + columns * (image.y[i] - low[1])), color = this.colors[image.quality[i]];
+      for (let k = 0; k < 3; ++k) this.texels[at + k] = color[k];
+      this.texels[at + 3] = 70 + 0.72 * image.quality[i]; // what is worth nothing does not hide the floor
+    }
+    this.texture.needsUpdate = true;
+    this.mesh.position.z = this.floor(image.z[0]) + 0.04;
+  }
+
+  /** Height of the floor [m] below a cell of the sensor's layer. */
+  floor(key) {
+    const { resolution, robots } = this.run.facts;
+    return (key - ORIGIN - Math.floor(robots[this.robot].sensor_height / resolution + 1e-9)) * resolution;
+  }
+
+  /** Number of the cell at a column of voxels in the image that is shown; -1 if there is none. */
+  cellAt(x, y) {
+    const image = this.shown >= 0 ? this.run.images[this.shown * this.run.robots + this.robot] : null;
+    if (!image) return -1;
+    for (let i = 0; i < image.count; ++i) if (image.x[i] === x && image.y[i] === y) return i;
+    return -1;
+  }
+
+  dispose() {
+    this.texture?.dispose();
+    this.material?.dispose();
+    this.mesh?.geometry.dispose();
+  }
+}
+
+/** The columns of voxels that any of a robot's images covers. */
+function boxOf(run, robot) {
+  const low = [65535, 65535], high = [-1, -1];
+  for (let s = 0; s < run.steps; ++s) {
+    const image = run.images[s * run.robots + robot];
+    if (!image) continue;
+    for (const [k, keys] of [image.x, image.y].entries())
+      for (let i = 0; i < image.count; ++i) {
+        if (keys[i] < low[k]) low[k] = keys[i];
+        if (keys[i] > high[k]) high[k] = keys[i];
+      }
+  }
+  const columns = high[0] - low[0] + 1, rows = high[1] - low[1] + 1;
+  return high[0] < 0 || columns > MOST || rows > MOST ? null : { low, columns, rows };
+}

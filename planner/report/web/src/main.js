@@ -1,0 +1,182 @@
+import { Charts } from "./charts.js";
+import { el } from "./dom.js";
+import { comparison, details, glossary, header, stepTable, teamName } from "./facts_view.js";
+import { addKeys } from "./keys.js";
+import { describe, pick } from "./picking.js";
+import { readRun } from "./run_data.js";
+import { numbersOf, percent } from "./run_numbers.js";
+import { NoWebGL, ReplayScene } from "./scene.js";
+import { makeTimeControls } from "./time_controls.js";
+import { Timeline } from "./timeline.js";
+import { makeToolbar } from "./toolbar.js";
+
+const root = document.documentElement;
+const dark = matchMedia("(prefers-color-scheme: dark)");
+
+function themeNow() {
+  return root.dataset.theme ?? (dark.matches ? "dark" : "light");
+}
+
+/** The whole page. */
+class Page {
+  constructor(runs) {
+    this.runs = runs;
+    this.shown = 0;
+    this.timeline = new Timeline(this.run.steps);
+    this.build();
+    this.timeline.addEventListener("change", ({ detail }) => this.show(detail));
+    dark.addEventListener("change", () => this.setTheme());
+    addKeys(this);
+    this.select(0);
+    addEventListener("resize", () => this.fit());
+  }
+
+  get run() {
+    return this.runs[this.shown];
+  }
+
+  build() {
+    const { runs } = this, written = runs[0].facts.written_by;
+    this.view = el("div", { class: "view", id: "view" });
+    this.told = el("div", { class: "picked", id: "picked", role: "status", hidden: true });
+    this.controls = makeTimeControls(this.timeline, () => this.run);
+    this.chartHost = el("div", { class: "charts", id: "charts" });
+    this.details = el("section", { class: "details", "aria-label": "Facts" });
+    this.stage = el("section", { class: "stage", "aria-label": "Replay" }, this.view, this.controls.bar);
+    this.makeScene();
+    const choose = runs.length > 1 ? el("label", { class: "field" }, el("span", { text: "Replay" }), el("select", { id: "run", on: { change: (event) => this.select(Number(event.target.value)) } }, ...runs.map((run, i) => el("option", { value: i, text: run.name })))) : null;
+    this.themeButton = el("button", { type: "button", id: "theme", on: { click: () => this.switchTheme() } });
+    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Every step as a table" }), el("div", { class: "body" }));
+    document.getElementById("app").replaceChildren(
+      el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs, written)),
+      runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, comparison(runs)) : null,
+      el("div", { class: "main" }, this.stage, el("section", { "aria-label": "Charts" }, this.chartHost)),
+      this.details, this.steps,
+      el("details", { class: "fold" }, el("summary", { text: "Words used here" }), glossary()),
+      el("details", { class: "fold" }, el("summary", { text: "Mouse and keys" }), keyTable()));
+    for (const child of [...document.getElementById("app").childNodes]) if (child.nodeType === Node.TEXT_NODE) child.remove();
+  }
+
+  /** The stage fills what the header leaves of the window, and all of it once that is scrolled away. */
+  fit() {
+    const top = this.stage.parentElement.offsetTop;
+    root.style.setProperty("--head", `${Math.min(top, innerHeight / 3)}px`);
+  }
+
+  makeScene() {
+    try {
+      this.scene = new ReplayScene(this.view);
+    } catch (error) {
+      if (!(error instanceof NoWebGL)) throw error;
+      this.scene = null;
+      this.view.append(el("div", { class: "no-webgl", id: "no-webgl", role: "note" }, el("strong", { text: "The replay in 3-D needs WebGL 2, which this browser does not offer here." }), el("p", { text: "Switch on hardware acceleration, or open this file in another browser. Time line, charts and tables work as they are." })));
+      return;
+    }
+    const { canvas } = this.scene;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-label", "Map in 3-D. Drag to turn, right-drag to move, wheel to zoom; with keys W A S D, Q E, R F, plus and minus. The table of steps below holds the same run in numbers.");
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.tell([["The graphics were lost", "reload the page to see the map again"]]);
+    });
+    canvas.addEventListener("pointerdown", (event) => (this.pressed = [event.clientX, event.clientY]));
+    canvas.addEventListener("click", (event) => {
+      const [x, y] = this.pressed ?? [0, 0];
+      if (Math.hypot(event.clientX - x, event.clientY - y) < 4) this.pickAt(event.offsetX, event.offsetY);
+    });
+    this.view.append(this.told);
+  }
+
+  /** Replays another run. */
+  select(i) {
+    this.shown = i;
+    this.fit();
+    const { run } = this, theme = themeNow();
+    this.toolbar?.bar.remove();
+    this.toolbar?.key.remove();
+    if (this.scene) {
+      this.scene.theme = theme;
+      this.scene.load(run);
+      this.toolbar = makeToolbar(this.scene, run.facts);
+      this.stage.prepend(this.toolbar.bar);
+      this.view.append(this.toolbar.key);
+    }
+    this.details.replaceChildren(...details(run, run.facts.written_by));
+    this.steps.open = false;
+    this.steps.lastElementChild.replaceChildren();
+    this.charts ??= new Charts(this.chartHost, this.timeline);
+    this.charts.load(this.runs, i, theme);
+    this.timeline.reset(run.steps);
+    this.setTheme();
+  }
+
+  show(position) {
+    this.scene?.show(position);
+    this.charts.mark(position.step);
+    if (this.tells !== position.step) this.tell(null);
+    this.tells = position.step;
+  }
+
+  fillSteps() {
+    const body = this.steps.lastElementChild;
+    if (this.steps.open && body.childElementCount === 0) body.append(stepTable(this.run));
+  }
+
+  switchTheme() {
+    root.dataset.theme = themeNow() === "dark" ? "light" : "dark";
+    this.setTheme();
+  }
+
+  setTheme() {
+    const theme = themeNow();
+    this.themeButton.textContent = theme === "dark" ? "Light" : "Dark";
+    this.themeButton.setAttribute("aria-label", `Switch to ${theme === "dark" ? "light" : "dark"} colours`);
+    if (this.scene && this.scene.theme !== theme) this.scene.setTheme(theme);
+    this.toolbar?.drawKey();
+    if (this.charts.theme !== theme) this.charts.build(theme);
+  }
+
+  /** At a place of the view, in its pixels. */
+  pickAt(x, y) {
+    const { clientWidth: width, clientHeight: height } = this.view;
+    const hit = pick(this.scene, (2 * x) / width - 1, 1 - (2 * y) / height);
+    this.tell(hit && describe(this.scene, hit));
+    return hit;
+  }
+
+  tell(rows) {
+    this.told.hidden = !rows;
+    this.told.replaceChildren(...(rows ?? []).map(([name, value]) => el("div", {}, el("span", { class: "note", text: name }), el("span", { text: value }))));
+  }
+}
+
+function keyTable() {
+  const keys = [
+    ["Space", "play, pause"], ["← →", "one step back, on"], ["Home End", "first, last step"], ["1 to 8", "layers on and off"],
+    ["H T", "whole map, from the top"], ["F", "follow the next robot"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "closer, further"],
+    ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click to read a voxel, viewpoint or place"],
+  ];
+  return el("dl", { class: "words" }, ...keys.flatMap(([key, meaning]) => [el("dt", { text: key }), el("dd", { text: meaning })]));
+}
+
+async function start() {
+  const sources = [...document.querySelectorAll("script.run")];
+  const runs = [];
+  for (const source of sources) {
+    const run = await readRun(source.textContent);
+    source.remove();
+    runs.push(Object.assign(run, { name: run.facts.name, numbers: numbersOf(run.facts) }));
+  }
+  return new Page(runs);
+}
+
+window.frontlux = { ready: false };
+start().then(
+  (page) => Object.assign(window.frontlux, { page, ready: true, team: teamName, percent }),
+  (error) => {
+    window.frontlux.error = String(error);
+    document.getElementById("app").replaceChildren(el("p", { class: "warning", text: `This report cannot be shown: ${error.message}. Make it again with frontlux report, or open it in a newer browser.` }));
+    throw error;
+  },
+);

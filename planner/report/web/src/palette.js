@@ -1,0 +1,51 @@
+/** Colours that people tell apart whatever colours they see: hues of Okabe and Ito, and scales that get lighter evenly. */
+
+const ROBOTS = {
+  light: ["#d55e00", "#0072b2", "#009e73", "#aa4499", "#8a6d00", "#3d5a80", "#7a3b00", "#005f5f"],
+  dark: ["#ff9340", "#56b4e9", "#2fd0a0", "#e08fd0", "#e8d44d", "#9fb8e0", "#d9a679", "#7fd6d6"],
+};
+export const DASHES = [[], [9, 4], [3, 3], [9, 3, 2, 3], [14, 5], [2, 5]];
+
+export function robotColor(r, theme) {
+  return ROBOTS[theme][r % ROBOTS[theme].length];
+}
+
+export const PHASES = {
+  light: ["#4477aa", "#88ccee", "#117733", "#ddaa33", "#aa3377", "#bbbbbb"],
+  dark: ["#6699cc", "#99ddff", "#44aa77", "#eecc66", "#dd77aa", "#888888"],
+};
+
+export const SCENE = {
+  light: { background: "#eef1f5", frontier: "#c2187a", shade: 1.0, ink: "#1c2530", wall: "#e4e8ee", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] },
+  dark: { background: "#10141a", frontier: "#ff6fb5", shade: 0.92, ink: "#e8edf3", wall: "#4a5563", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] },
+};
+
+/** From dark violet (0) over teal to light yellow (1), as `frontlux render` draws view quality: [r, g, b], 0 to 255. */
+export function shareColor(share) {
+  const t = Math.min(Math.max(share, 0), 1);
+  const lightness = 0.28 + 0.64 * t, hue = ((302 - 197 * t) * Math.PI) / 180;
+  const chroma = t < 0.5 ? 0.15 - 0.1 * t : 0.1 + 0.16 * (t - 0.5);
+  const a = chroma * Math.cos(hue), b = chroma * Math.sin(hue);
+  const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;
+  const m = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const s = (lightness - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  return [
+    encoded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+    encoded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+    encoded(-0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s),
+  ];
+}
+
+function encoded(linear) {
+  const c = Math.min(Math.max(linear, 0), 1);
+  return Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
+}
+
+/** A CSS gradient of the scale, or of the heights' colours. */
+export function scaleGradient(colors) {
+  return `linear-gradient(to right, ${colors.join(", ")})`;
+}
+
+export function shareStops() {
+  return Array.from({ length: 9 }, (_, i) => `rgb(${shareColor(i / 8).join(",")})`);
+}

@@ -1,0 +1,99 @@
+import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import { FREE, OCCUPIED, UNKNOWN } from "./run_data.js";
+
+const ORIGIN = 32768;
+const FAR = 4000; // voxels looked at along a ray
+const raycaster = new Raycaster();
+const point = new Vector3();
+
+/** What is under a place of the view, given from -1 to 1 along both axes: the nearest of what is shown. */
+export function pick(scene, x, y) {
+  raycaster.setFromCamera(new Vector2(x, y), scene.camera);
+  const { ray } = raycaster, found = [];
+  if (scene.layers.voxels || scene.layers.frontiers) found.push(pickVoxel(scene, ray));
+  if (scene.layers.planned) found.push(...scene.robots.map((robot) => pickViewpoint(scene, robot, ray)));
+  if (scene.layers.quality) found.push(...scene.images.map((image) => pickCell(image, ray)));
+  return found.filter(Boolean).sort((a, b) => a.distance - b.distance)[0] ?? null;
+}
+
+/** Goes from voxel to voxel along the ray until one is drawn. */
+function pickVoxel(scene, ray) {
+  const { store, voxels } = scene, size = voxels.resolution, { mesher } = voxels;
+  const origin = ray.origin.toArray().map((k) => k / size + ORIGIN), direction = ray.direction.toArray();
+  const key = origin.map(Math.floor), way = direction.map(Math.sign);
+  const next = direction.map((d, k) => (d === 0 ? Infinity : (key[k] + (d > 0 ? 1 : 0) - origin[k]) / d));
+  const each = direction.map((d) => (d === 0 ? Infinity : Math.abs(1 / d)));
+  let last = UNKNOWN, entered = 0;
+  for (let steps = 0; steps < FAR; ++steps) {
+    const shown = key[2] < mesher.cut, voxel = shown ? store.at(...key) : FREE, state = voxel & 3;
+    const seen = last === FREE || (mesher.closed && last === UNKNOWN);
+    if (state === OCCUPIED && seen && scene.layers.voxels) return { kind: "voxel", key: [...key], voxel, distance: entered * size };
+    if (state === UNKNOWN && shown && scene.layers.frontiers && nearMiddle(origin, direction, key) && isFrontier(scene, key))
+      return { kind: "frontier", key: [...key], voxel, distance: entered * size };
+    last = state;
+    const axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : next[1] < next[2] ? 1 : 2;
+    entered = next[axis];
+    next[axis] += each[axis];
+    key[axis] += way[axis];
+  }
+  return null;
+}
+
+/** Frontiers are drawn as dots: the ray has to pass within 0.4 voxels of the middle. */
+function nearMiddle(origin, direction, key) {
+  const to = key.map((k, i) => k + 0.5 - origin[i]);
+  const along = to.reduce((sum, k, i) => sum + k * direction[i], 0);
+  return to.reduce((sum, k) => sum + k * k, 0) - along * along < 0.16;
+}
+
+function isFrontier(scene, [x, y, z]) {
+  const [low, high] = scene.run.facts.bounds;
+  if ([x, y, z].some((k, i) => k < low[i] || k > high[i])) return false;
+  return [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]].some(([dx, dy, dz]) => (scene.store.at(x + dx, y + dy, z + dz) & 3) === FREE);
+}
+
+function pickViewpoint(scene, robot, ray) {
+  const hit = robot.pickViewpoint(ray, 0.3);
+  return hit && { kind: "viewpoint", robot: robot.r, i: hit.i, distance: hit.distance - 0.3 };
+}
+
+function pickCell(image, ray) {
+  if (!image.mesh?.visible) return null;
+  const z = image.mesh.position.z, size = image.run.facts.resolution;
+  if (!ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -z), point)) return null;
+  const i = image.cellAt(Math.floor(point.x / size) + ORIGIN, Math.floor(point.y / size) + ORIGIN);
+  return i < 0 ? null : { kind: "cell", robot: image.robot, i, distance: point.distanceTo(ray.origin) - 0.05 };
+}
+
+/** What was picked, in words: [name, value] pairs. */
+export function describe(scene, hit) {
+  const { run, store } = scene, { facts } = run, size = facts.resolution;
+  const metres = (key) => key.map((k) => ((k - ORIGIN + 0.5) * size).toFixed(2)).join(", ") + " m";
+  if (hit.kind === "voxel" || hit.kind === "frontier") {
+    const rows = [[hit.kind === "voxel" ? "Occupied voxel" : "Frontier", metres(hit.key)], ["Key", hit.key.join(", ")]];
+    if (hit.kind === "voxel") {
+      const owner = (hit.voxel >> 2) - 1, since = store.since(...hit.key);
+      rows.push(["First known by", facts.robots[owner]?.name ?? "?"]);
+      if (since >= 0) rows.push(["Occupied since", `step ${facts.steps[since].number}`]);
+    }
+    return rows;
+  }
+  const name = facts.robots[hit.robot].name, step = scene.position.step;
+  if (hit.kind === "cell") {
+    const image = run.images[step * run.robots + hit.robot];
+    return [
+      ["Place on the floor", `${metres([image.x[hit.i], image.y[hit.i]])} (x, y), ${name}`],
+      ["View quality", ((image.quality[hit.i] / 255) ** 2 * image.qualityMost).toFixed(1)],
+      ["Expected gain", `${((image.gain[hit.i] / 255) * image.gainMost).toFixed(0)} frontiers`],
+    ];
+  }
+  const path = run.paths[step * run.robots + hit.robot], at = path.begin + 4 * hit.i, [x, y, z, yaw] = run.poses.subarray(at, at + 4);
+  const told = facts.steps[step].robots[hit.robot];
+  return [
+    ["Viewpoint", `${hit.i + 1} of ${path.count}, ${name}, step ${facts.steps[step].number}`],
+    ["Place", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`],
+    ["Looks towards", `${((yaw * 180) / Math.PI).toFixed(1)}°`],
+    ["Path's gain", `${told.gain_predicted} frontiers predicted, ${told.gained} gained`],
+    ["Travelled", hit.i < path.travelled ? "yes" : "not reached"],
+  ];
+}

@@ -1,0 +1,143 @@
+import { ByteReader } from "./byte_reader.js";
+
+export const CHUNK = 32; // edge of a chunk in voxels; src/run_data.cpp cuts them
+export const UNKNOWN = 0, FREE = 1, OCCUPIED = 2;
+
+/** A list of numbers that grows, in one typed array. */
+class Pool {
+  constructor(Type) {
+    this.items = new Type(4096);
+    this.length = 0;
+  }
+  push(number) {
+    if (this.length === this.items.length) {
+      const larger = new this.items.constructor(2 * this.length);
+      larger.set(this.items);
+      this.items = larger;
+    }
+    this.items[this.length++] = number;
+  }
+  done() {
+    return this.items.slice(0, this.length);
+  }
+}
+
+/** From base64 of zlib's format. */
+async function inflate(text) {
+  const binary = atob(text);
+  const packed = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; ++i) packed[i] = binary.charCodeAt(i);
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** The cubes of voxels that a run touches, by number. */
+export class ChunkTable {
+  constructor() {
+    this.numbers = new Map();
+    this.corners = new Pool(Int32Array); // x, y, z of each chunk's lowest voxel, as keys
+  }
+  get length() {
+    return this.corners.length / 3;
+  }
+  /** Makes it if it is not there. */
+  number(x, y, z) {
+    const name = (x * 4096 + y) * 4096 + z;
+    let number = this.numbers.get(name);
+    if (number === undefined) {
+      number = this.numbers.size;
+      this.numbers.set(name, number);
+      for (const k of [x, y, z]) this.corners.push(k * CHUNK);
+    }
+    return number;
+  }
+  /** Of the chunk that holds these keys; -1 if there is none. */
+  find(x, y, z) {
+    return this.numbers.get(((x >> 5) * 4096 + (y >> 5)) * 4096 + (z >> 5)) ?? -1;
+  }
+}
+
+/**
+ * A run as the page needs it. Changes are in groups of one chunk each; the groups of step s and robot r are
+ * those from blocks[s * robots + r] to the next one, and the changes of group g those from begins[g] on.
+ */
+export async function readRun(text) {
+  const bytes = await inflate(text);
+  const head = new DataView(bytes.buffer).getUint32(0, true);
+  const facts = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + head)));
+  const reader = new ByteReader(bytes, 4 + head);
+  const robots = facts.robots.length, steps = facts.steps.length;
+  const chunks = new ChunkTable();
+  const groups = new Pool(Int32Array), begins = new Pool(Int32Array), blocks = new Pool(Int32Array);
+  const locals = new Pool(Uint16Array), states = new Pool(Uint8Array);
+  const poses = new Pool(Float32Array);
+  const images = [], paths = [];
+  for (let block = 0; block < steps * robots; ++block) {
+    blocks.push(groups.length);
+    for (let left = reader.count(); left > 0; --left) {
+      const x = reader.count(), y = reader.count(), z = reader.count();
+      groups.push(chunks.number(x, y, z));
+      begins.push(locals.length);
+      let local = 0;
+      for (let voxels = reader.count(); voxels > 0; --voxels) {
+        const change = reader.count();
+        local += change >> 2;
+        locals.push(local);
+        states.push(change & 3);
+      }
+    }
+    images.push(readImage(reader));
+    const count = reader.count(), travelled = reader.count();
+    paths.push({ begin: poses.length, count, travelled });
+    for (let i = 0; i < 4 * count; ++i) poses.push(reader.f32());
+  }
+  blocks.push(groups.length);
+  begins.push(locals.length);
+  return {
+    facts, steps, robots, chunks, images, paths,
+    groups: groups.done(), begins: begins.done(), blocks: blocks.done(),
+    locals: locals.done(), states: states.done(), poses: poses.done(),
+    size: bytes.length,
+  };
+}
+
+function readImage(reader) {
+  const count = reader.count();
+  if (count === 0) return null;
+  const gainMost = reader.f32(), qualityMost = reader.f32();
+  const axes = [0, 1, 2].map(() => {
+    const keys = new Uint16Array(count);
+    let key = 0;
+    for (let i = 0; i < count; ++i) keys[i] = key += reader.difference();
+    return keys;
+  });
+  return { count, gainMost, qualityMost, x: axes[0], y: axes[1], z: axes[2], gain: reader.take(count), quality: reader.take(count) };
+}
+
+/** Where robot `r` is at the end of step `s` or, along < 1, on its way there: [x, y, z, yaw] into `out`. */
+export function poseAt(run, s, r, along, out) {
+  const path = run.paths[s * run.robots + r];
+  const moves = path.travelled > 0;
+  if (!moves) {
+    for (let before = s - 1; before >= 0; --before) {
+      const earlier = run.paths[before * run.robots + r];
+      if (earlier.travelled > 0) return copyPose(run, earlier, earlier.travelled - 1, out);
+    }
+    const start = run.facts.robots[r].start ?? [0, 0, 0, 0];
+    for (let i = 0; i < 4; ++i) out[i] = start[i];
+    return out;
+  }
+  if (along >= 1 || path.travelled === 1) return copyPose(run, path, path.travelled - 1, out);
+  const reached = Math.max(0, along) * (path.travelled - 1), from = Math.floor(reached), share = reached - from;
+  const a = path.begin + 4 * from;
+  for (let i = 0; i < 3; ++i) out[i] = run.poses[a + i] * (1 - share) + run.poses[a + 4 + i] * share;
+  let turn = run.poses[a + 7] - run.poses[a + 3];
+  turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+  out[3] = run.poses[a + 3] + share * turn;
+  return out;
+}
+
+function copyPose(run, path, i, out) {
+  for (let k = 0; k < 4; ++k) out[k] = run.poses[path.begin + 4 * i + k];
+  return out;
+}

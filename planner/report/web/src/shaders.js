@@ -1,0 +1,65 @@
+// A corner's bytes: x, y, z within the chunk, then side | owner << 3.
+export const VOXEL_VERTEX = `
+precision highp float;
+uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+in vec4 corner;
+out vec3 place;
+out float height;
+flat out int side, owner;
+void main() {
+  int tag = int(corner.w + 0.5);
+  side = tag & 7;
+  owner = tag >> 3;
+  place = corner.xyz;
+  vec4 world = modelMatrix * vec4(corner.xyz, 1.0);
+  height = world.z;
+  gl_Position = projectionMatrix * viewMatrix * world;
+}`;
+
+export const VOXEL_FRAGMENT = `
+precision highp float;
+uniform vec3 heights[4], owners[16];
+uniform float lowest, highest, shade, edges;
+uniform bool by_owner;
+in vec3 place;
+in float height;
+flat in int side, owner;
+out vec4 color;
+const float kLight[6] = float[6](0.74, 0.84, 0.66, 0.9, 0.5, 1.0);
+void main() {
+  vec3 base;
+  if (by_owner) {
+    base = owners[owner];
+  } else {
+    float t = clamp((height - lowest) / max(highest - lowest, 1e-3), 0.0, 1.0) * 3.0;
+    base = mix(mix(heights[0], heights[1], min(t, 1.0)), mix(heights[2], heights[3], max(t - 2.0, 0.0)), smoothstep(0.9, 2.1, t));
+  }
+  vec2 on = side < 2 ? place.yz : side < 4 ? place.xz : place.xy;
+  vec2 width = fwidth(on), off = abs(fract(on + 0.5) - 0.5) / max(width, vec2(1e-4));
+  float line = 1.0 - clamp(min(off.x, off.y) - 0.2, 0.0, 1.0);
+  float near = 1.0 - smoothstep(0.08, 0.3, max(width.x, width.y));
+  color = vec4(base * kLight[side] * shade * (1.0 - edges * line * near), 1.0);
+}`;
+
+export const POINT_VERTEX = `
+precision highp float;
+uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+uniform float size;
+in vec4 corner;
+void main() {
+  vec4 seen = viewMatrix * modelMatrix * vec4(corner.xyz + 0.5, 1.0);
+  gl_Position = projectionMatrix * seen;
+  gl_PointSize = clamp(size / -seen.z, 1.5, 24.0);
+}`;
+
+export const POINT_FRAGMENT = `
+precision mediump float;
+uniform vec3 tint;
+uniform float glow;
+out vec4 color;
+void main() {
+  float r = length(gl_PointCoord - 0.5) * 2.0;
+  float light = 1.0 - smoothstep(0.35, 1.0, r);
+  if (light <= 0.02) discard;
+  color = vec4(tint, light * glow);
+}`;

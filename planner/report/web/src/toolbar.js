@@ -1,0 +1,67 @@
+import { el, swatch } from "./dom.js";
+import { LAYERS } from "./scene.js";
+import { SCENE, scaleGradient, shareStops, robotColor } from "./palette.js";
+
+const NAMES = {
+  voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
+  views: "Fields of view", travelled: "Trails", planned: "Plans", goals: "Goals",
+};
+
+/** What is shown, in which colours and from where. */
+export function makeToolbar(scene, facts) {
+  const boxes = {};
+  const layer = (name, i) => {
+    boxes[name] = el("input", { type: "checkbox", id: `layer-${name}`, on: { change: (event) => scene.setLayer(name, event.target.checked) } });
+    boxes[name].checked = scene.layers[name];
+    return el("label", { class: "chip", title: `key ${i + 1}` }, boxes[name], el("span", { text: NAMES[name] }));
+  };
+  const select = (id, label, choices, change) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text }))));
+  const check = (id, label, title, change) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));
+  const colors = select("colors", "Colour by", [["height", "height"], ["owner", "who saw it first"]], (value) => {
+    scene.setByOwner(value === "owner");
+    drawKey();
+  });
+  const follow = select("follow", "Follow", [["-1", "nobody"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setFollow(Number(value)));
+  const layers = scene.layerCount();
+  const cut = el("input", { type: "range", id: "cut", min: 1, max: layers, step: 1, on: { input: () => scene.setCut(Number(cut.value)) } });
+  cut.value = layers;
+  const view = (id, text, title, act) => el("button", { type: "button", id, title, text, on: { click: () => { act(); follow.querySelector("select").value = "-1"; } } });
+  const key = el("div", { class: "key", "aria-label": "Colours" });
+  const drawKey = () => {
+    const theme = scene.theme, size = facts.resolution, [low, high] = scene.store.heights;
+    const bar = (colors, from, to, name) => {
+      const strip = el("span", { class: "strip", "aria-hidden": "true" });
+      strip.style.background = scaleGradient(colors);
+      return el("div", {}, el("span", { text: name }), el("span", { class: "note from", text: from }), strip, el("span", { class: "note", text: to }));
+    };
+    const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text);
+    key.replaceChildren(
+      ...(scene.byOwner ? [] : [bar(SCENE[theme].heights, `${((low - 32768) * size).toFixed(1)} m`, `${((high + 1 - 32768) * size).toFixed(1)} m`, "height")]),
+      ...(scene.images.length > 0 ? [bar(shareStops(), "low", "high", "view quality")] : []),
+      el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot, r) => dot(robotColor(r, theme), robot.name))));
+  };
+  drawKey();
+  const bar = el("div", { class: "toolbar" },
+    el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...LAYERS.map(layer)),
+    el("fieldset", {}, el("legend", { text: "View" }),
+      view("view-home", "Whole", "all of the map from the side (H)", () => scene.home()), view("view-top", "Top", "from straight above (T)", () => scene.top()), follow, colors,
+      el("label", { class: "field", title: "take away what is above" }, el("span", { text: "Cut at" }), cut),
+      check("closed", "Back sides", "also the faces of voxels behind which nothing is known", (on) => scene.setClosed(on)),
+      check("as-planned", "Before the step", "the map that the step was planned on, instead of what it led to", (on) => scene.setAsPlanned(on))));
+  return {
+    bar, key, drawKey,
+    toggleLayer(i) {
+      const name = LAYERS[i];
+      boxes[name].checked = !boxes[name].checked;
+      scene.setLayer(name, boxes[name].checked);
+    },
+    nextFollow() {
+      const field = follow.querySelector("select");
+      field.value = String(scene.follow + 2 > facts.robots.length ? -1 : scene.follow + 1);
+      scene.setFollow(Number(field.value));
+    },
+    noFollow() {
+      follow.querySelector("select").value = "-1";
+    },
+  };
+}
