@@ -126,7 +126,8 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
     const auto gain = static_cast<double>(naive_seen(*caster, 0.3, cell, share, robot.view).size());
     EXPECT_EQ(row[7], gain);
     EXPECT_EQ(row[8], 0.0);
-    EXPECT_NEAR(row[9], gain * std::exp(-0.1386 * row[6]), 1e-9);
+    // Eq. 1, and less in proportion for what is nearer than 4 m.
+    EXPECT_NEAR(row[9], gain * std::exp(-0.1386 * row[6]) * std::min(1.0, row[6] / 4.0), 1e-9);
     EXPECT_EQ(row[10], gain);
     most = std::max(most, gain);
   }
