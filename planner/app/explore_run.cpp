@@ -124,6 +124,7 @@ class Run {
   [[nodiscard]] const Exploration& exploration() const { return exploration_; }
   [[nodiscard]] const RunFiles& files() const { return *files_; }
   [[nodiscard]] const RecordedStep& last() const { return last_; }
+  [[nodiscard]] std::uint64_t held_back() const { return robots_.held_back(); }
 
  private:
   [[nodiscard]] planner::Drive drive() {
@@ -173,15 +174,26 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
                  " is now; start anew with the world as it is");
 }
 
+// "render", or the rules of all robots with + between them.
+std::string goal_rules(std::span<const planner::TeamMember> team) {
+  constexpr std::array<std::string_view, 3> kNames = {"render", "cluster", "nearest"};
+  std::string names;
+  for (std::size_t rule = 0; rule < kNames.size(); ++rule)
+    if (std::any_of(team.begin(), team.end(), [rule](const planner::TeamMember& member) {
+          return static_cast<std::size_t>(member.options.rule) == rule;
+        }))
+      names.append(names.empty() ? "" : "+").append(kNames[rule]);
+  return names;
+}
+
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunFiles& files, const std::string& end, double seconds) {
+                    const RunFiles& files, const std::string& end, std::uint64_t held_back, double seconds) {
   std::vector<std::string> names;
   for (const planner::RobotDescription& robot : setup.head.robots) names.push_back(robot.robot.name);
   JsonObject json;
   json.add("version", FRONTLUX_VERSION).add("world", setup.head.world).add("seed", setup.exploration.seed);
   json.add("robots", std::span<const std::string>(names)).add("mode", options.mode);
-  json.add("goal", options.goal.empty() ? "by mode" : options.goal)
-      .add("distribute", setup.exploration.distribute);
+  json.add("goal", goal_rules(setup.exploration.team)).add("distribute", setup.exploration.distribute);
   json.add("optimize", setup.exploration.optimize).add("caster", options.caster);
   json.add("planner", planner::name(setup.exploration.path.search))
       .add("resolution_m", setup.head.resolution);
@@ -190,6 +202,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   json.add("threads", static_cast<std::uint64_t>(run.threads)).add("machine", machine_name());
   json.add("end", end);
   files.add_sums(json);
+  json.add("held_back", held_back);
   json.add("wall_s", seconds).add("memory_mb", peak_memory_mb()).add_raw("options", to_json(options));
   const std::string text = json.text() + '\n';
   planner::detail::write_whole_file(run.folder / "run.json", [&](std::ostream& out) { out << text; });
@@ -263,7 +276,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       writer.write_end(end);
       going.exploration().mapping().write(run.folder / "map.ot");
       going.exploration().mapping().write(run.folder / "map.bt");
-      write_run_json(run, options, setup, going.files(), end, seconds());
+      write_run_json(run, options, setup, going.files(), end, going.held_back(), seconds());
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{

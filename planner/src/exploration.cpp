@@ -6,6 +6,7 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/frontier.hpp>
+#include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
@@ -50,19 +51,6 @@ class PhaseClock {
   double& seconds_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
-
-// Looks from one place that together see all around.
-std::vector<Pose> look_around(const Pose& pose, const FieldOfView& view) {
-  if (view.shape == FieldOfView::Shape::kSpinning) return {pose};
-  constexpr double kRounding = 1e-9;
-  const auto looks = static_cast<int>(std::ceil(2 * std::numbers::pi / view.horizontal - kRounding));
-  std::vector<Pose> poses;
-  for (int i = 0; i < looks; ++i)
-    poses.push_back(
-        {pose.position, std::remainder(pose.yaw + 2 * std::numbers::pi * i / looks, 2 * std::numbers::pi)});
-  poses.push_back(pose);  // it goes on from how it stood
-  return poses;
-}
 
 std::optional<KeyBox> box_around(std::span<const VoxelKey> keys) {
   if (keys.empty()) return std::nullopt;
@@ -395,8 +383,13 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
       const VoxelGrid before = state.mapping.grid();
       Keys touched = state.mapping.mark_free(starts[r].known_free);
       // The first look is the way's first viewpoint, at which `travel` does not measure.
-      robot.planned = look_around(starts[r].pose, state.options.team[r].robot.view);
-      robot.planned.insert(robot.planned.begin(), starts[r].pose);
+      robot.path = PathOutcome::kInPlace;
+      robot.planned = {starts[r].pose};
+      for (Pose look : look_around(state.options.team[r].robot.view, starts[r].pose)) {
+        look.yaw = std::remainder(look.yaw, 2 * std::numbers::pi);
+        robot.planned.push_back(look);
+      }
+      if (robot.planned.size() > 2) robot.planned.push_back(starts[r].pose);  // it goes on from how it stood
       const detail::Journey journey = detail::travel(r, robot.planned, nullptr, drive, state.mapping);
       robot.travelled = journey.travelled;
       for (const VoxelChange& change : journey.changed) touched.push_back(change.key);

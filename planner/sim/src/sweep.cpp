@@ -31,17 +31,6 @@ std::vector<Cell> from_the_middle(const Cell& size) {
 
 }  // namespace
 
-std::vector<Pose> look_around(const FieldOfView& view, const Pose& sensor_pose) {
-  view.check();
-  if (view.shape == FieldOfView::Shape::kSpinning) return {sensor_pose};
-  constexpr double kRounding = 1e-9;
-  const double count = std::ceil(2 * std::numbers::pi / view.horizontal - kRounding);
-  std::vector<Pose> poses;
-  for (double i = 0; i < count; ++i)
-    poses.push_back({sensor_pose.position, sensor_pose.yaw + i * (2 * std::numbers::pi / count)});
-  return poses;
-}
-
 std::vector<Pose> sweep(const GroundTruth& truth, const planner::Robot& robot, const Pose& start,
                         double spacing) {
   if (!(std::isfinite(spacing) && spacing > 0.0))

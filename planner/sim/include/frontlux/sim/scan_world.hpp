@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot_file.hpp>
@@ -23,10 +24,7 @@ struct View {
   planner::Pose sensor_pose;
 };
 
-/// Looks from one place that together see all azimuths, the given one first: a single one of a spinning
-/// sensor, four a quarter turn apart of a camera of 90 degrees.
-[[nodiscard]] std::vector<planner::Pose> look_around(const FieldOfView& view,
-                                                     const planner::Pose& sensor_pose);
+using planner::look_around;
 
 /// Views from all over the free space. Space is divided into cubes of edge `spacing`; in each one where the
 /// robot finds a place, it looks around from the place nearest to the middle. The places of a robot on a

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/planner/pose.hpp>
+
+#include <vector>
+
+namespace frontlux::planner {
+
+/// A sensor's looks from one place that together see all azimuths: one, if it spins, else as many as its
+/// opening angle needs, evenly turned, the first as given.
+/// @throws std::invalid_argument naming the value of the field of view that is out of bounds
+[[nodiscard]] std::vector<Pose> look_around(const FieldOfView& view, const Pose& sensor_pose);
+
+}  // namespace frontlux::planner
