@@ -1,14 +1,19 @@
 #pragma once
 
-#include <stdexcept>
+#include <exception>
 #include <string>
+#include <utility>
 
 namespace frontlux::app {
 
 /// The user stopped the work.
-class Interrupted : public std::runtime_error {
+class Interrupted : public std::exception {
  public:
-  explicit Interrupted(const std::string& what = "stopped; nothing is written") : std::runtime_error(what) {}
+  explicit Interrupted(std::string what = "stopped; nothing is written") : what_(std::move(what)) {}
+  [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
 };
 
 /// While it lives, Ctrl-C is noted instead of ending the program. One at a time.

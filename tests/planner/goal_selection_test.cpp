@@ -51,6 +51,11 @@ TeamMember aerial_robot(Method method = Method::kDefault) {
   return member;
 }
 
+// Eq. 1, with the default's preference for cells that are 4 m away or farther.
+double worth(double gain, double distance) {
+  return gain * std::exp(-0.1386 * distance) * std::min(1.0, distance / 4.0);
+}
+
 struct Found {
   VoxelKey cell;
   double gain = 0.0, quality = -1.0, yaw = 0.0;
@@ -117,7 +122,7 @@ TEST(GoalSelection, GroundRobotTakesTheCellWithTheBestViewQuality) {
         if (d < 0.59) continue;
         const auto gain =
             static_cast<double>(naive_seen(*caster, kResolution, cell, share, member.robot.view).size());
-        const double quality = gain * std::exp(-0.1386 * d);
+        const double quality = worth(gain, d);
         // Sums of equal cells in another order differ in the last digits.
         if (gain > 0 && (!best || quality > best->quality * (1 + 1e-9))) best = Found{cell, gain, quality, 0};
       }
@@ -204,7 +209,7 @@ TEST(GoalSelection, AerialRobotTakesTheCellWithTheBestWindow) {
       if (steps.at(cell) < 2) continue;
       const auto seen = naive_seen(*caster, kResolution, cell, share, member.robot.view);
       Found found = best_yaw(cell, seen, member.robot.view.horizontal, nullptr);
-      found.quality = found.gain * std::exp(-0.1386 * steps.at(cell) * kResolution);
+      found.quality = worth(found.gain, steps.at(cell) * kResolution);
       if (found.gain > 0 && (!best || found.quality > best->quality * (1 + 1e-9))) best = found;
     }
     EXPECT_EQ(selection.rendered_cells(0).size(), viewpoints);

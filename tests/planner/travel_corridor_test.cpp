@@ -167,7 +167,10 @@ std::vector<Robot> robots() {
   std::vector<Robot> robots;
   TravelOptions ugv = ugv_travel();
   ugv.without_ground = {{key_at(-2, -2, -5), key_at(2, 2, 5)}};
-  robots.push_back({ugv, 0.3, {{-2, -2, -2}, {2, 2, 0}, 1, 0, 2, ugv.without_ground}, key_at(0, 0, 2)});
+  robots.push_back({ugv, 0.3, {{-2, -2, -2}, {2, 2, 0}, 1, 0, 1, ugv.without_ground}, key_at(0, 0, 2)});
+  TravelOptions whole = ugv;
+  whole.ground_extents.reset();
+  robots.push_back({whole, 0.3, {{-2, -2, -2}, {2, 2, 0}, 1, 0, 2, ugv.without_ground}, key_at(0, 0, 2)});
   robots.push_back({ugv, 0.4, {{-1, -1, -1}, {1, 1, 0}, 1, 0, 1, ugv.without_ground}, key_at(0, 0, 1)});
   ugv.extents = {0.9, 0.2, 0.9};  // as wide as three voxels, and higher than its sensor
   ugv.sensor_height = 0.3;

@@ -233,7 +233,7 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
   EXPECT_EQ(facts["name"], "a \"room\"");
   EXPECT_EQ(facts["written_by"], "1.2.3");
   EXPECT_EQ(facts["world"], "room");
-  EXPECT_EQ(facts["end"], "stopped");
+  EXPECT_EQ(facts["end"], room().end.value());
   EXPECT_EQ(facts["resolution"], 0.3);
   EXPECT_EQ(facts["observable"], room().head.observable);
   EXPECT_EQ(facts["bounding"], room().head.bounding);
