@@ -165,9 +165,9 @@ void print(const Case& scene, const std::vector<Way>& ways) {
   const double exact_ms = median(ways.front().cpu_ms);
   std::printf("\n%s: %zu viewpoints, %zu frontiers; CPU ms, medians\n", scene.robot.c_str(),
               scene.viewpoints.size(), scene.frontiers.size());
-  std::printf("%-8s %-9s %5s %8s %8s %9s %8s %8s %8s %8s %8s %8s %10s %10s\n", "way", "sampling", "n_r", "ms",
-              "CPU ms", "to exact", "rms", "said", "absolute", "bias", "missed", "best", "from place",
-              "Mpairs/s");
+  std::printf("%-8s %-9s %5s %8s %8s %9s %8s %8s %8s %8s %8s %8s %10s %9s %10s\n", "way", "sampling", "n_r",
+              "ms", "CPU ms", "to exact", "rms", "said", "absolute", "bias", "missed", "best", "from place",
+              "recounted", "Mpairs/s");
   for (const Way& way : ways) {
     const double cpu = median(way.cpu_ms);
     const bool whole = way.viewpoints.size() == scene.viewpoints.size();
@@ -176,10 +176,11 @@ void print(const Case& scene, const std::vector<Way>& ways) {
     std::printf(whole ? "%9.2f " : "   (part) ", cpu / exact_ms);
     if (way.errors) {
       const ViewError error = way.errors->mean();
-      std::printf("%8.4f %8.4f %8.4f %8.4f %8.4f %8.4f %10.4f ", error.rms, error.predicted, error.absolute,
-                  error.bias, error.missed, error.best_loss, error.place_loss);
+      std::printf("%8.4f %8.4f %8.4f %8.4f %8.4f %8.4f %10.4f %9.4f ", error.rms, error.predicted,
+                  error.absolute, error.bias, error.missed, error.best_loss, error.place_loss,
+                  error.recounted_loss);
     } else {
-      std::printf("%64s ", "");
+      std::printf("%74s ", "");
     }
     std::printf("%10.2f\n", way.pairs / cpu * 1e-3);
   }
@@ -188,7 +189,8 @@ void print(const Case& scene, const std::vector<Way>& ways) {
 
 constexpr const char* kHeader =
     "map,robot,viewpoints,frontiers,mean_gain,way,sampling,samples,passes,threads,ms,cpu_ms,drawn,"
-    "drawn_per_cpu_s,rms_error,predicted_error,absolute_error,bias,missed,best_loss,place_loss\n";
+    "drawn_per_cpu_s,rms_error,predicted_error,absolute_error,bias,missed,best_loss,place_loss,recounted_"
+    "loss\n";
 
 void write_rows(const Case& scene, const std::vector<Way>& ways, double mean_gain, const Options& options,
                 std::ostream& out) {
@@ -205,9 +207,9 @@ void write_rows(const Case& scene, const std::vector<Way>& ways, double mean_gai
     if (way.errors) {
       const ViewError e = way.errors->mean();
       out << ',' << e.rms << ',' << e.predicted << ',' << e.absolute << ',' << e.bias << ',' << e.missed
-          << ',' << e.best_loss << ',' << e.place_loss << '\n';
+          << ',' << e.best_loss << ',' << e.place_loss << ',' << e.recounted_loss << '\n';
     } else {
-      out << ",,,,,,,\n";
+      out << ",,,,,,,,\n";
     }
   }
 }

@@ -72,6 +72,24 @@ std::size_t ErrorSum::best_from(std::size_t place, const std::vector<double>& va
   return best;
 }
 
+double ErrorSum::best_recounted(std::size_t place, const std::vector<double>& value) const {
+  struct Cell {
+    double estimate, truth;
+  };
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < value.size(); ++i)
+    if (value[i] > 0.0) {
+      const double factor = discount(place, i);
+      cells.push_back({value[i] * factor, true_scores_.value[i] * factor});
+    }
+  const std::size_t count = std::min(kRecounted, cells.size());
+  std::partial_sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(count), cells.end(),
+                    [](const Cell& a, const Cell& b) { return a.estimate > b.estimate; });
+  double best = 0.0;
+  for (std::size_t c = 0; c < count; ++c) best = std::max(best, cells[c].truth);
+  return best;
+}
+
 void ErrorSum::add(const ViewQualityImage& estimate) {
   if (!std::ranges::equal(estimate.viewpoints(), truth_.viewpoints()))
     throw std::invalid_argument("ErrorSum: the estimate has other viewpoints than the truth");
@@ -99,6 +117,8 @@ void ErrorSum::add(const ViewQualityImage& estimate) {
   for (const std::size_t place : places_) {
     const std::size_t chosen = best_from(place, scores.value), best = best_from(place, true_scores_.value);
     const double most = true_scores_.value[best] * discount(place, best);
+    sum_.recounted_loss +=
+        (1.0 - best_recounted(place, scores.value) / most) / static_cast<double>(places_.size());
     sum_.place_loss +=
         (1.0 - gets(chosen) * discount(place, chosen) / most) / static_cast<double>(places_.size());
   }
@@ -113,7 +133,8 @@ ViewError ErrorSum::mean() const {
           sum_.bias / count / mean_gain_,
           sum_.missed / count,
           sum_.best_loss / count,
-          sum_.place_loss / count};
+          sum_.place_loss / count,
+          sum_.recounted_loss / count};
 }
 
 }  // namespace frontlux::bench

@@ -25,14 +25,18 @@ struct Scores {
 
 /// How far estimates lie from the truth. Relative to the mean true gain, but for shares.
 struct ViewError {
-  double rms = 0;         ///< root of the mean square
-  double predicted = 0;   ///< the same of the standard errors that the estimates come with
-  double absolute = 0;    ///< mean absolute
-  double bias = 0;        ///< mean
-  double missed = 0;      ///< of the viewpoints that see something, those for which the estimate is 0
-  double best_loss = 0;   ///< 1 - what the best by the estimate sees / what the truly best sees
-  double place_loss = 0;  ///< the same for eq. 1, gain * exp(-lambda * distance), mean over places
+  double rms = 0;             ///< root of the mean square
+  double predicted = 0;       ///< the same of the standard errors that the estimates come with
+  double absolute = 0;        ///< mean absolute
+  double bias = 0;            ///< mean
+  double missed = 0;          ///< of the viewpoints that see something, those for which the estimate is 0
+  double best_loss = 0;       ///< 1 - what the best by the estimate sees / what the truly best sees
+  double place_loss = 0;      ///< the same for eq. 1, gain * exp(-lambda * distance), mean over places
+  double recounted_loss = 0;  ///< of that, if the `kRecounted` best by the estimate are looked at exactly
 };
+
+/// As many cells as goal selection in space counts exactly, of those that seem best.
+inline constexpr std::size_t kRecounted = 64;
 
 /// Compares estimates with an exact image and takes the mean over all.
 class ErrorSum {
@@ -54,6 +58,8 @@ class ErrorSum {
  private:
   // The best score from a place, distance counted, by `value`; its viewpoint.
   [[nodiscard]] std::size_t best_from(std::size_t place, const std::vector<double>& value) const;
+  // The truly best, distance counted, among those that are best by `value`.
+  [[nodiscard]] double best_recounted(std::size_t place, const std::vector<double>& value) const;
   [[nodiscard]] double discount(std::size_t place, std::size_t viewpoint) const;
 
   const ViewQualityImage& truth_;
