@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace frontlux::app {
@@ -225,7 +227,10 @@ ExploreSetup make_setup(const ExploreOptions& options,
     // The floors of worlds that others have made may lie at any height.
     if (!built_in && !source.ground) source.ground = "auto";
     if (source.ground == "off") source.ground.reset();
-    if (!built_in && source.ground == "auto" && !source.start)
+    std::error_code ignored;
+    const bool is_there =
+        std::filesystem::exists(source.world, ignored);  // what is not, is told by make_world
+    if (!built_in && is_there && source.ground == "auto" && !source.start)
       throw BadInput(source.world + ": no start is known; give --start in free space, x,y,z in metres");
     setup.sourced = make_world(source);
     const Eigen::Vector3d around =
