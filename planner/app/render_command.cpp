@@ -95,6 +95,7 @@ TeamMember make_member(const Options& options) {
   }
   if (options.any_ground) member.robot.travel.require_ground = false;
   member.options = planner::goal_options(member.robot, method);
+  member.options.prune = false;  // the picture shows them all
   ViewQualityOptions& rendering = member.options.rendering;
   if (!options.samples.empty())
     rendering.samples =

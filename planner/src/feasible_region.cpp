@@ -21,9 +21,9 @@ int checked_reach(const FieldOfView& view, double resolution) {
   return static_cast<int>(reach) + 1;
 }
 
-// Least and greatest distance from a number to a range.
-std::pair<int, int> distances(int from, int low, int high) {
-  return {std::max({low - from, from - high, 0}), std::max(std::abs(low - from), std::abs(high - from))};
+// Least and greatest distance between two ranges.
+std::pair<int, int> distances(int low, int high, int other_low, int other_high) {
+  return {std::max({other_low - high, low - other_high, 0}), std::max(other_high - low, high - other_low)};
 }
 
 }  // namespace
@@ -50,10 +50,10 @@ FeasibleRegion::FeasibleRegion(const FieldOfView& view, double resolution)
     }
 }
 
-bool FeasibleRegion::may_meet(const VoxelKey& voxel, const KeyBox& box) const {
-  const auto [x, far_x] = distances(voxel.x, box.min.x, box.max.x);
-  const auto [y, far_y] = distances(voxel.y, box.min.y, box.max.y);
-  const auto [z, far_z] = distances(voxel.z, box.min.z, box.max.z);
+bool FeasibleRegion::may_meet(const KeyBox& from, const KeyBox& to) const {
+  const auto [x, far_x] = distances(from.min.x, from.max.x, to.min.x, to.max.x);
+  const auto [y, far_y] = distances(from.min.y, from.max.y, to.min.y, to.max.y);
+  const auto [z, far_z] = distances(from.min.z, from.max.z, to.min.z, to.max.z);
   const double squared = static_cast<double>(x) * x + static_cast<double>(y) * y + static_cast<double>(z) * z;
   if (squared > squared_range_) return false;
   const double across = static_cast<double>(far_x) * far_x + static_cast<double>(far_y) * far_y;

@@ -38,8 +38,11 @@ class FeasibleRegion {
   /// No offset has a greater height over its length along x and y.
   [[nodiscard]] double slope() const { return slope_; }
 
-  /// False only if the region of a voxel holds none of a box.
-  [[nodiscard]] bool may_meet(const VoxelKey& voxel, const KeyBox& box) const;
+  /// False only if the region of no voxel of a box holds any of another.
+  [[nodiscard]] bool may_meet(const KeyBox& from, const KeyBox& to) const;
+  [[nodiscard]] bool may_meet(const VoxelKey& voxel, const KeyBox& box) const {
+    return may_meet({voxel, voxel}, box);
+  }
 
   /// All offsets of at most this length [voxels] that it contains, the shortest first.
   [[nodiscard]] std::vector<std::array<int, 3>> offsets(int length) const;

@@ -33,6 +33,7 @@ constexpr int kNearby = 4;                      // [voxels] how far the first ce
 struct Search {
   const RayCaster& caster;
   std::span<const VoxelKey> frontiers;
+  std::span<const FrontierSight> tried_first;
   FeasibleRegion region;
   CorridorBlocks blocks;
   std::optional<Approach> approach;
@@ -40,8 +41,8 @@ struct Search {
   std::vector<std::array<int, 3>> nearby, spread;
 };
 
-// Decides some frontiers by rounds of rays, a few for each that is undecided: from cells nearby, from where
-// its neighbours are seen, from some cells of everywhere, from all others.
+// Decides some frontiers by rounds of rays, a few for each that is undecided: from where it was seen before,
+// from cells nearby, from where its neighbours are seen, from some cells of everywhere, from all others.
 class Piece {
  public:
   Piece(const Search& search, std::size_t begin, std::size_t end)
@@ -53,6 +54,7 @@ class Piece {
   }
 
   void decide() {
+    try_first();
     for (const std::uint32_t i : open_)
       if (search_.blocks.may_be_near(frontier(i), kNearby, kNearby)) try_offsets(i, search_.nearby, 2);
     cast();
@@ -97,6 +99,20 @@ class Piece {
     std::erase_if(open_, [this](std::uint32_t i) { return seen_from_[i].has_value(); });
     segments_.clear();
     owners_.clear();
+  }
+
+  void try_first() {
+    for (const std::uint32_t i : open_) {
+      const VoxelKey& f = frontier(i);
+      const auto sight = std::lower_bound(
+          search_.tried_first.begin(), search_.tried_first.end(), f,
+          [](const FrontierSight& before, const VoxelKey& key) { return before.frontier < key; });
+      if (sight == search_.tried_first.end() || sight->frontier != f) continue;
+      const VoxelKey& cell = sight->cell;
+      if (search_.blocks.contains(cell) && search_.region.contains(f.x - cell.x, f.y - cell.y, f.z - cell.z))
+        add(i, cell);
+    }
+    cast();
   }
 
   void try_offsets(std::uint32_t i, const std::vector<std::array<int, 3>>& offsets, std::size_t most) {
@@ -272,6 +288,7 @@ FrontierShare find_visible_frontiers(const RayCaster& caster, const VoxelGrid& g
   Shadow shadow = approach ? Shadow() : Shadow(grid, box);
   const Search search{caster,
                       frontiers,
+                      agent.tried_first,
                       std::move(region),
                       std::move(blocks),
                       std::move(approach),

@@ -55,6 +55,7 @@ GoalOptions goal_options(const Robot& robot, Method method) {
       options.viewpoint_spacing = 0.6;
       options.rendering.samples = 32;
       options.refined = 64;
+      options.prune = true;
     }
   }
   return options;

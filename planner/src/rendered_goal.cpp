@@ -16,11 +16,6 @@ struct Candidate {
   bool undecided = false;  // targets were left out, so that the image's gain is an estimate
 };
 
-bool better(const RenderedCell& a, const RenderedCell& b) {
-  if (a.quality != b.quality) return a.quality > b.quality;
-  return a.cell < b.cell;
-}
-
 // Estimates first; where they are zero, what may be hidden in them.
 bool more_promising(const Candidate& a, const Candidate& b) {
   if (a.rated.quality != b.rated.quality) return a.rated.quality > b.rated.quality;
@@ -65,6 +60,11 @@ std::optional<RenderedCell> best_of(const GoalQuery& query, const ViewQualityIma
 }
 
 }  // namespace
+
+bool better(const RenderedCell& a, const RenderedCell& b) {
+  if (a.quality != b.quality) return a.quality > b.quality;
+  return a.cell < b.cell;
+}
 
 RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
                   const VoxelKey* containing) {

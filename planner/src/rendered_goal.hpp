@@ -15,7 +15,10 @@ namespace frontlux::planner::detail {
 [[nodiscard]] RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
                                 const VoxelKey* containing = nullptr);
 
-/// The best cell of an image by eq. 1, of equals the one with the smallest key; nothing if no cell that is
+/// The best by eq. 1, of equals the one with the smallest key.
+[[nodiscard]] bool better(const RenderedCell& a, const RenderedCell& b);
+
+/// The best cell of an image, as `better` has it; nothing if no cell that is
 /// far enough sees a target. With `refined` the best cells by the image are rendered again with all their
 /// targets, and while that shows no gain, all others which the image does not exclude.
 /// @param containing  if given, a target that has to be in view

@@ -1,11 +1,10 @@
 #include "cluster_goal.hpp"
 #include "nearest_goal.hpp"
+#include "possible_goals.hpp"
 #include "rendered_goal.hpp"
 #include "seen_targets.hpp"
 #include "team_state.hpp"
 #include "viewpoint_cells.hpp"
-
-#include <frontlux/planner/frontier_distribution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -72,15 +71,22 @@ std::optional<RenderedCell> GoalSelection::State::render(const GoalQuery& query,
                                                          Member& member) const {
   const double resolution = lattice.resolution();
   const int stride = std::max(1, static_cast<int>(std::lround(query.options.viewpoint_spacing / resolution)));
-  const Keys viewpoints = detail::viewpoint_cells(query.corridor.cells(), stride, member.cell,
-                                                  stride * query.options.surroundings);
+  Keys viewpoints = detail::viewpoint_cells(query.corridor.cells(), stride, member.cell,
+                                            stride * query.options.surroundings);
+  std::optional<RenderedCell> counted;
+  if (query.options.prune && query.options.refined > 0) {
+    detail::PossibleGoals possible = detail::possible_goals(query, viewpoints);
+    viewpoints = std::move(possible.cells);
+    counted = possible.counted;
+  }
   std::vector<Block> changed;
   if (member.imaged)
     for_each_change(*member.imaged, grid, [&](const Block& block) { changed.push_back(block); });
   member.image.update(query.caster, viewpoints, query.targets, changed);
   member.imaged = grid;
   member.rendered = true;
-  return detail::best_cell(query, member.image);
+  const std::optional<RenderedCell> best = detail::best_cell(query, member.image);
+  return counted && (!best || detail::better(*counted, *best)) ? counted : best;
 }
 
 GoalSelection::State::Keys GoalSelection::State::seen_by(const RayCaster& caster, const VoxelGrid& grid,
@@ -94,11 +100,16 @@ void GoalSelection::State::distribute(const RayCaster& caster, const VoxelGrid& 
                                       TeamGoals& result) {
   std::vector<FrontierAgent> agents;
   for (std::size_t r = 0; r < members.size(); ++r)
-    agents.push_back({members[r].corridor.cells(), team[r].robot.view});
+    agents.push_back({members[r].corridor.cells(), team[r].robot.view, members[r].sights});
   if (distributes) {
     const FrontierDistribution distribution = distribute_frontiers(caster, grid, frontiers, agents);
-    for (std::size_t r = 0; r < members.size(); ++r)
-      members[r].share = picked(frontiers, distribution.shares[r].frontiers);
+    for (std::size_t r = 0; r < members.size(); ++r) {
+      const FrontierShare& share = distribution.shares[r];
+      members[r].share = picked(frontiers, share.frontiers);
+      members[r].sights.clear();
+      for (std::size_t i = 0; i < share.frontiers.size(); ++i)
+        members[r].sights.push_back({members[r].share[i], share.seen_from[i]});
+    }
     result.unassigned = distribution.unassigned.size();
   } else {
     Keys anyones;

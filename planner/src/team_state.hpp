@@ -2,6 +2,7 @@
 
 #include "goal_query.hpp"
 
+#include <frontlux/planner/frontier_distribution.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 
 #include <cstddef>
@@ -23,6 +24,7 @@ struct GoalSelection::State {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
     VoxelKey cell = {};                                  // that it is in
     Keys share = {};                                     // frontiers to choose from
+    std::vector<FrontierSight> sights = {};              // of its share as it was distributed, sorted
     Keys closed = {};                                    // cells it does not go through, in any order
     Keys given_up = {};                                  // frontiers it made nothing of
     Keys targets = {};                                   // those its goal was last chosen for

@@ -142,6 +142,46 @@ TEST(FrontierDistribution, EqualsTheAlgorithmAsPrintedInDeepCorridors) {
   EXPECT_GT(left, 1'000U);
 }
 
+TEST(FrontierDistribution, WhatIsTriedFirstChangesNoAnswer) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene scene = random_scene(200 + seed, seed % 2 == 0);
+    const FieldOfView view = some_view(seed);
+    const auto caster = make_embree_ray_caster(scene.grid);
+    const FrontierShare plain =
+        find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view});
+    std::vector<FrontierSight> sights;
+    for (std::size_t i = 0; i < plain.frontiers.size(); ++i)
+      sights.push_back({scene.frontiers[plain.frontiers[i]], plain.seen_from[i]});
+    const FrontierShare again =
+        find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view, sights});
+    EXPECT_EQ(again.frontiers, plain.frontiers);
+    EXPECT_EQ(again.seen_from, plain.seen_from);
+    EXPECT_LE(again.rays, plain.rays);
+    // Wrong ones: cells that see something else, or none of the corridor's.
+    Random random(seed);
+    sights.clear();
+    for (const VoxelKey& frontier : scene.frontiers)
+      sights.push_back(
+          {frontier,
+           random.one_in(3)
+               ? key_at(random.below(50) - 25, 0, 0)
+               : scene.cells[static_cast<std::size_t>(random.below(static_cast<int>(scene.cells.size())))]});
+    const FrontierShare misled =
+        find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view, sights});
+    EXPECT_EQ(misled.frontiers, plain.frontiers);
+    const std::set<VoxelKey> cells(scene.cells.begin(), scene.cells.end());
+    for (std::size_t i = 0; i < misled.frontiers.size(); ++i) {
+      const KeySegment segment{misled.seen_from[i], scene.frontiers[misled.frontiers[i]]};
+      std::uint8_t visible = 0;
+      caster->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
+      ASSERT_EQ(visible, 1);
+      ASSERT_TRUE(cells.contains(segment.from));
+      ASSERT_TRUE(in_view(view, segment.from, segment.to, 0.3));
+    }
+  }
+}
+
 TEST(FrontierDistribution, GivesTheSecondAgentWhatTheFirstDoesNotSee) {
   const Scene scene = random_scene(5);
   Scene low = scene, high = scene;

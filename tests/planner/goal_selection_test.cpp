@@ -187,6 +187,7 @@ TEST(GoalSelection, AerialRobotTakesTheCellWithTheBestWindow) {
     TeamMember member = aerial_robot();
     member.options.rendering.samples = 3;
     member.options.refined = kAllCells;
+    member.options.prune = false;
     member.options.surroundings = 1;
     GoalSelection selection({member}, room.grid.lattice(), room.bounds());
     const Pose pose = room.pose(7, 7, 4);

@@ -12,10 +12,18 @@
 
 namespace frontlux::planner {
 
+/// A cell from which a frontier is seen, or was seen once.
+struct FrontierSight {
+  VoxelKey frontier, cell;
+};
+
 /// A robot, as far as frontiers concern it: where it can go and what it sees from there.
 struct FrontierAgent {
   std::span<const VoxelKey> corridor;  ///< in any order; none: it gets no frontiers
   FieldOfView view;
+  /// Cells to try first, sorted by frontier. They have no bearing on which frontiers are found, only on how
+  /// soon: what has been seen from somewhere is mostly still seen from there.
+  std::span<const FrontierSight> tried_first = {};
 };
 
 /// The frontiers of one agent.

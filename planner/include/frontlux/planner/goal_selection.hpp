@@ -52,6 +52,10 @@ struct GoalOptions {
   /// So many cells, the best as far as drawn targets tell, are rendered again with all their targets, and the
   /// goal is the best of them; a gain of zero is then certain. 0: the best by the drawn targets is the goal.
   int refined = 200;
+  /// Cells that cannot be the goal are not rendered: a few cells are counted with all their targets first,
+  /// and those that would be worse than the best of them even if they saw all in their reach are left out.
+  /// Without `refined` it means nothing.
+  bool prune = false;
 
   double cluster_edge = 4.8;  ///< [m] clusters are the frontiers in octree nodes of at least this edge
 
@@ -59,9 +63,9 @@ struct GoalOptions {
   void check() const;
 };
 
-/// View quality for all robots: counted exactly on a plane; drawn from buckets, at every second voxel, and
-/// counted for the best, in space. Or as
-/// printed, for robots on a plane by hits among the drawn frontiers and for those in space by clusters.
+/// View quality for all robots: counted exactly on a plane; drawn from buckets, at every second voxel,
+/// pruned, and counted for the best, in space. Or as printed, for robots on a plane by hits among the drawn
+/// frontiers and for those in space by clusters.
 [[nodiscard]] GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 
 /// Why a robot has a goal, or none.
@@ -163,8 +167,9 @@ class GoalSelection {
   /// The frontiers that a robot's goal was last chosen for, sorted. @pre robot < team().size()
   [[nodiscard]] std::span<const VoxelKey> targets(std::size_t robot) const;
 
-  /// All cells that were rendered for a robot's goal at the last step, sorted, whatever their distance; none
-  /// if its rule is not `kViewQuality` or it had no frontiers. @pre robot < team().size()
+  /// All cells that were rendered for a robot's goal at the last step, sorted, whatever their distance; with
+  /// `prune` only those that might have been the goal; none if its rule is not `kViewQuality` or it had no
+  /// frontiers. @pre robot < team().size()
   [[nodiscard]] std::vector<RenderedCell> rendered_cells(std::size_t robot) const;
 
  private:
