@@ -6,6 +6,7 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/mesh_file.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -120,7 +121,7 @@ class ExploreCommand : public testing::Test {
     }
     const nlohmann::json p = json_in(a), q = json_in(b);
     for (const char* name :
-         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "collisions"})
+         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "collisions", "held_back"})
       EXPECT_EQ(p.at(name), q.at(name)) << name;
   }
 
@@ -323,6 +324,38 @@ TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
     expect_resumed("cut");
     expect_same_runs("whole", "cut");
   }
+}
+
+// Poles thinner than the gaps between a sensor's rays, which robots only find when their bumpers meet them.
+sim::TriangleMesh with_unseen_poles(sim::TriangleMesh mesh, const Eigen::Vector3d& start) {
+  for (int column = 0; column < 8; ++column)
+    for (int row = 0; row < 8; ++row) {
+      const Eigen::Vector3f foot(0.5F + 1.5F * static_cast<float>(column),
+                                 0.5F + 1.5F * static_cast<float>(row), 0.0F);
+      if ((foot.cast<double>() - start).head<2>().norm() < 3.5) continue;
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Eigen::Vector3f& corner : {Eigen::Vector3f(0, 0, 0), {1e-4F, 0, 0}, {0, 0, 3}})
+        mesh.vertices.push_back(foot + corner);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  return mesh;
+}
+
+TEST_F(ExploreCommand, CountsTheWaysThatWereClosedBeforeItWentOn) {
+  const sim::World room = sim::make_world("room", 1);
+  sim::write_ply(path("poles.ply"), with_unseen_poles(room.mesh, *room.start));
+  std::ostringstream at;
+  at << room.start->x() << ',' << room.start->y() << ',' << room.start->z();
+  for (const auto& [output, steps] : {std::pair("whole", "4"), std::pair("cut", "2")}) {
+    const Answer answer = run({path("poles.ply"), "--start", at.str(), "--ground", "off", "--max-steps",
+                               steps, "--report", "off", "-o", path(output)});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+  }
+  const std::uint64_t before = json_in("cut").at("held_back");
+  EXPECT_GT(before, 0U);
+  EXPECT_GT(json_in("whole").at("held_back"), before);
+  expect_resumed("cut", {"--max-steps", "4"});
+  expect_same_runs("whole", "cut");
 }
 
 // A world that is large enough to be caught in the middle of.
