@@ -1,6 +1,7 @@
 // Whole explorations of built-in worlds, every step of which is judged by what it may do and what it says.
 
 #include "planner/team_in_world.hpp"
+#include "support/key_box.hpp"
 
 #include <frontlux/planner/visible_pairs.hpp>
 
@@ -16,18 +17,10 @@ namespace frontlux::planner {
 namespace {
 
 using test::drive_by;
+using test::for_each_key;
 using test::same;
 using test::TeamInWorld;
 using test::uav_and_ugv;
-
-template <class Visit>
-void for_each_voxel(const KeyBox& box, const Visit& visit) {
-  for (unsigned x = box.min.x; x <= box.max.x; ++x)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned z = box.min.z; z <= box.max.z; ++z)
-        visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                       static_cast<std::uint16_t>(z)});
-}
 
 bool is_frontier(const VoxelGrid& grid, const VoxelKey& key) {
   if (grid.at(key) != Occupancy::kUnknown) return false;
@@ -43,7 +36,7 @@ bool is_frontier(const VoxelGrid& grid, const VoxelKey& key) {
 
 std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds) {
   std::vector<VoxelKey> frontiers;
-  for_each_voxel(bounds, [&](const VoxelKey& key) {
+  for_each_key(bounds, [&](const VoxelKey& key) {
     if (is_frontier(grid, key)) frontiers.push_back(key);
   });
   std::sort(frontiers.begin(), frontiers.end());
@@ -62,7 +55,7 @@ bool body_is_free(const VoxelGrid& grid, const TravelOptions& body, const Eigen:
       {lattice.key(low.x()).value(), lattice.key(low.y()).value(), lattice.key(low.z()).value()},
       {lattice.key(high.x()).value(), lattice.key(high.y()).value(), lattice.key(high.z()).value()}};
   bool all = true;
-  for_each_voxel(box, [&](const VoxelKey& key) { all = all && grid.at(key) == Occupancy::kFree; });
+  for_each_key(box, [&](const VoxelKey& key) { all = all && grid.at(key) == Occupancy::kFree; });
   return all;
 }
 
@@ -216,7 +209,7 @@ class Watch {
                      const std::vector<VoxelKey>& frontiers) {
     std::vector<VoxelChange> expected;
     std::uint64_t gained = 0;
-    for_each_voxel(team_.truth.bounds(), [&](const VoxelKey& key) {
+    for_each_key(team_.truth.bounds(), [&](const VoxelKey& key) {
       if (map.at(key) == after.at(key)) return;
       expected.push_back({key, map.at(key), after.at(key)});
       gained += static_cast<std::uint64_t>(map.at(key) == Occupancy::kUnknown &&
