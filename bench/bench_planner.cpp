@@ -5,6 +5,7 @@
 #include "google_benchmark.hpp"
 #include "machine.hpp"
 #include "planner_scene.hpp"
+#include "program.hpp"
 #include "report.hpp"
 #include "subject.hpp"
 
@@ -16,13 +17,11 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -414,10 +413,5 @@ int run(int argc, char** argv) {
 }  // namespace frontlux::bench
 
 int main(int argc, char** argv) {
-  try {
-    return frontlux::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_planner: " << error.what() << '\n';
-    return 2;
-  }
+  return frontlux::bench::run_program("bench_planner", frontlux::bench::run, argc, argv);
 }

@@ -2,6 +2,7 @@
 #include "google_benchmark.hpp"
 #include "machine.hpp"
 #include "options.hpp"
+#include "program.hpp"
 #include "report.hpp"
 #include "subject.hpp"
 #include "trial.hpp"
@@ -14,7 +15,6 @@
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <regex.h>
@@ -150,10 +150,5 @@ int run(int argc, char** argv) {
 }  // namespace frontlux::bench
 
 int main(int argc, char** argv) {
-  try {
-    return frontlux::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_rays: " << error.what() << '\n';
-    return 2;
-  }
+  return frontlux::bench::run_program("bench_rays", frontlux::bench::run, argc, argv);
 }

@@ -3,13 +3,13 @@
 #include "generated_map.hpp"
 #include "paths/ablation.hpp"
 #include "paths/table.hpp"
+#include "program.hpp"
 
 #include <frontlux/octomap.hpp>
 
 #include <CLI/CLI.hpp>
 #include <tbb/task_arena.h>
 
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -74,10 +74,5 @@ int run(int argc, char** argv) {
 }  // namespace frontlux::bench
 
 int main(int argc, char** argv) {
-  try {
-    return frontlux::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_paths: " << error.what() << '\n';
-    return 2;
-  }
+  return frontlux::bench::run_program("bench_paths", frontlux::bench::run, argc, argv);
 }

@@ -1,5 +1,6 @@
 #include "google_benchmark.hpp"
 #include "machine.hpp"
+#include "program.hpp"
 #include "report.hpp"
 #include "scaling/options.hpp"
 #include "scaling/sweep.hpp"
@@ -7,7 +8,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
@@ -70,10 +70,5 @@ int run(int argc, char** argv) {
 }  // namespace frontlux::bench
 
 int main(int argc, char** argv) {
-  try {
-    return frontlux::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_scaling: " << error.what() << '\n';
-    return 2;
-  }
+  return frontlux::bench::run_program("bench_scaling", frontlux::bench::run, argc, argv);
 }

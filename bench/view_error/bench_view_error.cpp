@@ -4,6 +4,7 @@
 #include "generated_map.hpp"
 #include "machine.hpp"
 #include "planner_scene.hpp"
+#include "program.hpp"
 #include "subject.hpp"
 #include "view_error/error.hpp"
 
@@ -14,7 +15,6 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -299,10 +299,5 @@ int run(int argc, char** argv) {
 }  // namespace frontlux::bench
 
 int main(int argc, char** argv) {
-  try {
-    return frontlux::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_view_error: " << error.what() << '\n';
-    return 2;
-  }
+  return frontlux::bench::run_program("bench_view_error", frontlux::bench::run, argc, argv);
 }

@@ -91,14 +91,15 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
     canvas.text(at - Canvas::text_width(text, kLetters) / 2, kHeight - kBottom + 10, text, kLetters, kMuted);
   }
   canvas.text(kWidth - kRight - Canvas::text_width("step", kLetters), kHeight - 30, "step", kLetters, kMuted);
-  for (auto curve = curves.rbegin(); curve != curves.rend(); ++curve)
-    for (std::size_t i = 1; i < curve->shares.size(); ++i) {
+  std::for_each(curves.rbegin(), curves.rend(), [&](const Curve& curve) {
+    for (std::size_t i = 1; i < curve.shares.size(); ++i) {
       const auto step = [&](std::size_t k) {
         return static_cast<double>(recording.steps[k].step.number - first);
       };
-      canvas.line(pixel_x(step(i - 1)), pixel_y(curve->shares[i - 1]), pixel_x(step(i)),
-                  pixel_y(curve->shares[i]), curve->thickness, curve->color);
+      canvas.line(pixel_x(step(i - 1)), pixel_y(curve.shares[i - 1]), pixel_x(step(i)),
+                  pixel_y(curve.shares[i]), curve.thickness, curve.color);
     }
+  });
   return canvas;
 }
 

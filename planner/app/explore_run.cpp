@@ -124,7 +124,6 @@ class Run {
   [[nodiscard]] const Exploration& exploration() const { return exploration_; }
   [[nodiscard]] const RunFiles& files() const { return *files_; }
   [[nodiscard]] const RecordedStep& last() const { return last_; }
-  [[nodiscard]] std::uint64_t held_back() const { return robots_.held_back(); }
 
  private:
   [[nodiscard]] planner::Drive drive() {
@@ -187,7 +186,7 @@ std::string goal_rules(std::span<const planner::TeamMember> team) {
 }
 
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunFiles& files, const std::string& end, std::uint64_t held_back, double seconds) {
+                    const RunFiles& files, const std::string& end, double seconds) {
   std::vector<std::string> names;
   for (const planner::RobotDescription& robot : setup.head.robots) names.push_back(robot.robot.name);
   JsonObject json;
@@ -202,7 +201,6 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   json.add("threads", static_cast<std::uint64_t>(run.threads)).add("machine", machine_name());
   json.add("end", end);
   files.add_sums(json);
-  json.add("held_back", held_back);
   json.add("wall_s", seconds).add("memory_mb", peak_memory_mb()).add_raw("options", to_json(options));
   const std::string text = json.text() + '\n';
   planner::detail::write_whole_file(run.folder / "run.json", [&](std::ostream& out) { out << text; });
@@ -276,7 +274,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       writer.write_end(end);
       going.exploration().mapping().write(run.folder / "map.ot");
       going.exploration().mapping().write(run.folder / "map.bt");
-      write_run_json(run, options, setup, going.files(), end, going.held_back(), seconds());
+      write_run_json(run, options, setup, going.files(), end, seconds());
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{

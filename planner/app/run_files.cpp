@@ -133,6 +133,7 @@ void RunFiles::add(const RecordedStep& recorded) {
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
     const RobotStep& robot = step.robots[r];
     travelled_[r] += robot.length;
+    if (!robot.blocked.empty()) ++held_back_;
     Row row;
     row.add(step.number).add(quoted(head_.robots[r].robot.name)).add(observable_).add(bounding_);
     row.add(share(recorded.known[r].observable, head_.observable));
@@ -174,7 +175,7 @@ void RunFiles::add_sums(JsonObject& json) const {
   json.add("path_length_total_m", std::accumulate(travelled_.begin(), travelled_.end(), 0.0));
   JsonObject lengths;
   for (std::size_t r = 0; r < travelled_.size(); ++r) lengths.add(head_.robots[r].robot.name, travelled_[r]);
-  json.add("path_length_m", lengths);
+  json.add("path_length_m", lengths).add("held_back", held_back_);
 }
 
 }  // namespace frontlux::app

@@ -51,7 +51,7 @@ class RunFiles {
   const planner::RecordingHead& head_;
   std::ofstream steps_file_, paths_file_;
   double observable_ = 0.0, bounding_ = 0.0, planning_sum_ = 0.0, planning_max_ = 0.0;
-  std::uint64_t collisions_ = 0, steps_ = 0;
+  std::uint64_t collisions_ = 0, held_back_ = 0, steps_ = 0;
   std::vector<double> travelled_, seconds_;
 };
 

@@ -1,5 +1,6 @@
 #include "journey.hpp"
 
+#include "box_voxels.hpp"
 #include "straight_way.hpp"
 
 #include <algorithm>
@@ -10,13 +11,7 @@ namespace frontlux::planner::detail {
 namespace {
 
 bool is_free(const VoxelGrid& grid, const KeyBox& box) {
-  for (unsigned x = box.min.x; x <= box.max.x; ++x)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned z = box.min.z; z <= box.max.z; ++z)
-        if (grid.at({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                     static_cast<std::uint16_t>(z)}) != Occupancy::kFree)
-          return false;
-  return true;
+  return all_of(box, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
 }
 
 // The corridor is as old as the step; the map has learnt since.

@@ -1,28 +1,20 @@
-// `frontlux explore` from the outside: its files, going on after every kind of end, and what it refuses.
+// `frontlux explore` from the outside: its files, and what it refuses.
 
-#include "planner/team_in_world.hpp"
-#include "support/command.hpp"
+#include "planner/explore_command.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/planner/recording.hpp>
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
-#include <sstream>
+#include <memory>
 #include <string>
-#include <thread>
 #include <unistd.h>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -32,148 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::Answer;
 using test::content_of;
-using test::expect_same;
-
-constexpr const char* kSteps = "4";
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',')
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
-  return cells;
-}
-
-std::vector<std::vector<std::string>> table_of(const fs::path& csv) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(content_of(csv));
-  for (std::string line; std::getline(lines, line);) rows.push_back(cells_of(line));
-  return rows;
-}
-
-// steps.csv without what it tells of time.
-std::vector<std::vector<std::string>> timeless(const fs::path& csv) {
-  auto rows = table_of(csv);
-  if (rows.empty()) return rows;
-  const std::vector<std::string> header = rows.front();
-  for (auto& row : rows)
-    for (std::size_t i = header.size(); i-- > 0;)
-      if (header[i].ends_with("_s") && i < row.size())
-        row.erase(row.begin() + static_cast<std::ptrdiff_t>(i));
-  return rows;
-}
-
-class ExploreCommand : public testing::Test {
- protected:
-  ExploreCommand() : folder_(fs::temp_directory_path() / ("frontlux_explore_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~ExploreCommand() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words, const std::string& before = "") const {
-    words.insert(words.begin(), "explore");
-    return test::run_frontlux(words, folder_, before);
-  }
-  // The room in four steps.
-  [[nodiscard]] Answer explore(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"room", "--max-steps", kSteps, "-o", path(output)});
-    return run(more);
-  }
-  void expect_explored(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.end(), {"--report", "off"});
-    const Answer answer = explore(output, more);
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");
-  }
-  void expect_resumed(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"--report", "off", "--resume", path(output)});
-    const Answer answer = run(more);
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");
-  }
-
-  [[nodiscard]] nlohmann::json json_in(const std::string& output) const {
-    return nlohmann::json::parse(content_of(path(output + "/run.json")));
-  }
-
-  // All but the times is that of another run.
-  void expect_same_runs(const std::string& a, const std::string& b) const {
-    SCOPED_TRACE(a + " and " + b);
-    EXPECT_GT(content_of(path(a + "/map.ot")).size(), 1000U);
-    for (const char* file : {"/map.ot", "/map.bt", "/paths.csv"})
-      EXPECT_TRUE(content_of(path(a + file)) == content_of(path(b + file))) << file;
-    EXPECT_EQ(timeless(path(a + "/steps.csv")), timeless(path(b + "/steps.csv")));
-    const Recording x = read_recording(path(a + "/run.frontlux")),
-                    y = read_recording(path(b + "/run.frontlux"));
-    EXPECT_EQ(x.end, y.end);
-    EXPECT_FALSE(x.truncated || y.truncated);
-    ASSERT_EQ(x.steps.size(), y.steps.size());
-    for (std::size_t i = 0; i < x.steps.size(); ++i) {
-      expect_same(x.steps[i].step, y.steps[i].step);
-      EXPECT_EQ(x.steps[i].known, y.steps[i].known);
-      EXPECT_EQ(x.steps[i].collisions, y.steps[i].collisions);
-    }
-    const nlohmann::json p = json_in(a), q = json_in(b);
-    for (const char* name :
-         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "collisions"})
-      EXPECT_EQ(p.at(name), q.at(name)) << name;
-  }
-
-  // Starts the command and waits until it has told of so many steps.
-  [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps) const {
-    std::vector<std::string> all = {FRONTLUX_COMMAND, "explore"};
-    all.insert(all.end(), words.begin(), words.end());
-    fs::remove(path("out"));
-    const pid_t child = fork();
-    if (child == 0) {
-      std::signal(SIGINT, SIG_DFL);
-      static_cast<void>(std::freopen(path("out").c_str(), "w", stdout));
-      static_cast<void>(std::freopen(path("err").c_str(), "w", stderr));
-      std::vector<char*> argv;
-      for (std::string& word : all) argv.push_back(word.data());
-      argv.push_back(nullptr);
-      execv(FRONTLUX_COMMAND, argv.data());
-      _exit(127);
-    }
-    const std::string last = "step " + std::to_string(steps) + ":";
-    for (int i = 0; i < 6000 && content_of(path("out")).find(last) == std::string::npos; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return child;
-  }
-  static int status_of(pid_t child) {
-    int status = 0;
-    EXPECT_EQ(waitpid(child, &status, 0), child);
-    return status;
-  }
-
-  // Every file below the folder with its bytes, but for what the command prints.
-  [[nodiscard]] std::map<std::string, std::string> files() const {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_))
-      all[entry.path().string()] = entry.is_regular_file() ? content_of(entry.path()) : "";
-    all.erase(path("out"));
-    all.erase(path("err"));
-    return all;
-  }
-  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
-    const auto before = files();
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
-    EXPECT_EQ(answer.err.find('\n'), answer.err.size() - 1) << answer.err;
-    for (const std::string& part : parts)
-      EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
-    EXPECT_TRUE(files() == before) << "something was written: " << answer.err;
-  }
-
-  fs::path folder_;
-};
+using test::ExploreCommand;
+using test::table_of;
 
 TEST_F(ExploreCommand, ItsFilesTellTheSame) {
   ASSERT_EQ(explore("run").code, 0);
@@ -289,116 +141,6 @@ TEST_F(ExploreCommand, ItsFilesTellTheSame) {
     EXPECT_NE(out.find(part), std::string::npos) << part << " in " << out;
 }
 
-TEST_F(ExploreCommand, ComesToTheSameHoweverItIsRun) {
-  expect_explored("one", {"--threads", "1"});
-  expect_explored("two", {"--threads", "2"});
-  expect_same_runs("one", "two");
-  expect_explored("grid", {"--caster", "grid"});
-  expect_same_runs("one", "grid");
-  // Stopped at a limit, and with another limit gone on.
-  ASSERT_EQ(run({"room", "--max-steps", "2", "-o", path("cut")}).code, 0);
-  EXPECT_EQ(json_in("cut").at("steps"), 2);
-  expect_resumed("cut", {"--max-steps", kSteps, "--threads", "1"});
-  expect_same_runs("one", "cut");
-  // Going on at the end changes nothing.
-  expect_resumed("two");
-  expect_same_runs("one", "two");
-  // Another seed is another run.
-  expect_explored("other", {"--seed", "2"});
-  EXPECT_NE(timeless(path("one/steps.csv")), timeless(path("other/steps.csv")));
-  // In a folder that holds a run only if it is to go.
-  EXPECT_EQ(explore("other").code, 2);
-  expect_explored("other", {"--force"});
-  expect_same_runs("one", "other");
-}
-
-TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
-  expect_explored("whole");
-  const std::string bytes = content_of(path("whole/run.frontlux"));
-  for (const std::size_t cut : {bytes.size() - 1, bytes.size() / 2}) {
-    SCOPED_TRACE("after " + std::to_string(cut) + " of " + std::to_string(bytes.size()) + " bytes");
-    fs::remove_all(path("cut"));
-    fs::create_directory(path("cut"));
-    std::ofstream(path("cut/run.frontlux"), std::ios::binary) << bytes.substr(0, cut);
-    expect_resumed("cut");
-    expect_same_runs("whole", "cut");
-  }
-}
-
-// A world that is large enough to be caught in the middle of.
-TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
-  const std::vector<std::string> words = {"storage", "--max-steps", "6", "--report", "off", "-o"};
-  const auto to = [&](const std::string& output) {
-    auto all = words;
-    all.push_back(path(output));
-    return all;
-  };
-  ASSERT_EQ(run(to("whole")).code, 0);
-
-  pid_t child = start_and_wait(to("killed"), 2);
-  ASSERT_GT(child, 0);
-  kill(child, SIGKILL);
-  int status = status_of(child);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status << content_of(path("err"));
-  EXPECT_FALSE(fs::exists(path("killed/run.json")));
-  const std::size_t recorded = read_recording(path("killed/run.frontlux")).steps.size();
-  EXPECT_GE(recorded, 3U);  // steps 0 to 2 are told of, so they are kept
-  EXPECT_LT(recorded, 7U);
-  expect_resumed("killed");
-  expect_same_runs("whole", "killed");
-
-  child = start_and_wait(to("stopped"), 1);
-  ASSERT_GT(child, 0);
-  kill(child, SIGINT);
-  status = status_of(child);
-  ASSERT_TRUE(WIFEXITED(status)) << status;
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_NE(content_of(path("err")).find("frontlux explore --resume " + path("stopped") + " goes on"),
-            std::string::npos)
-      << content_of(path("err"));
-  const nlohmann::json json = json_in("stopped");
-  EXPECT_EQ(json.at("end"), "stopped");
-  EXPECT_GE(json.at("steps"), 1);
-  EXPECT_LT(json.at("steps"), 6);
-  EXPECT_EQ(read_recording(path("stopped/run.frontlux")).end, "stopped");
-  EXPECT_TRUE(fs::exists(path("stopped/map.ot")));
-  expect_resumed("stopped");
-  expect_same_runs("whole", "stopped");
-}
-
-TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
-  expect_explored("whole");
-  const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole/run.frontlux")));
-  // A limit on the size of files, told by the signal's absence as an error of the write.
-  for (const std::uint64_t part : {2, 5}) {
-    const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(size * part / 6 / 512) + ";";
-    fs::remove_all(path("full"));
-    const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    for (const std::string& words : {path("full/run.frontlux") + ": cannot be written",
-                                     "frontlux explore --resume " + path("full") + " goes on"})
-      EXPECT_NE(answer.err.find(words), std::string::npos) << words << " in " << answer.err;
-    const std::size_t kept = read_recording(path("full/run.frontlux")).steps.size();
-    EXPECT_GE(kept, 1U);
-    EXPECT_LT(kept, 5U);
-    expect_resumed("full");
-    expect_same_runs("whole", "full");
-  }
-  // A table on a full device.
-  for (const char* table : {"steps.csv", "paths.csv"}) {
-    fs::remove(path("whole") + "/" + table);
-    fs::create_symlink("/dev/full", path("whole") + "/" + table);
-    const Answer answer = run({"--resume", path("whole")});
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_NE(answer.err.find(std::string(table) + ": cannot be written: No space left on device"),
-              std::string::npos)
-        << answer.err;
-    fs::remove(path("whole") + "/" + table);
-  }
-  expect_resumed("whole");
-  expect_same_runs("whole", "full");
-}
-
 TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   const std::string output = path("new");
   const auto with = [&](std::vector<std::string> words) {
@@ -507,32 +249,6 @@ TEST_F(ExploreCommand, RefusesAFolderThatMayNotBeWritten) {
         << content_of(path("open/err"));
     EXPECT_TRUE(fs::is_empty(path("locked")));
   }
-}
-
-// A run goes on only in the world that it is of.
-TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
-  const auto world = [&](const char* seed) {
-    return test::run_frontlux({"world", "room", "--seed", seed, "-o", path("room.ply")}, folder_);
-  };
-  ASSERT_EQ(world("1").code, 0);
-  const Eigen::Vector3d start = *sim::make_world("room", 1).start;
-  std::ostringstream at;
-  at << start.x() << ',' << start.y() << ',' << start.z();
-  const Answer answer =
-      run({path("room.ply"), "--start", at.str(), "--ground", "off", "--max-steps", "1", "-o", path("run")});
-  ASSERT_EQ(answer.code, 0) << answer.err;
-  ASSERT_EQ(world("2").code, 0);
-  expect_refused({"--resume", path("run"), "--max-steps", "2"},
-                 {"--resume: ", "is not what room.ply is now"});
-  ASSERT_EQ(world("1").code, 0);
-  expect_resumed("run", {"--max-steps", "2"});
-  // One that looks the same until a robot finds out.
-  Recording recording = read_recording(path("run/run.frontlux"));
-  recording.steps.at(2).step.robots.at(1).changed.pop_back();
-  RecordingWriter writer(path("run/run.frontlux"), recording.head);
-  for (const RecordedStep& step : recording.steps) writer.write(step);
-  writer.write_end("stopped");
-  expect_refused({"--resume", path("run")}, {"--resume: in step 2 the robots see another world"});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 #include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 
@@ -12,10 +12,8 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <set>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <variant>
 #include <vector>
 
@@ -27,11 +25,10 @@ using test::content_of;
 
 using octomap::OcTree;
 
-class MapCommandTest : public testing::Test {
+class MapCommandTest : public test::CommandTest {
  protected:
-  MapCommandTest()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_map_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_ / "clouds");
+  MapCommandTest() : CommandTest("map") {
+    std::filesystem::create_directory(folder_ / "clouds");
     test::Random random(31);
     std::ofstream poses(path("clouds/poses.csv"));
     poses << "file,x,y,z,yaw\n";
@@ -59,34 +56,8 @@ class MapCommandTest : public testing::Test {
     std::ofstream stream(path("scans.graph"), std::ios::binary);
     graph_.writeBinary(stream);
   }
-  ~MapCommandTest() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "map");
-    return test::run_frontlux(words, folder_);
-  }
-
-  void expect_refused(std::vector<std::string> words, const std::string& part) const {
-    const auto names = files();
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
-    EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err << " does not say: " << part;
-    EXPECT_EQ(files(), names);  // nothing half-written
-  }
-
-  [[nodiscard]] std::set<std::string> files() const {
-    std::set<std::string> names = {path("out"), path("err")};
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_))
-      names.insert(entry.path().string());
-    return names;
-  }
 
   octomap::ScanGraph graph_;
-  std::filesystem::path folder_;
 };
 
 std::shared_ptr<OcTree> tree_in(const std::string& file) {

@@ -1,4 +1,4 @@
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 #include "support/quiet_octomap.hpp"
 
 #include <frontlux/octomap.hpp>
@@ -19,7 +19,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <variant>
 #include <vector>
 
@@ -48,11 +47,9 @@ std::vector<Pose> poses_in(const std::string& csv) {
 }
 
 // A hall of 9 x 6 x 4 m over a floor, with a wall from y = 0 to 4 across its middle.
-class PlanCommandTest : public testing::Test {
+class PlanCommandTest : public test::CommandTest {
  protected:
-  PlanCommandTest()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_plan_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
+  PlanCommandTest() : CommandTest("plan") {
     MappingOptions options;
     options.resolution = 0.3;
     Mapping mapping(options);
@@ -70,33 +67,6 @@ class PlanCommandTest : public testing::Test {
     mapping.write(path("hall.bt"));
     std::ofstream(path("broken.bt")) << "# Octomap OcTree binary file\nid OcTree\nsize 9\nres 0.3\ndata\n";
   }
-  ~PlanCommandTest() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "plan");
-    return test::run_frontlux(words, folder_);
-  }
-
-  [[nodiscard]] std::set<std::string> files() const {
-    std::set<std::string> names = {path("out"), path("err")};
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_))
-      names.insert(entry.path().string());
-    return names;
-  }
-
-  void expect_refused(const std::vector<std::string>& words, const std::string& part) const {
-    const auto names = files();
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
-    EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err << " does not say: " << part;
-    EXPECT_EQ(files(), names);  // nothing half-written
-  }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(PlanCommandTest, WritesAPathForEachRobotAndPlanner) {

@@ -1,7 +1,7 @@
 // `frontlux render` from the outside: its files against brute force, and what it refuses.
 
 #include "planner/goal_room.hpp"
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 #include "support/quiet_octomap.hpp"
 
 #include <frontlux/octomap.hpp>
@@ -15,18 +15,14 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace frontlux::test {
 namespace {
 
-class RenderCommand : public testing::Test {
+class RenderCommand : public CommandTest {
  protected:
-  RenderCommand()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_render_" + std::to_string(getpid()))),
-        room_(34, 8, 5) {
-    std::filesystem::create_directories(folder_);
+  RenderCommand() : CommandTest("render"), room_(34, 8, 5) {
     room_.clear(17, 17, 2, 3);
     octomap::OcTree tree(0.3);
     for (int x = 0; x < room_.length; ++x)
@@ -37,21 +33,13 @@ class RenderCommand : public testing::Test {
           if (state != Occupancy::kUnknown)
             tree.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), state == Occupancy::kOccupied);
         }
-    std::ofstream map(file("room.bt"), std::ios::binary);
+    std::ofstream map(path("room.bt"), std::ios::binary);
     tree.writeBinary(map);
-  }
-  ~RenderCommand() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "render");
-    return run_frontlux(words, folder_);
   }
 
   [[nodiscard]] Answer render(const std::string& robot, const std::string& at, const std::string& output,
                               const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {file("room.bt"), "--robot", robot, "--at", at, "-o", file(output)};
+    std::vector<std::string> words = {path("room.bt"), "--robot", robot, "--at", at, "-o", path(output)};
     words.insert(words.end(), more.begin(), more.end());
     return run(words);
   }
@@ -62,10 +50,9 @@ class RenderCommand : public testing::Test {
     EXPECT_EQ(answer.out, "");
     EXPECT_EQ(answer.err.find('\n'), answer.err.size() - 1) << answer.err;
     for (const auto& part : parts) EXPECT_NE(answer.err.find(part), std::string::npos) << part << answer.err;
-    EXPECT_FALSE(std::filesystem::is_regular_file(file(output)));
+    EXPECT_FALSE(std::filesystem::is_regular_file(path(output)));
   }
 
-  std::filesystem::path folder_;
   GoalRoom room_;
 };
 
@@ -104,7 +91,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
         render("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"});
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_EQ(answer.err, "");
-    const std::string csv = content_of(file("room.csv"));
+    const std::string csv = content_of(path("room.csv"));
     if (first.empty()) first = csv;
     EXPECT_EQ(csv, first);
     EXPECT_NE(answer.out.find(std::to_string(frontiers.size()) + ", of which the ugv takes " +
@@ -149,7 +136,7 @@ TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
         const Answer answer = render(robot, at, "room.png", {"--mode", mode});
         ASSERT_EQ(answer.code, 0) << robot << " " << mode << answer.err;
         EXPECT_NE(answer.out.find("goal         "), std::string::npos);
-        const std::string png = content_of(file("room.png"));
+        const std::string png = content_of(path("room.png"));
         ASSERT_GT(png.size(), 100U);
         EXPECT_EQ(png.substr(0, 8), std::string("\x89PNG\r\n\x1a\n"));
         EXPECT_EQ(png.substr(12, 4), "IHDR");
@@ -165,8 +152,8 @@ TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
 TEST_F(RenderCommand, PointsHoldAllCells) {
   ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.csv").code, 0);
   ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.ply").code, 0);
-  const auto rows = table_of(content_of(file("room.csv")));
-  const std::string ply = content_of(file("room.ply"));
+  const auto rows = table_of(content_of(path("room.csv")));
+  const std::string ply = content_of(path("room.ply"));
   EXPECT_NE(ply.find("element vertex " + std::to_string(rows.size()) + "\n"), std::string::npos);
   const std::size_t body = ply.find("end_header\n") + 11;
   constexpr std::size_t kRow = 8 * 4 + 4 + 3;
@@ -184,13 +171,13 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   const auto refuse = [&](const std::vector<std::string>& words, const std::vector<std::string>& parts) {
     expect_refusal(run(words), parts, "x.png");
   };
-  const std::string map = file("room.bt"), out = file("x.png");
+  const std::string map = path("room.bt"), out = path("x.png");
   refuse({map, "--robot", "ugv", "--at", "nan,0,0", "-o", out}, {"--at", "nan,0,0"});
   refuse({map, "--robot", "ugv", "--at", "1,2", "-o", out}, {"--at", "1,2"});
   refuse({map, "--robot", "ugv", "--at", "1e9,0,0", "-o", out}, {"--at", "1e9,0,0", "key range"});
   refuse({map, "--robot", "boat", "--at", kStart, "-o", out}, {"--robot", "boat"});
-  refuse({map, "--robot", "ugv", "--at", kStart, "-o", file("x.jpg")}, {"--output", "x.jpg", ".png"});
-  refuse({map, "--robot", "ugv", "--at", kStart, "-o", file("no/x.png")}, {"--output", "there is no folder"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", path("x.jpg")}, {"--output", "x.jpg", ".png"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", path("no/x.png")}, {"--output", "there is no folder"});
   refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--samples", "0"}, {"--samples", "'0'"});
   refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--samples", "x"}, {"--samples", "'x'"});
   refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--seed", "-1"}, {"--seed", "'-1'"});
@@ -201,9 +188,9 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse({map, "--robot", "uav", "--at", "5.25,5.25,0.45", "-o", out}, {"--at", "below its minimum height"});
   refuse({map, "--robot", "ugv", "--at", "5.25,5.25,-0.15", "-o", out}, {"--at", "occupied voxel"});
   refuse({map, "--robot", "ugv", "--at", "50,5,0.75", "-o", out}, {"--at", "outside the bounds"});
-  refuse({file("none.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"none.bt"});
-  std::ofstream(file("broken.bt")) << "# Octomap OcTree binary file\n";
-  refuse({file("broken.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"broken.bt"});
+  refuse({path("none.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"none.bt"});
+  std::ofstream(path("broken.bt")) << "# Octomap OcTree binary file\n";
+  refuse({path("broken.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"broken.bt"});
   octomap::OcTree full(0.3);
   for (int x = 0; x < 8; ++x)
     for (int y = 0; y < 8; ++y)
@@ -212,10 +199,10 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
         full.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), z < 0);
       }
   {
-    std::ofstream stream(file("full.bt"), std::ios::binary);
+    std::ofstream stream(path("full.bt"), std::ios::binary);
     full.writeBinary(stream);
   }
-  refuse({file("full.bt"), "--robot", "ugv", "--at", "1.05,1.05,0.75", "-o", out},
+  refuse({path("full.bt"), "--robot", "ugv", "--at", "1.05,1.05,0.75", "-o", out},
          {"full.bt", "nothing is left to see"});
 }
 

@@ -1,5 +1,6 @@
 // Corridors against definitions applied cell by cell, and a plain Dijkstra over a set.
 
+#include "support/key_box.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
@@ -18,6 +19,7 @@
 namespace frontlux::planner {
 namespace {
 
+using test::for_each_key;
 using test::Random;
 
 VoxelKey key_at(int x, int y, int z) {
@@ -31,15 +33,6 @@ VoxelKey moved(const VoxelKey& k, int x, int y, int z) {
 
 constexpr Occupancy kStates[] = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
 const KeyBox kBounds{key_at(-13, -10, -5), key_at(14, 12, 11)};
-
-template <class Visit>
-void for_each_key(const KeyBox& box, const Visit& visit) {
-  for (int x = box.min.x; x <= box.max.x; ++x)
-    for (int y = box.min.y; y <= box.max.y; ++y)
-      for (int z = box.min.z; z <= box.max.z; ++z)
-        visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                       static_cast<std::uint16_t>(z)});
-}
 
 // Free space with walls, specks and unknown pockets, on a floor with gaps.
 VoxelGrid random_map(std::uint64_t seed, double resolution, int specks) {

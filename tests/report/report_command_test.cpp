@@ -1,28 +1,20 @@
 #include "explored_run.hpp"
+#include "support/command.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace frontlux::report {
 namespace {
 
-struct Answer {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using test::Answer;
+using test::content_of;
 
 class ReportCommandTest : public testing::Test {
  protected:
@@ -41,17 +33,15 @@ class ReportCommandTest : public testing::Test {
   ReportCommandTest(const ReportCommandTest&) = delete;
   ReportCommandTest& operator=(const ReportCommandTest&) = delete;
 
-  [[nodiscard]] Answer run(const std::string& arguments) const {
-    const auto out = folder_ / "out.txt", err = folder_ / "err.txt";
-    const std::string command = "cd '" + folder_.string() + "' && " + FRONTLUX_COMMAND + " report " +
-                                arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
+  // In the folder, so that its files can be named as they are.
+  [[nodiscard]] Answer run(std::vector<std::string> words) const {
+    words.insert(words.begin(), "report");
+    return test::run_frontlux(words, folder_, "cd " + test::quoted(folder_.string()) + " &&");
   }
 
-  void expect_refused(const std::string& arguments, const std::string& told) const {
-    const Answer answer = run(arguments);
-    EXPECT_EQ(answer.code, 2) << arguments;
+  void expect_refused(const std::vector<std::string>& words, const std::string& told) const {
+    const Answer answer = run(words);
+    EXPECT_EQ(answer.code, 2) << told;
     EXPECT_NE(answer.err.find(told), std::string::npos) << answer.err;
     EXPECT_EQ(answer.out, "");
   }
@@ -66,7 +56,7 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
 }
 
 TEST_F(ReportCommandTest, WritesBesideTheRecording) {
-  const Answer answer = run("one");
+  const Answer answer = run({"one"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_EQ(answer.out, "one/report.html\n");
   const std::string page = content_of(folder_ / "one" / "report.html");
@@ -75,14 +65,14 @@ TEST_F(ReportCommandTest, WritesBesideTheRecording) {
 }
 
 TEST_F(ReportCommandTest, PutsSeveralRunsInOneReport) {
-  const Answer answer = run("one two/run.frontlux -o both.html");
+  const Answer answer = run({"one", "two/run.frontlux", "-o", "both.html"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_NE(content_of(folder_ / "both.html").find("<title>one, two - frontlux</title>"), std::string::npos);
-  expect_refused("one two", "--output");
+  expect_refused({"one", "two"}, "--output");
 }
 
 TEST_F(ReportCommandTest, MakesStills) {
-  const Answer answer = run("one --png");
+  const Answer answer = run({"one", "--png"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   for (const char* name : {"final_map.png", "coverage.png"}) {
     const std::string picture = content_of(folder_ / "one" / name);
@@ -97,24 +87,24 @@ TEST_F(ReportCommandTest, MakesStills) {
 TEST_F(ReportCommandTest, RefusesWhatIsNoRun) {
   std::filesystem::create_directories(folder_ / "empty");
   std::ofstream(folder_ / "foreign.frontlux") << "something else entirely";
-  expect_refused("nowhere", "nowhere");
-  expect_refused("empty", "run.frontlux");
-  expect_refused("foreign.frontlux", "foreign.frontlux");
-  expect_refused("one -o report.pdf", ".html");
-  expect_refused("one -o nowhere/report.html", "nowhere");
-  expect_refused("", "RUN");
+  expect_refused({"nowhere"}, "nowhere");
+  expect_refused({"empty"}, "run.frontlux");
+  expect_refused({"foreign.frontlux"}, "foreign.frontlux");
+  expect_refused({"one", "-o", "report.pdf"}, ".html");
+  expect_refused({"one", "-o", "nowhere/report.html"}, "nowhere");
+  expect_refused({}, "RUN");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one" / "report.html"));
 }
 
 TEST_F(ReportCommandTest, ShowsWhatIsLeftOfATruncatedRecording) {
   const auto file = folder_ / "one" / "run.frontlux";
   std::filesystem::resize_file(file, std::filesystem::file_size(file) * 3 / 4);
-  const Answer answer = run("one");
+  const Answer answer = run({"one"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_NE(answer.err.find("its last step is not complete"), std::string::npos) << answer.err;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / "report.html"));
   std::filesystem::resize_file(file, 20);
-  expect_refused("one", "run.frontlux");
+  expect_refused({"one"}, "run.frontlux");
 }
 
 TEST_F(ReportCommandTest, RefusesADamagedRecording) {
@@ -122,7 +112,7 @@ TEST_F(ReportCommandTest, RefusesADamagedRecording) {
   std::string bytes = content_of(file);
   bytes[bytes.size() / 3] = static_cast<char>(bytes[bytes.size() / 3] ^ 0x10);
   std::ofstream(file, std::ios::binary) << bytes;
-  expect_refused("two", "run.frontlux");
+  expect_refused({"two"}, "run.frontlux");
 }
 
 }  // namespace

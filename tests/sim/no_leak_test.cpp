@@ -1,5 +1,6 @@
 // With exact sensing a map invents nothing: every occupied voxel touches a true surface, and every free one
 // can be seen into from where the robot was, without looking through a wall.
+#include "support/key_box.hpp"
 #include "support/maps.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -27,6 +28,8 @@
 namespace frontlux::sim {
 namespace {
 
+using test::for_each_key;
+
 using planner::Mapping;
 
 Eigen::AlignedBox3d box_of(const Lattice& lattice, const KeyBox& keys, double grown = 0.0) {
@@ -43,15 +46,6 @@ std::vector<TriangleOverlap> triangles_of(const TriangleMesh& mesh) {
     triangles.emplace_back(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
                            mesh.vertices[c].cast<double>());
   return triangles;
-}
-
-template <class Visit>
-void for_each_key(const KeyBox& box, const Visit& visit) {
-  for (unsigned x = box.min.x; x <= box.max.x; ++x)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned z = box.min.z; z <= box.max.z; ++z)
-        visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                       static_cast<std::uint16_t>(z)});
 }
 
 // The voxels that a surface comes within 2 mm of, triangle by triangle.

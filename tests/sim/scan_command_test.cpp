@@ -1,4 +1,4 @@
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -22,25 +22,14 @@ namespace {
 using test::Answer;
 using test::content_of;
 
-class ScanCommand : public testing::Test {
+class ScanCommand : public test::CommandTest {
  protected:
-  ScanCommand()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_scan_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_ / "maps");
-  }
-  ~ScanCommand() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  ScanCommand() : CommandTest("scan") { std::filesystem::create_directory(folder_ / "maps"); }
   [[nodiscard]] std::string map(const std::string& name) const { return (folder_ / "maps" / name).string(); }
 
   std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
-  }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "scan");
-    return test::run_frontlux(words, folder_);
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
   }
 
   void expect_refusal(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
@@ -52,8 +41,6 @@ class ScanCommand : public testing::Test {
       EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
     EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps")) << "something was written";
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
@@ -102,10 +89,10 @@ TEST_F(ScanCommand, RefusesPosesByLine) {
            {"8.4,8.3,1e999,0\n", "line 1"},
            {"# nothing\n", "holds no pose"},
            {"", "holds no pose"}})
-    expect_refusal(with(text), {file("poses.csv"), part});
-  expect_refusal({"room", "--poses", file("none.csv"), "-o", map("no.bt")}, {file("none.csv")});
+    expect_refusal(with(text), {path("poses.csv"), part});
+  expect_refusal({"room", "--poses", path("none.csv"), "-o", map("no.bt")}, {path("none.csv")});
   expect_refusal({"room", "--poses", folder_.string(), "-o", map("no.bt")}, {folder_.string()});
-  expect_refusal({"room", "--poses", file("none.csv"), "--sweep", "-o", map("no.bt")}, {"--sweep"});
+  expect_refusal({"room", "--poses", path("none.csv"), "--sweep", "-o", map("no.bt")}, {"--sweep"});
 }
 
 TEST_F(ScanCommand, RefusesWhatItCannotUse) {
@@ -116,7 +103,7 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   };
   expect({}, {"WORLD"});
   expect({"attic"}, {"'attic'", "room"});
-  expect({file("none.ply")}, {file("none.ply")});
+  expect({path("none.ply")}, {path("none.ply")});
   expect({folder_.string()}, {folder_.string()});
   expect({"room", "--resolution", "0"}, {"--resolution", "0"});
   expect({"room", "--resolution", "1e-9"}, {"--resolution", "1e-9"});
@@ -131,20 +118,20 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({"room", "--seed", "x"}, {"--seed", "'x'"});
   expect({"room", "--start", "99,0,0"}, {"--start", "99"});
   expect({"room", "--start", "-0.1,6,1"}, {"room", "solid"});
-  write_ply(file("whole.ply"), make_world("room", 1).mesh);
-  expect({file("whole.ply")}, {"whole.ply", "--start"});
+  write_ply(path("whole.ply"), make_world("room", 1).mesh);
+  expect({path("whole.ply")}, {"whole.ply", "--start"});
   // In the wall, 2 cm from its surface.
-  expect({file("whole.ply"), "--start", "0.02,6,1"}, {"whole.ply", "in a wall: triangle"});
-  expect({write("half.ply", content_of(file("whole.ply")).substr(0, 5000)), "--start", "6,3,1"},
+  expect({path("whole.ply"), "--start", "0.02,6,1"}, {"whole.ply", "in a wall: triangle"});
+  expect({write("half.ply", content_of(path("whole.ply")).substr(0, 5000)), "--start", "6,3,1"},
          {"half.ply"});
-  expect({file("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"}, {"too many to map"});
+  expect({path("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"}, {"too many to map"});
 }
 
 TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
   expect_refusal({"station", "-o", map("map.txt")}, {"--output", "map.txt"});
-  expect_refusal({"station", "-o", file("no/folder/map.bt")}, {"--output", "no/folder"});
-  std::filesystem::create_directories(file("folder.bt"));
-  expect_refusal({"station", "-o", file("folder.bt")}, {"--output", "folder.bt", "folder"});
+  expect_refusal({"station", "-o", path("no/folder/map.bt")}, {"--output", "no/folder"});
+  std::filesystem::create_directories(path("folder.bt"));
+  expect_refusal({"station", "-o", path("folder.bt")}, {"--output", "folder.bt", "folder"});
   expect_refusal({"station"}, {"--output"});
 }
 
@@ -153,7 +140,7 @@ TEST_F(ScanCommand, WritesNothingWhenStopped) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     std::signal(SIGINT, SIG_DFL);
-    static_cast<void>(std::freopen(file("err").c_str(), "w", stderr));
+    static_cast<void>(std::freopen(path("err").c_str(), "w", stderr));
     execl(FRONTLUX_COMMAND, FRONTLUX_COMMAND, "scan", "station", "--sweep", "1", "-o",
           map("stopped.bt").c_str(), static_cast<char*>(nullptr));
     _exit(127);

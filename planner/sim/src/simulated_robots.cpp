@@ -1,3 +1,4 @@
+#include "box_voxels.hpp"
 #include "counter_random.hpp"
 #include "straight_way.hpp"
 
@@ -48,13 +49,7 @@ Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
 }
 
 bool holds_surface(const GroundTruth& truth, const KeyBox& box) {
-  for (unsigned z = box.min.z; z <= box.max.z; ++z)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned x = box.min.x; x <= box.max.x; ++x)
-        if (truth.holds_surface({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                                 static_cast<std::uint16_t>(z)}))
-          return true;
-  return false;
+  return !planner::detail::all_of(box, [&](const VoxelKey& key) { return !truth.holds_surface(key); });
 }
 
 }  // namespace

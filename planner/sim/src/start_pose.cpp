@@ -1,3 +1,4 @@
+#include "box_voxels.hpp"
 #include "open_walk.hpp"
 
 #include <frontlux/planner/mapping.hpp>
@@ -18,6 +19,7 @@ namespace {
 using planner::Motion;
 using planner::Pose;
 using planner::Robot;
+using planner::detail::all_of;
 
 constexpr double kSearched = 15.0;          // [m] along each axis
 constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
@@ -46,17 +48,6 @@ double lower_end(const Lattice& lattice, std::uint16_t layer) {
 bool overlap(const KeyBox& a, const KeyBox& b) {
   return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
          a.min.z <= b.max.z && b.min.z <= a.max.z;
-}
-
-template <class Visit>
-bool all_of(const KeyBox& box, const Visit& visit) {
-  for (unsigned z = box.min.z; z <= box.max.z; ++z)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned x = box.min.x; x <= box.max.x; ++x)
-        if (!visit(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                            static_cast<std::uint16_t>(z)}))
-          return false;
-  return true;
 }
 
 // The voxels around a search's centre, within the bounds.
