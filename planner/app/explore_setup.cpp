@@ -146,6 +146,10 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                                 std::span<const RobotDescription> robots) {
   planner::ExplorationOptions exploration = planner::exploration_options(method);
   exploration.seed = parse_seed(options.seed);
+  if (!options.epsilon.empty())
+    exploration.epsilon = parse_number("--epsilon", options.epsilon);
+  else if (options.goal == "nearest")
+    exploration.epsilon = 1.0;  // the nearest frontiers are few, and worth going to by this rule
   for (const RobotDescription& robot : robots) {
     planner::GoalOptions goal = planner::goal_options(robot.robot, method);
     goal.rendering.seed = exploration.seed;
@@ -168,6 +172,8 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
     } catch (const std::invalid_argument& error) {
       throw BadInput(error.what());
     }
+    // Steps are quiet only when there is no better goal.
+    if (method == Method::kDefault) goal.min_gain = exploration.epsilon;
     exploration.team.push_back({robot.robot, goal});
   }
   using planner::PathSearch;
@@ -186,10 +192,6 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                                     {"grid", planner::CasterKind::kGrid},
                                                     {"octomap", planner::CasterKind::kOctomap}});
   exploration.max_steps = parse_count("--max-steps", options.max_steps, 0);
-  if (!options.epsilon.empty())
-    exploration.epsilon = parse_number("--epsilon", options.epsilon);
-  else if (options.goal == "nearest")
-    exploration.epsilon = 1.0;  // the nearest frontiers are few, and worth going to by this rule
   try {
     exploration.check();
   } catch (const std::invalid_argument& error) {

@@ -25,6 +25,7 @@ void GoalOptions::check() const {
   check_number("lambda", lambda, 0.0, "per metre");
   check_number("min_distance", min_distance, 0.0, "m");
   check_number("advance", advance, 0.0, "m");
+  check_number("min_gain", min_gain, 0.0, "frontiers");
   check_number("viewpoint_spacing", viewpoint_spacing, 0.0, "m");
   check_number("cluster_edge", cluster_edge, 0.0, "m");
   if (surroundings < 0 || surroundings > 64)
@@ -47,6 +48,7 @@ GoalOptions goal_options(const Robot& robot, Method method) {
     options.refined = on_plane ? 0 : 4096;  // all cells that see a frontier
   } else {
     options.advance = 4.0;
+    options.min_gain = 10.0;  // that of a step which is not quiet, as `ExplorationOptions` has it
     if (on_plane) {
       options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
     } else {

@@ -42,6 +42,9 @@ struct GoalQuery {
     return distance >= options.min_distance - kRounding;
   }
 
+  /// Whether a gain is enough to go for before all that is not.
+  [[nodiscard]] bool enough(double gain) const { return gain >= options.min_gain; }
+
   /// Eq. 1, and what `GoalOptions::advance` makes of it.
   [[nodiscard]] double quality(double distance, double gain) const {
     const double advanced = distance < options.advance ? distance / options.advance : 1.0;

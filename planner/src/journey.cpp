@@ -14,11 +14,26 @@ bool is_free(const VoxelGrid& grid, const KeyBox& box) {
   return all_of(box, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
 }
 
-// The corridor is as old as the step; the map has learnt since.
+// Whether a move stays in its voxel and leads towards the middle of it.
+bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const auto key = lattice.key(from[a]);
+    if (!key || lattice.key(to[a]) != key) return false;
+    const double middle = lattice.center(*key);
+    if (to[a] < std::min(from[a], middle) || to[a] > std::max(from[a], middle)) return false;
+  }
+  return true;
+}
+
+// The corridor is as old as the step; the map has learnt since. A robot beside which something was found may
+// move to the middle of its voxel, where it is free: on the way it comes to no voxel that it is not in.
 bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
   const Lattice& lattice = grid.lattice();
-  return StraightWay(lattice, from.position, to.position, reach_of(body, lattice))
-      .holds([&](const VoxelKey& key) { return is_free(grid, voxels_of_cell(body, lattice, key)); });
+  const Eigen::Vector3d& begin =
+      leads_to_the_middle(lattice, from.position, to.position) ? to.position : from.position;
+  return StraightWay(lattice, begin, to.position, reach_of(body, lattice)).holds([&](const VoxelKey& key) {
+    return is_free(grid, voxels_of_cell(body, lattice, key));
+  });
 }
 
 // The voxels on a way, but for that which it begins in.

@@ -128,7 +128,7 @@ class CubeView {
 struct Prospects {
   std::vector<std::size_t> cube;  // of each cell
   std::size_t cubes = 0;
-  std::vector<double> quality;  // of each cell, no less than what counting it would show
+  std::vector<double> gain, quality;  // of each cell, no less than what counting it would show
 };
 
 Prospects prospects_of(const GoalQuery& query, std::span<const VoxelKey> cells) {
@@ -137,19 +137,22 @@ Prospects prospects_of(const GoalQuery& query, std::span<const VoxelKey> cells) 
   std::vector<Cube> cubes = cubes_of(cells);
   tbb::parallel_for(std::size_t{0}, cubes.size(),
                     [&](std::size_t i) { cubes[i].count = view.most(cubes[i], targets); });
-  Prospects result{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size())};
+  Prospects result{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size()),
+                   std::vector<double>(cells.size())};
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
     const auto cube = std::lower_bound(cubes.begin(), cubes.end(), Cube{corner_of(cells[i])}, by_corner);
     const double distance = query.distance(cells[i]);
     result.cube[i] = static_cast<std::size_t>(cube - cubes.begin());
-    if (query.far_enough(distance))
-      result.quality[i] = query.quality(distance, static_cast<double>(cube->count));
+    if (!query.far_enough(distance)) return;
+    result.gain[i] = static_cast<double>(cube->count);
+    result.quality[i] = query.quality(distance, result.gain[i]);
   });
   return result;
 }
 
 // The best prospects, each of another cube.
-std::vector<VoxelKey> most_promising(std::span<const VoxelKey> cells, const Prospects& prospects) {
+std::vector<VoxelKey> most_promising(const GoalQuery& query, std::span<const VoxelKey> cells,
+                                     const Prospects& prospects) {
   std::vector<std::size_t> best(prospects.cubes, cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     std::size_t& there = best[prospects.cube[i]];
@@ -157,6 +160,8 @@ std::vector<VoxelKey> most_promising(std::span<const VoxelKey> cells, const Pros
   }
   const auto end = best.begin() + static_cast<std::ptrdiff_t>(std::min(kCounted, best.size()));
   std::partial_sort(best.begin(), end, best.end(), [&](std::size_t a, std::size_t b) {
+    const bool enough = query.enough(prospects.gain[a]);
+    if (enough != query.enough(prospects.gain[b])) return enough;
     return prospects.quality[a] > prospects.quality[b] ||
            (prospects.quality[a] == prospects.quality[b] && a < b);
   });
@@ -170,11 +175,18 @@ std::vector<VoxelKey> most_promising(std::span<const VoxelKey> cells, const Pros
 PossibleGoals possible_goals(const GoalQuery& query, std::span<const VoxelKey> cells) {
   const Prospects prospects = prospects_of(query, cells);
   PossibleGoals possible;
-  const ViewQualityImage image = render_cells(query, most_promising(cells, prospects), all_targets(query));
+  const ViewQualityImage image = render_cells(query, most_promising(query, cells, prospects), all_targets(query));
   possible.counted = best_cell(query, image);
-  const double certain = possible.counted ? possible.counted->quality : 0.0;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (prospects.quality[i] > 0.0 && prospects.quality[i] >= certain) possible.cells.push_back(cells[i]);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (prospects.quality[i] <= 0.0) continue;
+    if (possible.counted) {
+      RenderedCell at_best = *possible.counted;  // of its key, too: who draws level stays in
+      at_best.gain = prospects.gain[i];
+      at_best.quality = prospects.quality[i];
+      if (better(query, *possible.counted, at_best)) continue;
+    }
+    possible.cells.push_back(cells[i]);
+  }
   return possible;
 }
 

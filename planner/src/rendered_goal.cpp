@@ -17,7 +17,9 @@ struct Candidate {
 };
 
 // Estimates first; where they are zero, what may be hidden in them.
-bool more_promising(const Candidate& a, const Candidate& b) {
+bool more_promising(const GoalQuery& query, const Candidate& a, const Candidate& b) {
+  const bool enough = query.enough(a.rated.gain);
+  if (enough != query.enough(b.rated.gain)) return enough;
   if (a.rated.quality != b.rated.quality) return a.rated.quality > b.rated.quality;
   if (a.most != b.most) return a.most > b.most;
   return a.rated.cell < b.rated.cell;
@@ -54,14 +56,16 @@ std::optional<RenderedCell> best_of(const GoalQuery& query, const ViewQualityIma
   std::optional<RenderedCell> best;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const RenderedCell rated = rate(query, image, i, containing);
-    if (rated.gain > 0.0 && (!best || better(rated, *best))) best = rated;
+    if (rated.gain > 0.0 && (!best || better(query, rated, *best))) best = rated;
   }
   return best;
 }
 
 }  // namespace
 
-bool better(const RenderedCell& a, const RenderedCell& b) {
+bool better(const GoalQuery& query, const RenderedCell& a, const RenderedCell& b) {
+  const bool enough = query.enough(a.gain);
+  if (enough != query.enough(b.gain)) return enough;
   if (a.quality != b.quality) return a.quality > b.quality;
   return a.cell < b.cell;
 }
@@ -106,10 +110,11 @@ std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityI
   std::vector<Candidate> candidates = list_candidates(query, image, containing);
   const bool exact = std::none_of(candidates.begin(), candidates.end(),
                                   [](const Candidate& candidate) { return candidate.undecided; });
+  std::optional<RenderedCell> best;
   if (exact || query.options.refined == 0) {
-    std::optional<RenderedCell> best;
     for (const Candidate& candidate : candidates)
-      if (candidate.rated.gain > 0.0 && (!best || better(candidate.rated, *best))) best = candidate.rated;
+      if (candidate.rated.gain > 0.0 && (!best || better(query, candidate.rated, *best)))
+        best = candidate.rated;
     return best;
   }
   std::vector<VoxelKey> cells;
@@ -117,14 +122,17 @@ std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityI
   for (auto count = static_cast<std::size_t>(query.options.refined); begin != candidates.end(); count *= 4) {
     const auto left = static_cast<std::size_t>(candidates.end() - begin);
     const auto end = begin + static_cast<std::ptrdiff_t>(std::min(count, left));
-    std::partial_sort(begin, end, candidates.end(), more_promising);
+    std::partial_sort(
+        begin, end, candidates.end(),
+        [&query](const Candidate& a, const Candidate& b) { return more_promising(query, a, b); });
+    if (best && (query.enough(best->gain) || !query.enough(begin->rated.gain))) break;
     cells.clear();
     for (auto candidate = begin; candidate != end; ++candidate) cells.push_back(candidate->rated.cell);
-    if (const auto best = best_of(query, render_cells(query, cells, all_targets(query)), containing))
-      return best;
+    const auto found = best_of(query, render_cells(query, cells, all_targets(query)), containing);
+    if (found && (!best || better(query, *found, *best))) best = found;
     begin = end;
   }
-  return std::nullopt;
+  return best;
 }
 
 }  // namespace frontlux::planner::detail

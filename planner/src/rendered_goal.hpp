@@ -15,12 +15,13 @@ namespace frontlux::planner::detail {
 [[nodiscard]] RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
                                 const VoxelKey* containing = nullptr);
 
-/// The best by eq. 1, of equals the one with the smallest key.
-[[nodiscard]] bool better(const RenderedCell& a, const RenderedCell& b);
+/// Whether one cell is the better goal: one of enough gain before those without, then by eq. 1, of equals the
+/// one with the smallest key.
+[[nodiscard]] bool better(const GoalQuery& query, const RenderedCell& a, const RenderedCell& b);
 
 /// The best cell of an image, as `better` has it; nothing if no cell that is
 /// far enough sees a target. With `refined` the best cells by the image are rendered again with all their
-/// targets, and while that shows no gain, all others which the image does not exclude.
+/// targets, and more of them, while that shows no gain, or not enough and the image promises more elsewhere.
 /// @param containing  if given, a target that has to be in view
 [[nodiscard]] std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityImage& image,
                                                     const VoxelKey* containing = nullptr);

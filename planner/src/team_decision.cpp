@@ -86,7 +86,7 @@ std::optional<RenderedCell> GoalSelection::State::render(const GoalQuery& query,
   member.imaged = grid;
   member.rendered = true;
   const std::optional<RenderedCell> best = detail::best_cell(query, member.image);
-  return counted && (!best || detail::better(*counted, *best)) ? counted : best;
+  return counted && (!best || detail::better(query, *counted, *best)) ? counted : best;
 }
 
 GoalSelection::State::Keys GoalSelection::State::seen_by(const RayCaster& caster, const VoxelGrid& grid,

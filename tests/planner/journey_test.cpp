@@ -65,6 +65,27 @@ TEST(Differences, AreThoseOfEveryVoxel) {
   EXPECT_TRUE(detail::differences(before, after, {}).empty());
 }
 
+// It stands off the middle of its voxel, so that its box of 0.8 m reaches into voxels that the box around the
+// middle is clear of; one of them turns out to be occupied.
+TEST_F(JourneyTest, LeavesWhereItStandsByTheMiddleOfItsVoxel) {
+  const Lattice lattice = mapping_.grid().lattice();
+  const auto key = [&](double x, double y, double z) {
+    return VoxelKey{*lattice.key(x), *lattice.key(y), *lattice.key(z)};
+  };
+  const auto center = [&](double along) { return lattice.center(*lattice.key(along)); };
+  const Pose beside{{1.05, 1.275, 1.25}, 0.0}, middle{{1.05, center(1.275), center(1.25)}, 0.0};
+  static_cast<void>(mapping_.insert(scan_along({{1.05, 2.55, 1.35}, 0.0}, {0, -1, 0}, 1.69F)));
+  ASSERT_EQ(mapping_.grid().at(key(1.05, 0.85, 1.35)), Occupancy::kOccupied);
+  const Drive drive = [](std::size_t, const Pose& to) { return scan_along(to, {1, 0, 0}, 2.0F); };
+  const auto travelled = [&](std::vector<Pose> way) {
+    return detail::travel(0, way, &body_, drive, mapping_).travelled;
+  };
+  EXPECT_EQ(travelled({beside, way_[1]}), 1U) << "past what is beside it";
+  EXPECT_EQ(travelled({beside, middle, way_[1]}), 3U);
+  EXPECT_EQ(travelled({beside, {{1.05, 1.29, 1.3}, 0.0}}), 1U) << "not far enough to be clear of it";
+  EXPECT_EQ(travelled({beside, {{1.05, 1.21, 1.3}, 0.0}}), 1U) << "away from the middle";
+}
+
 TEST_F(JourneyTest, MeasuresAtEveryViewpointButTheFirst) {
   const VoxelGrid before = mapping_.grid();
   std::vector<Pose> asked;

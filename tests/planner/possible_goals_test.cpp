@@ -22,6 +22,7 @@ constexpr int kAllCells = 1 << 30;
 struct Case {
   double lambda, advance;
   bool camera;
+  double min_gain = 0.0;
 };
 
 TeamMember robot_in_space(const Case& example) {
@@ -32,6 +33,7 @@ TeamMember robot_in_space(const Case& example) {
   member.options = goal_options(planner::uav());
   member.options.lambda = example.lambda;
   member.options.advance = example.advance;
+  member.options.min_gain = example.min_gain;
   member.options.rendering.samples = 3;
   return member;
 }
@@ -83,7 +85,11 @@ TEST_P(PossibleGoals, WhatIsLeftOutIsWorseThanTheGoal) {
     EXPECT_TRUE(std::includes(cells.begin(), cells.end(), rendered.begin(), rendered.end()));
     for (const RenderedCell& cell : judge.cells) {
       ASSERT_EQ(cell.standard_error, 0.0);
-      if (!rendered.contains(cell.cell) && cell.distance >= 0.6) {
+      if (rendered.contains(cell.cell) || cell.distance < 0.6) continue;
+      const bool enough = cell.gain >= GetParam().min_gain,
+                 goal_is_enough = judge.goal.gain >= GetParam().min_gain;
+      EXPECT_TRUE(goal_is_enough || !enough);
+      if (enough == goal_is_enough) {
         EXPECT_LT(cell.quality, judge.goal.quality);
       }
     }
@@ -92,7 +98,9 @@ TEST_P(PossibleGoals, WhatIsLeftOutIsWorseThanTheGoal) {
   }
   EXPECT_GT(possible, 0U);
   if (GetParam().lambda > 0.0) {
-    EXPECT_LT(possible, GetParam().lambda < 0.3 ? all : all / 2);
+    // Where hardly a cell has enough, any of many may be the one that has.
+    const bool steep = GetParam().lambda >= 0.3 && GetParam().min_gain <= 10.0;
+    EXPECT_LT(possible, steep ? all / 2 : all);
   }
 }
 
@@ -110,7 +118,12 @@ TEST_P(PossibleGoals, AFewCountedCellsLeadToNoWorseAGoal) {
       const Goal unpruned = choose(room, *caster, member).goal;
       ASSERT_EQ(pruned.pose.has_value(), unpruned.pose.has_value());
       EXPECT_EQ(pruned.standard_error, 0.0);
-      EXPECT_GE(pruned.quality, unpruned.quality);
+      const bool enough = pruned.gain >= member.options.min_gain,
+                 unpruned_is_enough = unpruned.gain >= member.options.min_gain;
+      EXPECT_TRUE(enough || !unpruned_is_enough);
+      if (enough == unpruned_is_enough) {
+        EXPECT_GE(pruned.quality, unpruned.quality);
+      }
     }
 }
 
@@ -118,7 +131,39 @@ TEST_P(PossibleGoals, AFewCountedCellsLeadToNoWorseAGoal) {
 INSTANTIATE_TEST_SUITE_P(Qualities, PossibleGoals,
                          testing::Values(Case{0.0, 0.0, true}, Case{0.0, 0.0, false}, Case{0.1386, 4.0, true},
                                          Case{0.1386, 0.0, false}, Case{1.0, 4.0, true},
-                                         Case{0.5, 2.0, false}));
+                                         Case{0.5, 2.0, false}, Case{1.0, 4.0, true, 10.0},
+                                         Case{0.5, 0.0, false, 20.0}, Case{1.0, 4.0, true, 1e6}));
+
+// The nearest cells see little; what they are to be compared with is that which `min_gain` asks for.
+TEST(PossibleGoals, TheBestOfThoseWithEnoughIsTheGoalHoweverFar) {
+  int farther = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(seed);
+    GoalRoom room(50, 7, seed);
+    room.clear(4, 4, 3);
+    const auto caster = make_grid_ray_caster(room.grid);
+    TeamMember member = robot_in_space({2.0, 0.0, true});
+    member.options.prune = false;
+    member.options.rendering.samples = ViewQualityOptions::kAll;
+    const Chosen anything = choose(room, *caster, member);
+    ASSERT_TRUE(anything.goal.pose);
+    double most = 0.0;
+    for (const RenderedCell& cell : anything.cells)
+      if (cell.distance >= 0.6) most = std::max(most, cell.gain);
+    for (const double min_gain : {most / 2, most, most + 1}) {
+      member.options.min_gain = min_gain;
+      const Goal goal = choose(room, *caster, member).goal;
+      ASSERT_TRUE(goal.pose);
+      double best = 0.0;
+      for (const RenderedCell& cell : anything.cells)
+        if (cell.distance >= 0.6 && (cell.gain >= min_gain || min_gain > most))
+          best = std::max(best, cell.quality);
+      EXPECT_EQ(goal.quality, best);
+      if (goal.distance > anything.goal.distance) ++farther;
+    }
+  }
+  EXPECT_GT(farther, 0);
+}
 
 TEST(PossibleGoals, WithoutCountedCellsNothingIsLeftOut) {
   GoalRoom room(50, 7, 2);

@@ -43,6 +43,11 @@ struct GoalOptions {
   /// see as many, one far enough to uncover something is worth the step.
   double advance = 0.0;
 
+  /// [frontiers] Cells that promise fewer are goals only if no other cell is found that promises as many,
+  /// however near they are. Else a robot would pick up what is left around it, and a loop that ends when
+  /// paths promise little would end with far regions untouched.
+  double min_gain = 0.0;
+
   /// How viewpoints are rendered. `azimuth_bins` matters for robots that do not see all around: their gain is
   /// what the best window of bins holds.
   ViewQualityOptions rendering;
