@@ -54,8 +54,10 @@ def coverage_lines(results):
 
 def team_lines(results):
     counted, reached = savings(results, "team", "uav", WORLDS)
+    team, alone = means(results.pairs("team", "uav", WORLDS), lambda run: run.steps_or_limit(0.9))
     said = counted and (f"{percent(counted.mean)} (counting limits), {percent(reached and reached.mean)} over the "
-                        f"{reached.count if reached else 0} of {counted.count} pairs that both got there")
+                        f"{reached.count if reached else 0} of {counted.count} pairs that both got there; of the mean "
+                        f"steps, {team:,.1f} and {alone:,.1f}, it is {percent(1 - team / alone) if alone else NOTHING}")
     yield ("Steps to 90 % that the team saves against the UAV alone, mean over worlds and seeds: at least 30 %", said,
            verdict(counted and 100 * counted.mean, 30, " points"))
     team, alone = means(results.pairs("team", "uav", WORLDS), lambda run: run.travelled("uav")[-1])

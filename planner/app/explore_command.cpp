@@ -114,8 +114,8 @@ void add_explore_command(CLI::App& app) {
       "N");
   add("--max-steps", words->max_steps, "End after so many steps; 1000 if not given", "N");
   add("--epsilon", options.epsilon,
-      "End when three steps in a row promise fewer frontiers than this; 10, or 1 with --goal nearest, if not "
-      "given",
+      "End when three steps in a row promise fewer frontiers than this, and go first where as many are seen; "
+      "10, or 1 with --goal nearest, if not given",
       "N");
   add("--lambda", options.lambda,
       "How much less a goal is worth by the metre [1/m], eq. 1; by the mode if not given", "L");
