@@ -179,8 +179,8 @@ def document(results, images):
 
 Written by `./dev reproduce`: {origin(results)}
 Means over seeds, which are more for the team and the UAV alone than for what they are compared with elsewhere; in
-brackets the smallest and largest value and the standard deviation. Coverage is of the observable space. Times in the tables of planning are of one run for each world, alone on the machine, with 2
-threads; all other times are of runs side by side, one for each core, with 1 thread.
+brackets the smallest and largest value and the standard deviation. Coverage is of the observable space. Times in the
+tables of planning are of one run for each world, alone on the machine, with 2 threads; all other times are of runs side by side, one for each core, with 1 thread.
 
 ## What is not comparable
 
