@@ -1,5 +1,6 @@
 #include "path_distances.hpp"
 
+#include <bit>
 #include <cstdlib>
 
 namespace frontlux::planner::detail {
@@ -60,6 +61,13 @@ void PathDistances::spread(const VoxelKey& from) {
   constexpr std::size_t kBuckets = 4;  // the longest step reaches two ahead
   constexpr Label kFarthest = kUnreached - 2 * kStraight;
   std::array<std::vector<Entry>, kBuckets> buckets;
+  // All the moves that there could be, so that the loop below unrolls: those left over stay where they are.
+  std::array<std::ptrdiff_t, kMaxMoves> offsets{};
+  std::array<Label, kMaxMoves> lengths{};
+  for (std::size_t i = 0; i < moves_.size(); ++i) {
+    offsets[i] = moves_[i].offset;
+    lengths[i] = moves_[i].length;
+  }
   const auto place = frame_.place(from);
   if (!place) return;
   const std::size_t start = number((*place)[0], (*place)[1], (*place)[2]);
@@ -72,15 +80,23 @@ void PathDistances::spread(const VoxelKey& from) {
     empty = bucket.empty() ? empty + 1 : 0;
     for (const Entry& entry : bucket) {
       if (labels_[entry.cell] != entry.label || entry.label >= kFarthest) continue;
-      const std::uint32_t closed = closed_around(entry.cell);
-      for (std::size_t i = 0; i < moves_.size(); ++i) {
-        const Move& move = moves_[i];
-        Label& label = labels_[entry.cell + static_cast<std::size_t>(move.offset)];
+      // No branches here: few moves bring a neighbour nearer, and which cannot be foretold.
+      const Label* const cell_label = &labels_[entry.cell];
+      std::uint32_t closed = 0, better = 0;
+#pragma GCC unroll 26
+      for (std::size_t i = 0; i < kMaxMoves; ++i) {
+        const Label label = cell_label[offsets[i]];
+        closed |= static_cast<std::uint32_t>(label == kClosed) << i;
+        better |= static_cast<std::uint32_t>(entry.label + lengths[i] < label) << i;
+      }
+      for (; better != 0; better &= better - 1) {
+        const Move& move = moves_[static_cast<std::size_t>(std::countr_zero(better))];
+        if ((closed & move.corners) != 0) continue;
+        const std::size_t cell = entry.cell + static_cast<std::size_t>(move.offset);
         const Label reached = entry.label + move.length;
-        if (reached >= label || (closed & move.corners) != 0) continue;
-        label = reached;
+        labels_[cell] = reached;
         buckets[(reached - kStart) / kStraight % kBuckets].push_back(
-            {static_cast<std::uint32_t>(entry.cell + static_cast<std::size_t>(move.offset)), reached});
+            {static_cast<std::uint32_t>(cell), reached});
       }
     }
     bucket.clear();
