@@ -34,6 +34,7 @@ struct Search {
   const RayCaster& caster;
   std::span<const VoxelKey> frontiers;
   std::span<const FrontierSight> tried_first;
+  std::span<const VoxelKey> unseen;
   FeasibleRegion region;
   CorridorBlocks blocks;
   std::optional<Approach> approach;
@@ -49,7 +50,8 @@ class Piece {
       : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
     for (std::size_t i = begin; i < end; ++i)
       if (search.blocks.may_be_near(search.frontiers[i], search.region.reach(),
-                                    search.region.greatest_height()))
+                                    search.region.greatest_height()) &&
+          !std::binary_search(search.unseen.begin(), search.unseen.end(), search.frontiers[i]))
         open_.push_back(static_cast<std::uint32_t>(i - begin));
   }
 
@@ -289,6 +291,7 @@ FrontierShare find_visible_frontiers(const RayCaster& caster, const VoxelGrid& g
   const Search search{caster,
                       frontiers,
                       agent.tried_first,
+                      agent.unseen,
                       std::move(region),
                       std::move(blocks),
                       std::move(approach),

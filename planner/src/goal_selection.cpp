@@ -49,11 +49,12 @@ TravelCorridor GoalSelection::State::new_corridor(const TeamMember& member) cons
 void GoalSelection::State::renew_corridor(std::size_t robot) {
   members[robot].corridor = new_corridor(team[robot]);
   members[robot].corridor.close(members[robot].closed);
+  members[robot].unseen.forget();
 }
 
 // Corridors take changed voxels; changes of large blocks are met by reading the map again.
 void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> poses) {
-  Keys changed;
+  Keys changed, opened;
   bool too_large = false;
   if (seen)
     for_each_change(*seen, grid, [&](const Block& block) {
@@ -66,7 +67,10 @@ void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> p
             const VoxelKey key{static_cast<std::uint16_t>(block.corner.x + x),
                                static_cast<std::uint16_t>(block.corner.y + y),
                                static_cast<std::uint16_t>(block.corner.z + z)};
-            if (seen->at(key) != grid.at(key)) changed.push_back(key);
+            const Occupancy before = seen->at(key), now = grid.at(key);
+            if (before == now) continue;
+            changed.push_back(key);
+            if (before == Occupancy::kOccupied) opened.push_back(key);
           }
     });
   for (std::size_t r = 0; r < members.size(); ++r) {
@@ -85,6 +89,8 @@ void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> p
     }
     member.cell = {*x, *y, *z};
     member.corridor.update(grid, changed, member.cell);
+    member.unseen.follow(opened, member.corridor.cells(),
+                         detail::FeasibleRegion(team[r].robot.view, lattice.resolution()));
   }
   seen = grid;
 }

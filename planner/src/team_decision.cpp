@@ -100,12 +100,16 @@ void GoalSelection::State::distribute(const RayCaster& caster, const VoxelGrid& 
                                       TeamGoals& result) {
   std::vector<FrontierAgent> agents;
   for (std::size_t r = 0; r < members.size(); ++r)
-    agents.push_back({members[r].corridor.cells(), team[r].robot.view, members[r].sights});
+    agents.push_back(
+        {members[r].corridor.cells(), team[r].robot.view, members[r].sights, members[r].unseen.keys()});
   if (distributes) {
     const FrontierDistribution distribution = distribute_frontiers(caster, grid, frontiers, agents);
+    Keys left = frontiers;
     for (std::size_t r = 0; r < members.size(); ++r) {
       const FrontierShare& share = distribution.shares[r];
       members[r].share = picked(frontiers, share.frontiers);
+      left = without(left, members[r].share);
+      members[r].unseen.set(left);
       members[r].sights.clear();
       for (std::size_t i = 0; i < share.frontiers.size(); ++i)
         members[r].sights.push_back({members[r].share[i], share.seen_from[i]});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "goal_query.hpp"
+#include "unseen_frontiers.hpp"
 
 #include <frontlux/planner/frontier_distribution.hpp>
 #include <frontlux/planner/goal_selection.hpp>
@@ -25,6 +26,7 @@ struct GoalSelection::State {
     VoxelKey cell = {};                                  // that it is in
     Keys share = {};                                     // frontiers to choose from
     std::vector<FrontierSight> sights = {};              // of its share as it was distributed, sorted
+    detail::UnseenFrontiers unseen = {};                 // of those distributed
     Keys closed = {};                                    // cells it does not go through, in any order
     Keys given_up = {};                                  // frontiers it made nothing of
     Keys targets = {};                                   // those its goal was last chosen for

@@ -24,6 +24,8 @@ struct FrontierAgent {
   /// Cells to try first, sorted by frontier. They have no bearing on which frontiers are found, only on how
   /// soon: what has been seen from somewhere is mostly still seen from there.
   std::span<const FrontierSight> tried_first = {};
+  /// Frontiers that are known to be seen from no cell, sorted: not tried at all.
+  std::span<const VoxelKey> unseen = {};
 };
 
 /// The frontiers of one agent.
