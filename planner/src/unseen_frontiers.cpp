@@ -87,8 +87,7 @@ void UnseenFrontiers::follow(std::span<const VoxelKey> opened, std::span<const V
   cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
   const int across = (region.reach() >> kLog2Cube) + 1, up = (region.greatest_height() >> kLog2Cube) + 1;
   const auto around = Surroundings::make(cubes, {across, across, up});
-  if (!around) return forget();
-  std::erase_if(keys_, [&](const VoxelKey& key) { return around->contain(cube_of(key)); });
+  std::erase_if(keys_, [&](const VoxelKey& key) { return !around || around->contain(cube_of(key)); });
 }
 
 }  // namespace frontlux::planner::detail

@@ -5,6 +5,7 @@
 #include <frontlux/voxel_grid.hpp>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace frontlux::planner::detail {
@@ -20,7 +21,11 @@ class UnseenFrontiers {
   void follow(std::span<const VoxelKey> opened, std::span<const VoxelKey> corridor,
               const FeasibleRegion& region);
 
-  void forget() { keys_.clear(); }
+  /// Forgets all, the corridor too: whatever cells there are at the next call are new ones.
+  void forget() {
+    keys_.clear();
+    corridor_.clear();
+  }
 
   /// Those that have been tried from all cells of the corridor last followed, sorted.
   void set(std::vector<VoxelKey> keys) { keys_ = std::move(keys); }

@@ -229,6 +229,24 @@ TEST(GoalSelection, FollowsAMapAsIfItHadNotSeenItBefore) {
   }
 }
 
+TEST(GoalSelection, RobotsThatWereOutsideTheKeyRangeChooseAsIfTheyHadNotBeen) {
+  for (const auto& team : teams()) {
+    GoalRoom room(40, 9, 7);
+    room.clear(12, 20, 2);
+    room.clear(20, 12, 5);
+    const auto caster = make_grid_ray_caster(room.grid);
+    const auto frontiers = room.frontiers();
+    const std::array poses = {room.pose(12, 20, 2), room.pose(20, 12, 5)};
+    std::array lost = poses;
+    for (Pose& pose : lost) pose.position.x() = 1e6;
+    GoalSelection kept(team, room.grid.lattice(), room.bounds());
+    const TeamGoals before = kept.select(*caster, room.grid, frontiers, poses);
+    EXPECT_TRUE(before.goals[0].pose || before.goals[1].pose);
+    EXPECT_EQ(kept.select(*caster, room.grid, frontiers, lost).unassigned, frontiers.size());
+    expect_same(kept.select(*caster, room.grid, frontiers, poses), before, false);
+  }
+}
+
 TEST(GoalSelection, WrongCallsAreRefusedByName) {
   const GoalRoom room(12, 6);
   const auto caster = make_grid_ray_caster(room.grid);

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -119,13 +121,18 @@ TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
   EXPECT_LT(rays, rays_for_all * 3 / 4);
 }
 
-TEST(UnseenFrontiers, AreForgottenAtOnceByThoseWhoAsk) {
+// What was tried while there was no corridor says nothing once there is one again, though it is that of
+// before.
+TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
+  const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
+  const std::vector<VoxelKey> cell = {{30000, 30000, 30000}};
+  const VoxelKey near{30003, 30000, 30000}, far{40000, 30000, 30000};
   UnseenFrontiers unseen;
-  const std::vector<VoxelKey> keys = {{1, 2, 3}, {60000, 2, 3}};
-  unseen.set(keys);
-  EXPECT_TRUE(std::ranges::equal(unseen.keys(), keys));
+  unseen.follow({}, cell, region);
   unseen.forget();
-  EXPECT_TRUE(unseen.keys().empty());
+  unseen.set({near, far});
+  unseen.follow({}, cell, region);
+  EXPECT_TRUE(std::ranges::equal(unseen.keys(), std::vector{far}));
 }
 
 // Over the whole key range there are too many cubes to note changes in.
