@@ -1,6 +1,6 @@
 #pragma once
 
-#include "trial.hpp"
+#include "rays/trial.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -3,7 +3,7 @@
 #include "paths/random_path.hpp"
 #include "random.hpp"
 
-#include <frontlux/planner/frontier.hpp>
+#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/ray_caster.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Which part of the path optimiser does what: methods to choose yaws, side by side on random paths.
 
-#include "generated_map.hpp"
+#include "rays/generated_map.hpp"
 #include "paths/ablation.hpp"
 #include "paths/table.hpp"
 #include "program.hpp"

@@ -1,4 +1,4 @@
-#include "nanovdb_peer.hpp"
+#include "peers/nanovdb_peer.hpp"
 
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/HDDA.h>

@@ -1,6 +1,6 @@
 #include "scaling/rays.hpp"
 
-#include "free_voxels.hpp"
+#include "rays/free_voxels.hpp"
 #include "random.hpp"
 
 #include <algorithm>

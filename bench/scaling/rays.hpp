@@ -1,6 +1,6 @@
 #pragma once
 
-#include "workload.hpp"
+#include "rays/workload.hpp"
 
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>

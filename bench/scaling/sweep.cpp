@@ -1,7 +1,7 @@
 #include "scaling/sweep.hpp"
 
-#include "castray_loop.hpp"
-#include "generated_map.hpp"
+#include "rays/castray_loop.hpp"
+#include "rays/generated_map.hpp"
 #include "scaling/maps.hpp"
 #include "scaling/octree.hpp"
 #include "scaling/rays.hpp"

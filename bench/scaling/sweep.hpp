@@ -1,9 +1,9 @@
 #pragma once
 
 #include "scaling/options.hpp"
-#include "subject.hpp"
-#include "trial.hpp"
-#include "workload.hpp"
+#include "rays/subject.hpp"
+#include "rays/trial.hpp"
+#include "rays/workload.hpp"
 
 #include <cstddef>
 #include <map>

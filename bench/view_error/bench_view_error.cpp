@@ -1,11 +1,11 @@
 // How far drawn view quality lies from the exact one, and what both cost: the exact image is the truth. Exact
 // answers are compared with rays to all frontiers before anything is measured.
 
-#include "generated_map.hpp"
+#include "rays/generated_map.hpp"
 #include "machine.hpp"
-#include "planner_scene.hpp"
+#include "planner/planner_scene.hpp"
 #include "program.hpp"
-#include "subject.hpp"
+#include "rays/subject.hpp"
 #include "view_error/error.hpp"
 
 #include <CLI/CLI.hpp>

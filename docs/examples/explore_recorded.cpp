@@ -11,9 +11,9 @@
 // without a robot. The map comes to FOLDER/map.bt.
 
 #include <frontlux/planner/exploration.hpp>
-#include <frontlux/planner/path_file.hpp>
-#include <frontlux/planner/recorded_scan.hpp>
-#include <frontlux/planner/robot_file.hpp>
+#include <frontlux/io/path_file.hpp>
+#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/robot_file.hpp>
 
 #include <chrono>
 #include <cmath>

@@ -39,7 +39,7 @@ def step_line(step):
         changes = step.count()
         step.counts(3 * changes)  # keys
         after = [pair % 3 for pair in step.counts(changes)]
-        step.counts(3 * step.count())  # stubborn voxels
+        step.counts(3 * step.count())  # still_unknown voxels
         step.counts(3 * step.count())  # blocked cells
         cells = step.count()
         step.counts(3 * cells), step.doubles(5 * cells), step.counts(cells)  # the image

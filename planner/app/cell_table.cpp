@@ -1,8 +1,8 @@
 #include "cell_table.hpp"
 
-#include "color_scale.hpp"
+#include "draw/color_scale.hpp"
 #include "text.hpp"
-#include "whole_file.hpp"
+#include <frontlux/file.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -14,7 +14,7 @@ namespace frontlux::app {
 namespace {
 
 void write(const std::filesystem::path& file, const std::string& bytes) {
-  planner::detail::write_whole_file(file, [&](std::ostream& stream) {
+  write_file(file, [&](std::ostream& stream) {
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   });
 }

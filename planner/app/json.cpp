@@ -28,7 +28,7 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || surrogate || too_large ? 0 : length;
 }
 
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
   constexpr std::array kHex = {'0', '1', '2', '3', '4', '5', '6', '7',
                                '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'};
   std::string out = "\"";
@@ -62,7 +62,7 @@ JsonObject& JsonObject::add_raw(std::string_view name, std::string_view value) {
 }
 
 JsonObject& JsonObject::add(std::string_view name, std::string_view text) {
-  return add_raw(name, quoted(text));
+  return add_raw(name, json_string(text));
 }
 JsonObject& JsonObject::add(std::string_view name, double number) { return add_raw(name, to_text(number)); }
 JsonObject& JsonObject::add(std::string_view name, float number) { return add_raw(name, to_text(number)); }
@@ -84,7 +84,7 @@ JsonObject& JsonObject::add(std::string_view name, const JsonObject& object) {
 }
 JsonObject& JsonObject::add(std::string_view name, std::span<const std::string> texts) {
   std::string list;
-  for (const std::string& text : texts) list.append(list.empty() ? "" : ", ").append(quoted(text));
+  for (const std::string& text : texts) list.append(list.empty() ? "" : ", ").append(json_string(text));
   return add_raw(name, bracketed(list));
 }
 JsonObject& JsonObject::add_null(std::string_view name) { return add_raw(name, "null"); }

@@ -13,9 +13,9 @@ import sys
 import time
 from pathlib import Path
 
-HEADER = ("step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,dropped,"
+HEADER = ("step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
           "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,path,"
-          "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,stubborn,collisions,rays,frontiers_s,"
+          "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,frontiers_s,"
           "caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s")
 FAILURE = 'no "maze" <script>alert(1)</script> | [here](x) `x`'
 

@@ -173,7 +173,7 @@ async function chartsAreRight(page, rows) {
   if (team) robots.forEach((robot, r) => equal(short(coverage.data[2 + r]), column(of(robot), "robot_observable"), `${robot}'s part`));
   equal(charts.frontiers.data[1], column(first, "frontiers"), "frontiers");
   equal(charts.frontiers.data[2], column(first, "unassigned"), "unassigned");
-  equal(charts.frontiers.data[3], column(first, "dropped"), "dropped");
+  equal(charts.frontiers.data[3], column(first, "abandoned"), "abandoned");
   const phases = ["frontiers_s", "caster_s", "goals_s", "paths_s", "optimization_s"], { data } = charts.planning;
   equal(data[1], column(first, "planning_s"), "planning");
   phases.forEach((phase, p) => equal(data[phases.length - p].map((sum, i) => sum - (p > 0 ? data[phases.length - p + 1][i] : 0)), column(first, phase), phase));
@@ -199,7 +199,7 @@ async function chartsAreRight(page, rows) {
   // And the legend says what holds at the step that is shown.
   await page.evaluate(() => window.frontlux.page.timeline.seek(3));
   const told = await page.locator("#chart-frontiers .legend .value").allTextContents();
-  assert.deepEqual(told.map((text) => Number(text.replaceAll(",", ""))), [first[3].frontiers, first[3].unassigned, first[3].dropped]);
+  assert.deepEqual(told.map((text) => Number(text.replaceAll(",", ""))), [first[3].frontiers, first[3].unassigned, first[3].abandoned]);
 }
 
 /** From above, a click on the highest voxel of a column reads that voxel. */

@@ -1,4 +1,4 @@
-#include "explored_run.hpp"
+#include "report/explored_run.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>

@@ -1,7 +1,7 @@
 // For the test in a browser, and for looks: make_report FOLDER STEPS [NAME=][+]WORLD... explores the worlds
 // and writes FOLDER/report.html of all runs, and of each, from 0, FOLDER/<number>/run.frontlux and the
 // columns of a steps.csv that follow from it. A + is for the UAV alone. A name goes wherever a name can go.
-#include "explored_run.hpp"
+#include "report/explored_run.hpp"
 
 #include <frontlux/report/report.hpp>
 
@@ -21,7 +21,7 @@ void write_numbers(const std::filesystem::path& file, const Recording& recording
   std::ofstream out(file);
   out.precision(17);
   out << "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
-         "dropped,"
+         "abandoned,"
          "length_m,travelled_m,gain_predicted,gained,frontiers_s,caster_s,goals_s,paths_s,optimization_s,"
          "planning_s\n";
   std::vector<double> travelled(head.robots.size());
@@ -40,7 +40,7 @@ void write_numbers(const std::filesystem::path& file, const Recording& recording
       out << step.number << ',' << head.robots[r].robot.name << ',' << of(observable, head.observable) << ','
           << of(bounding, head.bounding) << ',' << of(known[r].observable, head.observable) << ','
           << of(known[r].bounding, head.bounding) << ',' << step.frontiers << ',' << step.unassigned << ','
-          << step.dropped << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted << ','
+          << step.abandoned << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted << ','
           << robot.gained;
       for (std::size_t phase = 0; phase + 1 < step.seconds.size(); ++phase) out << ',' << step.seconds[phase];
       out << ',' << step.planning_seconds() << '\n';

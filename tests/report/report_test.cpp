@@ -1,4 +1,4 @@
-#include "explored_run.hpp"
+#include "report/explored_run.hpp"
 
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/report/report.hpp>
@@ -252,7 +252,7 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
     EXPECT_EQ(told["number"], step.number);
     EXPECT_EQ(told["frontiers"], step.frontiers);
     EXPECT_EQ(told["unassigned"], step.unassigned);
-    EXPECT_EQ(told["dropped"], step.dropped);
+    EXPECT_EQ(told["abandoned"], step.abandoned);
     EXPECT_EQ(told["rays"], step.rays);
     EXPECT_EQ(told["collisions"], collisions);
     EXPECT_EQ(told["seconds"].get<std::vector<double>>(),

@@ -32,17 +32,23 @@ class Lattice {
 
   /// Key of the voxel that holds a point [m]. Cells are half-open: a point on a face belongs to the upper
   /// one.
-  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3f& point) const {
-    const auto x = key(static_cast<double>(point.x()));
-    const auto y = key(static_cast<double>(point.y()));
-    const auto z = key(static_cast<double>(point.z()));
+  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3d& point) const {
+    const auto x = key(point.x()), y = key(point.y()), z = key(point.z());
     if (!x || !y || !z) return std::nullopt;
     return VoxelKey{*x, *y, *z};
+  }
+  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3f& point) const {
+    return key(Eigen::Vector3d(point.cast<double>()));
   }
 
   /// Centre along one axis [m].
   [[nodiscard]] double center(std::uint16_t key) const {
     return (static_cast<double>(static_cast<int>(key) - kOrigin) + 0.5) * resolution_;
+  }
+
+  /// Centre of a voxel [m], not rounded to float as OctoMap's is.
+  [[nodiscard]] Eigen::Vector3d exact_center(const VoxelKey& key) const {
+    return {center(key.x), center(key.y), center(key.z)};
   }
 
   /// Centre of a voxel [m].

@@ -17,7 +17,7 @@
 namespace frontlux {
 
 namespace detail {
-class PathTrees;
+class RayTries;
 class TargetIndex;
 class ViewReach;
 struct Viewpoint;
@@ -150,7 +150,7 @@ class ViewQualityImage {
   FieldOfView field_of_view_;
   ViewQualityOptions options_;
   std::shared_ptr<const detail::ViewReach> reach_;
-  std::shared_ptr<detail::PathTrees> trees_;
+  std::shared_ptr<detail::RayTries> trees_;
   std::shared_ptr<const detail::TargetIndex> targets_;
   std::vector<VoxelKey> viewpoints_;
   std::shared_ptr<const std::vector<detail::Viewpoint>> order_;  // the viewpoints, sorted by place

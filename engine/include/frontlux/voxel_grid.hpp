@@ -1,8 +1,9 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
-#include <frontlux/voxel_tree.hpp>
+#include <frontlux/voxel_storage.hpp>
 
 #include <array>
 #include <cstddef>
@@ -19,15 +20,6 @@ using Brick = detail::Brick;
 struct Block {
   VoxelKey corner;    ///< its lowest voxel; every coordinate is a multiple of the edge
   int log2_edge = 0;  ///< the edge is 2^log2_edge voxels
-};
-
-/// An axis-aligned box of voxels, both ends included.
-struct KeyBox {
-  VoxelKey min, max;
-  [[nodiscard]] bool contains(const VoxelKey& k) const {
-    return min.x <= k.x && k.x <= max.x && min.y <= k.y && k.y <= max.y && min.z <= k.z && k.z <= max.z;
-  }
-  friend bool operator==(const KeyBox&, const KeyBox&) = default;
 };
 
 /// Which voxels of a map are unknown, free and occupied: a sparse, ternary mirror of an octree in bricks of 8

@@ -2,7 +2,7 @@
 #include "page.hpp"
 #include "run_data.hpp"
 #include "run_facts.hpp"
-#include "whole_file.hpp"
+#include <frontlux/file.hpp>
 
 #include <frontlux/report/report.hpp>
 
@@ -77,7 +77,7 @@ void write_report(const std::filesystem::path& file, std::span<const ReportedRun
   const std::size_t title = page.find(detail::kTitleMark), data = page.find(detail::kRunsMark);
   if (title == std::string_view::npos || data == std::string_view::npos || data < title)
     throw std::logic_error("the page that is built in lacks its marks");
-  planner::detail::write_whole_file(file, [&](std::ostream& out) {
+  write_file(file, [&](std::ostream& out) {
     out << page.substr(0, title) << title_of(runs);
     const std::size_t after = title + detail::kTitleMark.size();
     out << page.substr(after, data - after);

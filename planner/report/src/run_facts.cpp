@@ -53,7 +53,7 @@ void add_robot_step(JsonText& json, const planner::RobotStep& robot) {
   json.name("path").text(describe(robot.path));
   json.name("gain_tangent").number(robot.gain_tangent).name("gain_predicted").number(robot.gain_predicted);
   json.name("gained").number(robot.gained).name("length").number(robot.length);
-  json.name("stubborn").number(std::uint64_t{robot.stubborn.size()}).close('}');
+  json.name("still_unknown").number(std::uint64_t{robot.still_unknown.size()}).close('}');
 }
 
 void add_step(JsonText& json, const planner::RecordedStep& recorded) {
@@ -61,7 +61,7 @@ void add_step(JsonText& json, const planner::RecordedStep& recorded) {
   json.open('{').name("number").number(step.number);
   json.name("frontiers").number(std::uint64_t{step.frontiers});
   json.name("unassigned").number(std::uint64_t{step.unassigned});
-  json.name("dropped").number(std::uint64_t{step.dropped});
+  json.name("abandoned").number(std::uint64_t{step.abandoned});
   json.name("rays").number(step.rays).name("collisions").number(recorded.collisions);
   json.name("seconds").open('[');
   for (const double seconds : step.seconds) json.number(seconds);

@@ -39,7 +39,7 @@ struct ExplorationOptions {
   double epsilon = 10.0;     ///< a step whose paths promise fewer frontiers than this is a quiet one
   int quiet_steps = 3;       ///< so many quiet steps in a row end the exploration
   int max_steps = 1000;      ///< and so does this many steps
-  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is dropped
+  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
 
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -77,7 +77,7 @@ struct RobotStep {
   std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans made known
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
   std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
-  std::vector<VoxelKey> stubborn;    ///< in view of its viewpoints, and still unknown; sorted
+  std::vector<VoxelKey> still_unknown;    ///< in view of its viewpoints, and still unknown; sorted
 };
 
 /// What a step spends its time on. Planning is all but the last.
@@ -90,7 +90,7 @@ struct ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   std::size_t frontiers = 0;      ///< in the map when the step was planned
   std::size_t unassigned = 0;     ///< of them, those that no robot could make anything of
-  std::size_t dropped = 0;        ///< of them, those no longer tried, since they stay unknown when looked at
+  std::size_t abandoned = 0;        ///< of them, those no longer tried, since they stay unknown when looked at
   std::uint64_t rays = 0;         ///< cast to plan the step
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
@@ -155,7 +155,7 @@ class Exploration {
   [[nodiscard]] const Mapping& mapping() const;
   /// Of the robots' sensors.
   [[nodiscard]] std::span<const Pose> poses() const;
-  /// Of the map as it is after the last step, dropped ones included; sorted.
+  /// Of the map as it is after the last step, abandoned ones included; sorted.
   [[nodiscard]] std::span<const VoxelKey> frontiers() const;
 
  private:

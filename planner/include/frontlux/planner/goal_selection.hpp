@@ -160,9 +160,9 @@ class GoalSelection {
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const VoxelGrid& grid,
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
 
-  /// From the next step on a robot does not go through these cells: see `TravelCorridor::close`.
+  /// From the next step on a robot does not go through these cells: see `TravelCorridor::block`.
   /// @pre robot < team().size()
-  void close(std::size_t robot, std::span<const VoxelKey> cells);
+  void block(std::size_t robot, std::span<const VoxelKey> cells);
 
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 

@@ -23,9 +23,6 @@ namespace frontlux::planner {
 /// @throws std::invalid_argument if the box is empty, not a number, or outside the key range
 [[nodiscard]] KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
 
-/// Every voxel that has a key.
-inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
-
 struct MappingOptions {
   double resolution = 0.3;       ///< [m] edge of a voxel
   KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched

@@ -22,7 +22,7 @@ enum class PathSearch : std::uint8_t {
 };
 
 /// "rrt", "rrt-connect", "rrt-star", "corridor"
-[[nodiscard]] std::string_view name(PathSearch search);
+[[nodiscard]] std::string_view name_of(PathSearch search);
 
 struct PathOptions {
   PathSearch search = PathSearch::kRrt;

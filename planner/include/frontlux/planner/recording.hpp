@@ -1,7 +1,7 @@
 #pragma once
 
 #include <frontlux/planner/exploration.hpp>
-#include <frontlux/planner/robot_file.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <cstdint>
+#include <cstddef>
 #include <string>
 
 namespace frontlux::planner {
@@ -37,5 +38,15 @@ struct Robot {
 /// The paper's aerial robot: a cube of 0.8 m, a depth camera of 90 x 72 degrees that sees 10 m far. It goes
 /// wherever its box fits; as printed, through free octree nodes of 1.2 m.
 [[nodiscard]] Robot uav(Method method = Method::kDefault);
+
+/// A robot with the number of rays in a scan of its sensor.
+struct RobotDescription {
+  Robot robot;
+  std::size_t columns = 0, rows = 0;  ///< azimuths and beams of a spinning sensor, pixels of a camera
+};
+
+/// The paper's robots: 32 beams x 720 azimuths; 160 x 120 pixels.
+[[nodiscard]] RobotDescription ugv_description();
+[[nodiscard]] RobotDescription uav_description(Method method = Method::kDefault);
 
 }  // namespace frontlux::planner

@@ -117,7 +117,7 @@ class TravelCorridor {
 
   /// Takes these cells for impassable from the next update on, whatever the map says: something is there that
   /// no sensor has shown.
-  void close(std::span<const VoxelKey> cells);
+  void block(std::span<const VoxelKey> cells);
 
   /// If it is not `kReady`, there are no cells.
   [[nodiscard]] CorridorState state() const;

@@ -50,7 +50,7 @@ export class Charts {
       { id: "frontiers", title: "Frontiers left", note: "at the beginning of the step", unit: whole, x: "step", series: [
         { name: "frontiers", xs: numbers.steps, ys: numbers.frontiers, color: SCENE[theme].frontier },
         { name: "nobody's", xs: numbers.steps, ys: numbers.unassigned, color: ink, dash: [6, 3] },
-        { name: "given up", xs: numbers.steps, ys: numbers.dropped, color: muted, dash: [2, 3] },
+        { name: "abandoned", xs: numbers.steps, ys: numbers.abandoned, color: muted, dash: [2, 3] },
       ] },
       { id: "planning", title: "Planning time by phase", note: "stacked, whole team", unit: seconds, x: "step", stacked: true, series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: numbers.steps, ys, color: PHASES[theme][p] })) },
       { id: "gain", title: "Gain: predicted and gained", note: "frontiers that the paths were to see, and those that became known", unit: whole, x: "step", series: robots.flatMap(({ name, color, r }) => [

@@ -13,7 +13,7 @@ export function numbersOf(facts) {
     robotBox: perRobot((step, r) => of(step.known[r][1], facts.bounding)),
     frontiers: column((step) => step.frontiers),
     unassigned: column((step) => step.unassigned),
-    dropped: column((step) => step.dropped),
+    abandoned: column((step) => step.abandoned),
     rays: column((step) => step.rays),
     collisions: column((step) => step.collisions),
     phases: facts.phases.map((_, p) => column((step) => step.seconds[p])),

@@ -3,7 +3,7 @@
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/pose.hpp>
-#include <frontlux/planner/robot_file.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/start_pose.hpp>

@@ -2,7 +2,7 @@
 
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
-#include <frontlux/planner/robot_file.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/sim/surface.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <frontlux/planner/pose.hpp>
-#include <frontlux/planner/robot_file.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>

@@ -1,0 +1,58 @@
+#include "rays/castray_loop.hpp"
+
+#include "quiet_octomap.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace frontlux::bench {
+namespace {
+
+template <class CastOne>
+void in_blocks(std::size_t count, CastOne&& cast_one) {
+  constexpr std::size_t kBlock = 256;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock), [&](const auto& block) {
+    for (std::size_t i = block.begin(); i != block.end(); ++i) cast_one(i);
+  });
+}
+
+template <class Caster>
+void loop(const Caster& caster, std::span<const Ray> rays, UnknownPolicy unknown, CastRayAnswers& answers) {
+  const bool ignore_unknown = unknown == UnknownPolicy::kPass;
+  in_blocks(rays.size(), [&](std::size_t i) {
+    const Ray& ray = rays[i];
+    const octomap::point3d origin(ray.origin.x(), ray.origin.y(), ray.origin.z());
+    const octomap::point3d direction(ray.direction.x(), ray.direction.y(), ray.direction.z());
+    octomap::point3d end(CastRayAnswers::kUntouched.x(), CastRayAnswers::kUntouched.y(),
+                         CastRayAnswers::kUntouched.z());
+    answers.occupied[i] = caster.castRay(origin, direction, end, ignore_unknown, ray.max_range) ? 1 : 0;
+    answers.end[i] = {end.x(), end.y(), end.z()};
+  });
+}
+
+}  // namespace
+
+void cast_ray_loop(const Octree& tree, std::span<const Ray> rays, UnknownPolicy unknown,
+                   CastRayAnswers& answers) {
+  std::visit([&](const auto& octree) { loop(*octree, rays, unknown, answers); }, tree);
+}
+
+void cast_ray_loop(const OctreeRayCaster& caster, std::span<const Ray> rays, UnknownPolicy unknown,
+                   CastRayAnswers& answers) {
+  loop(caster, rays, unknown, answers);
+}
+
+void cast_ray_loop(const RayCaster& caster, std::span<const Ray> rays, UnknownPolicy unknown,
+                   CastRayAnswers& answers) {
+  in_blocks(rays.size(), [&](std::size_t i) {
+    const Hit hit = caster.cast(rays[i], unknown);
+    answers.occupied[i] = hit.occupied() ? 1 : 0;
+    answers.end[i] = hit.stop == RayStop::kInvalid ? CastRayAnswers::kUntouched : hit.end;
+  });
+}
+
+std::size_t memory_bytes(const Octree& tree) {
+  return std::visit([](const auto& octree) { return static_cast<std::size_t>(octree->memoryUsage()); }, tree);
+}
+
+}  // namespace frontlux::bench

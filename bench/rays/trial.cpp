@@ -1,0 +1,226 @@
+#include "rays/trial.hpp"
+
+#include "rays/castray_loop.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+namespace frontlux::bench {
+namespace {
+
+bool same_bits(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return std::memcmp(a.data(), b.data(), 3 * sizeof(float)) == 0;
+}
+
+Answer answer_of(const Hit& hit) {
+  const bool untouched = hit.stop == RayStop::kInvalid;
+  return {hit.occupied(), untouched ? CastRayAnswers::kUntouched : hit.end, true, hit.stop, hit.key};
+}
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+std::string describe(const Answer& a) {
+  std::string text =
+      format("%s, end %.9g %.9g %.9g", a.positive ? "true" : "false", static_cast<double>(a.end.x()),
+             static_cast<double>(a.end.y()), static_cast<double>(a.end.z()));
+  if (a.detailed)
+    text += format(", stop %d, key %d %d %d", static_cast<int>(a.stop), a.key.x, a.key.y, a.key.z);
+  return text;
+}
+
+}  // namespace
+
+bool same(const Answer& a, const Answer& b) {
+  return a.positive == b.positive && same_bits(a.end, b.end) &&
+         (!a.detailed || !b.detailed || (a.stop == b.stop && a.key == b.key));
+}
+
+/// Where passes write. Shared by all entries, so that every caster writes to the same, already touched pages.
+struct Trial::Buffers {
+  std::vector<std::uint8_t> visible;
+  std::vector<std::vector<Hit>> hits;
+  std::vector<CastRayAnswers> castray;
+
+  /// Leaves nothing that could pass for an answer.
+  void spoil() {
+    std::fill(visible.begin(), visible.end(), std::uint8_t{0xAA});
+    const Eigen::Vector3f nowhere = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+    for (auto& batch : hits)
+      std::fill(batch.begin(), batch.end(), Hit{RayStop::kLeftMap, {}, {}, nowhere, nowhere, 0});
+    for (auto& batch : castray) std::fill(batch.end.begin(), batch.end.end(), nowhere);
+  }
+
+  [[nodiscard]] std::vector<Answer> read_visible() const {
+    std::vector<Answer> answers;
+    for (const std::uint8_t v : visible) {
+      answers.push_back({v != 0, {static_cast<float>(v), 0.0F, 0.0F}, false, {}, {}});
+    }
+    return answers;
+  }
+  [[nodiscard]] std::vector<Answer> read_hits() const {
+    std::vector<Answer> answers;
+    for (const auto& batch : hits) {
+      for (const Hit& hit : batch) answers.push_back(answer_of(hit));
+    }
+    return answers;
+  }
+  [[nodiscard]] std::vector<Answer> read_castray() const {
+    std::vector<Answer> answers;
+    for (const CastRayAnswers& batch : castray) {
+      for (std::size_t i = 0; i < batch.end.size(); ++i) {
+        answers.push_back({batch.occupied[i] != 0, batch.end[i], false, {}, {}});
+      }
+    }
+    return answers;
+  }
+};
+
+Trial::Trial(const Subject& subject, Workload workload, std::span<const Peer> peers)
+    : subject_(subject), workload_(std::move(workload)), buffers_(std::make_unique<Buffers>()) {
+  buffers_->visible.resize(workload_.segments.size());
+  for (const RayBatch& batch : workload_.batches) {
+    buffers_->hits.emplace_back(batch.rays.size());
+    buffers_->castray.emplace_back(batch.rays.size());
+  }
+  if (!workload_.segments.empty()) {
+    add_visible(peers);
+  } else if (workload_.name == "cast_single") {
+    add_cast_single();
+  } else {
+    add_cast();
+  }
+  const RayCaster& grid = *subject.contender("grid").caster;
+  mean_voxels_ = bench::mean_voxels(workload_, grid, subject.grid.lattice());
+}
+
+Trial::~Trial() = default;
+
+void Trial::add_visible(std::span<const Peer> peers) {
+  const auto read = [this] { return buffers_->read_visible(); };
+  for (const Contender& c : subject_.contenders) {
+    const auto pass = [this, &c] {
+      c.caster->visible(workload_.segments, buffers_->visible, UnknownPolicy::kBlock);
+    };
+    // Between voxel centres castRay rounds, and may step either way through an edge or corner.
+    entries_.push_back({c.name, c.build_seconds, c.bytes, c.name != "octomap", pass, read});
+    if (c.name == "grid") reference_ = entries_.back();
+  }
+  for (const Peer& peer : peers) {
+    const auto pass = [this, visible = peer.visible] { visible(workload_.segments, buffers_->visible); };
+    entries_.push_back({peer.name, peer.build_seconds, peer.bytes, false, pass, read});
+  }
+}
+
+void Trial::add_cast() {
+  const auto read = [this] { return buffers_->read_hits(); };
+  for (const Contender& c : subject_.contenders) {
+    const auto pass = [this, &c] {
+      for (std::size_t b = 0; b < workload_.batches.size(); ++b) {
+        c.caster->cast(workload_.batches[b].rays, buffers_->hits[b], workload_.batches[b].unknown);
+      }
+    };
+    Entry entry{c.name, c.build_seconds, c.bytes, true, pass, read};
+    if (c.name == "octomap") {
+      // Its caster tells stop and key, so it is what the others are compared with. Timed is castRay alone,
+      // which spends nothing on them.
+      reference_ = entry;
+      entry.read = [this] { return buffers_->read_castray(); };
+      entry.pass = [this] {
+        for (std::size_t b = 0; b < workload_.batches.size(); ++b) {
+          cast_ray_loop(subject_.tree, workload_.batches[b].rays, workload_.batches[b].unknown,
+                        buffers_->castray[b]);
+        }
+      };
+    }
+    entries_.push_back(std::move(entry));
+  }
+}
+
+void Trial::add_cast_single() {
+  const auto read = [this] { return buffers_->read_castray(); };
+  const RayBatch& batch = workload_.batches.front();
+  CastRayAnswers& answers = buffers_->castray.front();
+  entries_.push_back(
+      {"octomap", 0, 0, true,
+       [this, &batch, &answers] { cast_ray_loop(subject_.tree, batch.rays, batch.unknown, answers); }, read});
+  reference_ = entries_.back();
+  const Contender& grid = subject_.contender("grid");
+  entries_.push_back(
+      {"grid", grid.build_seconds, grid.bytes, true,
+       [&grid, &batch, &answers] { cast_ray_loop(*grid.caster, batch.rays, batch.unknown, answers); }, read});
+  const Contender& embree = subject_.contender("embree");
+  entries_.push_back(
+      {"embree", embree.build_seconds, embree.bytes, true,
+       [this, &batch, &answers] { cast_ray_loop(*subject_.drop_in, batch.rays, batch.unknown, answers); },
+       read});
+}
+
+bool Trial::check(std::span<const int> threads, std::ostream& out) {
+  const std::size_t rays = workload_.size();
+  buffers_->spoil();
+  tbb::task_arena(threads.back()).execute(reference_.pass);
+  const std::vector<Answer> expected = reference_.read();
+  std::size_t positive = 0;
+  for (const Answer& answer : expected) positive += answer.positive ? 1 : 0;
+  positive_share_ = static_cast<double>(positive) / static_cast<double>(rays);
+
+  std::string agreements, complaints;
+  for (Entry& entry : entries_) {
+    std::size_t differing = 0;
+    for (const int count : threads) {
+      buffers_->spoil();
+      tbb::task_arena(count).execute(entry.pass);
+      const std::vector<Answer> answers = entry.read();
+      std::size_t differing_here = 0;
+      for (std::size_t i = 0; i < rays; ++i) {
+        if (same(answers[i], expected[i])) continue;
+        if (entry.must_agree && differing == 0 && differing_here == 0) {
+          complaints += "  DISAGREEMENT, " + entry.caster + format(" on %d threads, ", count) +
+                        describe_ray(i) + "\n    answered " + describe(answers[i]) + "\n    expected " +
+                        describe(expected[i]) + "\n";
+        }
+        ++differing_here;
+      }
+      differing = std::max(differing, differing_here);
+    }
+    entry.agreement = 1.0 - static_cast<double>(differing) / static_cast<double>(rays);
+    agreements += format("; %s: %zu differ", entry.caster.c_str(), differing);
+    if (!entry.must_agree) {
+      agreements += format(" (%.3f %%%s)", 100 * (1 - entry.agreement),
+                           entry.caster == "octomap" ? ", by rounding" : "");
+    }
+  }
+  out << format("  %-12s %7zu rays, %.1f voxels each, %.1f %% %s", workload_.name.c_str(), rays, mean_voxels_,
+                100 * positive_share_, workload_.segments.empty() ? "hit" : "visible")
+      << agreements << '\n'
+      << complaints;
+  return complaints.empty();
+}
+
+std::string Trial::describe_ray(std::size_t index) const {
+  if (!workload_.segments.empty()) {
+    const KeySegment& s = workload_.segments[index];
+    return format("segment %zu from key %d %d %d to %d %d %d", index, s.from.x, s.from.y, s.from.z, s.to.x,
+                  s.to.y, s.to.z);
+  }
+  std::size_t rest = index, b = 0;
+  while (rest >= workload_.batches[b].rays.size()) rest -= workload_.batches[b++].rays.size();
+  const Ray& ray = workload_.batches[b].rays[rest];
+  const auto d = [](float f) { return static_cast<double>(f); };
+  return format("ray %zu from %.9g %.9g %.9g along %.9g %.9g %.9g within %.9g m, unknown voxels %s", index,
+                d(ray.origin.x()), d(ray.origin.y()), d(ray.origin.z()), d(ray.direction.x()),
+                d(ray.direction.y()), d(ray.direction.z()), ray.max_range,
+                workload_.batches[b].unknown == UnknownPolicy::kBlock ? "block" : "pass");
+}
+
+}  // namespace frontlux::bench

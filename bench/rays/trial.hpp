@@ -1,0 +1,84 @@
+#pragma once
+
+#include "rays/subject.hpp"
+#include "rays/workload.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace frontlux::bench {
+
+/// What is compared of an answer.
+struct Answer {
+  bool positive = false;  ///< visible, or castRay's return value
+  Eigen::Vector3f end = Eigen::Vector3f::Zero();
+  bool detailed = false;  ///< whether the caster tells `stop` and `key`
+  RayStop stop = RayStop::kInvalid;
+  VoxelKey key;
+};
+
+/// Equal in every bit that both tell.
+[[nodiscard]] bool same(const Answer& a, const Answer& b);
+
+/// One caster on one workload.
+struct Entry {
+  std::string caster;
+  double build_seconds = 0;
+  std::size_t bytes = 0;
+  bool must_agree = true;
+  std::function<void()> pass;                 ///< answers the whole workload once
+  std::function<std::vector<Answer>()> read;  ///< the answers of the last pass of any entry
+  double agreement = 0;                       ///< share of rays answered as the reference does
+};
+
+/// A foreign caster that takes part in the `visible` workloads without promising exact answers.
+struct Peer {
+  std::string name;
+  double build_seconds = 0;
+  std::size_t bytes = 0;
+  std::function<void(std::span<const KeySegment>, std::span<std::uint8_t>)> visible;
+};
+
+/// One workload on one map: first checked, then timed, on the very same rays.
+class Trial {
+ public:
+  /// @param subject  must outlive the trial
+  Trial(const Subject& subject, Workload workload, std::span<const Peer> peers);
+  ~Trial();
+
+  /// Compares the answers of all entries with the reference: castRay for points; for keys the integer rule,
+  /// by the grid. Says what it found in one line, and in one more for every entry that should agree and
+  /// does not.
+  /// @return false if there is such an entry
+  bool check(std::span<const int> threads, std::ostream& out);
+
+  [[nodiscard]] const std::string& map() const { return subject_.name; }
+  [[nodiscard]] const Workload& workload() const { return workload_; }
+  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
+  [[nodiscard]] double positive_share() const { return positive_share_; }
+  [[nodiscard]] double mean_voxels() const { return mean_voxels_; }
+
+ private:
+  struct Buffers;
+  void add_visible(std::span<const Peer> peers);
+  void add_cast();
+  void add_cast_single();
+  [[nodiscard]] std::string describe_ray(std::size_t index) const;
+
+  const Subject& subject_;
+  Workload workload_;
+  std::unique_ptr<Buffers> buffers_;
+  std::vector<Entry> entries_;
+  Entry reference_;
+  double positive_share_ = 0, mean_voxels_ = 0;
+};
+
+}  // namespace frontlux::bench

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <frontlux/ray.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace frontlux {
+
+/// The key with these coordinates. @pre each is in the key range, 0 to 65535
+[[nodiscard]] constexpr VoxelKey make_key(std::int64_t x, std::int64_t y, std::int64_t z) {
+  return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
+}
+
+/// The key at an offset [voxels]; nothing outside the key range.
+[[nodiscard]] constexpr std::optional<VoxelKey> offset_key(const VoxelKey& key, int dx, int dy, int dz) {
+  const int x = key.x + dx, y = key.y + dy, z = key.z + dz;
+  if ((x | y | z) & ~0xFFFF) return std::nullopt;
+  return make_key(x, y, z);
+}
+
+/// An axis-aligned box of voxels, both ends included.
+struct KeyBox {
+  VoxelKey min, max;
+  [[nodiscard]] constexpr bool contains(const VoxelKey& k) const {
+    return min.x <= k.x && k.x <= max.x && min.y <= k.y && k.y <= max.y && min.z <= k.z && k.z <= max.z;
+  }
+  friend constexpr bool operator==(const KeyBox&, const KeyBox&) = default;
+};
+
+/// The whole key range.
+inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
+
+/// The least and the greatest of two keys along each axis.
+[[nodiscard]] constexpr VoxelKey least(const VoxelKey& a, const VoxelKey& b) {
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+[[nodiscard]] constexpr VoxelKey greatest(const VoxelKey& a, const VoxelKey& b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+
+/// A cube of `edge` voxels a side. @pre it lies in the key range
+[[nodiscard]] constexpr KeyBox cube(const VoxelKey& corner, int edge) {
+  return {corner, make_key(corner.x + edge - 1, corner.y + edge - 1, corner.z + edge - 1)};
+}
+
+/// The smallest box that holds two.
+[[nodiscard]] constexpr KeyBox hull(const KeyBox& a, const KeyBox& b) {
+  return {least(a.min, b.min), greatest(a.max, b.max)};
+}
+
+/// The smallest box that holds some keys. @pre there is one
+[[nodiscard]] constexpr KeyBox bounds_of(std::span<const VoxelKey> keys) {
+  KeyBox box{keys[0], keys[0]};
+  for (const VoxelKey& key : keys) box = hull(box, {key, key});
+  return box;
+}
+
+/// What two boxes have in common; nothing if they have no voxel in common.
+[[nodiscard]] constexpr std::optional<KeyBox> intersection(const KeyBox& a, const KeyBox& b) {
+  const KeyBox box{greatest(a.min, b.min), least(a.max, b.max)};
+  if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z) return std::nullopt;
+  return box;
+}
+
+/// The box and all within so many voxels of it along each axis, cut off at the end of the key range.
+[[nodiscard]] constexpr KeyBox grown(const KeyBox& box, int dx, int dy, int dz) {
+  const auto down = [](int k, int by) { return std::max(k - by, 0); };
+  const auto up = [](int k, int by) { return std::min(k + by, 0xFFFF); };
+  return {make_key(down(box.min.x, dx), down(box.min.y, dy), down(box.min.z, dz)),
+          make_key(up(box.max.x, dx), up(box.max.y, dy), up(box.max.z, dz))};
+}
+[[nodiscard]] constexpr KeyBox grown(const KeyBox& box, int by) { return grown(box, by, by, by); }
+
+/// Whether `holds(key)` for every voxel of a box; asks no further after the first for which it does not.
+template <class Holds>
+[[nodiscard]] constexpr bool all_of(const KeyBox& box, const Holds& holds) {
+  for (int z = box.min.z; z <= box.max.z; ++z)
+    for (int y = box.min.y; y <= box.max.y; ++y)
+      for (int x = box.min.x; x <= box.max.x; ++x)
+        if (!holds(make_key(x, y, z))) return false;
+  return true;
+}
+
+/// Calls `visit(key)` for every voxel of a box, by z, then y, then x.
+template <class Visit>
+constexpr void for_each_key(const KeyBox& box, const Visit& visit) {
+  static_cast<void>(all_of(box, [&visit](const VoxelKey& key) { return visit(key), true; }));
+}
+
+}  // namespace frontlux

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "embree/box_scene.hpp"
+#include "embree/snapshot.hpp"
+
+#include <frontlux/lattice.hpp>
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace frontlux::detail {
+
+/// Answers queries about one map under one policy: what surely holds by the scene, everything else by the
+/// walk.
+class SceneQuery {
+ public:
+  SceneQuery(const Snapshot& snapshot, UnknownPolicy unknown)
+      : grid_(snapshot.grid()),
+        lattice_(grid_.lattice()),
+        scene_(snapshot.scene(unknown)),
+        unknown_(unknown) {
+    reach_ = scene_.bounds();
+    if (!reach_.isEmpty()) {
+      reach_.min().array() -= 1.0;
+      reach_.max().array() += 1.0;
+    }
+  }
+
+  void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
+  template <class Segment>
+  void visible(std::span<const Segment> segments, std::span<std::uint8_t> visible) const;
+
+ private:
+  struct Line {  // a ray in the scene's frame, in double precision
+    Eigen::Array3d origin, direction;
+  };
+
+  [[nodiscard]] Line line_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const {
+    const VoxelKey& base = scene_.origin();
+    const Eigen::Array3d shift = Eigen::Array3d(base.x, base.y, base.z) - Lattice::kOrigin;
+    return {origin.cast<double>().array() / lattice_.resolution() - shift, direction.cast<double>().array()};
+  }
+
+  [[nodiscard]] std::optional<Probe> probe(const Line& line, double t_far) const;
+  [[nodiscard]] std::optional<VoxelKey> entered_voxel(const Line& line, const KeyBox& box) const;
+  [[nodiscard]] Hit finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+                           const std::optional<KeyBox>& box) const;
+
+  struct Sighting {
+    Probe probe;
+    bool target_is_grazed = false;  // it enters the target's voxel so close to an edge that it may miss it
+  };
+  // What settles a segment at once (true, false), or what there is to look at, or nothing if only the walk
+  // knows.
+  struct Prepared {
+    std::optional<bool> answer;
+    std::optional<Sighting> sighting;
+  };
+  [[nodiscard]] Prepared prepare(const KeySegment& segment) const;
+  [[nodiscard]] Prepared prepare(const Segment& segment) const;
+
+  const VoxelGrid& grid_;
+  const Lattice& lattice_;
+  const BoxScene& scene_;
+  UnknownPolicy unknown_;
+  Eigen::AlignedBox3d reach_;  // where the scene's tolerance holds for a probe's origin; empty without boxes
+};
+
+}  // namespace frontlux::detail

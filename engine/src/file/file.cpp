@@ -1,0 +1,90 @@
+#include <frontlux/file.hpp>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace frontlux {
+namespace {
+
+// Removed on every way out but the good one.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::filesystem::path& file) : path_(file) {
+    path_ += ".part" + std::to_string(::getpid());
+  }
+  ~UnfinishedFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+void fail(const std::filesystem::path& file, const std::string& what, const std::string& advice) {
+  throw std::runtime_error((file.empty() ? "''" : file.string()) + ": " + what + "; " + advice);
+}
+
+std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    fail(file, "there is no such file", "check the path");
+  if (error) fail(file, "cannot be looked at: " + error.message(), "check the path and its permissions");
+  if (std::filesystem::is_directory(status)) fail(file, "is a directory", "name a file in it");
+  if (!std::filesystem::is_regular_file(status)) fail(file, "is not a regular file", "name a file");
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    fail(file, "cannot be opened: " + std::generic_category().message(errno), "check its permissions");
+  const auto size = std::filesystem::file_size(file, error);
+  if (error) fail(file, "has no size: " + error.message(), "check the path and its permissions");
+  if (size > max_bytes)
+    fail(file,
+         "has " + std::to_string(size) + " bytes, more than the " + std::to_string(max_bytes) +
+             " that can be read",
+         "split it, or make it coarser");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
+    fail(file, "gave " + std::to_string(stream.gcount()) + " of its " + std::to_string(size) + " bytes",
+         "try again when nothing writes to it");
+  return bytes;
+}
+
+void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write) {
+  const auto cannot = [&file](const std::string& what, const std::string& advice) {
+    fail(file, "cannot be written: " + what, advice);
+  };
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) cannot("it is a folder", "name a file in it");
+  const UnfinishedFile part(file);
+  errno = 0;
+  std::ofstream stream(part.path(), std::ios::binary | std::ios::trunc);
+  if (!stream)
+    cannot(std::generic_category().message(errno), "check that its folder exists and may be written to");
+  write(stream);
+  stream.close();
+  if (!stream) cannot(std::generic_category().message(errno), "check the space left on the disk");
+  std::filesystem::rename(part.path(), file, error);
+  if (error) cannot(error.message(), "check the permissions of the folder and of the file that is there");
+}
+
+std::string quote(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string shown = "'";
+  for (const char c : text.substr(0, kShown)) shown += c >= ' ' && c <= '~' ? c : '?';
+  if (text.size() > kShown) shown += "...";
+  return shown + "'";
+}
+
+}  // namespace frontlux

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "packet/open_voxels.hpp"
+#include "packet/packet_walk.hpp"
+
+#include <frontlux/ray.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace frontlux::detail {
+
+/// Answers the queries that a walk through the table of open voxels answers sooner than a BVH: those that lie
+/// in the table and are not too long. All others are left to somebody else.
+class TableQuery {
+ public:
+  static constexpr std::size_t kMaxBatch = PacketLines<double>::kMaxSize;  ///< most queries in a call
+
+  /// @param walk  null leaves everything to somebody else
+  TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
+             const PacketWalk* walk = packet_walk())
+      : grid_(grid), table_(table), walk_(table.empty() ? nullptr : walk), unknown_(unknown) {}
+
+  /// @param left  as many places as queries; gets the indices of those not answered
+  /// @return how many they are
+  std::size_t cast(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint16_t> left) const;
+  std::size_t visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
+                      std::span<std::uint16_t> left) const;
+
+ private:
+  [[nodiscard]] bool walks(const KeySegment& segment) const;
+  [[nodiscard]] std::optional<Hit> finish(const Ray& ray, const VoxelKey& start,
+                                          const Eigen::Vector3f& direction, std::uint32_t stopped_at,
+                                          bool whole) const;
+
+  const VoxelGrid& grid_;
+  const OpenVoxels& table_;
+  const PacketWalk* walk_;
+  UnknownPolicy unknown_;
+};
+
+}  // namespace frontlux::detail

@@ -1,0 +1,214 @@
+#include "view/exact/exact_render.hpp"
+
+#include "view/exact/view_window.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace frontlux::detail {
+namespace {
+
+constexpr int kSectors = 16;  // where bins of azimuth are not asked for
+
+// A viewpoint in order of tiles: by column of tiles, then by height, then by place in the tile.
+struct Placed {
+  std::uint64_t order;
+  std::uint32_t place;
+  std::uint32_t index;
+  std::uint32_t number;  // among those that are sorted
+
+  [[nodiscard]] std::uint64_t column() const { return order >> 16U; }
+};
+
+// Where tiles lie.
+struct Tiling {
+  std::array<int, 3> corner{};
+  std::array<int, 2> stride{1, 1};
+  static constexpr int kLevels = 32;  // of viewpoints in a column of tiles
+
+  explicit Tiling(std::span<const Viewpoint> viewpoints) {
+    const VoxelKey first = cell_of_code(viewpoints.front().code);
+    corner = {first.x, first.y, first.z};
+    std::array<int, 2> apart{};
+    for (const Viewpoint& viewpoint : viewpoints) {
+      const VoxelKey key = cell_of_code(viewpoint.code);
+      apart = {std::gcd(apart[0], key.x - first.x), std::gcd(apart[1], key.y - first.y)};
+      corner = {std::min<int>(corner[0], key.x), std::min<int>(corner[1], key.y),
+                std::min<int>(corner[2], key.z)};
+    }
+    for (std::size_t a = 0; a < 2; ++a)
+      while (stride[a] < ViewTile::kMaxStride && apart[a] % (2 * stride[a]) == 0) stride[a] *= 2;
+  }
+
+  [[nodiscard]] Placed place(const Viewpoint& viewpoint, std::uint32_t number) const {
+    const VoxelKey key = cell_of_code(viewpoint.code);
+    const int column = (key.x - corner[0]) / stride[0], row = (key.y - corner[1]) / stride[1];
+    const int level = key.z - corner[2];
+    const auto digits = [](int part) { return static_cast<std::uint64_t>(part); };
+    return {digits(level / kLevels) << 48U | digits(row / ViewTile::kRows) << 32U |
+                digits(column / ViewTile::kColumns) << 16U | digits(level % kLevels),
+            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index, number};
+  }
+
+  // Voxel of a tile's first place.
+  [[nodiscard]] std::array<int, 3> first_place(const Placed& placed) const {
+    const auto digits = [&](unsigned shift) { return static_cast<int>(placed.order >> shift & 0xFFFFU); };
+    return {corner[0] + digits(16) * ViewTile::kColumns * stride[0],
+            corner[1] + digits(32) * ViewTile::kRows * stride[1],
+            corner[2] + digits(48) * kLevels + digits(0)};
+  }
+};
+
+template <class Key>
+std::vector<std::size_t> runs(std::span<const Placed> placed, const Key& key) {
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (i == 0 || key(placed[i]) != key(placed[i - 1])) begins.push_back(i);
+  begins.push_back(placed.size());
+  return begins;
+}
+
+// What a task needs for its columns of tiles.
+class ColumnRenderer {
+ public:
+  ColumnRenderer(const ExactScene& scene, const Tiling& tiling, const RayTrie& tree)
+      : scene_(scene),
+        tiling_(tiling),
+        tree_(tree),
+        reached_(tree.depth() + 1),
+        groups_(tree.groups().size()) {
+    groups_.front().words.fill(~std::uint64_t{0});
+  }
+
+  void render(std::span<const Placed> column, std::span<ViewQuality> values,
+              std::span<std::uint32_t> bin_hits) {
+    CellBox places{tiling_.first_place(column.front()), tiling_.first_place(column.back())};
+    places.max[0] += (ViewTile::kColumns - 1) * tiling_.stride[0];
+    places.max[1] += (ViewTile::kRows - 1) * tiling_.stride[1];
+    targets_.aim(tree_.layout(), places);
+    const bool any = targets_.fill_targets(scene_.targets, scene_.reach, scene_.walk);
+    if (any) {
+      free_.aim(tree_.layout(), places);
+      free_.fill_free(scene_.grid, scene_.walk);
+    }
+    const std::vector<std::size_t> tiles = runs(column, [](const Placed& p) { return p.order; });
+    for (std::size_t t = 0; t + 1 < tiles.size(); ++t) {
+      const auto tile = column.subspan(tiles[t], tiles[t + 1] - tiles[t]);
+      in_view_.clear();
+      seen_.clear();
+      if (any) walk(tile, bin_hits);
+      for (const Placed& placed : tile) {
+        const std::uint32_t in_view = in_view_.at(placed.place), seen = seen_.at(placed.place);
+        values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
+      }
+    }
+  }
+
+ private:
+  void walk(std::span<const Placed> tile, std::span<std::uint32_t> bin_hits) {
+    TileBits viewpoints{};
+    for (const Placed& placed : tile) viewpoints.set(placed.place);
+    const int z = tiling_.first_place(tile.front())[2];
+    const std::byte* const targets = targets_.level(z);
+    const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
+    if (bins != 0) totals_.assign(tile.size(), 0);
+    for (const RayTrie::Sector& sector : tree_.sectors()) {
+      TileBits concerned{};
+      scene_.walk.gather(tree_, sector, targets, viewpoints, in_view_, groups_, concerned);
+      if (!concerned.any()) continue;
+      scene_.walk.count(tree_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
+      if (bins == 0) continue;
+      for (std::size_t i = 0; i < tile.size(); ++i) {
+        const std::uint32_t seen = seen_.at(tile[i].place);
+        bin_hits[tile[i].index * bins + static_cast<std::size_t>(sector.bin)] = seen;
+        totals_[i] += seen;
+      }
+      seen_.clear();
+    }
+    if (bins != 0) set(seen_, tile, totals_);
+  }
+
+  static void set(TileCounts& counts, std::span<const Placed> tile, std::span<const std::uint32_t> numbers) {
+    for (std::size_t i = 0; i < tile.size(); ++i)
+      for (std::size_t p = 0; numbers[i] >> p != 0; ++p) {
+        if ((numbers[i] >> p & 1U) != 0) counts.planes[p].set(tile[i].place);
+        counts.used = std::max(counts.used, p + 1);
+      }
+  }
+
+  const ExactScene& scene_;
+  const Tiling& tiling_;
+  const RayTrie& tree_;
+  ViewWindow free_, targets_;
+  TileCounts in_view_, seen_;
+  std::vector<TileBits> reached_, groups_;
+  std::vector<std::uint32_t> totals_;
+};
+
+}  // namespace
+
+std::shared_ptr<const RayTrie> RayTries::get(const ViewReach& reach, int azimuth_bins, int stride_x,
+                                               int stride_y) {
+  const std::lock_guard lock(mutex_);
+  for (const Known& known : known_)
+    if (known.stride_x == stride_x && known.stride_y == stride_y) return known.tree;
+  std::optional<RayTrie> tree;
+  // Without isolation this thread could meet its own lock in a task it takes up while it waits.
+  tbb::this_task_arena::isolate(
+      [&] { tree = RayTrie::make(reach, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
+  known_.push_back({stride_x, stride_y, tree ? std::make_shared<const RayTrie>(std::move(*tree)) : nullptr});
+  return known_.back().tree;
+}
+
+bool RayTries::knows(int stride_x, int stride_y) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) {
+    return known.stride_x == stride_x && known.stride_y == stride_y;
+  });
+}
+
+std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
+                                      std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
+  std::vector<Viewpoint> left;
+  if (viewpoints.empty()) return left;
+  const Tiling tiling(viewpoints);
+  const auto [stride_x, stride_y] = tiling.stride;
+  std::vector<Placed> placed(viewpoints.size());
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    placed[i] = tiling.place(viewpoints[i], static_cast<std::uint32_t>(i));
+  tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return a.order < b.order || (a.order == b.order && a.number < b.number);
+  });
+
+  std::vector<bool> walked(placed.size());
+  std::vector<Placed> dense;
+  const std::vector<std::size_t> tiles = runs(placed, [](const Placed& p) { return p.order; });
+  for (std::size_t t = 0; t + 1 < tiles.size(); ++t)
+    if (tiles[t + 1] - tiles[t] >= scene.thresholds.tile)
+      for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) dense.push_back(placed[i]);
+  const bool worth =
+      !dense.empty() && (dense.size() >= scene.thresholds.tree || scene.trees.knows(stride_x, stride_y));
+  const auto tree = worth ? scene.trees.get(scene.reach, scene.azimuth_bins, stride_x, stride_y) : nullptr;
+  if (tree) {
+    const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {
+      ColumnRenderer renderer(scene, tiling, *tree);
+      for (std::size_t c = range.begin(); c < range.end(); ++c)
+        renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
+    });
+    for (const Placed& one : dense) walked[one.number] = true;
+  }
+  for (std::size_t i = 0; i < viewpoints.size(); ++i)
+    if (!walked[i]) left.push_back(viewpoints[i]);
+  return left;
+}
+
+}  // namespace frontlux::detail

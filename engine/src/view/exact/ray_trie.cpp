@@ -1,0 +1,244 @@
+#include "view/exact/ray_trie.hpp"
+
+#include "walk/walk.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace frontlux::detail {
+namespace {
+
+constexpr std::size_t kMaxSteps = std::size_t{1} << 27U;   // of all paths, before any are shared
+constexpr std::size_t kMaxWindow = std::size_t{1} << 28U;  // [bytes]
+constexpr std::size_t kGroupTargets = 24;                  // at most, in a group
+constexpr std::uint32_t kForkNodes = 4;                    // at least, behind a node that is looked at
+
+using Cell = std::array<int, 3>;
+
+// A path on its way to an offset.
+class Line {
+ public:
+  explicit Line(const Cell& offset)
+      : crossings_(crossings_of(key({0, 0, 0}), key(offset))),
+        steps_left_(std::abs(offset[0]) + std::abs(offset[1]) + std::abs(offset[2])),
+        offset_(offset) {
+    look_ahead();
+  }
+  [[nodiscard]] const Cell& offset() const { return offset_; }
+  [[nodiscard]] int steps_left() const { return steps_left_; }
+  /// One of six, of the next step.
+  [[nodiscard]] std::uint32_t direction() const { return direction_; }
+  /// From the voxel where it is.
+  [[nodiscard]] Cell next(Cell at) const {
+    at[direction_ / 2] += crossings_.step[direction_ / 2];
+    return at;
+  }
+  void advance() {
+    crossings_.t_max[direction_ / 2] += crossings_.t_delta[direction_ / 2];
+    --steps_left_;
+    look_ahead();
+  }
+
+ private:
+  static VoxelKey key(const Cell& offset) {
+    const auto along = [&](std::size_t a) {
+      return static_cast<std::uint16_t>(Lattice::kOrigin + offset[a]);
+    };
+    return {along(0), along(1), along(2)};
+  }
+  // Ties go to z before y before x (rule 5).
+  void look_ahead() {
+    const auto& t = crossings_.t_max;
+    const std::uint32_t across = t[0] < t[1] ? 0 : 1;
+    const std::uint32_t axis = t[across] < t[2] ? across : 2;
+    direction_ = 2 * axis + (crossings_.step[axis] > 0 ? 1 : 0);
+  }
+
+  Crossings<std::int64_t> crossings_;
+  int steps_left_;
+  std::uint32_t direction_ = 0;
+  Cell offset_;
+};
+
+template <class Visit>
+void for_each_offset(const ViewReach& reach, const Visit& visit) {
+  const int radius = reach.table_radius();
+  for (int dx = -radius; dx <= radius; ++dx)
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const int height = reach.heights()[reach.entry(dx, dy)];
+      if (height >= 0) visit(dx, dy, height);
+    }
+}
+
+}  // namespace
+
+// Makes the tree of one sector.
+class RayTrieBuilder {
+ public:
+  RayTrieBuilder(RayTrie& tree, std::vector<Line>& lines) : tree_(tree), lines_(lines) {}
+
+  void build(int bin) {
+    tree_.groups_.resize(2);  // 0 is no group, 1 has the targets that belong to no other
+    std::vector<std::uint32_t> all(lines_.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
+    // What is next to the viewpoint is seen whatever is free.
+    const auto far =
+        std::partition(all.begin(), all.end(), [&](std::uint32_t l) { return lines_[l].steps_left() == 1; });
+    for (auto l = all.begin(); l != far; ++l) loose_.push_back(place(lines_[*l].offset()));
+    const auto adjacent = static_cast<std::uint32_t>(loose_.size());
+    fork({far, all.end()}, {}, {}, 0);
+
+    tree_.groups_[1].begin = count(tree_.targets_);
+    tree_.targets_.insert(tree_.targets_.end(), loose_.begin(), loose_.end());
+    tree_.groups_[1].end = count(tree_.targets_);
+    tree_.sectors_.push_back({bin, 0, count(tree_.nodes_), 1, count(tree_.groups_), adjacent});
+  }
+
+ private:
+  using Piece = std::vector<std::int32_t>;  // places that have to be free, since the last node
+  using Lines = std::span<std::uint32_t>;
+
+  template <class T>
+  static std::uint32_t count(const std::vector<T>& list) {
+    return static_cast<std::uint32_t>(list.size());
+  }
+  [[nodiscard]] std::int32_t place(const Cell& at) const { return tree_.layout_.offset(at[0], at[1], at[2]); }
+
+  // Nodes for a piece, which is not empty. Returns the depth behind them.
+  std::uint16_t add(const Piece& piece, std::optional<std::int32_t> target, std::uint16_t depth,
+                    std::vector<std::uint32_t>& added) {
+    for (std::size_t done = 0; done < piece.size(); done += RayTrie::Node::kSteps) {
+      const bool last = done + RayTrie::Node::kSteps >= piece.size();
+      RayTrie::Node node{};
+      for (std::size_t s = 0; s < node.steps.size(); ++s)
+        node.steps[s] = piece[std::min(done + s, piece.size() - 1)];
+      node.target = last ? target.value_or(0) : 0;
+      node.is_target = last && target ? 1 : 0;
+      node.group = std::exchange(pending_group_, 0);
+      node.depth = depth++;
+      added.push_back(count(tree_.nodes_));
+      tree_.nodes_.push_back(node);
+      tree_.depth_ = std::max<std::size_t>(tree_.depth_, depth);
+    }
+    return depth;
+  }
+  void add_target(std::int32_t target) {
+    if (group_ == 0) {
+      loose_.push_back(target);
+      return;
+    }
+    tree_.targets_.push_back(target);
+    tree_.groups_[group_].end = count(tree_.targets_);
+  }
+
+  // Lines that part at a voxel, perhaps.
+  void fork(Lines lines, const Cell& at, const Piece& piece, std::uint16_t depth) {
+    auto rest = lines.begin();
+    for (std::uint32_t direction = 0; direction < 6 && rest != lines.end(); ++direction) {
+      const auto begin = rest;
+      rest = std::partition(rest, lines.end(),
+                            [&](std::uint32_t l) { return lines_[l].direction() == direction; });
+      if (rest != begin) follow({begin, rest}, at, piece, depth);
+    }
+  }
+
+  // Lines that take the same step next.
+  void follow(Lines lines, Cell at, Piece piece, std::uint16_t depth) {
+    std::vector<std::uint32_t> nodes;
+    const bool opens_group = group_ == 0 && lines.size() <= kGroupTargets;
+    if (opens_group) {
+      group_ = pending_group_ = count(tree_.groups_);
+      tree_.groups_.push_back({count(tree_.targets_), count(tree_.targets_)});
+    }
+    while (!lines.empty()) {
+      const Cell before = at;
+      at = lines_[lines.front()].next(before);
+      for (const std::uint32_t l : lines) lines_[l].advance();
+      const auto ends = std::find_if(lines.begin(), lines.end(),
+                                     [&](std::uint32_t l) { return lines_[l].steps_left() == 0; });
+      if (ends != lines.end()) {
+        if (piece.empty()) piece.push_back(place(before));  // a fork, which is known to be free
+        depth = add(piece, place(at), depth, nodes);
+        add_target(place(at));
+        piece.clear();
+        std::swap(*ends, lines.back());
+        lines = lines.first(lines.size() - 1);
+      }
+      piece.push_back(place(at));
+      const bool parts = std::any_of(lines.begin(), lines.end(), [&](std::uint32_t l) {
+        return lines_[l].direction() != lines_[lines.front()].direction();
+      });
+      if (!parts) continue;
+      depth = add(piece, std::nullopt, depth, nodes);
+      fork(lines, at, {}, depth);
+      break;
+    }
+    const std::uint32_t end = count(tree_.nodes_);
+    for (const std::uint32_t n : nodes) {
+      tree_.nodes_[n].end = end;
+      tree_.nodes_[n].is_fork = end - n > kForkNodes ? 1 : 0;
+    }
+    if (opens_group) group_ = 0;
+  }
+
+  RayTrie& tree_;
+  std::vector<Line>& lines_;
+  std::vector<std::int32_t> loose_;
+  std::uint32_t group_ = 0, pending_group_ = 0;
+};
+
+void RayTrie::append(const RayTrie& sector) {
+  const auto nodes = static_cast<std::uint32_t>(nodes_.size());
+  const auto groups = static_cast<std::uint32_t>(groups_.size()) - 1;  // all share group 0
+  const auto targets = static_cast<std::uint32_t>(targets_.size());
+  for (Node node : sector.nodes_) {
+    node.end += nodes;
+    node.group += node.group == 0 ? 0 : groups;
+    nodes_.push_back(node);
+  }
+  for (std::size_t g = 1; g < sector.groups_.size(); ++g)
+    groups_.push_back({sector.groups_[g].begin + targets, sector.groups_[g].end + targets});
+  targets_.insert(targets_.end(), sector.targets_.begin(), sector.targets_.end());
+  for (const Sector& s : sector.sectors_)
+    sectors_.push_back({s.bin, s.nodes_begin + nodes, s.nodes_end + nodes, s.groups_begin + groups,
+                        s.groups_end + groups, s.adjacent});
+  depth_ = std::max(depth_, sector.depth_);
+}
+
+std::optional<RayTrie> RayTrie::make(const ViewReach& reach, int azimuth_bins, int stride_x, int stride_y) {
+  WindowLayout layout;
+  layout.stride_x = stride_x;
+  layout.stride_y = stride_y;
+  std::size_t steps = 0;
+  for_each_offset(reach, [&](int dx, int dy, int height) {
+    layout.reach_x = std::max(layout.reach_x, std::abs(dx));
+    layout.reach_y = std::max(layout.reach_y, std::abs(dy));
+    layout.reach_z = std::max(layout.reach_z, height);
+    steps += static_cast<std::size_t>((2 * height + 1) * (std::abs(dx) + std::abs(dy) + height / 2));
+  });
+  const auto levels = static_cast<std::size_t>(2 * layout.reach_z + 1);
+  if (steps > kMaxSteps || levels * layout.level_bytes() > kMaxWindow) return std::nullopt;
+
+  std::vector<std::vector<Line>> lines(static_cast<std::size_t>(azimuth_bins));
+  for_each_offset(reach, [&](int dx, int dy, int height) {
+    auto& sector = lines[static_cast<std::size_t>(azimuth_bin(std::atan2(dy, dx), azimuth_bins))];
+    for (int dz = -height; dz <= height; ++dz) sector.emplace_back(Cell{dx, dy, dz});
+  });
+  std::vector<RayTrie> sectors(lines.size());
+  tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t bin) {
+    if (lines[bin].empty()) return;
+    sectors[bin].layout_ = layout;
+    RayTrieBuilder(sectors[bin], lines[bin]).build(static_cast<int>(bin));
+  });
+  RayTrie tree;
+  tree.layout_ = layout;
+  tree.groups_.emplace_back();
+  for (const RayTrie& sector : sectors) tree.append(sector);
+  return tree;
+}
+
+}  // namespace frontlux::detail

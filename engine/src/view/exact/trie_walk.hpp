@@ -1,0 +1,80 @@
+#pragma once
+
+#include "view/exact/ray_trie.hpp"
+#include "view/exact/window_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+/// The walk over a `RayTrie` for all places of a `ViewTile` at a time: a bit for each.
+namespace frontlux::detail {
+
+/// A bit for each place of a tile.
+struct alignas(64) TileBits {
+  std::array<std::uint64_t, ViewTile::kBytes / 8> words;
+
+  [[nodiscard]] static constexpr std::uint32_t place(int column, int row) {
+    return static_cast<std::uint32_t>(row * ViewTile::kColumns + column);
+  }
+  [[nodiscard]] bool at(std::uint32_t place) const { return (words[place / 64] >> place % 64 & 1U) != 0; }
+  void set(std::uint32_t place) { words[place / 64] |= std::uint64_t{1} << place % 64; }
+  [[nodiscard]] bool any() const {
+    std::uint64_t all = 0;
+    for (const std::uint64_t word : words) all |= word;
+    return all != 0;
+  }
+};
+
+/// A number for each place of a tile, its bits in planes.
+struct TileCounts {
+  static constexpr std::size_t kPlanes = 32;
+  std::array<TileBits, kPlanes> planes{};
+  std::size_t used = 0;  ///< planes that may not be zero
+
+  void clear() {
+    std::fill_n(planes.begin(), used, TileBits{});
+    used = 0;
+  }
+  [[nodiscard]] std::uint32_t at(std::uint32_t place) const {
+    std::uint32_t count = 0;
+    for (std::size_t p = 0; p < used; ++p) count |= static_cast<std::uint32_t>(planes[p].at(place)) << p;
+    return count;
+  }
+};
+
+/// Rows of bits, eight columns to a byte: the bytes of all rows, then those of the next eight columns.
+struct SpreadFrom {
+  const std::uint8_t* bytes;
+  std::size_t pitch;      ///< rows that there are
+  std::size_t first_bit;  ///< column to begin with; at least 24 follow the last
+};
+
+/// The walk of one instruction set. `free` and `targets` point to the lowest places in reach of a tile, in
+/// windows of the tree's layout.
+struct TrieWalk {
+  const char* instructions;
+
+  /// Adds to `counts` how many targets of a sector the viewpoints have around them, seen or not. Which of
+  /// them have any goes to `groups`, for each group, and to `any`.
+  void (*gather)(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* targets,
+                 const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any);
+
+  /// Adds to `counts` how many targets of a sector the viewpoints see. What lies in a group of the tree is
+  /// looked for only by the viewpoints in `groups`.
+  /// @param reached  room for a set of viewpoints at each depth, and one more
+  void (*count)(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* free,
+                const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
+                std::span<TileBits> reached, TileCounts& counts);
+
+  /// For each column from a bit on writes the 16 bits from there on, for each row.
+  void (*spread)(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,
+                 std::uint16_t* out);
+};
+
+/// Those that this processor can run, the widest first; the last is for any.
+[[nodiscard]] std::span<const TrieWalk> trie_walks();
+
+}  // namespace frontlux::detail

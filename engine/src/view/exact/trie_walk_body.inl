@@ -1,0 +1,167 @@
+// The walk itself. Included by trie_walk.cpp once for each instruction set, inside a namespace that defines
+// `Part`, a vector of the processor's, and `any_of` it.
+
+// The bits of a tile.
+struct Bits {
+  static constexpr std::size_t kParts = ViewTile::kBytes / sizeof(Part);
+  Part parts[kParts];
+
+  [[gnu::always_inline]] Bits& operator&=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] &= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] Bits& operator|=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] |= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] Bits& operator^=(const Bits& b) {
+    for (std::size_t i = 0; i < kParts; ++i) parts[i] ^= b.parts[i];
+    return *this;
+  }
+  [[gnu::always_inline]] friend Bits operator&(Bits a, const Bits& b) { return a &= b; }
+  [[gnu::always_inline]] friend Bits operator|(Bits a, const Bits& b) { return a |= b; }
+  [[gnu::always_inline]] friend Bits operator^(Bits a, const Bits& b) { return a ^= b; }
+};
+
+[[gnu::always_inline]] inline bool any_of(const Bits& bits) {
+  Part all = bits.parts[0];
+  for (std::size_t i = 1; i < Bits::kParts; ++i) all |= bits.parts[i];
+  return any_of(all);
+}
+
+[[gnu::always_inline]] inline Bits load(const void* from) {
+  Bits bits;
+  for (std::size_t i = 0; i < Bits::kParts; ++i)
+    std::memcpy(&bits.parts[i], static_cast<const std::byte*>(from) + i * sizeof(Part), sizeof(Part));
+  return bits;
+}
+[[gnu::always_inline]] inline void store(void* to, const Bits& bits) {
+  for (std::size_t i = 0; i < Bits::kParts; ++i)
+    std::memcpy(static_cast<std::byte*>(to) + i * sizeof(Part), &bits.parts[i], sizeof(Part));
+}
+
+// Adds bits to numbers in planes, sixteen at a time, so that carries go beyond the lowest planes seldom.
+class Adder {
+ public:
+  static constexpr std::size_t kSize = 16;
+  using Waiting = std::array<TileBits, kSize>;
+
+  // Room beside this object, so that what is in here stays in registers.
+  Adder(TileCounts& counts, Waiting& waiting) : counts_(counts), waiting_(waiting) {}
+  ~Adder() { flush(counts_, waiting_, size_); }
+  Adder(const Adder&) = delete;
+  Adder& operator=(const Adder&) = delete;
+
+  // Takes no branch on whether there is something to add.
+  [[gnu::always_inline]] void add(const Bits& bits, bool something) {
+    store(&waiting_[size_], bits);
+    std::size_t one = something ? 1 : 0;
+    __asm__("" : "+r"(one));  // else the compiler makes a branch of it, which nobody can foretell
+    size_ += one;
+    if (size_ == kSize) [[unlikely]] {
+      flush(counts_, waiting_, size_);
+      size_ = 0;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLowPlanes = 4;
+
+  [[gnu::noinline]] static void flush(TileCounts& counts, Waiting& waiting, std::size_t size) {
+    std::fill(waiting.begin() + static_cast<std::ptrdiff_t>(size), waiting.end(), TileBits{});
+    std::array<Bits, kSize> carries;
+    for (std::size_t i = 0; i < kSize; ++i) carries[i] = load(&waiting[i]);
+    std::size_t count = kSize;
+    for (std::size_t plane = 0; plane < kLowPlanes; ++plane) {
+      Bits sum = load(&counts.planes[plane]);
+      count /= 2;
+      for (std::size_t i = 0; i < count; ++i) carries[i] = add_three(sum, carries[2 * i], carries[2 * i + 1]);
+      store(&counts.planes[plane], sum);
+    }
+    counts.used = std::max(counts.used, kLowPlanes);
+    Bits carry = carries[0];
+    for (std::size_t plane = kLowPlanes; any_of(carry); ++plane) {
+      const Bits before = load(&counts.planes[plane]);
+      store(&counts.planes[plane], before ^ carry);
+      carry &= before;
+      counts.used = std::max(counts.used, plane + 1);
+    }
+  }
+
+  // `sum` becomes the lower bit of the three; returns the upper.
+  [[gnu::always_inline]] static Bits add_three(Bits& sum, const Bits& a, const Bits& b) {
+    const Bits differ = sum ^ a;
+    const Bits carry = (sum & a) | (differ & b);
+    sum = differ ^ b;
+    return carry;
+  }
+
+  TileCounts& counts_;
+  std::size_t size_ = 0;
+  Waiting& waiting_;
+};
+
+void gather(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* targets,
+            const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any) {
+  const Bits here = load(&viewpoints);
+  Bits all = here ^ here;
+  Adder::Waiting waiting;
+  Adder adder(counts, waiting);
+  for (std::uint32_t g = sector.groups_begin; g < sector.groups_end; ++g) {
+    const RayTrie::Group& group = tree.groups()[g];
+    Bits found = here ^ here;
+    for (std::uint32_t t = group.begin; t < group.end; ++t) {
+      const Bits there = here & load(targets + tree.targets()[t]);
+      found |= there;
+      adder.add(there, any_of(there));
+    }
+    store(&groups[g], found);
+    all |= found;
+  }
+  store(&any, all);
+}
+
+void count(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* free,
+           const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
+           std::span<TileBits> reached, TileCounts& counts) {
+  Adder::Waiting waiting;
+  Adder adder(counts, waiting);
+  const Bits here = load(&viewpoints);
+  const auto first = tree.groups()[sector.groups_begin].begin;
+  for (const std::int32_t place : tree.targets().subspan(first, sector.adjacent)) {
+    const Bits seen = here & load(targets + place);
+    adder.add(seen, any_of(seen));
+  }
+  store(&reached[0], here);
+  const RayTrie::Node* const nodes = tree.nodes().data();
+  TileBits* const at_depth = reached.data();
+  for (std::uint32_t n = sector.nodes_begin; n < sector.nodes_end;) {
+    const RayTrie::Node& node = nodes[n];
+    const Bits near = load(&at_depth[node.depth]) & load(&groups[node.group]);
+    const Bits first_steps = load(free + node.steps[0]) & load(free + node.steps[1]);
+    const Bits steps = first_steps & load(free + node.steps[2]) & load(free + node.steps[3]);
+    const Bits far = near & steps;
+    store(&at_depth[node.depth + 1U], far);
+    const Bits seen = far & load(targets + node.target);
+    adder.add(seen, static_cast<bool>(node.is_target & static_cast<unsigned>(any_of(seen))));
+    const bool leave = static_cast<bool>(node.is_fork & static_cast<unsigned>(!any_of(far)));
+    n = leave ? node.end : n + 1;
+  }
+}
+
+void spread(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,
+            std::uint16_t* out) {
+  for (std::size_t column = 0; column < columns; ++column, out += column_stride) {
+    const std::size_t bit = from.first_bit + column;
+    const std::uint8_t* const low = from.bytes + bit / 8 * from.pitch;
+    const std::uint8_t* const middle = low + from.pitch;
+    const std::uint8_t* const high = middle + from.pitch;
+    const unsigned shift = bit % 8;
+#pragma GCC ivdep
+    for (std::size_t row = 0; row < rows; ++row) {
+      const auto two = static_cast<std::uint16_t>(low[row] | middle[row] << 8U);
+      const auto third = static_cast<std::uint16_t>(high[row] << 8U);
+      out[row] = static_cast<std::uint16_t>(two >> shift | third << (8 - shift));
+    }
+  }
+}

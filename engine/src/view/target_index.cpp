@@ -1,0 +1,48 @@
+#include "view/target_index.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::detail {
+
+TargetIndex::TargetIndex(std::span<const VoxelKey> targets) {
+  if (targets.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::invalid_argument("view quality: " + std::to_string(targets.size()) +
+                                " targets, but at most 2^32 - 1 can be told apart");
+  codes_.resize(targets.size());
+  std::transform(targets.begin(), targets.end(), codes_.begin(), cell_code);
+  tbb::parallel_sort(codes_.begin(), codes_.end());
+  codes_.erase(std::unique(codes_.begin(), codes_.end()), codes_.end());
+  keys_.resize(codes_.size());
+  std::transform(codes_.begin(), codes_.end(), keys_.begin(), cell_of_code);
+
+  for (std::size_t i = 0; i < codes_.size(); ++i) {
+    const std::uint64_t code = codes_[i];
+    if (i == 0 || code >> kBlockCode != codes_[i - 1] >> kBlockCode) {
+      if (i == 0 || code >> kRegionCode != codes_[i - 1] >> kRegionCode) {
+        const auto begin = static_cast<std::uint32_t>(cubes_.size());
+        regions_.push_back({CellBox::of(cell_of_code(code >> kRegionCode << kRegionCode), 6), begin, begin});
+      }
+      const auto begin = static_cast<std::uint32_t>(i);
+      cubes_.push_back({CellBox::of(cell_of_code(code >> kBlockCode << kBlockCode), 3), begin, begin});
+      ++regions_.back().end;
+    }
+    ++cubes_.back().end;
+  }
+}
+
+void TargetIndex::list_cubes(const ViewReach& reach, const CellBox& from,
+                             std::vector<std::uint32_t>& cubes) const {
+  cubes.clear();
+  for (const Cube& region : regions_) {
+    if (!reach.may_contain(from, region.box)) continue;
+    for (std::uint32_t c = region.begin; c < region.end; ++c)
+      if (reach.may_contain(from, cubes_[c].box)) cubes.push_back(c);
+  }
+}
+
+}  // namespace frontlux::detail

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "voxel/cell_box.hpp"
+#include "view/view_reach.hpp"
+
+#include <frontlux/ray.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace frontlux::detail {
+
+/// Targets by cubes of 8 voxels a side, and these by cubes of 64, so that those near a place are found
+/// without looking at the others. In the order of `cell_code`, which knows nothing of what else is a target:
+/// equal targets around a place are listed in equal order whatever happens elsewhere.
+class TargetIndex {
+ public:
+  /// A run of targets, and the cube that holds them.
+  struct Cube {
+    CellBox box;
+    std::uint32_t begin = 0, end = 0;  ///< of targets; for cubes of 64 of cubes of 8
+    [[nodiscard]] std::uint32_t size() const { return end - begin; }
+  };
+
+  /// @param targets  in any order; repeated ones count once
+  /// @throws std::invalid_argument if they are more than 2^32 - 1
+  explicit TargetIndex(std::span<const VoxelKey> targets);
+
+  /// Their codes, ascending.
+  [[nodiscard]] std::span<const std::uint64_t> codes() const { return codes_; }
+  /// Their voxels, in the same order.
+  [[nodiscard]] std::span<const VoxelKey> keys() const { return keys_; }
+  /// Cubes of 8 voxels a side with targets, in order.
+  [[nodiscard]] std::span<const Cube> cubes() const { return cubes_; }
+
+  /// Lists the cubes, by number and in order, that may have a voxel in view from a voxel of a box.
+  void list_cubes(const ViewReach& reach, const CellBox& from, std::vector<std::uint32_t>& cubes) const;
+
+ private:
+  std::vector<std::uint64_t> codes_;
+  std::vector<VoxelKey> keys_;
+  std::vector<Cube> cubes_, regions_;
+};
+
+}  // namespace frontlux::detail

@@ -1,0 +1,172 @@
+#include "view/changed_surroundings.hpp"
+#include "view/exact/exact_render.hpp"
+#include "view/target_index.hpp"
+#include "view/view_reach.hpp"
+#include "view/view_render.hpp"
+
+#include <frontlux/view_quality.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace frontlux {
+namespace {
+
+using detail::CellBox;
+using detail::Viewpoint;
+
+void check_count(std::size_t viewpoints) {
+  if (viewpoints > std::numeric_limits<std::uint32_t>::max())
+    throw std::invalid_argument("view quality: " + std::to_string(viewpoints) +
+                                " viewpoints, but at most 2^32 - 1 can be told apart");
+}
+
+std::shared_ptr<const std::vector<Viewpoint>> sorted(std::span<const VoxelKey> viewpoints) {
+  return std::make_shared<const std::vector<Viewpoint>>(detail::sort_viewpoints(viewpoints));
+}
+
+// For each of the sorted viewpoints the index at which its value is still right in the image before, or
+// kStale.
+constexpr std::uint32_t kStale = std::numeric_limits<std::uint32_t>::max();
+std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<const Viewpoint> before,
+                                     const detail::ViewReach& reach, std::span<const CellBox> changed) {
+  std::vector<std::uint32_t> kept(now.size(), kStale);
+  const std::vector<std::size_t> tiles = detail::tiles_of(now);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size() - 1), [&](const auto& range) {
+    std::vector<CellBox> near;
+    const auto by_code = [](const Viewpoint& v, std::uint64_t code) { return v.code < code; };
+    for (std::size_t t = range.begin(); t < range.end(); ++t) {
+      const std::uint64_t cube = now[tiles[t]].code >> detail::kBlockCode << detail::kBlockCode;
+      const CellBox tile = CellBox::of(detail::cell_of_code(cube), 3);
+      near.clear();
+      for (const CellBox& box : changed)
+        if (reach.may_contain(tile, box)) near.push_back(box);
+      auto old = std::lower_bound(before.begin(), before.end(), cube, by_code);
+      for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) {
+        while (old != before.end() && old->code < now[i].code) ++old;
+        if (old == before.end() || old->code != now[i].code) continue;
+        const CellBox here = CellBox::of(detail::cell_of_code(now[i].code));
+        const bool stale = std::any_of(near.begin(), near.end(),
+                                       [&](const CellBox& box) { return reach.may_contain(here, box); });
+        if (!stale) kept[i] = old->index;
+      }
+    }
+  });
+  return kept;
+}
+
+// What the options amount to.
+ViewQualityOptions effective(ViewQualityOptions options) {
+  if (options.renderer != ViewQualityOptions::Renderer::kExact) return options;
+  options.samples = ViewQualityOptions::kAll;
+  options.sampling = ViewQualityOptions::Sampling::kFeasible;
+  options.estimator = ViewQualityOptions::Estimator::kUnbiased;
+  return options;
+}
+
+}  // namespace
+
+void ViewQualityOptions::check() const {
+  if (renderer > Renderer::kExact)
+    throw std::invalid_argument("view quality: renderer is " + std::to_string(static_cast<int>(renderer)) +
+                                ", which is none of the values of Renderer");
+  if (samples < 1)
+    throw std::invalid_argument("view quality: samples is " + std::to_string(samples) +
+                                ", but has to be at least 1");
+  if (azimuth_bins < 0 || azimuth_bins > kMaxAzimuthBins)
+    throw std::invalid_argument("view quality: azimuth_bins is " + std::to_string(azimuth_bins) +
+                                ", but has to lie between 0 and " + std::to_string(kMaxAzimuthBins));
+  if (sampling > Sampling::kBuckets)
+    throw std::invalid_argument("view quality: sampling is " + std::to_string(static_cast<int>(sampling)) +
+                                ", which is none of the values of Sampling");
+  if (estimator > Estimator::kPaper)
+    throw std::invalid_argument("view quality: estimator is " + std::to_string(static_cast<int>(estimator)) +
+                                ", which is none of the values of Estimator");
+  if (estimator == Estimator::kPaper && sampling != Sampling::kFeasible)
+    throw std::invalid_argument(
+        "view quality: the paper's estimator counts hits among feasible targets; take Sampling::kFeasible");
+}
+
+ViewQualityImage::ViewQualityImage(const Lattice& lattice, const FieldOfView& field_of_view,
+                                   const ViewQualityOptions& options)
+    : field_of_view_(field_of_view), options_(options) {
+  options_.check();
+  reach_ =
+      std::make_shared<const detail::ViewReach>(field_of_view, lattice.resolution(), options.azimuth_bins);
+  trees_ = std::make_shared<detail::RayTries>();
+  targets_ = std::make_shared<const detail::TargetIndex>(std::span<const VoxelKey>());
+  order_ = sorted({});
+}
+
+void ViewQualityImage::render(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+                              std::span<const VoxelKey> targets) {
+  check_count(viewpoints.size());
+  auto order = sorted(viewpoints);
+  const std::vector<std::uint32_t> kept(order->size(), kStale);
+  remake(caster, viewpoints, std::move(order), std::make_shared<const detail::TargetIndex>(targets), kept);
+}
+
+std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+                                     std::span<const VoxelKey> targets, std::span<const Block> changed) {
+  check_count(viewpoints.size());
+  auto index = std::make_shared<const detail::TargetIndex>(targets);
+  const detail::ChangedSurroundings surroundings(changed, *targets_, *index, effective(options_).sampling);
+  const bool same = std::equal(viewpoints.begin(), viewpoints.end(), viewpoints_.begin(), viewpoints_.end());
+  auto order = same ? order_ : sorted(viewpoints);
+  const auto kept = find_kept(*order, *order_, *reach_, surroundings.boxes());
+  return remake(caster, viewpoints, std::move(order), std::move(index), kept);
+}
+
+// All is made aside, so that a caster that throws leaves the image as it was.
+std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
+                                     std::shared_ptr<const std::vector<Viewpoint>> order,
+                                     std::shared_ptr<const detail::TargetIndex> targets,
+                                     std::span<const std::uint32_t> kept) {
+  const std::size_t bins = this->bins();
+  std::vector<VoxelKey> keys(viewpoints.begin(), viewpoints.end());
+  std::vector<ViewQuality> values(keys.size());
+  std::vector<std::uint32_t> bin_hits(keys.size() * bins);
+  std::vector<Viewpoint> stale;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const Viewpoint& viewpoint = (*order)[i];
+    if (kept[i] == kStale) {
+      stale.push_back(viewpoint);
+      continue;
+    }
+    values[viewpoint.index] = values_[kept[i]];
+    std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i] * bins), bins,
+                bin_hits.begin() + static_cast<std::ptrdiff_t>(viewpoint.index * bins));
+  }
+  const std::size_t rendered = stale.size();
+  const ViewQualityOptions options = effective(options_);
+  const bool exact = options.renderer == ViewQualityOptions::Renderer::kExact;
+  if (const auto grid = exact ? caster.grid() : std::nullopt) {
+    const auto& walk = detail::trie_walks().front();
+    stale = detail::render_exactly({*grid, *reach_, *targets, walk, *trees_, options.azimuth_bins}, stale,
+                                   values, bin_hits);
+  }
+  detail::render_views({caster, *reach_, *targets, options}, stale, values, bin_hits);
+
+  viewpoints_ = std::move(keys);
+  order_ = std::move(order);
+  targets_ = std::move(targets);
+  values_ = std::move(values);
+  bin_hits_ = std::move(bin_hits);
+  return rendered;
+}
+
+ViewQualityImage render_view_quality(const RayCaster& caster, const Lattice& lattice,
+                                     std::span<const VoxelKey> viewpoints, std::span<const VoxelKey> targets,
+                                     const FieldOfView& field_of_view, const ViewQualityOptions& options) {
+  ViewQualityImage image(lattice, field_of_view, options);
+  image.render(caster, viewpoints, targets);
+  return image;
+}
+
+}  // namespace frontlux

@@ -1,0 +1,240 @@
+#include "view/view_render.hpp"
+
+#include "view/rank_draw.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace frontlux::detail {
+namespace {
+
+constexpr std::size_t kEnoughSegments = 4096;  // for a batch: 16 pieces of a caster, and still in the cache
+
+// The targets around a tile, in order of the index, and as arrays for the test of what is in view.
+struct Surroundings {
+  CellBox tile;
+  std::vector<std::uint32_t> cubes;       // numbers in the index
+  std::vector<std::uint32_t> cube_begin;  // of each in the arrays, and the end of the last
+  std::vector<VoxelKey> keys;
+  std::vector<std::int32_t> entries;  // of the reach's tables, from the tile's corner
+  std::vector<std::int16_t> heights;  // above the tile's corner
+
+  void list(const ViewReach& reach, const TargetIndex& targets, const CellBox& from) {
+    tile = from;
+    targets.list_cubes(reach, tile, cubes);
+    cube_begin.assign(1, 0);
+    for (const std::uint32_t c : cubes) cube_begin.push_back(cube_begin.back() + targets.cubes()[c].size());
+    keys.resize(cube_begin.back());
+    entries.resize(keys.size());
+    heights.resize(keys.size());
+    for (std::size_t c = 0; c < cubes.size(); ++c)
+      std::copy_n(targets.keys().begin() + targets.cubes()[cubes[c]].begin, targets.cubes()[cubes[c]].size(),
+                  keys.begin() + cube_begin[c]);
+    for (std::size_t t = 0; t < keys.size(); ++t) {
+      entries[t] = reach.entry(keys[t].x - tile.min[0], keys[t].y - tile.min[1]);
+      heights[t] = static_cast<std::int16_t>(keys[t].z - tile.min[2]);
+    }
+  }
+};
+
+// What a task needs for its tiles. Not thread-local: a task that waits may start another one on its thread.
+class TileRenderer {
+ public:
+  void render(const ViewScene& scene, std::span<const Viewpoint> tile, std::span<ViewQuality> values,
+              std::span<std::uint32_t> bin_hits) {
+    surroundings_.list(scene.reach, scene.targets,
+                       CellBox::of(cell_of_code(tile.front().code >> kBlockCode << kBlockCode), 3));
+    for (const Viewpoint& viewpoint : tile) {
+      draw(scene, viewpoint);
+      if (segments_.size() >= kEnoughSegments) finish(scene, values, bin_hits);
+    }
+  }
+
+  // Casts what has gathered.
+  void finish(const ViewScene& scene, std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
+    visible_.resize(
+        segments_.size());  // perhaps 0: viewpoints without targets have their answers written too
+    // Without isolation this thread would start further tiles while it waits, each with a batch of its own.
+    tbb::this_task_arena::isolate([&] { scene.caster.visible(segments_, visible_, UnknownPolicy::kBlock); });
+    const auto bins = static_cast<std::size_t>(scene.options.azimuth_bins);
+    std::size_t begin = 0;
+    for (const Drawn& drawn : drawn_) {
+      ViewQuality& value = values[drawn.index];
+      const std::size_t end = begin + drawn.in_view;
+      std::uint32_t hits = 0;
+      for (std::size_t s = begin; s < end; ++s) hits += visible_[s];
+      if (bins != 0) {
+        const auto counts = bin_hits.subspan(drawn.index * bins, bins);
+        for (std::size_t s = begin; s < end; ++s) counts[scene.reach.bins()[entries_[s]]] += visible_[s];
+      }
+      value = estimate(drawn, hits, scene.options.estimator);
+      begin = end;
+    }
+    segments_.clear();
+    entries_.clear();
+    drawn_.clear();
+  }
+
+ private:
+  struct Drawn {
+    std::uint32_t index, population, count, in_view;
+  };
+
+  static ViewQuality estimate(const Drawn& drawn, std::uint32_t hits,
+                              ViewQualityOptions::Estimator estimator) {
+    ViewQuality value{drawn.population, drawn.count, hits, 0.0, 0.0};
+    if (drawn.count == 0) return value;
+    const double population = drawn.population, count = drawn.count;
+    const double q = (hits + 1.0) / (count + 2.0);
+    const double left = 1.0 - count / population;
+    const double error = std::sqrt(left * q * (1.0 - q) / std::max(count - 1.0, 1.0));
+    const bool unbiased = estimator == ViewQualityOptions::Estimator::kUnbiased;
+    value.gain = unbiased ? population * hits / count : hits;
+    value.standard_error = error * (unbiased ? population : count);
+    return value;
+  }
+
+  void draw(const ViewScene& scene, const Viewpoint& viewpoint) {
+    const VoxelKey from = cell_of_code(viewpoint.code);
+    const VoxelRandom random(scene.options.seed, from);
+    const auto samples = static_cast<std::uint32_t>(scene.options.samples);
+    const std::int32_t origin =
+        scene.reach.entry(from.x - surroundings_.tile.min[0], from.y - surroundings_.tile.min[1]);
+    const auto add = [&](std::uint32_t target) {
+      segments_.push_back({from, surroundings_.keys[target]});
+      if (scene.options.azimuth_bins != 0) entries_.push_back(surroundings_.entries[target] - origin);
+    };
+    const std::size_t begin = segments_.size();
+    std::uint32_t population = 0, count = 0;
+    if (scene.options.sampling == ViewQualityOptions::Sampling::kFeasible) {
+      population = list_in_view(scene.reach, from, origin);
+      const auto& ranks = ranks_.draw(population, samples, random);
+      count = static_cast<std::uint32_t>(ranks.size());
+      for (const std::uint32_t rank : ranks) add(in_view_[rank]);
+    } else {
+      population = list_buckets(scene, from);
+      const auto& ranks = ranks_.draw(population, samples, random);
+      count = static_cast<std::uint32_t>(ranks.size());
+      auto bucket = buckets_.begin();
+      for (const std::uint32_t rank : ranks) {
+        while (rank >= bucket->rank_end) ++bucket;
+        const std::uint32_t target = bucket->target_end - (bucket->rank_end - rank);
+        if (scene.reach.contains(from, surroundings_.keys[target])) add(target);
+      }
+    }
+    drawn_.push_back(
+        {viewpoint.index, population, count, static_cast<std::uint32_t>(segments_.size() - begin)});
+  }
+
+  // Writes every target and advances only past those in view: no branch to mispredict.
+  std::uint32_t list_in_view(const ViewReach& reach, const VoxelKey& from, std::int32_t origin) {
+    const Surroundings& near = surroundings_;
+    in_view_.resize(near.keys.size());
+    const std::int16_t* limits = reach.heights() - origin;
+    const std::int32_t* entries = near.entries.data();
+    const std::int16_t* heights = near.heights.data();
+    const int level = from.z - near.tile.min[2];
+    const auto size = static_cast<std::uint32_t>(near.keys.size());
+    std::uint32_t* out = in_view_.data();
+    for (std::uint32_t t = 0; t < size; ++t) {
+      const int up = std::abs(heights[t] - level);
+      *out = t;
+      out += up <= limits[entries[t]] ? 1 : 0;
+    }
+    return static_cast<std::uint32_t>(out - in_view_.data());
+  }
+
+  // The cubes that may be in view from this voxel, and not only from its tile.
+  std::uint32_t list_buckets(const ViewScene& scene, const VoxelKey& from) {
+    const Surroundings& near = surroundings_;
+    buckets_.clear();
+    const CellBox here = CellBox::of(from);
+    std::uint32_t population = 0;
+    for (std::size_t c = 0; c < near.cubes.size(); ++c) {
+      if (!scene.reach.may_contain(here, scene.targets.cubes()[near.cubes[c]].box)) continue;
+      population += near.cube_begin[c + 1] - near.cube_begin[c];
+      buckets_.push_back({population, near.cube_begin[c + 1]});
+    }
+    return population;
+  }
+
+  struct Bucket {
+    std::uint32_t rank_end, target_end;
+  };
+
+  Surroundings surroundings_;
+  RankDraw ranks_;
+  std::vector<std::uint32_t> in_view_;
+  std::vector<Bucket> buckets_;
+  std::vector<KeySegment> segments_;
+  std::vector<std::int32_t> entries_;  // of the reach's tables, one for each segment
+  std::vector<Drawn> drawn_;
+  std::vector<std::uint8_t> visible_;
+};
+
+// Renderers that no task uses at the moment, with the memory they have grown.
+class SpareRenderers {
+ public:
+  [[nodiscard]] std::unique_ptr<TileRenderer> take() {
+    const std::lock_guard lock(mutex_);
+    if (spares_.empty()) return std::make_unique<TileRenderer>();
+    auto renderer = std::move(spares_.back());
+    spares_.pop_back();
+    return renderer;
+  }
+  void give_back(std::unique_ptr<TileRenderer> renderer) {
+    const std::lock_guard lock(mutex_);
+    spares_.push_back(std::move(renderer));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<TileRenderer>> spares_;
+};
+
+}  // namespace
+
+std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints) {
+  std::vector<Viewpoint> sorted(viewpoints.size());
+  for (std::size_t i = 0; i < viewpoints.size(); ++i)
+    sorted[i] = {cell_code(viewpoints[i]), static_cast<std::uint32_t>(i)};
+  tbb::parallel_sort(sorted.begin(), sorted.end(), [](const Viewpoint& a, const Viewpoint& b) {
+    return a.code < b.code || (a.code == b.code && a.index < b.index);
+  });
+  return sorted;
+}
+
+std::vector<std::size_t> tiles_of(std::span<const Viewpoint> viewpoints) {
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < viewpoints.size(); ++i)
+    if (i == 0 || viewpoints[i].code >> kBlockCode != viewpoints[i - 1].code >> kBlockCode)
+      begins.push_back(i);
+  begins.push_back(viewpoints.size());
+  return begins;
+}
+
+void render_views(const ViewScene& scene, std::span<const Viewpoint> viewpoints,
+                  std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
+  const std::vector<std::size_t> tiles = tiles_of(viewpoints);
+  SpareRenderers spares;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size() - 1),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      auto renderer = spares.take();
+                      for (std::size_t t = range.begin(); t < range.end(); ++t)
+                        renderer->render(scene, viewpoints.subspan(tiles[t], tiles[t + 1] - tiles[t]), values,
+                                         bin_hits);
+                      renderer->finish(scene, values, bin_hits);
+                      spares.give_back(std::move(renderer));
+                    });
+}
+
+}  // namespace frontlux::detail

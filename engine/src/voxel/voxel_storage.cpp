@@ -1,0 +1,123 @@
+#include <frontlux/voxel_storage.hpp>
+
+#include <algorithm>
+
+namespace frontlux::detail {
+namespace {
+
+constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
+
+Brick uniform_brick(Occupancy state) {
+  Brick brick;
+  if (state == Occupancy::kFree) brick.free.fill(~std::uint64_t{0});
+  if (state == Occupancy::kOccupied) brick.occupied.fill(~std::uint64_t{0});
+  return brick;
+}
+
+// Calls visit(index) for the children that an aligned cube covers, where children have edge 2^child_log2.
+template <int kChildLog2, int kBits, class Visit>
+void for_each_covered_child(const VoxelKey& corner, int log2_edge, const Visit& visit) {
+  const int side = 1 << (log2_edge - kChildLog2);
+  const int first = child_index<kChildLog2, kBits>(corner);
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) visit(first + (z << (2 * kBits)) + (y << kBits) + x);
+}
+
+void fill_voxels(Brick& brick, const VoxelKey& corner, int log2_edge, Occupancy state) {
+  const int side = 1 << log2_edge;
+  const std::uint64_t row = (std::uint64_t{1} << side) - 1;
+  std::uint64_t square = 0;
+  for (int y = 0; y < side; ++y) square |= row << (8 * y);
+  square <<= Brick::bit(corner);
+  for (int z = corner.z & 7; z < (corner.z & 7) + side; ++z) {
+    const auto word = static_cast<std::size_t>(z);
+    brick.free[word] &= ~square;
+    brick.occupied[word] &= ~square;
+    if (state == Occupancy::kFree) brick.free[word] |= square;
+    if (state == Occupancy::kOccupied) brick.occupied[word] |= square;
+  }
+}
+
+}  // namespace
+
+Tile::Tile(Occupancy state) {
+  slots.fill(static_cast<std::uint16_t>(state));
+  for (const Occupancy s : kStates) bricks.push_back(uniform_brick(s));
+}
+
+bool Tile::uniform(Occupancy state) const {
+  return std::all_of(slots.begin(), slots.end(),
+                     [&](auto slot) { return slot == static_cast<std::uint16_t>(state); });
+}
+
+bool Tile::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
+  const auto uniform_slot = static_cast<std::uint16_t>(state);
+  const auto release = [&](std::uint16_t& slot) {
+    if (slot >= kStates.size()) unused.push_back(slot);
+    slot = uniform_slot;
+  };
+  if (log2_edge >= Brick::kLog2) {
+    for_each_covered_child<Brick::kLog2, 3>(corner, log2_edge,
+                                            [&](int i) { release(slots[static_cast<std::size_t>(i)]); });
+    return uniform(state);
+  }
+  std::uint16_t& slot = slots[static_cast<std::size_t>(index(corner))];
+  if (slot == uniform_slot) return uniform(state);
+  if (slot < kStates.size()) {
+    const Brick copy = bricks[slot];
+    if (unused.empty()) {
+      slot = static_cast<std::uint16_t>(bricks.size());
+      bricks.push_back(copy);
+    } else {
+      slot = unused.back();
+      unused.pop_back();
+      bricks[slot] = copy;
+    }
+  }
+  fill_voxels(bricks[slot], corner, log2_edge, state);
+  if (bricks[slot] != bricks[uniform_slot]) return false;
+  release(slot);
+  return uniform(state);
+}
+
+template <class Child, int kBits>
+Branch<Child, kBits>::Branch(Occupancy state) : children(kChildren, uniform_node<Child>(state)) {}
+
+template <class Child, int kBits>
+bool Branch<Child, kBits>::uniform(Occupancy state) const {
+  const auto& all = uniform_node<Child>(state);
+  return std::all_of(children.begin(), children.end(), [&](const auto& child) { return child == all; });
+}
+
+template <class Child, int kBits>
+bool Branch<Child, kBits>::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
+  const auto& all = uniform_node<Child>(state);
+  if (log2_edge >= Child::kLog2) {
+    for_each_covered_child<Child::kLog2, kBits>(corner, log2_edge,
+                                                [&](int i) { children[static_cast<std::size_t>(i)] = all; });
+    return uniform(state);
+  }
+  Shared<Child>& child = children[static_cast<std::size_t>(index(corner))];
+  if (child == all || !child.own().fill(corner, log2_edge, state)) return false;
+  child = all;
+  return uniform(state);
+}
+
+template <class Node>
+const Shared<Node>& uniform_node(Occupancy state) {
+  // Never destroyed, so that grids may outlive every other static object.
+  static const auto* const nodes = new std::array<Shared<Node>, 3>{
+      Shared<Node>(Node(kStates[0])), Shared<Node>(Node(kStates[1])), Shared<Node>(Node(kStates[2]))};
+  return (*nodes)[static_cast<std::size_t>(state)];
+}
+
+template const Shared<Tile>& uniform_node<Tile>(Occupancy);
+template const Shared<Region>& uniform_node<Region>(Occupancy);
+template const Shared<Sector>& uniform_node<Sector>(Occupancy);
+template const Shared<World>& uniform_node<World>(Occupancy);
+template struct Branch<Tile, 3>;
+template struct Branch<Region, 3>;
+template struct Branch<Sector, 4>;
+
+}  // namespace frontlux::detail

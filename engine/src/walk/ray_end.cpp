@@ -1,0 +1,23 @@
+#include "walk/ray_end.hpp"
+
+#include "walk/free_end.hpp"
+#include "walk/walk.hpp"
+
+namespace frontlux::detail {
+
+Hit end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+            UnknownPolicy unknown, const std::optional<VoxelKey>& blocker) {
+  const Lattice& lattice = grid.lattice();
+  if (blocker) {
+    if (!(ray.max_range > 0.0) || !out_of_range(ray.origin, lattice.center(*blocker), ray.max_range)) {
+      const Occupancy state = grid.at(*blocker);
+      return make_hit(lattice, ray, start, direction, stop_in(state), state, *blocker);
+    }
+  }
+  // No blocker within range, since centres only get further away along a ray.
+  const auto end = find_free_end(lattice, ray, start, direction);
+  if (!end) return walk_ray(grid, ray, unknown);
+  return make_hit(lattice, ray, start, direction, end->stop, grid.at(end->key), end->key);
+}
+
+}  // namespace frontlux::detail

@@ -1,0 +1,120 @@
+#include "walk/walk.hpp"
+
+#include "walk/grid_path.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <type_traits>
+
+namespace frontlux::detail {
+namespace {
+
+// Of a direction as castRay walks along it: what is not a number acts as 0, and beside an infinite component
+// the others do too.
+Eigen::Vector3d unit_vector(const Eigen::Vector3f& direction) {
+  Eigen::Array3d d = direction.cast<double>().array();
+  d = d.isNaN().select(0.0, d);
+  if (d.isInf().any()) d = d.isInf().select(d.sign(), 0.0);
+  return d.matrix().normalized();
+}
+
+}  // namespace
+
+Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
+             const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key) {
+  Hit hit{stop, state, key, lattice.center(key), ray.origin, 0.0F};
+  if (key == origin_key) return hit;
+  // Only a direction that castRay could not normalise needs care.
+  const Eigen::Vector3d d = is_unit(direction) ? direction.cast<double>() : unit_vector(direction);
+  const Eigen::Vector3d origin = ray.origin.cast<double>();
+  const std::array<int, 3> cell = as_array(key);
+  double time = 0.0;  // of the last crossing into the voxel, in units of d's length
+  for (int i = 0; i < 3; ++i) {
+    const int face = cell[static_cast<std::size_t>(i)] - Lattice::kOrigin + static_cast<int>(d[i] < 0.0);
+    const double crossing = (face * lattice.resolution() - origin[i]) / d[i];
+    time = d[i] != 0.0 && crossing > time ? crossing : time;
+  }
+  hit.entry = (origin + time * d).cast<float>();
+  hit.distance = static_cast<float>(time * d.norm());
+  return hit;
+}
+
+Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
+  const Lattice& lattice = grid.lattice();
+  const auto start = lattice.key(ray.origin);
+  if (!start) return {};
+  const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
+  const auto end_in = [&](RayStop stop, Occupancy state, const VoxelKey& key) {
+    return make_hit(lattice, ray, *start, direction, stop, state, key);
+  };
+
+  const Occupancy origin_state = grid.at(*start);
+  if (blocks(origin_state, unknown)) return end_in(stop_in(origin_state), origin_state, *start);
+  const Crossings<double> line = crossings_of(lattice, ray.origin, *start, direction);
+  if (line.none()) return {};
+
+  std::array<int, 3> to_border = as_array(*start);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (line.step[i] > 0) to_border[i] = Lattice::kKeysPerAxis - 1 - to_border[i];
+  GridPath<double> path(grid, unknown, *start, line, to_border);
+  const double range_matters_from = time_surely_in_range(ray.max_range, lattice.resolution(), direction);
+  while (true) {
+    const double t = path.advance();
+    if (path.overstepped()) break;
+    path.follow();
+    if (t >= range_matters_from && out_of_range(ray.origin, lattice.center(path.key()), ray.max_range))
+      return end_in(RayStop::kOutOfRange, path.state(), path.key());
+    if (path.blocked()) return end_in(stop_in(path.state()), path.state(), path.key());
+  }
+  const VoxelKey last = path.key_before_overstep();
+  return end_in(RayStop::kLeftMap, grid.at(last), last);
+}
+
+namespace {
+
+// How far `to` lies along a line from `from`, per axis; nothing if it lies behind.
+template <class Time>
+std::optional<std::array<int, 3>> steps_to(const Crossings<Time>& line, const VoxelKey& from,
+                                           const VoxelKey& to) {
+  const auto a = as_array(from), b = as_array(to);
+  std::array<int, 3> steps{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    steps[i] = (b[i] - a[i]) * line.step[i];
+    if (steps[i] < 0 || (line.step[i] == 0 && a[i] != b[i])) return std::nullopt;
+  }
+  return steps;
+}
+
+// Whether the path reaches `to` before it meets a blocker or passes `to` by.
+template <class Time>
+bool reaches(const VoxelGrid& grid, UnknownPolicy unknown, const Crossings<Time>& line, const VoxelKey& from,
+             const VoxelKey& to) {
+  const auto steps = steps_to(line, from, to);
+  if (!steps) return false;
+  GridPath<Time> path(grid, unknown, from, line, *steps);
+  while (true) {
+    path.advance();
+    if (path.exhausted()) return true;
+    if constexpr (std::is_same_v<Time, double>)
+      if (path.overstepped()) return false;
+    path.follow();
+    if (path.blocked()) return false;
+  }
+}
+
+}  // namespace
+
+bool walk_visible(const VoxelGrid& grid, const Segment& segment, UnknownPolicy unknown) {
+  const auto from = grid.lattice().key(segment.from), to = grid.lattice().key(segment.to);
+  if (!from || !to) return false;
+  if (*from == *to) return true;
+  const Eigen::Vector3f direction = normalized_as_octomap(segment.to - segment.from);
+  return reaches(grid, unknown, crossings_of(grid.lattice(), segment.from, *from, direction), *from, *to);
+}
+
+bool walk_visible(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
+  if (segment.from == segment.to) return true;
+  return reaches(grid, unknown, crossings_of(segment.from, segment.to), segment.from, segment.to);
+}
+
+}  // namespace frontlux::detail

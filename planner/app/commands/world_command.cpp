@@ -1,0 +1,121 @@
+#include "commands/world_command.hpp"
+
+#include "bad_input.hpp"
+#include "text.hpp"
+#include "world_source.hpp"
+
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/ground.hpp>
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+#include <frontlux/sim/start_pose.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::app {
+namespace {
+
+struct Options {
+  WorldSource source;
+  std::string resolution = "0.3";
+  std::string output;
+};
+
+void print_list() {
+  std::string out;
+  for (const auto& [name, description] : sim::built_in_worlds()) out += row(name, description);
+  std::cout << out;
+}
+
+std::string free_volume_text(const sim::World& world) {
+  const auto solid = sim::solid_volume(world.mesh);
+  if (!solid) return "not known: the surface is not closed, or its triangles face different ways";
+  // A surface that faces inwards, towards free space, holds just that.
+  const double free = *solid >= 0.0 ? world.bounds.volume() - *solid : -*solid;
+  if (free < 0.0) return "not known: solids overlap";
+  return rounded(free) + " m^3, of " + rounded(world.bounds.volume()) + " m^3 within the bounds";
+}
+
+std::string start_text(const sim::World& world) {
+  if (!world.start) return "none: give --start";
+  const auto floor = sim::floor_below(world.mesh, *world.start);
+  return to_text(Eigen::Vector3f(world.start->cast<float>())) + " m, " +
+         (floor ? "above a floor at z = " + rounded(*floor) + " m" : "with no floor below");
+}
+
+std::string observable_text(const SourcedWorld& sourced, double resolution) {
+  if (!sourced.world.start) return "not known: give --start";
+  if (sourced.voxels > kManyVoxels) return "not counted: too many voxels; give a larger --resolution";
+  try {
+    const sim::GroundTruth truth(
+        sourced.world, resolution,
+        sim::free_start(sourced.world, resolution, sourced.kind != WorldKind::kMesh));
+    const double voxel = resolution * resolution * resolution;
+    return rounded(static_cast<double>(truth.observable_voxels()) * voxel) +
+           " m^3: " + std::to_string(truth.free_voxels()) + " free voxels and " +
+           std::to_string(truth.surface_voxels()) + " on their surface";
+  } catch (const std::exception& error) {
+    return std::string("not known: ") + error.what();
+  }
+}
+
+void print_text(const SourcedWorld& sourced, const WorldSource& source) {
+  const sim::World& world = sourced.world;
+  const Eigen::Vector3d size = world.bounds.sizes();
+  const auto axis = [&](const char* label, int i) {
+    return row(label, rounded(world.bounds.min()[i]) + " to " + rounded(world.bounds.max()[i]) + " m");
+  };
+  std::string out = row("world", world.name);
+  if (sourced.kind == WorldKind::kBuiltIn) out += row("seed", std::to_string(sourced.seed));
+  out += row("size", rounded(size.x()) + " x " + rounded(size.y()) + " x " + rounded(size.z()) + " m, " +
+                         rounded(sourced.voxels) + " voxels of " + rounded(source.resolution) + " m") +
+         axis("bounds x", 0) + axis("       y", 1) + axis("       z", 2) +
+         row("triangles", std::to_string(world.mesh.triangles.size())) +
+         row("surface", rounded(sim::surface_area(world.mesh)) + " m^2") +
+         row("free", free_volume_text(world)) + row("start", start_text(world)) +
+         row("observable", observable_text(sourced, source.resolution));
+  if (source.ground) out += row("ground", "moved by " + rounded(sourced.ground_shift) + " m along z");
+  std::cout << out;
+}
+
+}  // namespace
+
+void add_world_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("world", "Show a world to explore, or write it as a mesh");
+  const auto options = std::make_shared<Options>();
+  WorldSource& source = options->source;
+  command->add_option(
+      "WORLD", source.world,
+      "A built-in world, a mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or an OctoMap file (.bt, .ot); "
+      "without it, the built-in worlds are listed");
+  command->add_option("--seed", source.seed, "Which of a built-in world's layouts; 1 if not given");
+  add_world_options(*command, source);
+  command->add_option("--resolution", options->resolution,
+                      "Edge of a voxel of the map to be made, in metres");
+  command->add_option("-o,--output", options->output, "Write the surface to this PLY file");
+  command->footer(
+      "Example:\n"
+      "  frontlux world factory --seed 7 -o factory.ply\n"
+      "prints what the seventh factory measures and writes it as a mesh.");
+  command->callback([options] {
+    if (options->source.world.empty()) return print_list();
+    options->source.resolution = parse_resolution(options->resolution);
+    const SourcedWorld sourced = make_world(options->source);
+    if (!options->output.empty()) {
+      try {
+        sim::write_ply(options->output, sourced.world.mesh);
+      } catch (const std::runtime_error& error) {
+        throw BadInput(std::string("-o: ") + error.what());
+      }
+    }
+    print_text(sourced, options->source);
+  });
+}
+
+}  // namespace frontlux::app

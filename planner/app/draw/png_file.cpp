@@ -1,0 +1,29 @@
+#include "draw/png_file.hpp"
+
+#include <frontlux/file.hpp>
+
+#include <ostream>
+#include <png.h>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace frontlux::app {
+
+void write_png(const std::filesystem::path& file, const Canvas& image) {
+  // libpng's simplified interface: no long jumps across C++.
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width());
+  header.height = static_cast<png_uint_32>(image.height());
+  header.format = PNG_FORMAT_RGB;
+  std::vector<char> bytes;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  bytes.resize(size);
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.bytes().data(), 0, nullptr) == 0)
+    throw std::runtime_error(file.string() + ": cannot be made: libpng says " + header.message);
+  write_file(
+      file, [&](std::ostream& stream) { stream.write(bytes.data(), static_cast<std::streamsize>(size)); });
+}
+
+}  // namespace frontlux::app

@@ -1,0 +1,181 @@
+#include "explore/run_files.hpp"
+
+#include "json.hpp"
+#include "text.hpp"
+
+#include <frontlux/sim/ground_truth.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <numeric>
+#include <stdexcept>
+#include <system_error>
+
+namespace frontlux::app {
+namespace {
+
+using planner::ExplorationStep;
+using planner::Pose;
+using planner::RecordedStep;
+using planner::RobotStep;
+
+constexpr const char* kSteps = "steps.csv";
+constexpr const char* kPaths = "paths.csv";
+
+// A line of a table with commas, cell by cell.
+class Row {
+ public:
+  Row& add(const std::string& text) {
+    (line_.empty() ? line_ : line_ += ',') += text;
+    return *this;
+  }
+  Row& add(double number) { return add(to_text(number)); }
+  Row& add(std::uint64_t number) { return add(std::to_string(number)); }
+  Row& add(const Pose& pose) {
+    return add(pose.position.x()).add(pose.position.y()).add(pose.position.z()).add(pose.yaw);
+  }
+  [[nodiscard]] std::string line() const { return line_ + '\n'; }
+
+ private:
+  std::string line_;
+};
+
+// A name may hold anything.
+std::string quoted_cell(const std::string& name) {
+  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
+  std::string text = "\"";
+  for (const char c : name) text.append(c == '"' ? 2 : 1, c);
+  return text + '"';
+}
+
+std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead& head) {
+  std::string rows;
+  for (std::size_t r = 0; r < recorded.step.robots.size(); ++r) {
+    const RobotStep& robot = recorded.step.robots[r];
+    for (std::size_t i = 0; i < robot.planned.size(); ++i)
+      rows += Row()
+                  .add(recorded.step.number)
+                  .add(quoted_cell(head.robots[r].robot.name))
+                  .add(std::uint64_t{i})
+                  .add(std::uint64_t{i < robot.travelled ? 1U : 0U})
+                  .add(robot.planned[i])
+                  .line();
+  }
+  return rows;
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+RecordedStep with_known_voxels(ExplorationStep step, const RecordedStep* before,
+                               const sim::GroundTruth& truth) {
+  RecordedStep recorded;
+  recorded.known = before != nullptr ? before->known : std::vector<planner::KnownVoxels>(step.robots.size());
+  for (std::size_t r = 0; r < step.robots.size(); ++r)
+    for (const planner::VoxelChange& change : step.robots[r].changed) {
+      if (change.before != Occupancy::kUnknown) continue;
+      ++recorded.known[r].bounding;
+      if (truth.contains(change.key)) ++recorded.known[r].observable;
+    }
+  recorded.step = std::move(step);
+  return recorded;
+}
+
+RunFiles::RunFiles(const std::filesystem::path& folder, const planner::RecordingHead& head)
+    : folder_(folder),
+      head_(head),
+      steps_file_(folder / kSteps, std::ios::binary | std::ios::trunc),
+      paths_file_(folder / kPaths, std::ios::binary | std::ios::trunc),
+      travelled_(head.robots.size()),
+      seconds_(planner::kPhases) {
+  std::string header =
+      "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
+      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "path,"
+      "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays";
+  for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
+    const auto name = planner::name_of(static_cast<planner::Phase>(phase));
+    if (name == "moving") header += ",planning_s";
+    header.append(",").append(name).append("_s");
+  }
+  write(steps_file_, kSteps, header + '\n');
+  write(paths_file_, kPaths, "step,robot,viewpoint,reached,x_m,y_m,z_m,yaw_rad\n");
+}
+
+void RunFiles::write(std::ofstream& file, const char* name, const std::string& rows) {
+  errno = 0;
+  file << rows << std::flush;
+  if (!file)
+    throw std::runtime_error((folder_ / name).string() + ": cannot be written: " +
+                             std::generic_category().message(errno) + "; check the space left on the disk");
+}
+
+void RunFiles::add(const RecordedStep& recorded) {
+  const ExplorationStep& step = recorded.step;
+  std::uint64_t observable = 0, bounding = 0;
+  for (const planner::KnownVoxels& known : recorded.known) {
+    observable += known.observable;
+    bounding += known.bounding;
+  }
+  observable_ = share(observable, head_.observable);
+  bounding_ = share(bounding, head_.bounding);
+  collisions_ += recorded.collisions;
+  if (step.number > 0) {
+    ++steps_;
+    planning_sum_ += step.planning_seconds();
+    planning_max_ = std::max(planning_max_, step.planning_seconds());
+    for (std::size_t phase = 0; phase < planner::kPhases; ++phase) seconds_[phase] += step.seconds[phase];
+  }
+  std::string rows;
+  for (std::size_t r = 0; r < step.robots.size(); ++r) {
+    const RobotStep& robot = step.robots[r];
+    travelled_[r] += robot.length;
+    if (!robot.blocked.empty()) ++held_back_;
+    Row row;
+    row.add(step.number).add(quoted_cell(head_.robots[r].robot.name)).add(observable_).add(bounding_);
+    row.add(share(recorded.known[r].observable, head_.observable));
+    row.add(share(recorded.known[r].bounding, head_.bounding));
+    row.add(std::uint64_t{step.frontiers}).add(std::uint64_t{step.unassigned});
+    row.add(std::uint64_t{step.abandoned});
+    row.add(step.number == 0 ? "start" : std::string(planner::name_of(robot.goal.state)));
+    row.add(std::uint64_t{robot.goal.assigned}).add(std::uint64_t{robot.goal.released});
+    row.add(std::uint64_t{robot.goal.received}).add(std::uint64_t{robot.goal.left_over});
+    if (robot.goal.pose)
+      row.add(*robot.goal.pose).add(robot.goal.gain);
+    else
+      for (int i = 0; i < 5; ++i) row.add(std::string());
+    row.add(std::string(planner::name_of(robot.path)));
+    row.add(std::uint64_t{robot.planned.size()}).add(robot.length).add(travelled_[r]);
+    row.add(robot.gain_tangent).add(robot.gain_predicted).add(robot.gained);
+    row.add(std::uint64_t{robot.still_unknown.size()}).add(recorded.collisions).add(step.rays);
+    for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
+      if (planner::name_of(static_cast<planner::Phase>(phase)) == "moving") row.add(step.planning_seconds());
+      row.add(step.seconds[phase]);
+    }
+    rows += row.line();
+  }
+  write(steps_file_, kSteps, rows);
+  write(paths_file_, kPaths, path_rows(recorded, head_));
+}
+
+double RunFiles::planning_mean() const {
+  return steps_ == 0 ? 0.0 : planning_sum_ / static_cast<double>(steps_);
+}
+
+void RunFiles::add_sums(JsonObject& json) const {
+  json.add("steps", steps_).add("coverage_observable", observable_).add("coverage_box", bounding_);
+  json.add("planning_mean_s", planning_mean()).add("planning_max_s", planning_max_);
+  JsonObject phases;
+  for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
+    phases.add(planner::name_of(static_cast<planner::Phase>(phase)), seconds_[phase]);
+  json.add("phases_s", phases).add("collisions", collisions_);
+  json.add("path_length_total_m", std::accumulate(travelled_.begin(), travelled_.end(), 0.0));
+  JsonObject lengths;
+  for (std::size_t r = 0; r < travelled_.size(); ++r) lengths.add(head_.robots[r].robot.name, travelled_[r]);
+  json.add("path_length_m", lengths).add("held_back", held_back_);
+}
+
+}  // namespace frontlux::app

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <frontlux/planner/robot.hpp>
+
+#include <filesystem>
+
+namespace frontlux::planner {
+
+/// Reads a robot from a JSON file; docs/robots.md shows one and says what each member means.
+/// @throws std::runtime_error naming the file, the member, what is wrong and what to do
+[[nodiscard]] RobotDescription read_robot(const std::filesystem::path& file);
+
+}  // namespace frontlux::planner

@@ -1,0 +1,118 @@
+#include "sensing/counter_random.hpp"
+#include <frontlux/planner/segment_voxels.hpp>
+
+#include <frontlux/sim/simulated_robots.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace frontlux::sim {
+namespace {
+
+using planner::Motion;
+using planner::TravelOptions;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("simulated robots: " + what);
+}
+
+VoxelKey key_of(const Lattice& lattice, const Eigen::Vector3d& point) {
+  const auto x = lattice.key(point.x()), y = lattice.key(point.y()), z = lattice.key(point.z());
+  if (!x || !y || !z)
+    refuse("the viewpoint " + std::to_string(point.x()) + ", " + std::to_string(point.y()) + ", " +
+           std::to_string(point.z()) + " m is not finite, or outside of the map's key range");
+  return {*x, *y, *z};
+}
+
+// The box and not the node, if the robot plans with nodes.
+TravelOptions with_box(TravelOptions travel) {
+  travel.node_edge = 0.0;
+  return travel;
+}
+
+// The body itself, a margin less on all sides.
+Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
+                            const Eigen::Vector3d& sensor) {
+  const Eigen::Vector3d half = travel.extents / 2;
+  Eigen::AlignedBox3d body(sensor - half, sensor + half);
+  if (travel.motion == Motion::kPlane) {
+    const KeyBox box = voxels_of_cell(travel, lattice, key_of(lattice, sensor));
+    body.min().z() = (static_cast<int>(box.min.z) - Lattice::kOrigin) * lattice.resolution();
+    body.max().z() = body.min().z() + travel.extents.z();
+  }
+  const Eigen::Vector3d margin = (half / 2).cwiseMin(GroundTruth::kMargin);
+  return {body.min() + margin, body.max() - margin};
+}
+
+bool holds_surface(const GroundTruth& truth, const KeyBox& box) {
+  return !all_of(box, [&](const VoxelKey& key) { return !truth.holds_surface(key); });
+}
+
+}  // namespace
+
+SimulatedRobots::SimulatedRobots(const World& world, const GroundTruth& truth,
+                                 std::vector<planner::RobotDescription> robots, const RangeErrors& errors,
+                                 std::uint64_t seed, AtContact at_contact)
+    : truth_(&truth),
+      surface_(world.mesh),
+      solids_(world.mesh),
+      robots_(std::move(robots)),
+      progress_(robots_.size()),
+      seed_(seed),
+      at_contact_(at_contact) {
+  for (const planner::RobotDescription& robot : robots_) sensors_.push_back(sensor_of(robot, errors));
+}
+
+void SimulatedRobots::check(std::size_t robot) const {
+  if (robot >= robots_.size())
+    refuse("there is no robot " + std::to_string(robot) + ", but " + std::to_string(robots_.size()) +
+           ", counted from 0");
+}
+
+Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, const Eigen::Vector3d& from,
+                                               const Eigen::Vector3d& to) const {
+  const Lattice& lattice = truth_->lattice();
+  const TravelOptions box = with_box(travel);
+  Collisions met;
+  static_cast<void>(planner::SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
+    met.lattice += static_cast<std::uint64_t>(holds_surface(*truth_, voxels_of_cell(box, lattice, key)));
+    return true;
+  }));
+  const Eigen::AlignedBox3d first = body_at(box, lattice, from), last = body_at(box, lattice, to);
+  met.physical = solids_.count({first, last.min() - first.min()});
+  return met;
+}
+
+std::optional<planner::Scan> SimulatedRobots::drive(std::size_t robot, const planner::Pose& viewpoint) {
+  check(robot);
+  static_cast<void>(key_of(truth_->lattice(), viewpoint.position));
+  if (!std::isfinite(viewpoint.yaw)) refuse("the viewpoint's yaw is not finite");
+  Progress& now = progress_[robot];
+  const Eigen::Vector3d from = now.pose ? now.pose->position : viewpoint.position;
+  last_ = collisions_between(robots_[robot].robot.travel, from, viewpoint.position);
+  if (at_contact_ == AtContact::kStay && now.pose && last_.physical > 0) {
+    last_ = {};
+    ++held_back_;
+    return std::nullopt;
+  }
+  now.collisions += last_;
+  now.pose = viewpoint;
+  const std::uint64_t errors = CounterRandom(CounterRandom(seed_, robot).bits(0), now.scans++).bits(0);
+  return sense(surface_, sensors_[robot], viewpoint, errors);
+}
+
+const Collisions& SimulatedRobots::of(std::size_t robot) const {
+  check(robot);
+  return progress_[robot].collisions;
+}
+
+Collisions SimulatedRobots::total() const {
+  Collisions all;
+  for (const Progress& one : progress_) all += one.collisions;
+  return all;
+}
+
+}  // namespace frontlux::sim

@@ -1,0 +1,98 @@
+#include "mesh/mesh_check.hpp"
+
+#include <frontlux/sim/swept_box.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace frontlux::sim {
+
+SweptBox::SweptBox(const Eigen::AlignedBox3d& start, const Eigen::Vector3d& way)
+    : center_(start.center()), half_(start.sizes() / 2), way_(way), bounds_(start) {
+  bounds_.extend(start.min() + way).extend(start.max() + way);
+}
+
+bool SweptBox::apart(const Eigen::Vector3d& axis, const std::array<Eigen::Vector3d, 3>& triangle) const {
+  const double reach = axis.cwiseAbs().dot(half_), gone = axis.dot(way_);
+  const double low = std::min(0.0, gone) - reach, high = std::max(0.0, gone) + reach;
+  const double a = axis.dot(triangle[0]), b = axis.dot(triangle[1]), c = axis.dot(triangle[2]);
+  return std::min({a, b, c}) > high || std::max({a, b, c}) < low;
+}
+
+bool SweptBox::touches(const std::array<Eigen::Vector3d, 3>& triangle) const {
+  // The swept space is convex, its edges are those of the box and the way. So it is apart from the triangle
+  // if it is along a normal of one of its faces or of the triangle, or across an edge of each. Directions
+  // without length part nothing.
+  const std::array<Eigen::Vector3d, 3> at{triangle[0] - center_, triangle[1] - center_,
+                                          triangle[2] - center_};
+  const std::array<Eigen::Vector3d, 3> sides{at[1] - at[0], at[2] - at[1], at[0] - at[2]};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d edge = Eigen::Vector3d::Unit(axis);
+    if (apart(edge, at) || apart(edge.cross(way_), at)) return false;
+    for (const Eigen::Vector3d& side : sides)
+      if (apart(edge.cross(side), at)) return false;
+  }
+  for (const Eigen::Vector3d& side : sides)
+    if (apart(way_.cross(side), at)) return false;
+  return !apart(sides[0].cross(sides[1]), at);
+}
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+  check(mesh);
+  std::iota(order_.begin(), order_.end(), 0U);
+  if (!order_.empty()) grow(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::array<Eigen::Vector3d, 3> TriangleTree::corners(std::uint32_t triangle) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  return {mesh_.vertices[a].cast<double>(), mesh_.vertices[b].cast<double>(),
+          mesh_.vertices[c].cast<double>()};
+}
+
+// Halves by number, so the tree is no deeper than a mesh has bits to count it, whatever lies where.
+std::uint32_t TriangleTree::grow(std::uint32_t begin, std::uint32_t end) {
+  constexpr std::uint32_t kLeaf = 4;
+  const auto number = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({{}, begin, end, 0});
+  Eigen::AlignedBox3d all, middles;
+  const auto middle = [this](std::uint32_t triangle) -> Eigen::Vector3d {
+    const auto [a, b, c] = corners(triangle);
+    return a + b + c;
+  };
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (const Eigen::Vector3d& corner : corners(order_[i])) all.extend(corner);
+    middles.extend(middle(order_[i]));
+  }
+  nodes_[number].bounds = all;
+  if (end - begin <= kLeaf) return number;
+  Eigen::Index axis = 0;
+  middles.sizes().maxCoeff(&axis);
+  const std::uint32_t half = begin + (end - begin) / 2;
+  std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
+                   [&](std::uint32_t a, std::uint32_t b) { return middle(a)[axis] < middle(b)[axis]; });
+  grow(begin, half);
+  nodes_[number].second = grow(half, end);
+  return number;
+}
+
+std::uint64_t TriangleTree::count(const SweptBox& box) const {
+  std::uint64_t met = 0;
+  std::vector<std::uint32_t> open;
+  if (!nodes_.empty()) open.push_back(0);
+  while (!open.empty()) {
+    const std::uint32_t number = open.back();
+    open.pop_back();
+    const Node& node = nodes_[number];
+    if (!node.bounds.intersects(box.bounds())) continue;
+    if (node.second != 0) {
+      open.push_back(node.second);
+      open.push_back(number + 1);
+      continue;
+    }
+    for (std::uint32_t i = node.begin; i < node.end; ++i)
+      met += static_cast<std::uint64_t>(box.touches(corners(order_[i])));
+  }
+  return met;
+}
+
+}  // namespace frontlux::sim

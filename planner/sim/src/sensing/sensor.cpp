@@ -1,0 +1,145 @@
+#include "sensing/counter_random.hpp"
+
+#include <frontlux/sim/sensor.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::sim {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kMostRays = std::size_t{1} << 26;
+
+std::vector<Eigen::Vector3d> pyramid(const FieldOfView& view, std::size_t columns, std::size_t rows) {
+  // Offset of a pixel's centre from the middle of the image, in halves of the image: in (-1, 1).
+  const auto offset = [](std::size_t pixel, std::size_t count) {
+    return 1.0 - (2.0 * static_cast<double>(pixel) + 1.0) / static_cast<double>(count);
+  };
+  const double width = std::tan(view.horizontal / 2), height = std::tan(view.vertical / 2);
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column)
+      directions.push_back(
+          Eigen::Vector3d(1.0, width * offset(column, columns), height * offset(row, rows)).normalized());
+  return directions;
+}
+
+std::vector<Eigen::Vector3d> spinning(const FieldOfView& view, std::size_t columns, std::size_t rows) {
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double down = rows == 1 ? 0.5 : static_cast<double>(row) / static_cast<double>(rows - 1);
+    const double elevation = view.vertical * (0.5 - down);
+    for (std::size_t column = 0; column < columns; ++column) {
+      const double azimuth =
+          2.0 * std::numbers::pi * static_cast<double>(column) / static_cast<double>(columns);
+      directions.emplace_back(std::cos(elevation) * std::cos(azimuth),
+                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    }
+  }
+  return directions;
+}
+
+std::vector<Eigen::Vector3d> cone(const FieldOfView& view, std::size_t count) {
+  // Equal steps of height cut a sphere into rings of equal area; the golden angle between successive rays
+  // keeps rays on neighbouring rings apart.
+  const double cap = 1.0 - std::cos(view.horizontal / 2);
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> directions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double below = cap * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double off_axis = std::sqrt(below * (2.0 - below));
+    const double turn = golden_angle * static_cast<double>(i);
+    directions.emplace_back(1.0 - below, off_axis * std::cos(turn), off_axis * std::sin(turn));
+  }
+  return directions;
+}
+
+std::vector<Eigen::Vector3d> directions_of(const FieldOfView& view, std::size_t columns, std::size_t rows) {
+  switch (view.shape) {
+    case FieldOfView::Shape::kPyramid:
+      return pyramid(view, columns, rows);
+    case FieldOfView::Shape::kSpinning:
+      return spinning(view, columns, rows);
+    case FieldOfView::Shape::kCone:
+      return cone(view, columns * rows);
+  }
+  throw std::invalid_argument("sensor: the field of view has an unknown shape");
+}
+
+}  // namespace
+
+Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors)
+    : field_of_view_(field_of_view), columns_(columns), rows_(rows), errors_(errors) {
+  field_of_view.check();
+  if (columns == 0 || rows == 0 || columns > kMostRays / rows)
+    throw std::invalid_argument("sensor: " + std::to_string(columns) + " x " + std::to_string(rows) +
+                                " rays, but there have to be between 1 and 2^26");
+  if (!(errors.sigma >= 0.0 && std::isfinite(errors.sigma)))
+    throw std::invalid_argument("sensor: sigma is " + std::to_string(errors.sigma) +
+                                " m, but has to be 0 or more");
+  if (!(errors.dropout >= 0.0 && errors.dropout <= 1.0))
+    throw std::invalid_argument("sensor: dropout is " + std::to_string(errors.dropout) +
+                                ", but has to be a probability");
+  directions_ = directions_of(field_of_view, columns, rows);
+}
+
+Sensor depth_camera(RangeErrors errors) {
+  return {{FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 10.0}, 160, 120, errors};
+}
+
+Sensor lidar(RangeErrors errors) {
+  return {{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0}, 720, 32, errors};
+}
+
+Sensor cone_sensor(double opening, double max_range, std::size_t rays, RangeErrors errors) {
+  return {{FieldOfView::Shape::kCone, opening, 0.0, max_range}, rays, 1, errors};
+}
+
+Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {
+  return {robot.robot.view, robot.columns, robot.rows, errors};
+}
+
+planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner::Pose& sensor_pose,
+                    std::uint64_t seed) {
+  const Eigen::Vector3f origin = sensor_pose.position.cast<float>();
+  if (!origin.allFinite() || !std::isfinite(sensor_pose.yaw))
+    throw std::invalid_argument("sensor: its pose is not finite");
+  const std::size_t count = sensor.directions().size();
+  const double max_range = sensor.field_of_view().max_range;
+  planner::Scan scan{origin, max_range, std::vector<Eigen::Vector3f>(count), std::vector<float>(count)};
+
+  const double c = std::cos(sensor_pose.yaw), s = std::sin(sensor_pose.yaw);
+  std::vector<Surface::Ray> rays(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d& d = sensor.directions()[i];
+    scan.directions[i] = Eigen::Vector3d(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z()).cast<float>();
+    rays[i] = {origin, scan.directions[i], max_range};
+  }
+  std::vector<Surface::Hit> hits(count);
+  surface.cast(rays, hits);
+
+  const auto [sigma, dropout] = sensor.errors();
+  const auto measured = [&, sigma = sigma, dropout = dropout](std::size_t i) {
+    const CounterRandom random(seed, i);
+    if (dropout > 0.0 && random.uniform(0) < dropout) return std::numeric_limits<double>::quiet_NaN();
+    const double range = hits[i].range;
+    if (sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
+    return std::clamp(range + sigma * random.normal(1), 0.0, max_range);
+  };
+  constexpr std::size_t kGrain = 1024;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      scan.ranges[i] = static_cast<float>(measured(i));
+  });
+  return scan;
+}
+
+}  // namespace frontlux::sim

@@ -1,0 +1,224 @@
+#include "mesh/mesh_check.hpp"
+#include "sensing/ray_frame.hpp"
+
+#include <frontlux/sim/surface.hpp>
+
+#include <embree3/rtcore.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+#include <xmmintrin.h>
+
+namespace frontlux::sim {
+namespace {
+
+// Sets how floating-point numbers are rounded and, back again, as the caller had it, flags included. Our
+// argument about edges needs rounding to nearest; Embree wants denormals flushed to zero while it works.
+class FloatingPointMode {
+ public:
+  static constexpr unsigned kToNearest = 0x1F80, kFlushed = kToNearest | 0x8000 | 0x0040;
+
+  explicit FloatingPointMode(unsigned mode) : saved_(_mm_getcsr()) { _mm_setcsr(mode); }
+  ~FloatingPointMode() { _mm_setcsr(saved_); }
+  FloatingPointMode(const FloatingPointMode&) = delete;
+  FloatingPointMode& operator=(const FloatingPointMode&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+// The triangles, and the frame in which Embree sees them: moved to the middle, where single precision is
+// best.
+struct Geometry {
+  std::vector<Corners> triangles;
+  Eigen::AlignedBox3d box;                           // around them, with some room
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the box
+  double pad = 0.0;                                  // [m] on each side of a triangle's bounds
+
+  explicit Geometry(const TriangleMesh& mesh) {
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles)
+      triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
+    if (triangles.empty()) return;
+    box = bounds_of(mesh);
+    middle = box.center();
+    // A coordinate of at most `reach` is off by reach * 2^-24. Some ten operations lie between a ray and the
+    // box of a node, and Embree does them in its fast way for geometry that is not its own; this leaves room
+    // for 32 such errors.
+    const double reach = std::max(box.sizes().maxCoeff(), 1e-3);
+    pad = std::ldexp(reach, -19);
+    const Eigen::Vector3d room = Eigen::Vector3d::Constant(std::ldexp(reach, -10));
+    box = Eigen::AlignedBox3d(box.min() - room, box.max() + room);
+  }
+};
+
+// What a query hands to the callback. Embree's hierarchy only tells which triangles are worth a look.
+struct Query {
+  RTCIntersectContext embree;  // first: callbacks get a pointer to it
+  RayFrame frame;
+  double start;    // where Embree's ray starts, in lengths of the direction
+  double nearest;  // hit so far, or how far to look, in the same
+  std::uint32_t triangle = Surface::kNone;
+};
+
+// A little more, so that Embree's single precision keeps what is exactly there. Of lengths that are not
+// negative but for rounding.
+float widened(double length) { return static_cast<float>(std::max(length, 0.0) * (1.0 + 0x1p-20)); }
+
+void bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
+  const Corners& corners = geometry.triangles[args->primID];
+  const auto coordinate = [&](std::size_t corner, Eigen::Index axis) {
+    return static_cast<double>(corners[corner][axis]) - geometry.middle[axis];
+  };
+  const auto low = [&](Eigen::Index i) {
+    return static_cast<float>(std::min({coordinate(0, i), coordinate(1, i), coordinate(2, i)}) -
+                              geometry.pad);
+  };
+  const auto high = [&](Eigen::Index i) {
+    return static_cast<float>(std::max({coordinate(0, i), coordinate(1, i), coordinate(2, i)}) +
+                              geometry.pad);
+  };
+  RTCBounds& bounds = *args->bounds_o;
+  bounds.lower_x = low(0);
+  bounds.lower_y = low(1);
+  bounds.lower_z = low(2);
+  bounds.upper_x = high(0);
+  bounds.upper_y = high(1);
+  bounds.upper_z = high(2);
+}
+
+void intersect_callback(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto& query = *reinterpret_cast<Query*>(args->context);
+  const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
+  const auto t = query.frame.hit(geometry.triangles[args->primID]);
+  if (!t || !(*t >= 0.0 && *t <= query.nearest)) return;
+  if (*t == query.nearest && query.triangle <= args->primID) return;
+  query.nearest = *t;
+  query.triangle = args->primID;
+  reinterpret_cast<RTCRayHit*>(args->rayhit)->ray.tfar = widened(*t - query.start);
+}
+
+void check_ray(const Surface::Ray& ray, std::size_t index) {
+  const auto refuse = [&](const char* what) {
+    throw std::invalid_argument("surface: ray " + std::to_string(index) + " has " + what);
+  };
+  if (!ray.origin.allFinite()) refuse("an origin that is not finite");
+  if (!ray.direction.allFinite()) refuse("a direction that is not finite");
+  if (ray.direction.isZero(0.0F)) refuse("a direction without length");
+  if (!(ray.max_range >= 0.0)) refuse("a max_range that is negative or not a number");
+}
+
+}  // namespace
+
+struct Surface::Scene {
+  Geometry mesh;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  explicit Scene(const TriangleMesh& triangle_mesh) : mesh(triangle_mesh) {}
+  ~Scene() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  void build() {
+    const FloatingPointMode mode(FloatingPointMode::kFlushed);
+    device = rtcNewDevice(nullptr);
+    if (device == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
+    scene = rtcNewScene(device);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangles.size()));
+    rtcSetGeometryUserData(geometry, &mesh);
+    rtcSetGeometryBoundsFunction(geometry, &bounds_callback, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, &intersect_callback);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree cannot build a scene of " + std::to_string(mesh.triangles.size()) +
+                               " triangles (error " + std::to_string(error) + ")");
+  }
+
+  [[nodiscard]] Hit first(const Ray& ray) const {
+    // To about unit length by a power of two, which is exact: Embree has no room for tiny and huge numbers.
+    int exponent = 0;
+    std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent);
+    const Eigen::Vector3d direction =
+        ray.direction.cast<double>().unaryExpr([&](double c) { return std::ldexp(c, -exponent); });
+    const double length = direction.norm();
+    const Eigen::Vector3d origin = ray.origin.cast<double>();
+    double start = 0.0, end = ray.max_range / length;
+    for (int axis = 0; axis < 3; ++axis) {
+      // NaN, from 0 / 0, does not count; outside a slab that the ray runs along, one of the two is infinite.
+      const double a = (mesh.box.min()[axis] - origin[axis]) / direction[axis];
+      const double b = (mesh.box.max()[axis] - origin[axis]) / direction[axis];
+      start = std::max(start, std::min(a, b));
+      end = std::min(end, std::max(a, b));
+    }
+    if (!(start <= end)) return {};
+    Query query{{}, RayFrame(origin, direction), start, end, kNone};
+    rtcInitIntersectContext(&query.embree);
+    // A component so small that its inverse overflows moves the ray by less than the boxes are padded.
+    const auto component = [&](Eigen::Index axis) {
+      return std::fabs(direction[axis]) < 1e-18 ? 0.0F : static_cast<float>(direction[axis]);
+    };
+    const Eigen::Vector3f local = (origin + start * direction - mesh.middle).cast<float>();
+    RTCRayHit rayhit{};
+    rayhit.ray.org_x = local.x();
+    rayhit.ray.org_y = local.y();
+    rayhit.ray.org_z = local.z();
+    rayhit.ray.dir_x = component(0);
+    rayhit.ray.dir_y = component(1);
+    rayhit.ray.dir_z = component(2);
+    rayhit.ray.tfar = widened(end - start);
+    rayhit.ray.mask = ~0U;
+    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    {
+      const FloatingPointMode mode(FloatingPointMode::kFlushed);
+      rtcIntersect1(scene, &query.embree, &rayhit);
+    }
+    if (query.triangle == kNone) return {};
+    return {std::min(query.nearest * length, ray.max_range), query.triangle};
+  }
+};
+
+Surface::Surface(const TriangleMesh& mesh) {
+  check(mesh);
+  scene_ = std::make_unique<Scene>(mesh);
+  scene_->build();
+}
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+void Surface::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
+  if (rays.size() != hits.size())
+    throw std::invalid_argument("surface: " + std::to_string(rays.size()) + " rays, but room for " +
+                                std::to_string(hits.size()) + " hits");
+  for (std::size_t i = 0; i < rays.size(); ++i) check_ray(rays[i], i);
+  const auto piece = [&](std::size_t begin, std::size_t end) {
+    const FloatingPointMode mode(FloatingPointMode::kToNearest);
+    for (std::size_t i = begin; i < end; ++i) hits[i] = scene_->first(rays[i]);
+  };
+  constexpr std::size_t kGrain = 256;
+  if (rays.size() <= kGrain) return piece(0, rays.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
+                    [&](const auto& range) { piece(range.begin(), range.end()); });
+}
+
+std::size_t Surface::triangle_count() const { return scene_->mesh.triangles.size(); }
+
+}  // namespace frontlux::sim

@@ -1,0 +1,177 @@
+#include "world/cell_paint.hpp"
+#include "mesh/mesh_check.hpp"
+
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/triangle_overlap.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace frontlux::sim {
+namespace {
+
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  std::ostringstream text;
+  text << "ground truth: ";
+  (text << ... << parts);
+  throw std::invalid_argument(text.str());
+}
+
+Eigen::Vector3<std::int64_t> vector(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+
+CellFrame make_frame(const KeyBox& bounds, const Lattice& lattice) {
+  const double edge = lattice.resolution();
+  const auto corner = [&](std::uint16_t key) { return (static_cast<int>(key) - Lattice::kOrigin) * edge; };
+  return {{corner(bounds.min.x), corner(bounds.min.y), corner(bounds.min.z)},
+          edge,
+          std::min(GroundTruth::kMargin, edge / 4),
+          vector(bounds.max) - vector(bounds.min) + Eigen::Vector3<std::int64_t>::Ones()};
+}
+
+// Which triangle makes a voxel solid.
+std::size_t culprit(const TriangleMesh& mesh, const Eigen::AlignedBox3d& inside) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    const TriangleOverlap triangle(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
+                                   mesh.vertices[c].cast<double>());
+    if (triangle.touches(inside)) return i;
+  }
+  throw std::logic_error("ground truth: a voxel without a surface counts as solid");
+}
+
+}  // namespace
+
+KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) {
+  if (!bounds.min().allFinite() || !bounds.max().allFinite() || !(bounds.sizes().minCoeff() > 0.0))
+    refuse("the bounds, from (", bounds.min().transpose(), ") to (", bounds.max().transpose(),
+           ") m, have no volume or are not finite");
+  constexpr double kSliver = 1e-6;
+  std::array<std::uint16_t, 3> low{}, high{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    const double first = std::floor(bounds.min()[axis] / lattice.resolution() + kSliver);
+    const double last = std::max(first, std::ceil(bounds.max()[axis] / lattice.resolution() - kSliver) - 1);
+    if (!(first >= -Lattice::kOrigin && last < Lattice::kKeysPerAxis - Lattice::kOrigin))
+      refuse("the bounds reach from ", bounds.min()[axis], " to ", bounds.max()[axis], " m, but at ",
+             lattice.resolution(), " m the map ends at +-", Lattice::kOrigin * lattice.resolution(),
+             " m; use larger voxels, or scale or move the world");
+    low[i] = static_cast<std::uint16_t>(static_cast<int>(first) + Lattice::kOrigin);
+    high[i] = static_cast<std::uint16_t>(static_cast<int>(last) + Lattice::kOrigin);
+  }
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+std::uint64_t volume(const KeyBox& box) {
+  const auto edge = [](std::uint16_t low, std::uint16_t high) {
+    return static_cast<std::uint64_t>(high) - low + 1;
+  };
+  return edge(box.min.x, box.max.x) * edge(box.min.y, box.max.y) * edge(box.min.z, box.max.z);
+}
+
+GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start)
+    : lattice_(resolution), bounds_(voxels_within(world.bounds, lattice_)) {
+  check(world.mesh);
+  if (bounding_voxels() > kMostVoxels)
+    refuse("the world has ", bounding_voxels(), " voxels of ", resolution,
+           " m within its bounds, but 2^31 is the limit; use larger voxels or scale the world down");
+  const auto x = lattice_.key(start.x()), y = lattice_.key(start.y()), z = lattice_.key(start.z());
+  if (!x || !y || !z || !bounds_.contains({*x, *y, *z}))
+    refuse("the start (", start.transpose(), ") m lies outside of the world's bounds, (",
+           world.bounds.min().transpose(), ") to (", world.bounds.max().transpose(), ") m");
+  const VoxelKey first{*x, *y, *z};
+
+  const CellFrame frame = make_frame(bounds_, lattice_);
+  cells_.resize(bounding_voxels());
+  paint(world.mesh, frame, cells_);
+  if (holds_surface(first)) {
+    const auto cell = (vector(first) - vector(bounds_.min)).eval();
+    refuse("the start (", start.transpose(), ") m lies in a wall: triangle ",
+           culprit(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel");
+  }
+  flood(index(first));
+}
+
+std::size_t GroundTruth::index(const VoxelKey& key) const {
+  const std::size_t size_x = bounds_.max.x - bounds_.min.x + std::size_t{1};
+  const std::size_t size_y = bounds_.max.y - bounds_.min.y + std::size_t{1};
+  const std::size_t x = key.x - bounds_.min.x, y = key.y - bounds_.min.y, z = key.z - bounds_.min.z;
+  return (z * size_y + y) * size_x + x;
+}
+
+void GroundTruth::flood(std::size_t start) {
+  const std::array<std::size_t, 3> size{bounds_.max.x - bounds_.min.x + std::size_t{1},
+                                        bounds_.max.y - bounds_.min.y + std::size_t{1},
+                                        bounds_.max.z - bounds_.min.z + std::size_t{1}};
+  const std::array<std::size_t, 3> stride{1, size[0], size[0] * size[1]};
+  // Two fronts instead of one stack: a front is as large as a surface, a stack may hold the whole volume.
+  std::vector<std::uint32_t> front{static_cast<std::uint32_t>(start)}, next;
+  cells_[start] |= cell::kReached;
+  while (!front.empty()) {
+    next.clear();
+    for (const std::uint32_t here : front) {
+      ++free_voxels_;
+      const auto enter = [&](std::size_t neighbour, std::uint8_t walls) {
+        std::uint8_t& flags = cells_[neighbour];
+        if ((flags & cell::kReached) != 0) return;
+        if (walls != 0 || (flags & cell::kSolid) != 0) {
+          flags |= cell::kNextToReached;
+          return;
+        }
+        flags |= cell::kReached;
+        next.push_back(static_cast<std::uint32_t>(neighbour));
+      };
+      const std::array<std::size_t, 3> at{here % size[0], here / stride[1] % size[1], here / stride[2]};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const unsigned wall = unsigned{cell::kWallBelow} << axis;
+        if (at[axis] > 0) enter(here - stride[axis], static_cast<std::uint8_t>(cells_[here] & wall));
+        if (at[axis] + 1 < size[axis])
+          enter(here + stride[axis], static_cast<std::uint8_t>(cells_[here + stride[axis]] & wall));
+      }
+    }
+    std::swap(front, next);
+  }
+  surface_voxels_ = static_cast<std::uint64_t>(std::ranges::count_if(cells_, [](std::uint8_t flags) {
+    return (flags & (cell::kReached | cell::kNextToReached)) == cell::kNextToReached;
+  }));
+}
+
+Truth GroundTruth::at(const VoxelKey& key) const {
+  if (!bounds_.contains(key)) return Truth::kHidden;
+  const std::uint8_t flags = cells_[index(key)];
+  if ((flags & cell::kReached) != 0) return Truth::kFree;
+  return (flags & cell::kNextToReached) != 0 ? Truth::kSurface : Truth::kHidden;
+}
+
+bool GroundTruth::holds_surface(const VoxelKey& key) const {
+  return bounds_.contains(key) && (cells_[index(key)] & cell::kSolid) != 0;
+}
+
+bool GroundTruth::open(const VoxelKey& key, std::size_t axis) const {
+  const std::array<std::uint16_t, 3> at_axis{key.x, key.y, key.z},
+      last{bounds_.max.x, bounds_.max.y, bounds_.max.z};
+  if (axis > 2 || !bounds_.contains(key) || at_axis[axis] == last[axis]) return false;
+  VoxelKey next = key;
+  (axis == 0 ? next.x : axis == 1 ? next.y : next.z) += 1;
+  const std::uint8_t above = cells_[index(next)];
+  const unsigned wall = unsigned{cell::kWallBelow} << axis;
+  return (cells_[index(key)] & above & cell::kReached) != 0 && (above & wall) == 0;
+}
+
+void GroundTruth::for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const {
+  for (unsigned z = bounds_.min.z; z <= bounds_.max.z; ++z)
+    for (unsigned y = bounds_.min.y; y <= bounds_.max.y; ++y)
+      for (unsigned x = bounds_.min.x; x <= bounds_.max.x; ++x) {
+        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(z)};
+        if (const Truth truth = at(key); truth != Truth::kHidden) visit(key, truth);
+      }
+}
+
+}  // namespace frontlux::sim

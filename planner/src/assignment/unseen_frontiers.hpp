@@ -1,0 +1,39 @@
+#pragma once
+
+#include "assignment/feasible_region.hpp"
+
+#include <frontlux/voxel_grid.hpp>
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// Frontiers that a robot sees from none of its cells, unknown voxels not blocking, for as long as that is
+/// certain: a frontier comes into view only where a voxel is no longer occupied or the robot can go to a new
+/// place, and within its reach.
+class UnseenFrontiers {
+ public:
+  /// Forgets those near what has changed since the last call.
+  /// @param opened    voxels that were occupied and are not any more, in any order
+  /// @param corridor  cells that the robot can go to now, sorted
+  void follow(std::span<const VoxelKey> opened, std::span<const VoxelKey> corridor,
+              const FeasibleRegion& region);
+
+  /// Forgets all, the corridor too: whatever cells there are at the next call are new ones.
+  void forget() {
+    keys_.clear();
+    corridor_.clear();
+  }
+
+  /// Those that have been tried from all cells of the corridor last followed, sorted.
+  void set(std::vector<VoxelKey> keys) { keys_ = std::move(keys); }
+
+  [[nodiscard]] std::span<const VoxelKey> keys() const { return keys_; }
+
+ private:
+  std::vector<VoxelKey> keys_, corridor_;
+};
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,324 @@
+#include "corridor/erosion.hpp"
+#include "corridor/ground.hpp"
+#include "corridor/path_distances.hpp"
+
+#include <frontlux/planner/travel_corridor.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace frontlux::planner {
+namespace {
+
+constexpr double kSlack = 1e-9;  // of a voxel: 0.9 m are three voxels of 0.3 m, whatever the division says
+constexpr int kMaxWindow = 1024;
+constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
+
+void check(const TravelOptions& options, double resolution, const KeyBox& bounds) {
+  const auto size = [&](const char* name, double value, double low) {
+    if (!(value >= low && value / resolution <= kMaxWindow))
+      refuse(std::string(name) + " is " + std::to_string(value) + " m, but has to be from " +
+             std::to_string(low) + " m to " + std::to_string(kMaxWindow) + " voxels of " +
+             std::to_string(resolution) + " m");
+  };
+  constexpr double kSmallest = 1e-6;
+  for (const auto& [name, i] : {std::pair{"extents.x", 0}, {"extents.y", 1}, {"extents.z", 2}})
+    size(name, options.extents[i], kSmallest);
+  if (options.motion == Motion::kPlane) {
+    size("sensor_height", options.sensor_height, 0.0);
+    if (options.ground_extents) {
+      size("ground_extents.x", options.ground_extents->x(), kSmallest);
+      size("ground_extents.y", options.ground_extents->y(), kSmallest);
+    }
+    if (options.ground_reach < 0 || options.ground_reach > kMaxWindow)
+      refuse("ground_reach is " + std::to_string(options.ground_reach) + " voxels, but has to be 0 to " +
+             std::to_string(kMaxWindow));
+    if (options.node_edge != 0.0) refuse("node_edge is for motion in space, and has to be 0 on a plane");
+  } else {
+    if (!std::isfinite(options.floor)) refuse("floor is not finite");
+    if (!std::isfinite(options.min_height)) refuse("min_height is not finite");
+    if (options.node_edge != 0.0) {
+      size("node_edge", options.node_edge, 0.0);
+      if (options.node_edge < options.extents.maxCoeff())
+        refuse("node_edge is " + std::to_string(options.node_edge) + " m, less than the collision box, " +
+               std::to_string(options.extents.maxCoeff()) + " m");
+    }
+  }
+  if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z)
+    refuse("the bounds are empty");
+  const auto along = [](int low, int high) { return static_cast<std::uint64_t>(high - low + 1); };
+  const std::uint64_t layer = along(bounds.min.x, bounds.max.x) * along(bounds.min.y, bounds.max.y);
+  const std::uint64_t cells =
+      options.motion == Motion::kPlane ? layer : layer * along(bounds.min.z, bounds.max.z);
+  if (cells > kMaxCells)
+    refuse("the bounds hold " + std::to_string(cells) + " cells, but at most " + std::to_string(kMaxCells) +
+           " are possible; give smaller bounds");
+}
+
+// Voxels on each side of the middle one, so that all together cover a length.
+int half_width(double length, double resolution) {
+  return static_cast<int>(std::ceil((length / resolution - 1.0) / 2 - kSlack));
+}
+
+int node_edge_log2(double edge, double resolution) {
+  int log2 = 0;
+  while (std::ldexp(resolution, log2) < edge - kSlack * resolution) ++log2;
+  return log2;
+}
+
+detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
+  if (options.node_edge > 0.0) {
+    const int edge = 1 << node_edge_log2(options.node_edge, resolution), half = edge / 2;
+    return {{-half, -half, -half}, {edge - 1 - half, edge - 1 - half, edge - 1 - half}};
+  }
+  detail::VoxelWindow window;
+  for (std::size_t a = 0; a < 3; ++a) {
+    window.high[a] = half_width(options.extents[static_cast<Eigen::Index>(a)], resolution);
+    window.low[a] = -window.high[a];
+  }
+  if (options.motion == Motion::kPlane) {
+    const int below = static_cast<int>(std::floor(options.sensor_height / resolution + kSlack));
+    const int layers = static_cast<int>(std::ceil(options.extents.z() / resolution - kSlack));
+    window.low[2] = -below;
+    window.high[2] = std::max(0, layers - 1 - below);
+  }
+  return window;
+}
+
+VoxelKey aligned(const TravelOptions& options, const detail::VoxelWindow& window, const VoxelKey& voxel) {
+  if (options.node_edge == 0.0) return voxel;
+  const int edge = window.high[0] - window.low[0] + 1;
+  const auto along = [&](std::uint16_t k) {
+    return static_cast<std::uint16_t>((k & ~(edge - 1)) - window.low[0]);
+  };
+  return {along(voxel.x), along(voxel.y), along(voxel.z)};
+}
+
+std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(key, 0, 0xFFFF)); }
+
+}  // namespace
+
+TravelOptions ugv_travel() {
+  TravelOptions options;
+  options.motion = Motion::kPlane;
+  options.extents = {1.0, 1.0, 0.7};
+  // Where wheels are. Of all of the box, some floor voxel is always passed by a beam that grazes it.
+  options.ground_extents = Eigen::Vector2d(0.9, 0.9);
+  return options;
+}
+
+TravelOptions uav_travel() {
+  TravelOptions options;
+  options.extents = {0.8, 0.8, 0.8};
+  return options;
+}
+
+TravelOptions uav_node_travel() {
+  TravelOptions options = uav_travel();
+  options.node_edge = 1.2;
+  return options;
+}
+
+VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
+  return aligned(options, window_of(options, lattice.resolution()), voxel);
+}
+
+KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice, const VoxelKey& cell) {
+  const auto [low, high] = window_of(options, lattice.resolution());
+  return {{clamped(cell.x + low[0]), clamped(cell.y + low[1]), clamped(cell.z + low[2])},
+          {clamped(cell.x + high[0]), clamped(cell.y + high[1]), clamped(cell.z + high[2])}};
+}
+
+Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
+  constexpr double kLetGo = 1e-4;  // of a voxel: centres that were floats are in the middle, too
+  Eigen::Vector3d reach = Eigen::Vector3d::Zero();
+  if (options.node_edge > 0.0) return reach;
+  const double resolution = lattice.resolution();
+  for (Eigen::Index a = 0; a < (options.motion == Motion::kPlane ? 2 : 3); ++a) {
+    const double beyond = options.extents[a] / 2 - half_width(options.extents[a], resolution) * resolution;
+    if (beyond > kLetGo * resolution) reach[a] = std::min(beyond, (0.5 - kLetGo) * resolution);
+  }
+  return reach;
+}
+
+std::string_view describe(CorridorState state) {
+  switch (state) {
+    case CorridorState::kReady:
+      return "has a corridor";
+    case CorridorState::kNotUpdated:
+      return "has seen no map";
+    case CorridorState::kOutside:
+      return "is outside the bounds";
+    case CorridorState::kTooLow:
+      return "is in a cell below its minimum height";
+    case CorridorState::kUnknown:
+      return "is in an unknown voxel";
+    case CorridorState::kOccupied:
+      return "is in an occupied voxel";
+    case CorridorState::kBoxNotFree:
+      return "needs more space than is known to be free around it";
+    case CorridorState::kWithoutGround:
+      return "stands where no ground is known";
+  }
+  return "is in no known state";
+}
+
+// What depends on the plane is made anew when the robot is on another one; in space all of it is made once.
+struct TravelCorridor::State {
+  TravelOptions options;
+  Lattice lattice;
+  KeyBox bounds;
+  detail::VoxelWindow window;
+  Eigen::Vector3d reach;
+
+  std::optional<std::uint16_t> plane;
+  detail::CellFrame frame;
+  std::optional<detail::Erosion> erosion;
+  std::optional<detail::Ground> ground;
+  std::optional<detail::PathDistances> distances;
+  std::vector<VoxelKey> cells;
+  std::vector<VoxelKey> closed;  // sorted
+  CorridorState state = CorridorState::kNotUpdated;
+
+  [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
+  void lay_out(const VoxelKey& robot);
+  void read(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
+  [[nodiscard]] bool passable(const VoxelKey& cell) const {
+    return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
+           (closed.empty() || !std::binary_search(closed.begin(), closed.end(), cell));
+  }
+  [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
+};
+
+void TravelCorridor::State::lay_out(const VoxelKey& robot) {
+  KeyBox box = bounds;
+  KeyBox middles = bounds;  // where the keys of cells may lie
+  if (options.motion == Motion::kPlane) {
+    plane = robot.z;
+    box.min.z = clamped(robot.z + window.low[2]);
+    box.max.z = clamped(robot.z + window.high[2]);
+    middles.min.z = middles.max.z = robot.z;
+  }
+  frame.stride = options.node_edge > 0.0 ? window.high[0] - window.low[0] + 1 : 1;
+  if (frame.stride > 1) {
+    middles.min = cell_of(bounds.min);
+    middles.max = cell_of(bounds.max);
+  }
+  int lowest = middles.min.z;
+  if (options.motion == Motion::kSpace) {
+    const double part = frame.stride > 1 ? 0.0 : 0.5;  // of a voxel, from its lower face to the cell's centre
+    const double height = (options.floor + options.min_height) / lattice.resolution() - part - kSlack;
+    const double key = std::clamp(std::ceil(height) + Lattice::kOrigin, -1.0, 2.0 * Lattice::kKeysPerAxis);
+    while (lowest < key && lowest <= middles.max.z) lowest += frame.stride;
+  }
+  frame.first = {middles.min.x, middles.min.y, clamped(lowest)};
+  const auto count = [this](int low, int high) { return high < low ? 0 : (high - low) / frame.stride + 1; };
+  frame.size = {count(middles.min.x, middles.max.x), count(middles.min.y, middles.max.y),
+                count(lowest, middles.max.z)};
+  erosion.emplace(box, window);
+  distances.emplace(frame, options.metric);
+  if (options.motion == Motion::kPlane && options.require_ground) {
+    const double resolution = lattice.resolution();
+    const int floor = robot.z + window.low[2] - 1;
+    const Eigen::Vector2d extents =
+        options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
+    ground.emplace(detail::Ground::Options{
+        box, floor < 0 ? std::nullopt : std::optional(static_cast<std::uint16_t>(floor)),
+        half_width(extents.x(), resolution), half_width(extents.y(), resolution), options.ground_reach,
+        options.without_ground});
+  }
+}
+
+void TravelCorridor::State::read(const VoxelGrid& grid, std::span<const VoxelKey> changed,
+                                 const VoxelKey& robot) {
+  if (!erosion || (options.motion == Motion::kPlane && plane != robot.z)) {
+    lay_out(robot);
+    erosion->read(grid);
+    if (ground) ground->read(grid);
+  } else {
+    erosion->read(grid, changed);
+    if (ground) ground->read(grid, changed);
+  }
+  distances->reset([this](const VoxelKey& cell) { return passable(cell); });
+}
+
+CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {
+  KeyBox within = bounds;
+  if (options.motion == Motion::kPlane) within.min.z = within.max.z = robot.z;
+  if (!within.contains(robot)) return CorridorState::kOutside;
+  if (grid.at(robot) == Occupancy::kUnknown) return CorridorState::kUnknown;
+  if (grid.at(robot) == Occupancy::kOccupied) return CorridorState::kOccupied;
+  const VoxelKey cell = cell_of(robot);
+  if (!frame.place(cell))
+    return cell.z < frame.first.z || frame.size[2] == 0 ? CorridorState::kTooLow : CorridorState::kOutside;
+  if (!erosion->whole(cell)) return CorridorState::kBoxNotFree;
+  if (ground && !ground->carries(cell)) return CorridorState::kWithoutGround;
+  return CorridorState::kReady;
+}
+
+TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds) {
+  check(options, lattice.resolution(), bounds);
+  state_ = std::make_unique<State>(State{options,
+                                         lattice,
+                                         bounds,
+                                         window_of(options, lattice.resolution()),
+                                         reach_of(options, lattice),
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         CorridorState::kNotUpdated});
+}
+TravelCorridor::~TravelCorridor() = default;
+TravelCorridor::TravelCorridor(TravelCorridor&&) noexcept = default;
+TravelCorridor& TravelCorridor::operator=(TravelCorridor&&) noexcept = default;
+
+void TravelCorridor::update(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot) {
+  if (grid.resolution() != state_->lattice.resolution())
+    refuse("the grid has a resolution of " + std::to_string(grid.resolution()) + " m, the corridor " +
+           std::to_string(state_->lattice.resolution()) + " m");
+  state_->read(grid, changed, robot);
+  state_->state = state_->find_state(grid, robot);
+  state_->cells.clear();
+  if (state_->state != CorridorState::kReady) return;
+  state_->distances->spread(state_->cell_of(robot));
+  state_->distances->reached(state_->cells);
+}
+
+void TravelCorridor::block(std::span<const VoxelKey> cells) {
+  std::vector<VoxelKey>& closed = state_->closed;
+  closed.insert(closed.end(), cells.begin(), cells.end());
+  std::sort(closed.begin(), closed.end());
+}
+
+CorridorState TravelCorridor::state() const { return state_->state; }
+std::span<const VoxelKey> TravelCorridor::cells() const { return state_->cells; }
+
+std::optional<double> TravelCorridor::distance(const VoxelKey& key) const {
+  if (!state_->distances) return std::nullopt;
+  const auto cells = state_->distances->distance(key);
+  if (!cells) return std::nullopt;
+  return *cells * state_->frame.stride * state_->lattice.resolution();
+}
+
+std::vector<VoxelKey> TravelCorridor::path_to(const VoxelKey& key) const {
+  return state_->distances ? state_->distances->path_to(key) : std::vector<VoxelKey>{};
+}
+
+bool TravelCorridor::passable(const VoxelKey& key) const {
+  return state_->distances && state_->distances->open(key);
+}
+
+const Eigen::Vector3d& TravelCorridor::reach() const { return state_->reach; }
+
+VoxelKey TravelCorridor::cell_of(const VoxelKey& voxel) const { return state_->cell_of(voxel); }
+
+}  // namespace frontlux::planner

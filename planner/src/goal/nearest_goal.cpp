@@ -1,0 +1,56 @@
+#include "goal/nearest_goal.hpp"
+
+#include "goal/rendered_goal.hpp"
+#include "goal/seen_targets.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+namespace frontlux::planner::detail {
+namespace {
+
+// Yaw and gain of a cell that sees at least one target.
+RenderedCell look_at_nearest(const GoalQuery& query, const VoxelKey& cell, double distance) {
+  const std::vector<std::uint8_t> seen = seen_targets(query, cell, std::nullopt);
+  const VoxelKey* nearest = nullptr;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const VoxelKey& target = query.targets[i];
+    if (seen[i] == 0) continue;
+    const auto length = [&](const VoxelKey& to) { return query.offset(cell, to).squaredNorm(); };
+    if (nearest == nullptr || length(target) < length(*nearest)) nearest = &target;
+  }
+  RenderedCell goal;
+  goal.cell = cell;
+  goal.distance = distance;
+  goal.yaw = GoalQuery::yaw_along(query.offset(cell, *nearest));
+  const std::vector<std::uint8_t> at_yaw = seen_targets(query, cell, goal.yaw);
+  goal.hits = static_cast<std::uint32_t>(std::count(at_yaw.begin(), at_yaw.end(), std::uint8_t{1}));
+  goal.gain = goal.hits;
+  goal.quality = query.quality(distance, goal.gain);
+  return goal;
+}
+
+}  // namespace
+
+std::optional<RenderedCell> find_nearest_goal(const GoalQuery& query) {
+  std::vector<std::pair<double, VoxelKey>> cells;
+  for (const VoxelKey& cell : query.corridor.cells()) {
+    const double distance = query.corridor.distance(cell).value();
+    if (query.far_enough(distance)) cells.emplace_back(distance, cell);
+  }
+  std::sort(cells.begin(), cells.end());
+  std::vector<VoxelKey> batch;
+  for (std::size_t begin = 0, count = 64; begin < cells.size(); begin += batch.size(), count *= 2) {
+    batch.clear();
+    for (std::size_t i = begin; i < std::min(cells.size(), begin + count); ++i)
+      batch.push_back(cells[i].second);
+    const ViewQualityImage image = render_cells(query, batch, all_targets(query));
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      if (image.values()[i].hits != 0) return look_at_nearest(query, batch[i], cells[begin + i].first);
+  }
+  return std::nullopt;
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,193 @@
+#include "goal/possible_goals.hpp"
+
+#include "assignment/corridor_blocks.hpp"
+#include "assignment/feasible_region.hpp"
+#include "goal/rendered_goal.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <numbers>
+#include <vector>
+
+namespace frontlux::planner::detail {
+namespace {
+
+constexpr int kLog2Edge = 3, kEdge = 1 << kLog2Edge;  // [voxels] of the cubes that are bounded together
+constexpr std::size_t kCounted = 16;                  // cells, each of another cube
+
+// A cube, with how many of some voxels it holds.
+struct Cube {
+  VoxelKey corner;
+  std::size_t count = 0;
+};
+
+VoxelKey corner_of(const VoxelKey& key) {
+  const auto along = [](std::uint16_t k) { return static_cast<std::uint16_t>(k & ~(kEdge - 1)); };
+  return {along(key.x), along(key.y), along(key.z)};
+}
+
+bool by_corner(const Cube& a, const Cube& b) { return a.corner < b.corner; }
+
+// Sorted by corner.
+std::vector<Cube> cubes_of(std::span<const VoxelKey> keys) {
+  std::vector<Cube> runs;
+  for (const VoxelKey& key : keys) {
+    const VoxelKey corner = corner_of(key);
+    if (runs.empty() || runs.back().corner != corner) runs.push_back({corner, 0});
+    ++runs.back().count;
+  }
+  std::sort(runs.begin(), runs.end(), by_corner);
+  std::vector<Cube> cubes;
+  for (const Cube& run : runs)
+    if (cubes.empty() || cubes.back().corner != run.corner)
+      cubes.push_back(run);
+    else
+      cubes.back().count += run.count;
+  return cubes;
+}
+
+// How much one yaw may show, by sectors of the horizon in which the window that it shows may start.
+class CubeView {
+ public:
+  explicit CubeView(const GoalQuery& query)
+      : region_(query.view, query.lattice.resolution()),
+        reach_(region_.reach() / kEdge + 1),
+        opening_(query.bins() == 0 ? 2 * std::numbers::pi : query.view.horizontal) {
+    for (int x = -reach_; x <= reach_; ++x)
+      for (int y = -reach_; y <= reach_; ++y) sectors_.push_back(sectors_showing(x, y));
+  }
+
+  // How many targets some cell of a cube may see at one yaw, at most.
+  [[nodiscard]] std::size_t most(const Cube& from, std::span<const Cube> targets) const {
+    const KeyBox box = cube(from.corner, kEdge);
+    const auto number = [](int key, int from_key) { return (key - from_key) / kEdge; };
+    std::array<std::size_t, kSectors> steps{};  // from each sector to the next; they may wrap around
+    std::size_t always = 0;
+    auto target = std::partition_point(targets.begin(), targets.end(), [&](const Cube& t) {
+      return number(t.corner.x, from.corner.x) < -reach_;
+    });
+    for (; target != targets.end(); ++target) {
+      const int x = number(target->corner.x, from.corner.x), y = number(target->corner.y, from.corner.y);
+      if (x > reach_) break;
+      if (std::abs(y) > reach_ || !region_.may_meet(box, cube(target->corner, kEdge))) continue;
+      const Sectors& showing =
+          sectors_[static_cast<std::size_t>(x + reach_) * static_cast<std::size_t>(2 * reach_ + 1) +
+                   static_cast<std::size_t>(y + reach_)];
+      if (showing.count == kSectors) {
+        always += target->count;
+        continue;
+      }
+      const std::size_t end = showing.first + showing.count;
+      steps[showing.first] += target->count;
+      if (end > kSectors) steps[0] += target->count;
+      if (end != kSectors) steps[end % kSectors] -= target->count;
+    }
+    std::size_t most = 0, here = 0;
+    for (const std::size_t step : steps) most = std::max(most, here += step);
+    return always + most;
+  }
+
+ private:
+  static constexpr std::size_t kSectors = 24;
+  struct Sectors {
+    std::size_t first = 0, count = kSectors;
+  };
+
+  // Those from which a window may show a part of the cube at an offset, in cubes.
+  [[nodiscard]] Sectors sectors_showing(int x, int y) const {
+    if (x == 0 && y == 0) return {};
+    constexpr double kWidth = 2 * std::numbers::pi / kSectors, kRounding = 1e-6;
+    const double middle = std::atan2(y, x);
+    double low = 0.0, high = 0.0;  // of what it spans around its middle, seen from all of the other
+    for (const int dx : {1 - kEdge, kEdge - 1})
+      for (const int dy : {1 - kEdge, kEdge - 1}) {
+        const double turn =
+            std::remainder(std::atan2(kEdge * y + dy, kEdge * x + dx) - middle, 2 * std::numbers::pi);
+        low = std::min(low, turn);
+        high = std::max(high, turn);
+      }
+    const double first = std::floor((middle + low - kRounding - opening_) / kWidth),
+                 last = std::floor((middle + high + kRounding) / kWidth);
+    if (last - first + 1 >= kSectors) return {};
+    const double turns = std::floor(first / kSectors);
+    return {static_cast<std::size_t>(first - turns * kSectors), static_cast<std::size_t>(last - first + 1)};
+  }
+
+  FeasibleRegion region_;
+  int reach_;  // [cubes]
+  double opening_;
+  std::vector<Sectors> sectors_;  // by offset along x and y
+};
+
+// What cells could be worth at most: as if each saw all that one yaw may show to some cell of its cube.
+struct Prospects {
+  std::vector<std::size_t> cube;  // of each cell
+  std::size_t cubes = 0;
+  std::vector<double> gain, quality;  // of each cell, no less than what counting it would show
+};
+
+Prospects prospects_of(const GoalQuery& query, std::span<const VoxelKey> cells) {
+  const CubeView view(query);
+  const std::vector<Cube> targets = cubes_of(query.targets);
+  std::vector<Cube> cubes = cubes_of(cells);
+  tbb::parallel_for(std::size_t{0}, cubes.size(),
+                    [&](std::size_t i) { cubes[i].count = view.most(cubes[i], targets); });
+  Prospects result{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size()),
+                   std::vector<double>(cells.size())};
+  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+    const auto cube = std::lower_bound(cubes.begin(), cubes.end(), Cube{corner_of(cells[i])}, by_corner);
+    const double distance = query.distance(cells[i]);
+    result.cube[i] = static_cast<std::size_t>(cube - cubes.begin());
+    if (!query.far_enough(distance)) return;
+    result.gain[i] = static_cast<double>(cube->count);
+    result.quality[i] = query.quality(distance, result.gain[i]);
+  });
+  return result;
+}
+
+// The best prospects, each of another cube.
+std::vector<VoxelKey> most_promising(const GoalQuery& query, std::span<const VoxelKey> cells,
+                                     const Prospects& prospects) {
+  std::vector<std::size_t> best(prospects.cubes, cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::size_t& there = best[prospects.cube[i]];
+    if (there == cells.size() || prospects.quality[i] > prospects.quality[there]) there = i;
+  }
+  const auto end = best.begin() + static_cast<std::ptrdiff_t>(std::min(kCounted, best.size()));
+  std::partial_sort(best.begin(), end, best.end(), [&](std::size_t a, std::size_t b) {
+    const bool enough = query.enough(prospects.gain[a]);
+    if (enough != query.enough(prospects.gain[b])) return enough;
+    return prospects.quality[a] > prospects.quality[b] ||
+           (prospects.quality[a] == prospects.quality[b] && a < b);
+  });
+  std::vector<VoxelKey> promising;
+  for (auto i = best.begin(); i != end; ++i) promising.push_back(cells[*i]);
+  return promising;
+}
+
+}  // namespace
+
+PossibleGoals possible_goals(const GoalQuery& query, std::span<const VoxelKey> cells) {
+  const Prospects prospects = prospects_of(query, cells);
+  PossibleGoals possible;
+  const ViewQualityImage image = render_cells(query, most_promising(query, cells, prospects), all_targets(query));
+  possible.counted = best_cell(query, image);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (prospects.quality[i] <= 0.0) continue;
+    if (possible.counted) {
+      RenderedCell at_best = *possible.counted;  // of its key, too: who draws level stays in
+      at_best.gain = prospects.gain[i];
+      at_best.quality = prospects.quality[i];
+      if (better(query, *possible.counted, at_best)) continue;
+    }
+    possible.cells.push_back(cells[i]);
+  }
+  return possible;
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,138 @@
+#include "goal/rendered_goal.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace frontlux::planner::detail {
+namespace {
+
+// A cell that may become the goal.
+struct Candidate {
+  RenderedCell rated;
+  double most = 0.0;       // quality, if all that was not drawn were visible
+  bool undecided = false;  // targets were left out, so that the image's gain is an estimate
+};
+
+// Estimates first; where they are zero, what may be hidden in them.
+bool more_promising(const GoalQuery& query, const Candidate& a, const Candidate& b) {
+  const bool enough = query.enough(a.rated.gain);
+  if (enough != query.enough(b.rated.gain)) return enough;
+  if (a.rated.quality != b.rated.quality) return a.rated.quality > b.rated.quality;
+  if (a.most != b.most) return a.most > b.most;
+  return a.rated.cell < b.rated.cell;
+}
+
+// As ViewQuality tells it for all hits.
+double standard_error(const ViewQuality& value, std::uint64_t hits, bool unbiased) {
+  if (value.drawn == value.population) return 0.0;
+  const double population = value.population, drawn = value.drawn;
+  const double q = (static_cast<double>(hits) + 1.0) / (drawn + 2.0);
+  const double error = std::sqrt((1.0 - drawn / population) * q * (1.0 - q) / std::max(drawn - 1.0, 1.0));
+  return error * (unbiased ? population : drawn);
+}
+
+std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQualityImage& image,
+                                       const VoxelKey* containing) {
+  std::vector<Candidate> candidates(image.size());
+  tbb::parallel_for(std::size_t{0}, image.size(), [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    candidate.rated = rate(query, image, i, containing);
+    const ViewQuality& value = image.values()[i];
+    candidate.undecided = value.drawn < value.population;
+    candidate.most = query.quality(candidate.rated.distance, value.population);
+  });
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    const bool hopeless = candidate.rated.gain <= 0.0 && !candidate.undecided;
+    return hopeless || !query.far_enough(candidate.rated.distance);
+  });
+  return candidates;
+}
+
+std::optional<RenderedCell> best_of(const GoalQuery& query, const ViewQualityImage& image,
+                                    const VoxelKey* containing) {
+  std::optional<RenderedCell> best;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const RenderedCell rated = rate(query, image, i, containing);
+    if (rated.gain > 0.0 && (!best || better(query, rated, *best))) best = rated;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool better(const GoalQuery& query, const RenderedCell& a, const RenderedCell& b) {
+  const bool enough = query.enough(a.gain);
+  if (enough != query.enough(b.gain)) return enough;
+  if (a.quality != b.quality) return a.quality > b.quality;
+  return a.cell < b.cell;
+}
+
+RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
+                  const VoxelKey* containing) {
+  const ViewQuality& value = image.values()[index];
+  const bool unbiased = image.options().estimator == ViewQualityOptions::Estimator::kUnbiased;
+  RenderedCell rated;
+  rated.cell = image.viewpoints()[index];
+  rated.distance = query.distance(rated.cell);
+  std::uint64_t hits = value.hits;
+  if (query.bins() != 0 && (value.hits != 0 || containing != nullptr)) {
+    std::optional<double> azimuth;
+    if (containing != nullptr) azimuth = GoalQuery::yaw_along(query.offset(rated.cell, *containing));
+    const AzimuthWindow window = best_window(image.bin_hits(index), query.view.horizontal, azimuth);
+    hits = window.hits;
+    rated.yaw = window.yaw;
+  }
+  rated.hits = static_cast<std::uint32_t>(hits);
+  rated.gain = static_cast<double>(hits) * value.gain_per_hit();
+  rated.standard_error = standard_error(value, hits, unbiased);
+  rated.quality = query.quality(rated.distance, rated.gain);
+  return rated;
+}
+
+ViewQualityOptions all_targets(const GoalQuery& query) {
+  ViewQualityOptions rendering = query.options.rendering;
+  rendering.samples = ViewQualityOptions::kAll;
+  rendering.sampling = ViewQualityOptions::Sampling::kFeasible;
+  rendering.azimuth_bins = query.bins();
+  return rendering;
+}
+
+ViewQualityImage render_cells(const GoalQuery& query, std::span<const VoxelKey> cells,
+                              const ViewQualityOptions& rendering) {
+  return render_view_quality(query.caster, query.lattice, cells, query.targets, query.view, rendering);
+}
+
+std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityImage& image,
+                                      const VoxelKey* containing) {
+  std::vector<Candidate> candidates = list_candidates(query, image, containing);
+  const bool exact = std::none_of(candidates.begin(), candidates.end(),
+                                  [](const Candidate& candidate) { return candidate.undecided; });
+  std::optional<RenderedCell> best;
+  if (exact || query.options.refined == 0) {
+    for (const Candidate& candidate : candidates)
+      if (candidate.rated.gain > 0.0 && (!best || better(query, candidate.rated, *best)))
+        best = candidate.rated;
+    return best;
+  }
+  std::vector<VoxelKey> cells;
+  auto begin = candidates.begin();
+  for (auto count = static_cast<std::size_t>(query.options.refined); begin != candidates.end(); count *= 4) {
+    const auto left = static_cast<std::size_t>(candidates.end() - begin);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(count, left));
+    std::partial_sort(
+        begin, end, candidates.end(),
+        [&query](const Candidate& a, const Candidate& b) { return more_promising(query, a, b); });
+    if (best && (query.enough(best->gain) || !query.enough(begin->rated.gain))) break;
+    cells.clear();
+    for (auto candidate = begin; candidate != end; ++candidate) cells.push_back(candidate->rated.cell);
+    const auto found = best_of(query, render_cells(query, cells, all_targets(query)), containing);
+    if (found && (!best || better(query, *found, *best))) best = found;
+    begin = end;
+  }
+  return best;
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,72 @@
+#include "mapping/scan_voxels.hpp"
+
+#include "mapping/voxel_sets.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace frontlux::planner::detail {
+namespace {
+
+// All voxels that rays can pass, and one more on each side for their rounding.
+WideBox box_of(const VoxelKey& start, std::span<const RayEnd> rays) {
+  VoxelKey min = start, max = start;
+  for (const RayEnd& ray : rays) {
+    if (!ray.has_key) continue;
+    min = {std::min(min.x, ray.key.x), std::min(min.y, ray.key.y), std::min(min.z, ray.key.z)};
+    max = {std::max(max.x, ray.key.x), std::max(max.y, ray.key.y), std::max(max.z, ray.key.z)};
+  }
+  return {{min.x - 1, min.y - 1, min.z - 1}, {max.x + 1, max.y + 1, max.z + 1}};
+}
+
+template <class Voxels>
+std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice, const KeyBox& bounds,
+                                     const Eigen::Vector3f& origin, const VoxelKey& start,
+                                     std::span<const RayEnd> rays) {
+  constexpr std::size_t kGrain = 1024;
+  const LinearPlaces places = none.places();
+  tbb::enumerable_thread_specific<Voxels> passed(none);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
+                    [&](const tbb::blocked_range<std::size_t>& piece) {
+                      Voxels& voxels = passed.local();
+                      follow_rays(
+                          lattice, origin, start, rays.subspan(piece.begin(), piece.size()), places,
+                          [&voxels](unsigned lane, std::int64_t place) { return voxels.add(place, lane); });
+                    });
+  Voxels all = none, hits = none;
+  for (const Voxels& voxels : passed) all.add(voxels);
+  for (const RayEnd& ray : rays)
+    if (ray.has_key && ray.hit) hits.add(places.at(ray.key));
+  all.add(hits);
+
+  std::vector<BrickUpdate> updates;
+  all.for_each_brick([&](const VoxelKey& corner) {
+    const Layers inside = part_inside(corner, bounds), hit = hits.brick(corner);
+    Layers miss = all.brick(corner), hit_inside{};
+    std::uint64_t any = 0;
+    for (std::size_t z = 0; z < 8; ++z) {
+      hit_inside[z] = hit[z] & inside[z];
+      miss[z] &= inside[z] & ~hit[z];
+      any |= hit_inside[z] | miss[z];
+    }
+    if (any != 0) updates.push_back({brick_number(corner), corner, to_octants(miss), to_octants(hit_inside)});
+  });
+  std::sort(updates.begin(), updates.end(),
+            [](const BrickUpdate& a, const BrickUpdate& b) { return a.number < b.number; });
+  return updates;
+}
+
+}  // namespace
+
+std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
+                                        const Eigen::Vector3f& origin, std::span<const RayEnd> rays) {
+  const VoxelKey start = lattice.key(origin).value();
+  if (const auto dense = DenseVoxels::make(box_of(start, rays)))
+    return update_with(*dense, lattice, bounds, origin, start, rays);
+  return update_with(SparseVoxels{}, lattice, bounds, origin, start, rays);
+}
+
+}  // namespace frontlux::planner::detail

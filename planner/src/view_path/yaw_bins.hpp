@@ -1,0 +1,46 @@
+#pragma once
+
+#include "view_path/yaw_limits.hpp"
+
+#include <frontlux/planner/information_gain.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// A few yaws for each viewpoint of a path, what is truly in view at each of them, and choices among them.
+class YawBins {
+ public:
+  static constexpr int kMaxBins = 63;  // a bit each, and one for the even turn
+
+  /// The first and last viewpoint have one yaw, theirs; the others `bins` around the circle and, if turning
+  /// is limited, that of the even turn.
+  YawBins(const InformationGain& gain, int bins, double first_yaw, double last_yaw, const YawLimits& limits);
+
+  /// The yaws with most views within the limits, a frontier counting for each viewpoint that has it in view.
+  [[nodiscard]] std::vector<double> most_views() const;
+
+  /// Yaws with many distinct frontiers in view, within the limits: greedy, then viewpoint by viewpoint until
+  /// none can be turned to see more.
+  [[nodiscard]] std::vector<double> most_distinct() const;
+
+ private:
+  using Choice = std::vector<std::size_t>;  // which of its yaws each viewpoint takes
+  [[nodiscard]] Choice best_sequence() const;
+  [[nodiscard]] Choice greedy_choice(std::vector<std::uint32_t>& covered) const;
+  void sweep(Choice& choice, std::vector<std::uint32_t>& covered) const;
+  [[nodiscard]] std::vector<std::uint32_t> new_views(std::size_t viewpoint,
+                                                     std::span<const std::uint32_t> covered) const;
+  void cover(std::size_t viewpoint, std::size_t bin, std::uint32_t by,
+             std::vector<std::uint32_t>& covered) const;
+  [[nodiscard]] std::vector<double> yaws_of(const Choice& choice) const;
+
+  const InformationGain& gain_;
+  const YawLimits& limits_;
+  std::vector<std::vector<double>> yaws_;
+  std::vector<std::vector<std::uint64_t>> in_view_;  // bits by yaw, for each of the viewpoint's frontiers
+};
+
+}  // namespace frontlux::planner

@@ -1,0 +1,48 @@
+#include "view_path/yaw_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace frontlux::planner {
+
+double wrapped(double yaw) { return std::remainder(yaw, 2.0 * std::numbers::pi); }
+
+YawLimits::YawLimits(std::span<const Pose> viewpoints, double max_step, double max_rate) {
+  for (std::size_t i = 0; i + 1 < viewpoints.size(); ++i) {
+    const double length = (viewpoints[i + 1].position - viewpoints[i].position).norm();
+    // Not by a product: no rate limit times no length is not a number.
+    const double by_rate = std::isfinite(max_rate) ? max_rate * length : max_rate;
+    // More than half a turn is never needed, and is no limit.
+    const double step = std::min(max_step, by_rate);
+    steps_.push_back(step < std::numbers::pi ? step : std::numeric_limits<double>::infinity());
+    limited_ = limited_ || std::isfinite(steps_.back());
+  }
+}
+
+bool YawLimits::allows(std::size_t i, double yaw, double next) const {
+  return std::fabs(wrapped(next - yaw)) <= steps_[i] + kTolerance;
+}
+
+bool YawLimits::allow(std::span<const double> yaws) const {
+  for (std::size_t i = 0; i < steps_.size(); ++i)
+    if (!allows(i, yaws[i], yaws[i + 1])) return false;
+  return true;
+}
+
+std::vector<double> YawLimits::even_turn(double first, double last) const {
+  const auto share = [](double step) { return std::min(step, std::numbers::pi); };
+  const double turn = wrapped(last - first);
+  double all = 0.0, passed = 0.0;
+  for (const double step : steps_) all += share(step);
+  std::vector<double> yaws{first};
+  for (const double step : steps_) {
+    passed += share(step);
+    yaws.push_back(all > 0.0 ? first + turn * (passed / all) : last);
+  }
+  yaws.back() = last;
+  return yaws;
+}
+
+}  // namespace frontlux::planner

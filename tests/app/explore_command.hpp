@@ -1,0 +1,168 @@
+#pragma once
+
+#include "planner/exploration/team_in_world.hpp"
+#include "support/command.hpp"
+
+#include <frontlux/planner/recording.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace frontlux::test {
+
+namespace fs = std::filesystem;
+
+inline constexpr const char* kSteps = "4";
+
+inline std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  return cells;
+}
+
+inline std::vector<std::vector<std::string>> table_of(const fs::path& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(content_of(csv));
+  for (std::string line; std::getline(lines, line);) rows.push_back(cells_of(line));
+  return rows;
+}
+
+/// steps.csv without what it tells of time.
+inline std::vector<std::vector<std::string>> timeless(const fs::path& csv) {
+  auto rows = table_of(csv);
+  if (rows.empty()) return rows;
+  const std::vector<std::string> header = rows.front();
+  for (auto& row : rows)
+    for (std::size_t i = header.size(); i-- > 0;)
+      if (header[i].ends_with("_s") && i < row.size())
+        row.erase(row.begin() + static_cast<std::ptrdiff_t>(i));
+  return rows;
+}
+
+class ExploreCommand : public testing::Test {
+ protected:
+  ExploreCommand() : folder_(fs::temp_directory_path() / ("frontlux_explore_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~ExploreCommand() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  [[nodiscard]] Answer run(std::vector<std::string> words, const std::string& before = "") const {
+    words.insert(words.begin(), "explore");
+    return run_frontlux(words, folder_, before);
+  }
+  /// The room in four steps.
+  [[nodiscard]] Answer explore(const std::string& output, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"room", "--max-steps", kSteps, "-o", path(output)});
+    return run(more);
+  }
+  void expect_explored(const std::string& output, std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--report", "off"});
+    const Answer answer = explore(output, more);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.err, "");
+  }
+  void expect_resumed(const std::string& output, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"--report", "off", "--resume", path(output)});
+    const Answer answer = run(more);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.err, "");
+  }
+
+  [[nodiscard]] nlohmann::json json_in(const std::string& output) const {
+    return nlohmann::json::parse(content_of(path(output + "/run.json")));
+  }
+
+  /// All but the times is that of another run.
+  void expect_same_runs(const std::string& a, const std::string& b) const {
+    SCOPED_TRACE(a + " and " + b);
+    EXPECT_GT(content_of(path(a + "/map.ot")).size(), 1000U);
+    for (const char* file : {"/map.ot", "/map.bt", "/paths.csv"})
+      EXPECT_TRUE(content_of(path(a + file)) == content_of(path(b + file))) << file;
+    EXPECT_EQ(timeless(path(a + "/steps.csv")), timeless(path(b + "/steps.csv")));
+    const planner::Recording x = planner::read_recording(path(a + "/run.frontlux")),
+                             y = planner::read_recording(path(b + "/run.frontlux"));
+    EXPECT_EQ(x.end, y.end);
+    EXPECT_FALSE(x.truncated || y.truncated);
+    ASSERT_EQ(x.steps.size(), y.steps.size());
+    for (std::size_t i = 0; i < x.steps.size(); ++i) {
+      expect_same(x.steps[i].step, y.steps[i].step);
+      EXPECT_EQ(x.steps[i].known, y.steps[i].known);
+      EXPECT_EQ(x.steps[i].collisions, y.steps[i].collisions);
+    }
+    const nlohmann::json p = json_in(a), q = json_in(b);
+    for (const char* name :
+         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "collisions", "held_back"})
+      EXPECT_EQ(p.at(name), q.at(name)) << name;
+  }
+
+  /// Starts the command and waits until it has told of so many steps.
+  [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps) const {
+    std::vector<std::string> all = {FRONTLUX_COMMAND, "explore"};
+    all.insert(all.end(), words.begin(), words.end());
+    fs::remove(path("out"));
+    const pid_t child = fork();
+    if (child == 0) {
+      std::signal(SIGINT, SIG_DFL);
+      static_cast<void>(std::freopen(path("out").c_str(), "w", stdout));
+      static_cast<void>(std::freopen(path("err").c_str(), "w", stderr));
+      std::vector<char*> argv;
+      for (std::string& word : all) argv.push_back(word.data());
+      argv.push_back(nullptr);
+      execv(FRONTLUX_COMMAND, argv.data());
+      _exit(127);
+    }
+    const std::string last = "step " + std::to_string(steps) + ":";
+    for (int i = 0; i < 6000 && content_of(path("out")).find(last) == std::string::npos; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return child;
+  }
+  static int status_of(pid_t child) {
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    return status;
+  }
+
+  /// Every file below the folder with its bytes, but for what the command prints.
+  [[nodiscard]] std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      all[entry.path().string()] = entry.is_regular_file() ? content_of(entry.path()) : "";
+    all.erase(path("out"));
+    all.erase(path("err"));
+    return all;
+  }
+  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
+    const auto before = files();
+    const Answer answer = run(words);
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    EXPECT_EQ(answer.out, "");
+    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
+    EXPECT_EQ(answer.err.find('\n'), answer.err.size() - 1) << answer.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
+    EXPECT_TRUE(files() == before) << "something was written: " << answer.err;
+  }
+
+  fs::path folder_;
+};
+
+}  // namespace frontlux::test

@@ -1,0 +1,255 @@
+// `frontlux explore` from the outside: its files, and what it refuses.
+
+#include "app/explore_command.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/planner/recorded_map.hpp>
+#include <frontlux/planner/recording.hpp>
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <variant>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Answer;
+using test::content_of;
+using test::ExploreCommand;
+using test::table_of;
+
+TEST_F(ExploreCommand, ItsFilesTellTheSame) {
+  ASSERT_EQ(explore("run").code, 0);
+  EXPECT_GT(content_of(path("run/report.html")).size(), 1000U);
+  const Recording recording = read_recording(path("run/run.frontlux"));
+  ASSERT_EQ(recording.steps.size(), 5U);
+  EXPECT_EQ(recording.end, "step_limit");
+
+  // steps.csv against the recording.
+  const auto rows = table_of(path("run/steps.csv"));
+  ASSERT_EQ(rows.size(), 1 + 2 * recording.steps.size());
+  const auto& header = rows.front();
+  EXPECT_EQ(
+      content_of(path("run/steps.csv")).substr(0, content_of(path("run/steps.csv")).find('\n')),
+      "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
+      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
+      "frontiers_s,caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s");
+  std::vector<double> travelled(2);
+  std::size_t row = 1;
+  for (const RecordedStep& recorded : recording.steps)
+    for (std::size_t r = 0; r < 2; ++r, ++row) {
+      ASSERT_EQ(rows[row].size(), header.size());
+      const auto cell = [&](const char* name) {
+        return rows[row][static_cast<std::size_t>(std::ranges::find(header, name) - header.begin())];
+      };
+      const RobotStep& robot = recorded.step.robots[r];
+      travelled[r] += robot.length;
+      const auto part = [](std::uint64_t known, std::uint64_t all) {
+        return static_cast<double>(known) / static_cast<double>(all);
+      };
+      EXPECT_EQ(cell("step"), std::to_string(recorded.step.number));
+      EXPECT_EQ(cell("robot"), r == 0 ? "ugv" : "uav");
+      const auto& known = recorded.known;
+      EXPECT_EQ(std::stod(cell("coverage_observable")),
+                part(known[0].observable + known[1].observable, recording.head.observable));
+      EXPECT_EQ(std::stod(cell("coverage_box")),
+                part(known[0].bounding + known[1].bounding, recording.head.bounding));
+      EXPECT_EQ(std::stod(cell("robot_observable")), part(known[r].observable, recording.head.observable));
+      EXPECT_EQ(std::stod(cell("robot_box")), part(known[r].bounding, recording.head.bounding));
+      EXPECT_EQ(cell("frontiers"), std::to_string(recorded.step.frontiers));
+      EXPECT_EQ(cell("abandoned"), std::to_string(recorded.step.abandoned));
+      EXPECT_EQ(cell("goal_state"),
+                recorded.step.number == 0 ? "start" : std::string(name_of(robot.goal.state)));
+      if (robot.goal.pose) {
+        EXPECT_EQ(std::stod(cell("goal_x_m")), robot.goal.pose->position.x());
+        EXPECT_EQ(std::stod(cell("goal_yaw_rad")), robot.goal.pose->yaw);
+        EXPECT_EQ(std::stod(cell("goal_gain")), robot.goal.gain);
+      } else {
+        EXPECT_EQ(cell("goal_x_m") + cell("goal_yaw_rad") + cell("goal_gain"), "");
+      }
+      EXPECT_EQ(cell("viewpoints"), std::to_string(robot.planned.size()));
+      EXPECT_EQ(std::stod(cell("length_m")), robot.length);
+      EXPECT_EQ(std::stod(cell("travelled_m")), travelled[r]);
+      EXPECT_EQ(cell("gain_predicted"), std::to_string(robot.gain_predicted));
+      EXPECT_EQ(cell("gained"), std::to_string(robot.gained));
+      EXPECT_EQ(cell("rays"), std::to_string(recorded.step.rays));
+      EXPECT_EQ(std::stod(cell("planning_s")), recorded.step.planning_seconds());
+    }
+
+  // paths.csv
+  const auto viewpoints = table_of(path("run/paths.csv"));
+  std::size_t planned = 1;
+  for (const RecordedStep& recorded : recording.steps)
+    for (const RobotStep& robot : recorded.step.robots)
+      for (std::size_t i = 0; i < robot.planned.size(); ++i, ++planned) {
+        ASSERT_LT(planned, viewpoints.size());
+        ASSERT_EQ(viewpoints[planned].size(), 8U);
+        EXPECT_EQ(viewpoints[planned][2], std::to_string(i));
+        EXPECT_EQ(viewpoints[planned][3], i < robot.travelled ? "1" : "0");
+        EXPECT_EQ(std::stod(viewpoints[planned][5]), robot.planned[i].position.y());
+      }
+  EXPECT_EQ(planned, viewpoints.size());
+
+  // The maps against what the recorded changes come to.
+  RecordedMap map(recording.head.resolution);
+  for (const RecordedStep& step : recording.steps) map.apply(step);
+  for (const char* file : {"run/map.ot", "run/map.bt"}) {
+    const auto tree = std::get<std::shared_ptr<octomap::OcTree>>(read_octree(path(file)));
+    EXPECT_TRUE(make_voxel_grid(*tree) == map.grid()) << file;
+  }
+
+  // run.json against both.
+  const nlohmann::json json = json_in("run");
+  EXPECT_EQ(json.at("world"), "room");
+  EXPECT_EQ(json.at("seed"), 1);
+  EXPECT_EQ(json.at("mode"), "default");
+  EXPECT_EQ(json.at("caster"), "embree");
+  EXPECT_EQ(json.at("distribute"), true);
+  EXPECT_EQ(json.at("robots"), (std::vector<std::string>{"ugv", "uav"}));
+  EXPECT_EQ(json.at("end"), "step_limit");
+  EXPECT_EQ(json.at("steps"), 4);
+  EXPECT_EQ(json.at("collisions"), 0);
+  EXPECT_EQ(json.at("resolution_m"), 0.3);
+  EXPECT_EQ(json.at("coverage_observable"), std::stod(rows.back()[2]));
+  EXPECT_EQ(json.at("coverage_box"), std::stod(rows.back()[3]));
+  EXPECT_EQ(json.at("path_length_m").at("ugv"), travelled[0]);
+  EXPECT_EQ(json.at("path_length_m").at("uav"), travelled[1]);
+  double sum = 0.0, most = 0.0;
+  for (std::size_t i = 1; i < recording.steps.size(); ++i) {
+    sum += recording.steps[i].step.planning_seconds();
+    most = std::max(most, recording.steps[i].step.planning_seconds());
+  }
+  EXPECT_NEAR(json.at("planning_mean_s").get<double>(), sum / 4, 1e-12);
+  EXPECT_EQ(json.at("planning_max_s"), most);
+  EXPECT_GT(json.at("memory_mb"), 1.0);
+
+  // A line for each step, and a summary.
+  const std::string out = content_of(path("out"));
+  for (int step = 0; step <= 4; ++step)
+    EXPECT_NE(out.find("step " + std::to_string(step) + ": "), std::string::npos) << out;
+  for (const char* part : {"\nend          step_limit", "\nsteps        4\n", "\ncollisions   0\n"})
+    EXPECT_NE(out.find(part), std::string::npos) << part << " in " << out;
+}
+
+TEST_F(ExploreCommand, RefusesWhatCannotBe) {
+  const std::string output = path("new");
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"room", "-o", output});
+    return words;
+  };
+  expect_refused({"castle", "-o", output}, {"castle"});
+  expect_refused({path("none.ply"), "-o", output}, {"none.ply"});
+  expect_refused({"-o", output}, {"WORLD"});
+  expect_refused({"room"}, {"-o"});
+  for (const char* team : {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv"})
+    expect_refused(with({"--team", team}), {"--team"});
+  expect_refused(with({"--robot", path("none.json")}), {"none.json"});
+  std::ofstream(path("bad.json")) << R"({"name": "cart", "motion": "sideways"})";
+  expect_refused(with({"--robot", path("bad.json")}), {"bad.json", "motion"});
+  for (const char* pose : {"ugv", "car=1,1,1,0", "ugv=1,1,0.75", "ugv=1,1,0.75,0,0", "ugv=1,1,x,0",
+                           "ugv=nan,1,1,0", "ugv=-5,-5,0.75,0", "uav=1e300,1,1,0", "=1,1,1,0", ""})
+    expect_refused(with({"--pose", pose}), {"--pose"});
+  expect_refused(with({"--goal", "best"}), {"--goal", "'best'", "render, cluster, nearest"});
+  expect_refused(with({"--caster", "gpu"}), {"--caster", "'gpu'", "embree, grid, octomap"});
+  expect_refused(with({"--mode", "fast"}), {"--mode", "'fast'"});
+  expect_refused(with({"--planner", "prm"}), {"--planner", "'prm'"});
+  expect_refused(with({"--distribute", "yes"}), {"--distribute", "'yes'"});
+  expect_refused(with({"--optimize", "1"}), {"--optimize", "'1'"});
+  expect_refused(with({"--report", "maybe"}), {"--report", "'maybe'"});
+  for (const char* number : {"-1", "1.5", "1025", "two", "", "99999999999999999999"})
+    expect_refused(with({"--threads", number}), {"--threads"});
+  for (const char* number : {"-1", "1.5", "many", "", "99999999999"})
+    expect_refused(with({"--max-steps", number}), {"--max-steps"});
+  for (const char* number : {"-1", "x", "18446744073709551616"})
+    expect_refused(with({"--seed", number}), {"--seed"});
+  for (const char* number : {"0", "-0.3", "nan", "inf", "1e-9", "x"})
+    expect_refused(with({"--resolution", number}), {"--resolution"});
+  expect_refused(with({"--epsilon", "-2"}), {"epsilon"});
+  expect_refused(with({"--epsilon", "nan"}), {"--epsilon"});
+  expect_refused(with({"--lambda", "-1"}), {"lambda"});
+  expect_refused(with({"--advance", "-1"}), {"advance"});
+  expect_refused(with({"--min-distance", "-1"}), {"min"});
+  expect_refused(with({"--samples", "0"}), {"--samples"});
+  expect_refused(with({"--noise", "-0.1"}), {"--noise"});
+  expect_refused(with({"--dropout", "1.01"}), {"--dropout"});
+  expect_refused(with({"--what"}), {"--what"});
+  expect_refused(with({"--resume", output}), {"--resume"});
+}
+
+TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
+  fs::create_directory(path("kept"));
+  std::ofstream(path("kept/notes.txt")) << "mine";
+  expect_refused({"room", "-o", path("kept")}, {"--output", "is not empty", "--force"});
+  std::ofstream(path("file")) << "mine";
+  expect_refused({"room", "-o", path("file")}, {"--output", "is a file"});
+  expect_refused({"room", "-o", path("file/run")}, {"--output"});
+  expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be made"});
+  expect_refused({"room", "-o", ""}, {"--output"});
+  expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
+  expect_refused({"--resume", path("nowhere")}, {"--resume", "holds no run.frontlux"});
+  // With --force all that is not of a run stays.
+  ASSERT_EQ(run({"room", "--max-steps", "0", "-o", path("kept"), "--force"}).code, 0);
+  EXPECT_EQ(content_of(path("kept/notes.txt")), "mine");
+  const std::string bytes = content_of(path("kept/run.frontlux"));
+
+  expect_refused({"--resume", path("kept"), "-o", path("new")}, {"--resume", "-o"});
+  expect_refused({"--resume", path("kept"), "--force"}, {"--resume", "--force"});
+  expect_refused({"--resume", path("kept"), "--team", "uav"}, {"--resume", "--team"});
+  expect_refused({"--resume", path("kept"), "--seed", "1"}, {"--resume", "--seed"});
+  expect_refused({"--resume", path("kept"), "room"}, {"--resume", "WORLD"});
+  expect_refused({"--resume", path("kept"), "--max-steps", "x"}, {"--max-steps"});
+
+  const auto expect_refused_recording = [&](const std::string& content, const std::string& part) {
+    std::ofstream(path("kept/run.frontlux"), std::ios::binary) << content;
+    expect_refused({"--resume", path("kept")}, {"--resume", "run.frontlux", part});
+  };
+  const std::size_t version = bytes.find('\n') - 1;
+  expect_refused_recording(std::string(bytes).replace(version, 1, "7"), "format 7");
+  expect_refused_recording("# Octomap OcTree file\n", "is not a recording");
+  expect_refused_recording("", "is not a recording");
+  expect_refused_recording(bytes.substr(0, version + 30), "before the run began");
+  std::string flipped = bytes;
+  flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);
+  expect_refused_recording(flipped, "damaged");
+}
+
+// A folder in which this user may not write; root may everywhere, so the command runs as nobody then.
+TEST_F(ExploreCommand, RefusesAFolderThatMayNotBeWritten) {
+  fs::create_directory(path("locked"));
+  fs::permissions(path("locked"), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                                      fs::perms::others_exec);
+  fs::create_directory(path("open"));
+  fs::permissions(path("open"), fs::perms::all);
+  for (const char* name : {"locked", "locked/inner"}) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      static_cast<void>(std::freopen(path("open/err").c_str(), "w", stderr));
+      if (geteuid() == 0 && setuid(65534) != 0) _exit(77);
+      const std::string output = path(name);
+      execl(FRONTLUX_COMMAND, FRONTLUX_COMMAND, "explore", "room", "--max-steps", "0", "-o", output.c_str(),
+            static_cast<char*>(nullptr));
+      _exit(77);
+    }
+    const int status = status_of(child);
+    ASSERT_TRUE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "cannot be another user here";
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    EXPECT_NE(content_of(path("open/err")).find("--output: " + path(name)), std::string::npos)
+        << content_of(path("open/err"));
+    EXPECT_TRUE(fs::is_empty(path("locked")));
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner

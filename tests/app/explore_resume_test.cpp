@@ -1,0 +1,198 @@
+// `frontlux explore` comes to the same however it is run: going on after every kind of end.
+
+#include "app/explore_command.hpp"
+
+#include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Answer;
+using test::content_of;
+using test::ExploreCommand;
+using test::kSteps;
+using test::timeless;
+
+TEST_F(ExploreCommand, ComesToTheSameHoweverItIsRun) {
+  expect_explored("one", {"--threads", "1"});
+  expect_explored("two", {"--threads", "2"});
+  expect_same_runs("one", "two");
+  expect_explored("grid", {"--caster", "grid"});
+  expect_same_runs("one", "grid");
+  // Stopped at a limit, and with another limit gone on.
+  ASSERT_EQ(run({"room", "--max-steps", "2", "-o", path("cut")}).code, 0);
+  EXPECT_EQ(json_in("cut").at("steps"), 2);
+  expect_resumed("cut", {"--max-steps", kSteps, "--threads", "1"});
+  expect_same_runs("one", "cut");
+  // Going on at the end changes nothing.
+  expect_resumed("two");
+  expect_same_runs("one", "two");
+  // Another seed is another run.
+  expect_explored("other", {"--seed", "2"});
+  EXPECT_NE(timeless(path("one/steps.csv")), timeless(path("other/steps.csv")));
+  // In a folder that holds a run only if it is to go.
+  EXPECT_EQ(explore("other").code, 2);
+  expect_explored("other", {"--force"});
+  expect_same_runs("one", "other");
+}
+
+TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
+  expect_explored("whole");
+  const std::string bytes = content_of(path("whole/run.frontlux"));
+  for (const std::size_t cut : {bytes.size() - 1, bytes.size() / 2}) {
+    SCOPED_TRACE("after " + std::to_string(cut) + " of " + std::to_string(bytes.size()) + " bytes");
+    fs::remove_all(path("cut"));
+    fs::create_directory(path("cut"));
+    std::ofstream(path("cut/run.frontlux"), std::ios::binary) << bytes.substr(0, cut);
+    expect_resumed("cut");
+    expect_same_runs("whole", "cut");
+  }
+}
+
+// Poles thinner than the gaps between a sensor's rays, which robots only find when their bumpers meet them.
+sim::TriangleMesh with_unseen_poles(sim::TriangleMesh mesh, const Eigen::Vector3d& start) {
+  for (int column = 0; column < 8; ++column)
+    for (int row = 0; row < 8; ++row) {
+      const Eigen::Vector3f foot(0.5F + 1.5F * static_cast<float>(column),
+                                 0.5F + 1.5F * static_cast<float>(row), 0.0F);
+      if ((foot.cast<double>() - start).head<2>().norm() < 3.5) continue;
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Eigen::Vector3f& corner : {Eigen::Vector3f(0, 0, 0), {1e-4F, 0, 0}, {0, 0, 3}})
+        mesh.vertices.push_back(foot + corner);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  return mesh;
+}
+
+TEST_F(ExploreCommand, CountsTheWaysThatWereClosedBeforeItWentOn) {
+  const sim::World room = sim::make_world("room", 1);
+  sim::write_ply(path("poles.ply"), with_unseen_poles(room.mesh, *room.start));
+  std::ostringstream at;
+  at << room.start->x() << ',' << room.start->y() << ',' << room.start->z();
+  for (const auto& [output, steps] : {std::pair("whole", "4"), std::pair("cut", "2")}) {
+    const Answer answer = run({path("poles.ply"), "--start", at.str(), "--ground", "off", "--max-steps",
+                               steps, "--report", "off", "-o", path(output)});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+  }
+  const std::uint64_t before = json_in("cut").at("held_back");
+  EXPECT_GT(before, 0U);
+  EXPECT_GT(json_in("whole").at("held_back"), before);
+  expect_resumed("cut", {"--max-steps", "4"});
+  expect_same_runs("whole", "cut");
+}
+
+// A world that is large enough to be caught in the middle of.
+TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
+  const std::vector<std::string> words = {"storage", "--max-steps", "6", "--report", "off", "-o"};
+  const auto to = [&](const std::string& output) {
+    auto all = words;
+    all.push_back(path(output));
+    return all;
+  };
+  ASSERT_EQ(run(to("whole")).code, 0);
+
+  pid_t child = start_and_wait(to("killed"), 2);
+  ASSERT_GT(child, 0);
+  kill(child, SIGKILL);
+  int status = status_of(child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status << content_of(path("err"));
+  EXPECT_FALSE(fs::exists(path("killed/run.json")));
+  const std::size_t recorded = read_recording(path("killed/run.frontlux")).steps.size();
+  EXPECT_GE(recorded, 3U);  // steps 0 to 2 are told of, so they are kept
+  EXPECT_LT(recorded, 7U);
+  expect_resumed("killed");
+  expect_same_runs("whole", "killed");
+
+  child = start_and_wait(to("stopped"), 1);
+  ASSERT_GT(child, 0);
+  kill(child, SIGINT);
+  status = status_of(child);
+  ASSERT_TRUE(WIFEXITED(status)) << status;
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_NE(content_of(path("err")).find("frontlux explore --resume " + path("stopped") + " goes on"),
+            std::string::npos)
+      << content_of(path("err"));
+  const nlohmann::json json = json_in("stopped");
+  EXPECT_EQ(json.at("end"), "stopped");
+  EXPECT_GE(json.at("steps"), 1);
+  EXPECT_LT(json.at("steps"), 6);
+  EXPECT_EQ(read_recording(path("stopped/run.frontlux")).end, "stopped");
+  EXPECT_TRUE(fs::exists(path("stopped/map.ot")));
+  expect_resumed("stopped");
+  expect_same_runs("whole", "stopped");
+}
+
+TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
+  expect_explored("whole");
+  const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole/run.frontlux")));
+  // A limit on the size of files, told by the signal's absence as an error of the write.
+  for (const std::uint64_t part : {2, 5}) {
+    const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(size * part / 6 / 512) + ";";
+    fs::remove_all(path("full"));
+    const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    for (const std::string& words : {path("full/run.frontlux") + ": cannot be written",
+                                     "frontlux explore --resume " + path("full") + " goes on"})
+      EXPECT_NE(answer.err.find(words), std::string::npos) << words << " in " << answer.err;
+    const std::size_t kept = read_recording(path("full/run.frontlux")).steps.size();
+    EXPECT_GE(kept, 1U);
+    EXPECT_LT(kept, 5U);
+    expect_resumed("full");
+    expect_same_runs("whole", "full");
+  }
+  // A table on a full device.
+  for (const char* table : {"steps.csv", "paths.csv"}) {
+    fs::remove(path("whole") + "/" + table);
+    fs::create_symlink("/dev/full", path("whole") + "/" + table);
+    const Answer answer = run({"--resume", path("whole")});
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    EXPECT_NE(answer.err.find(std::string(table) + ": cannot be written: No space left on device"),
+              std::string::npos)
+        << answer.err;
+    fs::remove(path("whole") + "/" + table);
+  }
+  expect_resumed("whole");
+  expect_same_runs("whole", "full");
+}
+
+// A run goes on only in the world that it is of.
+TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
+  const auto world = [&](const char* seed) {
+    return test::run_frontlux({"world", "room", "--seed", seed, "-o", path("room.ply")}, folder_);
+  };
+  ASSERT_EQ(world("1").code, 0);
+  const Eigen::Vector3d start = *sim::make_world("room", 1).start;
+  std::ostringstream at;
+  at << start.x() << ',' << start.y() << ',' << start.z();
+  const Answer answer =
+      run({path("room.ply"), "--start", at.str(), "--ground", "off", "--max-steps", "1", "-o", path("run")});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  ASSERT_EQ(world("2").code, 0);
+  expect_refused({"--resume", path("run"), "--max-steps", "2"},
+                 {"--resume: ", "is not what room.ply is now"});
+  ASSERT_EQ(world("1").code, 0);
+  expect_resumed("run", {"--max-steps", "2"});
+  // One that looks the same until a robot finds out.
+  Recording recording = read_recording(path("run/run.frontlux"));
+  recording.steps.at(2).step.robots.at(1).changed.pop_back();
+  RecordingWriter writer(path("run/run.frontlux"), recording.head);
+  for (const RecordedStep& step : recording.steps) writer.write(step);
+  writer.write_end("stopped");
+  expect_refused({"--resume", path("run")}, {"--resume: in step 2 the robots see another world"});
+}
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,127 @@
+#include "support/command_test.hpp"
+#include "support/quiet_octomap.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/planner/mapping.hpp>
+#include <frontlux/io/recorded_scan.hpp>
+
+#include <gtest/gtest.h>
+#include <octomap/ScanGraph.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Answer;
+using test::content_of;
+
+using octomap::OcTree;
+
+class MapCommandTest : public test::CommandTest {
+ protected:
+  MapCommandTest() : CommandTest("map") {
+    std::filesystem::create_directory(folder_ / "clouds");
+    test::Random random(31);
+    std::ofstream poses(path("clouds/poses.csv"));
+    poses << "file,x,y,z,yaw\n";
+    for (int node = 0; node < 3; ++node) {
+      auto* cloud = new octomap::Pointcloud;  // the graph deletes it
+      std::ostringstream text;
+      text.precision(9);
+      for (int i = 0; i < 300; ++i) {
+        const auto along = [&] { return static_cast<float>(random.uniform(-4, 4)); };
+        cloud->push_back(along(), along(), along());
+        text << cloud->back().x() << ' ' << cloud->back().y() << ' ' << cloud->back().z() << '\n';
+      }
+      const float x = 0.5F * static_cast<float>(node) + 0.013F;
+      graph_.addNode(cloud, octomap::pose6d(x, 0.21F, 1.07F, 0, 0, 0));
+      const std::string name = node == 1 ? "b.ply" : node == 0 ? "a.pcd" : "c.pcd";
+      std::ofstream(path("clouds/" + name))
+          << (node == 1
+                  ? "ply\nformat ascii 1.0\nelement vertex 300\nproperty float x\nproperty float y\nproperty "
+                    "float z\nend_header\n"
+                  : "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 300\nHEIGHT 1\nDATA ascii\n")
+          << text.str();
+      poses.precision(9);
+      poses << name << ',' << x << ',' << 0.21F << ',' << 1.07F << ",0\n";
+    }
+    std::ofstream stream(path("scans.graph"), std::ios::binary);
+    graph_.writeBinary(stream);
+  }
+
+  octomap::ScanGraph graph_;
+};
+
+std::shared_ptr<OcTree> tree_in(const std::string& file) {
+  return std::get<std::shared_ptr<OcTree>>(read_octree(file));
+}
+
+TEST_F(MapCommandTest, MapsAGraphAsOctomapDoes) {
+  const Answer answer =
+      run({path("scans.graph"), "-o", path("map.ot"), "--resolution", "0.2", "--max-range", "3.5"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "");
+  EXPECT_NE(answer.out.find("scans        3\npoints       900\n"), std::string::npos) << answer.out;
+  OcTree expected(0.2);
+  for (const auto& scan : read_scan_graph(path("scans.graph"))) {
+    octomap::Pointcloud cloud;
+    for (const auto& p : points_in_world(scan)) cloud.push_back(p.x(), p.y(), p.z());
+    const Eigen::Vector3f at = scan.T_world_sensor.translation().cast<float>();
+    expected.insertPointCloud(cloud, {at.x(), at.y(), at.z()}, 3.5);
+  }
+  EXPECT_TRUE(*tree_in(path("map.ot")) == expected);
+}
+
+TEST_F(MapCommandTest, AFolderGivesTheMapOfTheGraph) {
+  ASSERT_EQ(run({path("scans.graph"), "-o", path("graph.ot"), "--bounds", "-2,-2,0,3,2,2.5"}).code, 0);
+  const Answer answer = run({path("clouds"), "-o", path("folder.ot"), "--bounds=-2,-2,0,3,2,2.5"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(content_of(path("folder.ot")), content_of(path("graph.ot")));
+  const auto known = make_voxel_grid(*tree_in(path("folder.ot"))).known_bounds();
+  ASSERT_TRUE(known.has_value());
+  const KeyBox bounds = voxels_of(Lattice(0.1), {Eigen::Vector3d(-2, -2, 0), Eigen::Vector3d(3, 2, 2.5)});
+  EXPECT_TRUE(bounds.contains(known->min) && bounds.contains(known->max));
+
+  std::filesystem::rename(path("clouds/poses.csv"), path("elsewhere.csv"));
+  ASSERT_EQ(run({path("clouds"), "--poses", path("elsewhere.csv"), "-o", path("folder.bt")}).code, 0);
+  EXPECT_GT(tree_in(path("folder.bt"))->size(), 100U);
+}
+
+TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
+  const std::string graph = path("scans.graph"), map = path("new.bt");
+  expect_refused({path("none.graph"), "-o", map}, "no such file");
+  expect_refused({graph}, "--output");
+  expect_refused({graph, "-o", path("map.pcd")}, "ends in .bt or .ot");
+  expect_refused({graph, "-o", path("no/map.bt")}, "there is no folder");
+  expect_refused({graph, "-o", map, "--resolution", "0"}, "--resolution: 0 m is no length");
+  expect_refused({graph, "-o", map, "--resolution", "nan"}, "not a finite number");
+  expect_refused({graph, "-o", map, "--resolution", "1e-300"}, "is no voxel to map with");
+  expect_refused({graph, "-o", map, "--max-range", "-3"}, "--max-range");
+  expect_refused({graph, "-o", map, "--bounds", "0,0,0,1,1"}, "is not six numbers");
+  expect_refused({graph, "-o", map, "--bounds", "0,0,0,1,1,-1"}, "--bounds: the box");
+  expect_refused({graph, "-o", map, "--bounds", "90,90,90,91,91,91"}, "tells anything within the bounds");
+  expect_refused({graph, "-o", map, "--poses", path("clouds/poses.csv")}, "has its own poses");
+  const auto with_poses = [&](const std::string& table) {
+    std::ofstream(path("bad.csv")) << table;
+    return std::vector<std::string>{path("clouds"), "-o", map, "--poses", path("bad.csv")};
+  };
+  static_cast<void>(with_poses(""));
+  expect_refused(with_poses("a.pcd,0,0,0,0\nb.ply,0,zero,0,0\n"),
+                 path("bad.csv") + ": line 2: 'zero' is no finite number");
+  expect_refused(with_poses("a.pcd,0,0,0,0\nd.ply,0,0,0,0\n"), "d.ply: there is no such file");
+  expect_refused(with_poses("a.pcd,9e9,0,0,0\n"), "a.pcd: its pose lies outside the map's key range");
+  std::filesystem::resize_file(graph, std::filesystem::file_size(graph) - 1);
+  expect_refused({graph, "-o", map}, "scans.graph: ");
+  expect_refused({path(""), "-o", map}, "poses.csv: there is no such file");
+}
+
+}  // namespace
+}  // namespace frontlux::planner

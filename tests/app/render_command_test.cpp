@@ -1,0 +1,210 @@
+// `frontlux render` from the outside: its files against brute force, and what it refuses.
+
+#include "planner/goal/goal_room.hpp"
+#include "support/command_test.hpp"
+#include "support/quiet_octomap.hpp"
+
+#include <frontlux/octomap.hpp>
+
+#include <gtest/gtest.h>
+#include <octomap/OcTree.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+class RenderCommand : public CommandTest {
+ protected:
+  RenderCommand() : CommandTest("render"), room_(34, 8, 5) {
+    room_.clear(17, 17, 2, 3);
+    octomap::OcTree tree(0.3);
+    for (int x = 0; x < room_.length; ++x)
+      for (int y = 0; y < room_.length; ++y)
+        for (int z = -1; z < room_.height; ++z) {
+          const VoxelKey key = room_.key(x, y, z);
+          const Occupancy state = room_.grid.at(key);
+          if (state != Occupancy::kUnknown)
+            tree.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), state == Occupancy::kOccupied);
+        }
+    std::ofstream map(path("room.bt"), std::ios::binary);
+    tree.writeBinary(map);
+  }
+
+  [[nodiscard]] Answer render(const std::string& robot, const std::string& at, const std::string& output,
+                              const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {path("room.bt"), "--robot", robot, "--at", at, "-o", path(output)};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+
+  void expect_refusal(const Answer& answer, const std::vector<std::string>& parts,
+                      const std::string& output) const {
+    EXPECT_EQ(answer.code, 2) << answer.err;
+    EXPECT_EQ(answer.out, "");
+    EXPECT_EQ(answer.err.find('\n'), answer.err.size() - 1) << answer.err;
+    for (const auto& part : parts) EXPECT_NE(answer.err.find(part), std::string::npos) << part << answer.err;
+    EXPECT_FALSE(std::filesystem::is_regular_file(path(output)));
+  }
+
+  GoalRoom room_;
+};
+
+constexpr const char* kStart = "5.25,5.25,0.75";
+
+std::vector<std::vector<double>> table_of(const std::string& csv) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "key_x,key_y,key_z,x,y,z,distance,gain,standard_error,quality,hits,yaw");
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    rows.emplace_back();
+    while (std::getline(cells, cell, ',')) rows.back().push_back(std::stod(cell));
+    EXPECT_EQ(rows.back().size(), 12U);
+  }
+  return rows;
+}
+
+TEST_F(RenderCommand, TableAgreesWithBruteForce) {
+  const auto caster = make_grid_ray_caster(room_.grid);
+  const planner::Robot robot = planner::ugv();
+  const KeyBox bounds = room_.grid.known_bounds().value();
+  planner::TravelCorridor corridor(robot.travel, room_.grid.lattice(), bounds);
+  corridor.update(room_.grid, {}, room_.key(17, 17, 2));
+  const planner::FrontierSet set(room_.grid, bounds);
+  const std::vector<VoxelKey> frontiers(set.keys().begin(), set.keys().end());
+  const auto share = naive_share(*caster, 0.3, frontiers, corridor.cells(), robot.view);
+  ASSERT_GT(share.size(), 10U);
+
+  std::string first;
+  for (const char* used : {"grid", "embree"}) {
+    const Answer answer =
+        render("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.err, "");
+    const std::string csv = content_of(path("room.csv"));
+    if (first.empty()) first = csv;
+    EXPECT_EQ(csv, first);
+    EXPECT_NE(answer.out.find(std::to_string(frontiers.size()) + ", of which the ugv takes " +
+                              std::to_string(share.size())),
+              std::string::npos)
+        << answer.out;
+  }
+  const auto rows = table_of(first);
+  ASSERT_EQ(rows.size(), corridor.cells().size());
+  double most = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const VoxelKey& cell = corridor.cells()[i];
+    const auto& row = rows[i];
+    EXPECT_EQ(row[0], cell.x);
+    EXPECT_EQ(row[1], cell.y);
+    EXPECT_EQ(row[2], cell.z);
+    EXPECT_NEAR(row[3], room_.grid.lattice().center(cell.x), 1e-6);
+    EXPECT_EQ(row[6], corridor.distance(cell).value());
+    const auto gain = static_cast<double>(naive_seen(*caster, 0.3, cell, share, robot.view).size());
+    EXPECT_EQ(row[7], gain);
+    EXPECT_EQ(row[8], 0.0);
+    // Eq. 1, and less in proportion for what is nearer than 4 m.
+    EXPECT_NEAR(row[9], gain * std::exp(-0.1386 * row[6]) * std::min(1.0, row[6] / 4.0), 1e-9);
+    EXPECT_EQ(row[10], gain);
+    most = std::max(most, gain);
+  }
+  EXPECT_GT(most, 5.0);
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i) word = word << 8 | static_cast<unsigned char>(bytes.at(at + i));
+  return word;
+}
+
+TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
+  for (const std::string mode : {"default", "paper"})
+    for (const std::string robot : {"ugv", "uav"}) {
+      const std::string at = robot == "ugv" ? kStart : "5.25,5.25,1.35";
+      std::string first;
+      for (int i = 0; i < 2; ++i) {
+        const Answer answer = render(robot, at, "room.png", {"--mode", mode});
+        ASSERT_EQ(answer.code, 0) << robot << " " << mode << answer.err;
+        EXPECT_NE(answer.out.find("goal         "), std::string::npos);
+        const std::string png = content_of(path("room.png"));
+        ASSERT_GT(png.size(), 100U);
+        EXPECT_EQ(png.substr(0, 8), std::string("\x89PNG\r\n\x1a\n"));
+        EXPECT_EQ(png.substr(12, 4), "IHDR");
+        EXPECT_GE(big_endian(png, 16), 900U);
+        EXPECT_GE(big_endian(png, 20), 600U);
+        EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+        if (i == 0) first = png;
+        EXPECT_EQ(png, first);
+      }
+    }
+}
+
+TEST_F(RenderCommand, PointsHoldAllCells) {
+  ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.csv").code, 0);
+  ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.ply").code, 0);
+  const auto rows = table_of(content_of(path("room.csv")));
+  const std::string ply = content_of(path("room.ply"));
+  EXPECT_NE(ply.find("element vertex " + std::to_string(rows.size()) + "\n"), std::string::npos);
+  const std::size_t body = ply.find("end_header\n") + 11;
+  constexpr std::size_t kRow = 8 * 4 + 4 + 3;
+  ASSERT_EQ(ply.size() - body, rows.size() * kRow);
+  for (std::size_t i = 0; i < rows.size(); i += 13) {
+    float numbers[8];
+    std::memcpy(numbers, ply.data() + body + i * kRow, sizeof numbers);
+    for (int c = 0; c < 7; ++c)
+      EXPECT_EQ(numbers[c], static_cast<float>(rows[i][static_cast<std::size_t>(3 + c)])) << c;
+    EXPECT_EQ(numbers[7], static_cast<float>(rows[i][11]));
+  }
+}
+
+TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
+  const auto refuse = [&](const std::vector<std::string>& words, const std::vector<std::string>& parts) {
+    expect_refusal(run(words), parts, "x.png");
+  };
+  const std::string map = path("room.bt"), out = path("x.png");
+  refuse({map, "--robot", "ugv", "--at", "nan,0,0", "-o", out}, {"--at", "nan,0,0"});
+  refuse({map, "--robot", "ugv", "--at", "1,2", "-o", out}, {"--at", "1,2"});
+  refuse({map, "--robot", "ugv", "--at", "1e9,0,0", "-o", out}, {"--at", "1e9,0,0", "key range"});
+  refuse({map, "--robot", "boat", "--at", kStart, "-o", out}, {"--robot", "boat"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", path("x.jpg")}, {"--output", "x.jpg", ".png"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", path("no/x.png")}, {"--output", "there is no folder"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--samples", "0"}, {"--samples", "'0'"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--samples", "x"}, {"--samples", "'x'"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--seed", "-1"}, {"--seed", "'-1'"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--mode", "fast"}, {"--mode", "fast"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--caster", "gpu"}, {"--caster", "gpu"});
+  refuse({map, "--robot", "ugv", "--at", kStart, "-o", out, "--floor", "1"}, {"--floor"});
+  refuse({map, "--robot", "uav", "--at", kStart, "-o", out, "--floor", "inf"}, {"--floor", "inf"});
+  refuse({map, "--robot", "uav", "--at", "5.25,5.25,0.45", "-o", out}, {"--at", "below its minimum height"});
+  refuse({map, "--robot", "ugv", "--at", "5.25,5.25,-0.15", "-o", out}, {"--at", "occupied voxel"});
+  refuse({map, "--robot", "ugv", "--at", "50,5,0.75", "-o", out}, {"--at", "outside the bounds"});
+  refuse({path("none.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"none.bt"});
+  std::ofstream(path("broken.bt")) << "# Octomap OcTree binary file\n";
+  refuse({path("broken.bt"), "--robot", "ugv", "--at", kStart, "-o", out}, {"broken.bt"});
+  octomap::OcTree full(0.3);
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = -1; z < 6; ++z) {
+        const VoxelKey key = room_.key(x, y, z);
+        full.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), z < 0);
+      }
+  {
+    std::ofstream stream(path("full.bt"), std::ios::binary);
+    full.writeBinary(stream);
+  }
+  refuse({path("full.bt"), "--robot", "ugv", "--at", "1.05,1.05,0.75", "-o", out},
+         {"full.bt", "nothing is left to see"});
+}
+
+}  // namespace
+}  // namespace frontlux::test

@@ -1,0 +1,205 @@
+// The table of open voxels against the grid, and the walk of packets through it, on every instruction set
+// that this processor has, against the walk of one ray.
+
+#include "packet/packet_walk.hpp"
+
+#include "packet/open_voxels.hpp"
+#include "support/maps.hpp"
+#include "support/random.hpp"
+#include "support/ray_samples.hpp"
+#include "packet/table_query.hpp"
+#include "walk/walk.hpp"
+
+#include <frontlux/octomap.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+using detail::OpenVoxels;
+using detail::TableQuery;
+
+constexpr UnknownPolicy kPolicies[] = {UnknownPolicy::kBlock, UnknownPolicy::kPass};
+
+bool same(const Hit& a, const Hit& b) {
+  return a.stop == b.stop && a.state == b.state && a.key == b.key &&
+         std::memcmp(&a.end, &b.end, sizeof a.end) == 0 &&
+         std::memcmp(&a.entry, &b.entry, sizeof a.entry) == 0 && a.distance == b.distance;
+}
+
+// 40 x 40 x 40 voxels of noise in a corner of the key range.
+VoxelGrid corner_grid(int corner, std::uint64_t seed) {
+  VoxelGrid grid(0.25);
+  Random random(seed);
+  const auto key = [&](int i) { return static_cast<std::uint16_t>(corner == 0 ? i : 65535 - i); };
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y)
+      for (int z = 0; z < 40; ++z)
+        grid.set({key(x), key(y), key(z)}, random.one_in(30)   ? Occupancy::kOccupied
+                                           : random.one_in(30) ? Occupancy::kUnknown
+                                                               : Occupancy::kFree);
+  return grid;
+}
+
+std::vector<VoxelGrid> grids() {
+  std::vector<VoxelGrid> grids;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    grids.push_back(make_voxel_grid(*make_random_tree(seed, 0.3)));  // as large as the key range: no table
+    grids.push_back(make_voxel_grid(*make_noise_tree(seed, 0.3, 24)));
+  }
+  grids.push_back(corner_grid(0, 5));
+  grids.push_back(corner_grid(65535, 6));
+  return grids;
+}
+
+TEST(OpenVoxels, EqualTheGridAndAreClosedAroundIt) {
+  for (const VoxelGrid& grid : grids())
+    for (const UnknownPolicy unknown : kPolicies) {
+      const OpenVoxels table(grid, unknown);
+      if (table.empty()) continue;
+      const KeyBox known = *grid.known_bounds();
+      std::size_t open = 0;
+      const auto low = table.layout().corner;
+      for (int z = low[2]; z < (known.max.z | 7) + 9; ++z)
+        for (int y = low[1]; y < (known.max.y | 7) + 9; ++y)
+          for (int x = low[0]; x < (known.max.x | 7) + 9; ++x) {
+            // The border may lie outside the key range: a key would wrap around, an index must not.
+            const VoxelKey key = detail::as_key({x, y, z});
+            const bool is_key = detail::as_array(key) == std::array<int, 3>{x, y, z};
+            if (!is_key) continue;
+            const std::uint32_t index = table.layout().index(key);
+            ASSERT_EQ(table.layout().key(index), (std::array<int, 3>{x, y, z}));
+            const bool expected = table.contains(key) && !detail::blocks(grid.at(key), unknown);
+            ASSERT_EQ(table.open(index), expected);
+            open += expected ? 1 : 0;
+          }
+      EXPECT_GT(open, std::size_t{1000});
+    }
+}
+
+TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {
+  VoxelGrid grid(0.1);
+  EXPECT_TRUE(OpenVoxels(grid, UnknownPolicy::kBlock).empty());
+  grid.set({1, 1, 1}, Occupancy::kFree);
+  EXPECT_FALSE(OpenVoxels(grid, UnknownPolicy::kBlock).empty());
+  grid.set({60000, 60000, 60000}, Occupancy::kFree);
+  EXPECT_TRUE(OpenVoxels(grid, UnknownPolicy::kPass).empty());
+  EXPECT_FALSE(OpenVoxels(grid, UnknownPolicy::kPass).contains({1, 1, 1}));
+}
+
+TEST(PacketWalk, SeesWhatTheWalkSees) {
+  for (const detail::PacketWalk& walk : detail::packet_walks()) {
+    SCOPED_TRACE(walk.instructions);
+    for (const VoxelGrid& grid : grids())
+      for (const UnknownPolicy unknown : kPolicies) {
+        const OpenVoxels table(grid, unknown);
+        const TableQuery query(grid, table, unknown, &walk);
+        const auto segments = adversarial_key_segments(grid, 20'000, 7);
+        std::size_t answered = 0, seen = 0;
+        // Batches of all sizes, so that packets start and end full and nearly empty.
+        for (std::size_t begin = 0, size = 1; begin < segments.size(); begin += size, size = size % 256 + 1) {
+          const auto some = std::span(segments).subspan(begin, std::min(size, segments.size() - begin));
+          std::vector<std::uint8_t> visible(some.size(), 77);
+          std::vector<std::uint16_t> left(some.size());
+          left.resize(query.visible(some, visible, left));
+          for (std::size_t i = 0; i < some.size(); ++i) {
+            if (std::binary_search(left.begin(), left.end(), i)) continue;
+            ASSERT_EQ(visible[i], detail::walk_visible(grid, some[i], unknown) ? 1 : 0);
+            ++answered;
+            seen += visible[i];
+          }
+        }
+        EXPECT_EQ(answered == 0, table.empty());
+        EXPECT_TRUE(table.empty() || answered > segments.size() / 4) << answered;
+        EXPECT_TRUE(table.empty() || seen > segments.size() / 100) << seen;
+      }
+  }
+}
+
+TEST(PacketWalk, StopsWhereTheWalkStops) {
+  for (const detail::PacketWalk& walk : detail::packet_walks()) {
+    SCOPED_TRACE(walk.instructions);
+    for (const VoxelGrid& grid : grids())
+      for (const UnknownPolicy unknown : kPolicies) {
+        const OpenVoxels table(grid, unknown);
+        const TableQuery query(grid, table, unknown, &walk);
+        const auto rays = adversarial_rays(grid, 20'000, 8);
+        std::array<std::size_t, 5> answered{};
+        for (std::size_t begin = 0, size = 1; begin < rays.size(); begin += size, size = size % 256 + 1) {
+          const auto some = std::span(rays).subspan(begin, std::min(size, rays.size() - begin));
+          std::vector<Hit> hits(some.size());
+          std::vector<std::uint16_t> left(some.size());
+          left.resize(query.cast(some, hits, left));
+          std::sort(left.begin(), left.end());
+          for (std::size_t i = 0; i < some.size(); ++i) {
+            if (std::binary_search(left.begin(), left.end(), i)) continue;
+            ASSERT_TRUE(same(hits[i], detail::walk_ray(grid, some[i], unknown)));
+            ++answered[static_cast<std::size_t>(hits[i].stop)];
+          }
+        }
+        const auto count = [&](RayStop stop) { return answered[static_cast<std::size_t>(stop)]; };
+        EXPECT_TRUE(table.empty() || count(RayStop::kOccupied) > rays.size() / 100);
+        EXPECT_TRUE(table.empty() || count(RayStop::kOutOfRange) > rays.size() / 1000);
+      }
+  }
+}
+
+// The longest offsets that fit into 32 bits of time, and those just beyond, which are left.
+TEST(PacketWalk, HoldsUpToItsLongestOffset) {
+  // 1008 voxels a side: with its border the largest table there is.
+  VoxelGrid grid(0.1);
+  constexpr int kEdge = 1008, kLow = 32768;
+  const auto key = [](int i) { return static_cast<std::uint16_t>(kLow + i); };
+  grid.fill({{key(0), key(0), key(0)}, 10}, Occupancy::kFree);
+  for (int i = 0; i < 1024; i += 16)
+    for (int j = 0; j < 1024; j += 16) {
+      grid.fill({{key(kEdge), key(i), key(j)}, 4}, Occupancy::kUnknown);
+      grid.fill({{key(i), key(kEdge), key(j)}, 4}, Occupancy::kUnknown);
+      grid.fill({{key(i), key(j), key(kEdge)}, 4}, Occupancy::kUnknown);
+    }
+  Random random(3);
+  for (int i = 0; i < 300'000; ++i)
+    grid.set({key(random.below(kEdge)), key(random.below(kEdge)), key(random.below(kEdge))},
+             Occupancy::kOccupied);
+  const OpenVoxels spotted(grid, UnknownPolicy::kBlock);
+  ASSERT_FALSE(spotted.empty());
+  for (const detail::PacketWalk& walk : detail::packet_walks()) {
+    const TableQuery query(grid, spotted, UnknownPolicy::kBlock, &walk);
+    std::size_t seen = 0, left_over = 0;
+    for (int i = 0; i < 2'000; ++i) {
+      const auto near = [&] { return random.below(12); };
+      KeySegment s{{key(near()), key(near()), key(near())},
+                   {key(kEdge - 1 - near()), key(kEdge - 1 - near()), key(kEdge - 1 - near())}};
+      if (random.one_in(2)) std::swap(s.from, s.to);
+      std::uint8_t visible = 77;
+      std::uint16_t left = 0;
+      if (query.visible({&s, 1}, {&visible, 1}, {&left, 1}) != 0) {
+        ++left_over;
+        continue;
+      }
+      ASSERT_EQ(visible, detail::walk_visible(grid, s, UnknownPolicy::kBlock) ? 1 : 0);
+      seen += visible;
+    }
+    EXPECT_GT(seen, 20U);
+    EXPECT_GT(left_over, 20U);
+  }
+}
+
+TEST(PacketWalk, WithoutInstructionsLeavesEverything) {
+  const VoxelGrid grid = corner_grid(0, 1);
+  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  const TableQuery query(grid, table, UnknownPolicy::kBlock, nullptr);
+  const auto rays = adversarial_rays(grid, 10, 1);
+  std::vector<Hit> hits(10);
+  std::vector<std::uint16_t> left(10);
+  EXPECT_EQ(query.cast(rays, hits, left), 10U);
+  EXPECT_EQ(left[9], 9);
+}
+
+}  // namespace
+}  // namespace frontlux::test

@@ -1,0 +1,387 @@
+// The exact renderer against brute force: every target asked one by one, with the field of view's own test
+// and the walk over the grid. Then against itself: on every instruction set, on other threads, kept and from
+// scratch.
+
+#include "view/exact/exact_render.hpp"
+#include "support/random.hpp"
+#include "walk/walk.hpp"
+
+#include <frontlux/view_quality.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace frontlux::test {
+namespace {
+
+using Renderer = ViewQualityOptions::Renderer;
+using Sampling = ViewQualityOptions::Sampling;
+using Shape = FieldOfView::Shape;
+
+constexpr double kDegree = std::numbers::pi / 180, kResolution = 0.25;
+
+std::uint16_t key(int k) { return static_cast<std::uint16_t>(k); }
+
+struct Case {
+  std::string name;
+  VoxelGrid grid{kResolution};
+  FieldOfView view;
+  std::vector<VoxelKey> viewpoints, targets;
+};
+
+FieldOfView random_view(Random& random) {
+  const auto angle = [&] { return random.uniform(10, 170) * kDegree; };
+  return {static_cast<Shape>(random.below(3)), angle(), angle(), random.uniform(0.3, 8.5) * kResolution};
+}
+
+// A box of noise somewhere in the key range, its borders included, with viewpoints and targets of all kinds
+// in and around it.
+Case random_case(std::uint64_t seed) {
+  Random random(seed);
+  Case some;
+  some.name = "seed " + std::to_string(seed);
+  some.view = random_view(random);
+  std::array<int, 3> low{}, size{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    size[a] = 1 + random.below(a == 2 ? 9 : 44);
+    const int places[] = {0, Lattice::kKeysPerAxis - size[a], 32768 - size[a] / 2, 40000 + random.below(64)};
+    low[a] = places[random.below(4)];
+  }
+  const int share = 1 + random.below(12);  // of free voxels 1 - 1 / share
+  const int stride[] = {1, 2, 3, 4, 8};
+  const int sx = stride[random.below(5)], sy = stride[random.below(5)], sz = stride[random.below(3)];
+  const int one_in = 1 + random.below(6), targets_one_in = 1 + random.below(20);
+  const bool any_target = random.one_in(3);  // also free and occupied ones
+  for (int x = 0; x < size[0]; ++x)
+    for (int y = 0; y < size[1]; ++y)
+      for (int z = 0; z < size[2]; ++z) {
+        const VoxelKey k{key(low[0] + x), key(low[1] + y), key(low[2] + z)};
+        const Occupancy state = !random.one_in(share) ? Occupancy::kFree
+                                : random.one_in(2)    ? Occupancy::kOccupied
+                                                      : Occupancy::kUnknown;
+        some.grid.set(k, state);
+        if (x % sx == 0 && y % sy == 0 && z % sz == 0 && random.one_in(one_in)) some.viewpoints.push_back(k);
+        if ((any_target || state == Occupancy::kUnknown) && random.one_in(targets_one_in))
+          some.targets.push_back(k);
+      }
+  for (std::size_t i = 0; i < some.viewpoints.size(); i += 7) some.viewpoints.push_back(some.viewpoints[i]);
+  for (std::size_t i = 0; i < some.targets.size(); i += 5) some.targets.push_back(some.targets[i]);
+  const auto shuffle = [&](std::vector<VoxelKey>& keys) {
+    for (std::size_t i = keys.size(); i > 1; --i)
+      std::swap(keys[i - 1], keys[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+  };
+  shuffle(some.viewpoints);
+  shuffle(some.targets);
+  return some;
+}
+
+struct Truth {
+  std::vector<ViewQuality> values;
+  std::vector<std::uint32_t> bins;
+};
+
+Truth brute_force(const Case& some, int bins) {
+  Truth truth;
+  truth.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
+  const std::set<VoxelKey> targets(some.targets.begin(), some.targets.end());
+  for (std::size_t i = 0; i < some.viewpoints.size(); ++i) {
+    const VoxelKey& from = some.viewpoints[i];
+    ViewQuality value;
+    for (const VoxelKey& to : targets) {
+      const int dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
+      if (!some.view.contains_at_some_yaw(Eigen::Vector3d(dx, dy, dz) * kResolution)) continue;
+      ++value.population;
+      if (!detail::walk_visible(some.grid, KeySegment{from, to}, UnknownPolicy::kBlock)) continue;
+      ++value.hits;
+      if (bins == 0) continue;
+      double degrees = std::atan2(dy, dx) / kDegree;
+      if (degrees < 0) degrees += 360;
+      // Axes and diagonals lie on borders of bins, exactly.
+      ++truth.bins[i * static_cast<std::size_t>(bins) +
+                   static_cast<std::size_t>(degrees * bins / 360 + 1e-9) % static_cast<std::size_t>(bins)];
+    }
+    value.drawn = value.population;
+    value.gain = value.hits;
+    truth.values.push_back(value);
+  }
+  return truth;
+}
+
+// By walks alone, however few the viewpoints.
+Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
+  const detail::ViewReach reach(some.view, kResolution, bins);
+  const detail::TargetIndex targets(some.targets);
+  detail::RayTries trees;
+  Truth mine;
+  mine.values.resize(some.viewpoints.size());
+  mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
+  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, bins, {1, 1}},
+                                           detail::sort_viewpoints(some.viewpoints), mine.values, mine.bins);
+  EXPECT_EQ(left.size(), 0U);
+  return mine;
+}
+
+ViewQualityOptions exact(int bins) { return {.renderer = Renderer::kExact, .azimuth_bins = bins}; }
+
+void expect_equal(const Truth& mine, const Truth& truth) {
+  for (std::size_t i = 0; i < truth.values.size(); ++i)
+    ASSERT_EQ(mine.values[i], truth.values[i])
+        << i << ": " << mine.values[i].hits << " of " << mine.values[i].population << ", not "
+        << truth.values[i].hits << " of " << truth.values[i].population;
+  ASSERT_EQ(mine.bins, truth.bins);
+}
+
+void expect_equal(const ViewQualityImage& image, const Truth& truth) {
+  ASSERT_EQ(image.size(), truth.values.size());
+  const auto bins = static_cast<std::size_t>(image.options().azimuth_bins);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    ASSERT_EQ(image.values()[i], truth.values[i])
+        << i << ": " << image.values()[i].hits << " of " << image.values()[i].population << ", not "
+        << truth.values[i].hits << " of " << truth.values[i].population;
+    ASSERT_TRUE(std::ranges::equal(image.bin_hits(i), std::span(truth.bins).subspan(i * bins, bins))) << i;
+  }
+}
+
+void expect_equal(const ViewQualityImage& a, const ViewQualityImage& b) {
+  ASSERT_TRUE(std::ranges::equal(a.viewpoints(), b.viewpoints()));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a.values()[i], b.values()[i]) << i;
+    ASSERT_TRUE(std::ranges::equal(a.bin_hits(i), b.bin_hits(i))) << i;
+  }
+}
+
+TEST(ExactViewQuality, IsBruteForcesOnRandomMaps) {
+  std::uint64_t seen = 0, hidden = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Case some = random_case(seed);
+    SCOPED_TRACE(some.name);
+    const int bins = std::array{0, 1, 7, 36}[seed % 4];
+    const Truth truth = brute_force(some, bins);
+    const auto caster = make_grid_ray_caster(some.grid);
+    const auto image = render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets,
+                                           some.view, exact(bins));
+    expect_equal(image, truth);
+    expect_equal(walk_all(some, bins, detail::trie_walks().front()), truth);
+    if (HasFatalFailure()) return;
+    for (const ViewQuality& value : truth.values) {
+      seen += value.hits;
+      hidden += value.population - value.hits;
+    }
+  }
+  EXPECT_GT(seen, 100'000U);
+  EXPECT_GT(hidden, 100'000U);
+}
+
+TEST(ExactViewQuality, IsTheSameOnEveryInstructionSet) {
+  ASSERT_FALSE(detail::trie_walks().empty());
+  EXPECT_STREQ(detail::trie_walks().back().instructions, "none");
+  for (std::uint64_t seed = 100; seed < 130; ++seed) {
+    const Case some = random_case(seed);
+    const int bins = seed % 2 == 0 ? 0 : 12;
+    const Truth truth = brute_force(some, bins);
+    for (const detail::TrieWalk& walk : detail::trie_walks()) {
+      SCOPED_TRACE(some.name + ", instructions " + walk.instructions);
+      expect_equal(walk_all(some, bins, walk), truth);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(ExactViewQuality, IsWhatRaysToAllTargetsSay) {
+  for (std::uint64_t seed = 200; seed < 220; ++seed) {
+    Case some = random_case(seed);
+    some.view.max_range = 15 * kResolution;
+    SCOPED_TRACE(some.name);
+    for (const auto& caster : {make_grid_ray_caster(some.grid), make_embree_ray_caster(some.grid)}) {
+      ViewQualityOptions options = exact(36);
+      // What is drawn, and how, means nothing.
+      options.samples = 3;
+      options.sampling = Sampling::kBuckets;
+      const auto render = [&] {
+        return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
+                                   options);
+      };
+      const auto image = render();
+      EXPECT_EQ(image.options().samples, 3);
+      options.renderer = Renderer::kRays;
+      options.sampling = Sampling::kFeasible;
+      options.samples = ViewQualityOptions::kAll;
+      expect_equal(image, render());
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(ExactViewQuality, SeesFromCornerToCornerOfTheKeyRange) {
+  VoxelGrid grid(kResolution);
+  grid.fill({{0, 0, 0}, 16}, Occupancy::kFree);
+  std::vector<VoxelKey> corners, neighbours;
+  for (const int x : {0, 65535})
+    for (const int y : {0, 65535})
+      for (const int z : {0, 65535}) {
+        corners.push_back({key(x), key(y), key(z)});
+        neighbours.push_back({key(x == 0 ? 4 : 65531), key(y == 0 ? 3 : 65532), key(z)});
+      }
+  Case some{"corners", grid, {Shape::kSpinning, 0, 80 * kDegree, 6 * kResolution}, corners, neighbours};
+  const auto caster = make_grid_ray_caster(grid);
+  const auto image = render_view_quality(*caster, grid.lattice(), corners, neighbours, some.view, exact(8));
+  const Truth truth = brute_force(some, 8);
+  expect_equal(image, truth);
+  expect_equal(walk_all(some, 8, detail::trie_walks().front()), truth);
+  for (const ViewQuality& value : image.values()) EXPECT_EQ(value.hits, 1U);
+}
+
+TEST(ExactViewQuality, OfNothingIsNothing) {
+  const Case some = random_case(7);
+  const auto caster = make_grid_ray_caster(some.grid);
+  const Lattice& lattice = some.grid.lattice();
+  EXPECT_EQ(render_view_quality(*caster, lattice, {}, some.targets, some.view, exact(4)).size(), 0U);
+  const auto blind = render_view_quality(*caster, lattice, some.viewpoints, {}, some.view, exact(4));
+  ASSERT_EQ(blind.size(), some.viewpoints.size());
+  for (std::size_t i = 0; i < blind.size(); ++i) {
+    EXPECT_EQ(blind.values()[i], ViewQuality{});
+    EXPECT_EQ(std::ranges::count(blind.bin_hits(i), 0U), 4);
+  }
+  // A range below one voxel sees nothing.
+  FieldOfView narrow = some.view;
+  narrow.max_range = 0.9 * kResolution;
+  const auto near = render_view_quality(*caster, lattice, some.viewpoints, some.targets, narrow, exact(0));
+  for (const ViewQuality& value : near.values()) EXPECT_EQ(value, ViewQuality{});
+  const VoxelGrid unknown(kResolution);
+  const auto dark = render_view_quality(*make_grid_ray_caster(unknown), lattice, some.viewpoints,
+                                        some.targets, some.view, exact(4));
+  const Case in_the_dark{"", unknown, some.view, some.viewpoints, some.targets};
+  expect_equal(dark, brute_force(in_the_dark, 4));
+  expect_equal(walk_all(in_the_dark, 4, detail::trie_walks().front()), brute_force(in_the_dark, 4));
+  expect_equal(walk_all({"", unknown, some.view, {}, some.targets}, 4, detail::trie_walks().front()), {});
+  expect_equal(walk_all({"", some.grid, some.view, some.viewpoints, {}}, 4, detail::trie_walks().front()),
+               brute_force({"", some.grid, some.view, some.viewpoints, {}}, 4));
+}
+
+// A hall with pillars and some voxels that were never seen, large enough for walks.
+Case hall(std::uint64_t seed, int stride) {
+  Random random(seed);
+  Case some{
+      "hall", VoxelGrid(kResolution), {Shape::kPyramid, 90 * kDegree, 72 * kDegree, 7 * kResolution}, {}, {}};
+  for (int x = 0; x < 96; ++x)
+    for (int y = 0; y < 80; ++y)
+      for (int z = 0; z < 10; ++z) {
+        const VoxelKey k{key(32700 + x), key(32740 + y), key(32768 + z)};
+        const bool pillar = (x / 3 + 5 * (y / 4)) % 11 == 0;
+        const bool unseen = !pillar && random.one_in(20);
+        some.grid.set(k, pillar ? Occupancy::kOccupied : unseen ? Occupancy::kUnknown : Occupancy::kFree);
+        if (unseen) some.targets.push_back(k);
+        if (!pillar && !unseen && x % stride == 0 && y % stride == 0 && z % stride == 0)
+          some.viewpoints.push_back(k);
+      }
+  return some;
+}
+
+// Edits of a map: voxels of all states, targets that come and go, viewpoints likewise.
+TEST(ExactViewQuality, FollowsChangesAsIfRenderedAnew) {
+  for (const int bins : {0, 36}) {
+    Case some = hall(3, bins == 0 ? 1 : 2);
+    ASSERT_GT(some.viewpoints.size(), 4000U);
+    Random random(5);
+    const auto caster = make_embree_ray_caster(some.grid);
+    ViewQualityImage followed(some.grid.lattice(), some.view, exact(bins));
+    followed.render(*caster, some.viewpoints, some.targets);
+    std::size_t rendered = 0, all = 0;
+    for (int step = 0; step < 16; ++step) {
+      const VoxelGrid before = some.grid;
+      const auto near =
+          some.viewpoints[static_cast<std::size_t>(random.below(static_cast<int>(some.viewpoints.size())))];
+      for (int i = random.below(40); i > 0; --i) {
+        const auto off = [&](std::uint16_t k) { return key(k + random.below(7) - 3); };
+        const VoxelKey k{off(near.x), off(near.y), off(near.z)};
+        some.grid.set(k, static_cast<Occupancy>(random.below(3)));
+        if (random.one_in(2)) some.targets.push_back(k);
+      }
+      if (random.one_in(3)) some.targets.erase(some.targets.begin() + random.below(9));
+      if (random.one_in(3)) some.viewpoints.erase(some.viewpoints.begin() + random.below(9));
+      if (random.one_in(3)) some.viewpoints.push_back({key(near.x ^ 1), near.y, near.z});
+      std::vector<Block> changed;
+      for_each_change(before, some.grid, [&](const Block& block) { changed.push_back(block); });
+      caster->update(some.grid);
+      rendered += followed.update(*caster, some.viewpoints, some.targets, changed);
+      all += some.viewpoints.size();
+      const auto render = [&](const ViewQualityOptions& options) {
+        return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
+                                   options);
+      };
+      expect_equal(followed, render(exact(bins)));
+      expect_equal(followed, render({.samples = ViewQualityOptions::kAll, .azimuth_bins = bins}));
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(rendered, 0U);
+    EXPECT_LT(rendered, all / 2);
+  }
+}
+
+TEST(ExactViewQuality, DoesNotDependOnThreads) {
+  for (const int stride : {1, 2}) {
+    const Case some = hall(4, stride);
+    const auto caster = make_grid_ray_caster(some.grid);
+    const auto render = [&](int threads) {
+      tbb::task_arena arena(threads);
+      return arena.execute([&] {
+        return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
+                                   exact(36));
+      });
+    };
+    expect_equal(render(1), render(2));
+  }
+}
+
+// Of viewpoints without neighbours, and of few, nothing is walked for.
+TEST(ExactViewQuality, LeavesToRaysWhatTheyDoSooner) {
+  Case some = hall(5, 2);
+  const VoxelKey alone{32700, 32740, 40000};
+  some.viewpoints.push_back(alone);
+  const detail::ViewReach reach(some.view, kResolution, 0);
+  const detail::TargetIndex targets(some.targets);
+  detail::RayTries trees;
+  const auto& walk = detail::trie_walks().front();
+  std::vector<ViewQuality> values(some.viewpoints.size());
+  const auto all = detail::sort_viewpoints(some.viewpoints);
+  const auto few = std::span(all).first(1000);
+  EXPECT_EQ(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+            1000U);
+  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, all, values, {});
+  ASSERT_EQ(left.size(), 1U);
+  EXPECT_EQ(detail::cell_of_code(left.front().code), alone);
+  // Now that there is a tree, few are enough.
+  EXPECT_LT(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+            1000U);
+}
+
+TEST(ExactViewQuality, FallsBackOnRaysWherePathsAreTooMany) {
+  VoxelGrid grid(kResolution);
+  grid.fill({{32768, 32768, 32768}, 6}, Occupancy::kFree);
+  const std::vector<VoxelKey> viewpoints{{32770, 32770, 32770}, {32772, 32770, 32770}};
+  const std::vector<VoxelKey> targets{{32800, 32810, 32780}, {32780, 32767, 32770}};
+  const Case some{"far", grid, {Shape::kSpinning, 0, 100 * kDegree, 900 * kResolution}, viewpoints, targets};
+  const auto caster = make_grid_ray_caster(grid);
+  const auto image = render_view_quality(*caster, grid.lattice(), viewpoints, targets, some.view, exact(6));
+  expect_equal(image, brute_force(some, 6));
+}
+
+TEST(ExactViewQuality, RefusesARendererThatIsNone) {
+  ViewQualityOptions options;
+  options.renderer = static_cast<Renderer>(2);
+  EXPECT_THROW(options.check(), std::invalid_argument);
+  EXPECT_THROW(ViewQualityImage(Lattice(kResolution), random_case(0).view, options), std::invalid_argument);
+  EXPECT_THROW(ViewQualityImage(Lattice(kResolution), {Shape::kSpinning, 0, 1, NAN}, exact(0)),
+               std::invalid_argument);
+  EXPECT_THROW(ViewQualityImage(Lattice(kResolution), random_case(0).view, exact(-1)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::test

@@ -1,0 +1,320 @@
+// What holds for every caster: batches, threads, bad input, updates while others read.
+
+#include "embree/embree_ray_caster.hpp"
+#include "support/maps.hpp"
+#include "support/random.hpp"
+#include "support/ray_samples.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/ray_caster.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <thread>
+#include <xmmintrin.h>
+
+namespace frontlux::test {
+namespace {
+
+struct Casters {
+  std::shared_ptr<octomap::OcTree> tree = make_random_tree(1, 0.3);
+  VoxelGrid grid = make_voxel_grid(*tree);
+  std::vector<std::unique_ptr<RayCaster>> all;
+
+  Casters() {
+    all.push_back(make_octomap_ray_caster(*tree));
+    all.push_back(make_grid_ray_caster(grid));
+    all.push_back(make_embree_ray_caster(grid));
+    all.push_back(detail::make_scene_ray_caster(grid));
+  }
+};
+
+bool same(const Hit& a, const Hit& b) {
+  return a.stop == b.stop && a.state == b.state && a.key == b.key && a.end == b.end && a.entry == b.entry &&
+         a.distance == b.distance;
+}
+
+struct Answers {
+  std::vector<Hit> hits;
+  std::vector<std::uint8_t> between_points, between_keys;
+};
+
+struct Questions {
+  std::vector<Ray> rays;
+  std::vector<Segment> segments;
+  std::vector<KeySegment> keys;
+
+  Questions(const VoxelGrid& grid, std::size_t count)
+      : rays(adversarial_rays(grid, count, 3)),
+        segments(adversarial_segments(grid, count, 4)),
+        keys(adversarial_key_segments(grid, count, 5)) {}
+
+  [[nodiscard]] Answers ask(const RayCaster& caster, std::size_t batch) const {
+    Answers answers{std::vector<Hit>(rays.size()), std::vector<std::uint8_t>(rays.size()),
+                    std::vector<std::uint8_t>(rays.size())};
+    for (std::size_t i = 0; i < rays.size(); i += batch) {
+      const std::size_t n = std::min(batch, rays.size() - i);
+      caster.cast(std::span(rays).subspan(i, n), std::span(answers.hits).subspan(i, n),
+                  UnknownPolicy::kBlock);
+      caster.visible(std::span(segments).subspan(i, n), std::span(answers.between_points).subspan(i, n),
+                     UnknownPolicy::kPass);
+      caster.visible(std::span(keys).subspan(i, n), std::span(answers.between_keys).subspan(i, n),
+                     UnknownPolicy::kBlock);
+    }
+    return answers;
+  }
+};
+
+void expect_equal(const Answers& a, const Answers& b) {
+  ASSERT_EQ(a.hits.size(), b.hits.size());
+  for (std::size_t i = 0; i < a.hits.size(); ++i) ASSERT_TRUE(same(a.hits[i], b.hits[i])) << i;
+  EXPECT_EQ(a.between_points, b.between_points);
+  EXPECT_EQ(a.between_keys, b.between_keys);
+}
+
+TEST(RayCaster, AnswersDependOnNeitherThreadsNorBatchNorOrder) {
+  const Casters casters;
+  const Questions questions(casters.grid, 5000);
+  std::vector<std::size_t> order(questions.rays.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  Random random(9);
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.bits() % i]);
+  Questions shuffled = questions;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    shuffled.rays[i] = questions.rays[order[i]];
+    shuffled.segments[i] = questions.segments[order[i]];
+    shuffled.keys[i] = questions.keys[order[i]];
+  }
+  for (const auto& caster : casters.all) {
+    const Answers reference = questions.ask(*caster, 5000);
+    for (const int threads : {1, 2}) {
+      tbb::task_arena arena(threads);
+      arena.execute([&] { expect_equal(reference, questions.ask(*caster, 5000)); });
+    }
+    for (const std::size_t batch : {std::size_t{1}, std::size_t{7}, std::size_t{257}, std::size_t{4096}})
+      expect_equal(reference, questions.ask(*caster, batch));
+    const Answers mixed = shuffled.ask(*caster, 5000);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ASSERT_TRUE(same(mixed.hits[i], reference.hits[order[i]]));
+      ASSERT_EQ(mixed.between_points[i], reference.between_points[order[i]]);
+      ASSERT_EQ(mixed.between_keys[i], reference.between_keys[order[i]]);
+    }
+    for (std::size_t i = 0; i < 500; ++i)
+      ASSERT_TRUE(same(caster->cast(questions.rays[i], UnknownPolicy::kBlock), reference.hits[i]));
+  }
+}
+
+TEST(RayCaster, SpansOfDifferentSizesThrow) {
+  const Casters casters;
+  for (const auto& caster : casters.all) {
+    std::vector<Hit> hits(2);
+    std::vector<std::uint8_t> visible(2);
+    EXPECT_THROW(caster->cast(std::vector<Ray>(3), hits, UnknownPolicy::kBlock), std::invalid_argument);
+    EXPECT_THROW(caster->visible(std::vector<Segment>(1), visible, UnknownPolicy::kBlock),
+                 std::invalid_argument);
+    EXPECT_THROW(caster->visible(std::vector<KeySegment>(3), visible, UnknownPolicy::kBlock),
+                 std::invalid_argument);
+    EXPECT_NO_THROW(caster->cast(std::span<const Ray>{}, std::span<Hit>{}, UnknownPolicy::kBlock));
+    EXPECT_THROW(caster->update(VoxelGrid(0.123)), std::invalid_argument);
+  }
+}
+
+TEST(RayCaster, RaysThatAreNoneAreAnsweredNotThrown) {
+  const Casters casters;
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
+  const Eigen::Vector3f here = casters.grid.lattice().center({32768, 32768, 32768}), east(1.0F, 0.0F, 0.0F);
+  const Eigen::Vector3f bad[] = {
+      {nan, 0, 0}, {0, infinity, 0}, {0, 0, -infinity}, {1e30F, 0, 0}, {0, -20000.0F, 0}};
+  for (const auto& caster : casters.all) {
+    for (const Eigen::Vector3f& point : bad)
+      for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass}) {
+        EXPECT_EQ(caster->cast({point, east, 10.0}, unknown).stop, RayStop::kInvalid);
+        const Segment segments[] = {{point, here}, {here, point}, {point, point}};
+        std::uint8_t visible[] = {9, 9, 9};
+        caster->visible(segments, visible, unknown);
+        for (const auto v : visible) EXPECT_EQ(v, 0);
+      }
+  }
+  // No direction: no ray, unless the origin's voxel already ends it.
+  VoxelGrid grid(0.3);
+  grid.fill({{32768, 32768, 32768}, 3}, Occupancy::kFree);
+  grid.set({32768, 32768, 32768}, Occupancy::kOccupied);
+  const Eigen::Vector3f wall = grid.lattice().center({32768, 32768, 32768}),
+                        free = wall + Eigen::Vector3f(1.0F, 0, 0);
+  for (const auto& caster :
+       {make_grid_ray_caster(grid), make_embree_ray_caster(grid), detail::make_scene_ray_caster(grid)})
+    for (const Eigen::Vector3f& none : {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(nan, 0, 0),
+                                        Eigen::Vector3f(infinity, 1, 0), Eigen::Vector3f(1e38F, 1e38F, 0)}) {
+      EXPECT_EQ(caster->cast({free, none, -1.0}, UnknownPolicy::kBlock).stop, RayStop::kInvalid);
+      EXPECT_EQ(caster->cast({wall, none, -1.0}, UnknownPolicy::kBlock).stop, RayStop::kOccupied);
+    }
+}
+
+TEST(RayCaster, IsChosenByHowManyRaysItIsFor) {
+  const VoxelGrid grid = make_voxel_grid(*make_noise_tree(1, 0.3, 24));
+  EXPECT_EQ(make_ray_caster(grid, 10)->memory_bytes(), 0U);
+  EXPECT_GT(make_ray_caster(grid, 10'000'000)->memory_bytes(), 0U);
+}
+
+TEST(RayCaster, EmptyAndUniformMaps) {
+  for (const Occupancy state : {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied}) {
+    VoxelGrid grid(0.1);
+    grid.fill({{}, 16}, state);
+    const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid);
+    const Questions questions(grid, 300);
+    expect_equal(questions.ask(*walk, 300), questions.ask(*embree, 300));
+  }
+  octomap::OcTree empty(0.1);
+  const OctreeRayCaster drop_in(empty);
+  octomap::point3d expected, end;
+  const octomap::point3d origin(1, 2, 3), direction(1, 0.5F, 0.25F);
+  for (const bool ignore_unknown : {false, true}) {
+    EXPECT_EQ(drop_in.castRay(origin, direction, end, ignore_unknown, 5.0),
+              empty.castRay(origin, direction, expected, ignore_unknown, 5.0));
+    EXPECT_EQ(end, expected);
+  }
+}
+
+TEST(RayCaster, DistanceAndEntryAreThoseOfTheBlockersFace) {
+  VoxelGrid grid(0.5);
+  grid.fill({{32768, 32768, 32768}, 4}, Occupancy::kFree);
+  grid.set({32778, 32770, 32770}, Occupancy::kOccupied);  // its lower face along x lies at 5 m
+  const Eigen::Vector3f origin(1.25F, 1.25F, 1.25F);
+  for (const auto& caster :
+       {make_grid_ray_caster(grid), make_embree_ray_caster(grid), detail::make_scene_ray_caster(grid)}) {
+    const Hit straight = caster->cast({origin, {2.0F, 0, 0}, -1.0}, UnknownPolicy::kBlock);
+    EXPECT_EQ(straight.stop, RayStop::kOccupied);
+    EXPECT_EQ(straight.key, (VoxelKey{32778, 32770, 32770}));
+    EXPECT_FLOAT_EQ(straight.distance, 3.75F);
+    EXPECT_EQ(straight.entry, Eigen::Vector3f(5.0F, 1.25F, 1.25F));
+    EXPECT_EQ(straight.end, Eigen::Vector3f(5.25F, 1.25F, 1.25F));
+    const Hit slanted = caster->cast({origin, {3.75F, 0.1875F, 0}, -1.0}, UnknownPolicy::kBlock);
+    EXPECT_EQ(slanted.key, (VoxelKey{32778, 32770, 32770}));
+    EXPECT_NEAR(slanted.distance, std::hypot(3.75, 0.1875), 1e-6);
+    EXPECT_NEAR((slanted.entry - Eigen::Vector3f(5.0F, 1.4375F, 1.25F)).norm(), 0.0, 1e-6);
+    // The centre of the wall is 4 m away: a range of 3.9 m ends the ray in it, though its face is at 3.75 m.
+    EXPECT_EQ(caster->cast({origin, {1, 0, 0}, 3.9}, UnknownPolicy::kBlock).stop, RayStop::kOutOfRange);
+    EXPECT_EQ(caster->cast({origin, {1, 0, 0}, 4.0}, UnknownPolicy::kBlock).stop, RayStop::kOccupied);
+  }
+}
+
+// Where a ray creeps into a wall, a bound on its error as a distance is hardly a bound on when it gets there:
+// what it meets meanwhile must not lose to the wall.
+TEST(RayCaster, RaysAllButParallelToAWall) {
+  VoxelGrid grid(0.1);
+  Random random(31);
+  for (std::uint16_t x = 0; x < 7; ++x)
+    for (std::uint16_t y = 0; y < 60; ++y)
+      for (std::uint16_t z = 3; z < 8; ++z)
+        grid.set({static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+                  static_cast<std::uint16_t>(32768 + z)},
+                 Occupancy::kFree);
+  for (std::uint16_t y = 8; y < 60; ++y)
+    grid.set({32775, static_cast<std::uint16_t>(32768 + y), 32773}, Occupancy::kOccupied);
+  for (const int y : {11, 23, 24, 41})
+    grid.set({32774, static_cast<std::uint16_t>(32768 + y), 32773}, Occupancy::kOccupied);
+  const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid),
+             scene = detail::make_scene_ray_caster(grid);
+  std::vector<Ray> rays(100'000);
+  for (Ray& ray : rays) {
+    const auto tiny = [&] {
+      return static_cast<float>(std::ldexp(random.uniform(-1.0, 1.0), -random.below(34)));
+    };
+    ray.origin = {0.7F - std::fabs(tiny()) * 0.1F, static_cast<float>(random.uniform(0.0, 1.0)), 0.55F};
+    ray.direction = {std::fabs(tiny()), 1.0F, random.one_in(2) ? 0.0F : tiny()};
+    ray.max_range = random.uniform(0.5, 6.0);
+  }
+  std::vector<Hit> expected(rays.size()), hits(rays.size());
+  for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass}) {
+    walk->cast(rays, expected, unknown);
+    embree->cast(rays, hits, unknown);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same(expected[i], hits[i])) << i;
+    scene->cast(rays, hits, unknown);
+    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same(expected[i], hits[i])) << i;
+  }
+}
+
+TEST(RayCaster, UpdateEqualsANewCaster) {
+  Random random(11);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    // The first kind spans the key range and leaves all to the scene, the second has a table.
+    VoxelGrid grid =
+        make_voxel_grid(seed % 2 == 0 ? *make_random_tree(seed, 0.3) : *make_noise_tree(seed, 0.3, 90));
+    const auto followed_by_walk = make_grid_ray_caster(grid), followed = make_embree_ray_caster(grid),
+               followed_by_scene = detail::make_scene_ray_caster(grid);
+    for (int round = 0; round < 12; ++round) {
+      const int edits = random.below(40);
+      for (int i = 0; i < edits; ++i) {
+        const int log2_edge = random.one_in(5) ? random.below(9) : 0;
+        const auto along = [&] {
+          return static_cast<std::uint16_t>((32768 + random.below(160) - 80) >> log2_edge << log2_edge);
+        };
+        grid.fill({{along(), along(), along()}, log2_edge}, static_cast<Occupancy>(random.below(3)));
+      }
+      followed->update(grid);
+      followed_by_walk->update(grid);
+      followed_by_scene->update(grid);
+      const auto fresh = make_grid_ray_caster(grid);
+      const Questions questions(grid, 1000);
+      expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed, 1000));
+      expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed_by_walk, 1000));
+      expect_equal(questions.ask(*fresh, 1000), questions.ask(*followed_by_scene, 1000));
+    }
+  }
+}
+
+// Readers see the map before or after an update, whole, and never wait for it.
+TEST(RayCaster, QueriesGoOnDuringUpdates) {
+  VoxelGrid open(0.1), closed(0.1);
+  open.fill({{32768, 32768, 32768}, 6}, Occupancy::kFree);
+  closed = open;
+  for (std::uint16_t y = 0; y < 64; ++y)
+    for (std::uint16_t z = 0; z < 64; ++z)
+      closed.set({32800, static_cast<std::uint16_t>(32768 + y), static_cast<std::uint16_t>(32768 + z)},
+                 Occupancy::kOccupied);
+  std::vector<KeySegment> across;
+  for (std::uint16_t y = 1; y < 63; ++y)
+    across.push_back({{32770, static_cast<std::uint16_t>(32768 + y), 32780},
+                      {32830, static_cast<std::uint16_t>(32768 + y), 32790}});
+  for (const auto& caster : {make_grid_ray_caster(open), make_embree_ray_caster(open)}) {
+    std::atomic<bool> done{false};
+    std::atomic<int> mixed{0}, batches{0};
+    std::vector<std::thread> readers;
+    for (int i = 0; i < 2; ++i)
+      readers.emplace_back([&] {
+        std::vector<std::uint8_t> visible(across.size());
+        while (!done) {
+          caster->visible(across, visible, UnknownPolicy::kBlock);
+          if (std::adjacent_find(visible.begin(), visible.end(), std::not_equal_to<>()) != visible.end())
+            ++mixed;
+          ++batches;
+        }
+      });
+    for (int i = 0; i < 60; ++i) caster->update(i % 2 == 0 ? closed : open);
+    while (batches < 10) std::this_thread::yield();
+    done = true;
+    for (auto& reader : readers) reader.join();
+    EXPECT_EQ(mixed, 0);
+  }
+}
+
+TEST(RayCaster, LeavesTheCallersFloatingPointModeAlone) {
+  const Casters casters;
+  const Questions questions(casters.grid, 1000);
+  const unsigned before = _mm_getcsr() & ~0x3FU;  // but for the sticky exception flags
+  for (const auto& caster : casters.all) {
+    (void)questions.ask(*caster, 1000);
+    EXPECT_EQ(_mm_getcsr() & ~0x3FU, before);
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::test

@@ -1,0 +1,185 @@
+#include <frontlux/io/robot_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+class RobotFile : public testing::Test {
+ protected:
+  RobotFile()
+      : file_(std::filesystem::temp_directory_path() /
+              ("frontlux_robot_" + std::to_string(getpid()) + ".json")) {}
+  ~RobotFile() override { std::filesystem::remove(file_); }
+
+  [[nodiscard]] RobotDescription read(const std::string& text) const {
+    std::ofstream(file_, std::ios::binary) << text;
+    return read_robot(file_);
+  }
+  // What the complaint says after the file's name.
+  [[nodiscard]] std::string complaint(const std::string& text) const {
+    try {
+      static_cast<void>(read(text));
+    } catch (const std::runtime_error& error) {
+      const std::string what = error.what(), begin = file_.string() + ": ";
+      EXPECT_TRUE(what.starts_with(begin)) << what;
+      return what.substr(begin.size());
+    }
+    return "";
+  }
+
+  std::filesystem::path file_;
+};
+
+void expect_equal(const RobotDescription& a, const RobotDescription& b) {
+  EXPECT_EQ(a.robot.name, b.robot.name);
+  EXPECT_EQ(a.columns, b.columns);
+  EXPECT_EQ(a.rows, b.rows);
+  const TravelOptions &s = a.robot.travel, &t = b.robot.travel;
+  EXPECT_EQ(s.motion, t.motion);
+  EXPECT_EQ(s.extents, t.extents);
+  EXPECT_EQ(s.metric, t.metric);
+  EXPECT_EQ(s.sensor_height, t.sensor_height);
+  EXPECT_EQ(s.require_ground, t.require_ground);
+  EXPECT_EQ(s.ground_extents, t.ground_extents);
+  EXPECT_EQ(s.ground_reach, t.ground_reach);
+  EXPECT_EQ(s.without_ground.size(), t.without_ground.size());
+  EXPECT_EQ(s.floor, t.floor);
+  EXPECT_EQ(s.min_height, t.min_height);
+  EXPECT_EQ(s.node_edge, t.node_edge);
+  const FieldOfView &v = a.robot.view, &w = b.robot.view;
+  EXPECT_EQ(v.shape, w.shape);
+  EXPECT_EQ(v.horizontal, w.horizontal);
+  EXPECT_EQ(v.vertical, w.vertical);
+  EXPECT_EQ(v.max_range, w.max_range);
+}
+
+const std::filesystem::path kRobots = std::filesystem::path(FRONTLUX_DATA_DIR) / "robots";
+
+TEST_F(RobotFile, ThoseOfThePaperAreTheBuiltInOnesToTheLastBit) {
+  expect_equal(read_robot(kRobots / "ugv.json"), ugv_description());
+  expect_equal(read_robot(kRobots / "uav.json"), uav_description());
+  EXPECT_EQ(ugv_description().columns * ugv_description().rows, 32U * 720U);
+  EXPECT_EQ(uav_description().columns, 160U);
+}
+
+TEST_F(RobotFile, ReadsAConeAndWhatIsLeftOut) {
+  const RobotDescription sonar = read_robot(kRobots / "sonar.json");
+  EXPECT_EQ(sonar.robot.view.shape, FieldOfView::Shape::kCone);
+  EXPECT_DOUBLE_EQ(sonar.robot.view.horizontal, std::numbers::pi / 6);
+  EXPECT_EQ(sonar.robot.travel.sensor_height, 0.5);
+  sonar.robot.check();
+  const RobotDescription nodes = read(
+      R"({"name":"n","motion":"space","box_m":[0.5,0.6,0.7],"node_edge_m":1.2,
+          "sensor":{"kind":"spinning","vertical_deg":30,"range_m":4.5,"columns":8,"rows":2}})");
+  EXPECT_EQ(nodes.robot.travel.extents, Eigen::Vector3d(0.5, 0.6, 0.7));
+  EXPECT_EQ(nodes.robot.travel.node_edge, 1.2);
+  EXPECT_EQ(nodes.robot.travel.min_height, TravelOptions().min_height);
+  EXPECT_EQ(nodes.robot.view.horizontal, 0.0);
+}
+
+TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
+  const std::string good =
+      R"({"name": "r", "motion": "plane", "box_m": [1, 1, 0.7], "mount_height_m": 0.75, "sensor": )"
+      R"({"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 10, "columns": 16, "rows": 12}})";
+  EXPECT_EQ(complaint(good), "");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {with(R"("name": "r", )", ""), "name is missing; give 1 to 40 letters"},
+      {with(R"("r")", R"("../r")"), "name is '../r'; give 1 to 40 letters"},
+      {with(R"("r")", R"("")"), "name is ''; give"},
+      {with(R"("r")", "7"), "name is 7; give"},
+      {with(R"("plane")", R"("hover")"), R"(motion is 'hover'; give "plane" or "space")"},
+      {with(R"("plane")", R"("space")"),
+       R"(mount_height_m is for a robot with the motion "plane"; leave it out)"},
+      {with("0.75", "0.75, \"min_height_m\": 1"), "min_height_m is for a robot with the motion \"space\""},
+      {with("0.75", "0.75, \"require_ground\": 1"), "require_ground is 1; give true or false"},
+      {with("0.75", "-1"), "mount_height_m is -1; give a number from 0 to 100 m"},
+      {with(R"("mount_height_m": 0.75, )", ""), "mount_height_m is missing; give a number from 0 to 100 m"},
+      {with("[1, 1, 0.7]", "[1, 1]"), "box_m is an array of 2; give three numbers"},
+      {with("[1, 1, 0.7]", "1"), "box_m is 1; give three numbers"},
+      {with("[1, 1, 0.7]", "[1, \"1\", 0.7]"), "box_m is '1'; give a number from 0.01 to 100 m"},
+      {with("[1, 1, 0.7]", "[1, 1, 0]"), "box_m is 0; give a number from 0.01"},
+      {with("[1, 1, 0.7]", "[1, [1], 0.7]"), "'box_m' is nested too deeply"},
+      {with("\"range_m\": 10", "\"range_m\": 1e300"),
+       "sensor.range_m is 1e+300; give a number from 0.01 to 1000 m"},
+      {with("\"range_m\": 10", "\"range_m\": 1e999"), "a number is too large, in or after 'range_m'"},
+      {with("\"range_m\": 10", "\"range_m\": NaN"), "line 1, column 162: this is not JSON (after 'range_m')"},
+      {with("\"range_m\": 10", "\"range_m\": null"), "sensor.range_m is null; give"},
+      {with("90", "180"), "sensor.horizontal_deg is 180; give a number from 0.1 to 179 degrees"},
+      {with("72", "\"72\""), "sensor.vertical_deg is '72'; give"},
+      {with("\"camera\"", "\"lidar\""), "sensor.kind is 'lidar'; give \"spinning\", \"camera\" or \"cone\""},
+      {with("\"camera\"", "\"cone\""), "sensor.vertical_deg is not for a cone"},
+      {with("\"camera\"", "\"spinning\""), "sensor.horizontal_deg is not for a spinning sensor"},
+      {with("\"columns\": 16", "\"columns\": 0"), "sensor.columns is 0; give a whole number from 1"},
+      {with("\"columns\": 16", "\"columns\": -5"), "sensor.columns is -5; give"},
+      {with("\"columns\": 16", "\"columns\": 16.5"), "sensor.columns is 16.5; give a whole number"},
+      {with("\"columns\": 16, \"rows\": 12", "\"columns\": 60000, \"rows\": 60000"),
+       "sensor.rows is 60000, too many with 60000 columns; give at most 67108864 rays in all"},
+      {with("\"columns\"", "\"colums\""), "sensor.columns is missing"},
+      {with("\"rows\": 12", "\"rows\": 12, \"fps\": 3"),
+       "the member 'sensor.fps' is not known; known here: kind,"},
+      {with("\"name\": \"r\"", "\"name\": \"r\", \"mass\": 3"),
+       "the member 'mass' is not known; known here: name,"},
+      {with("\"name\": \"r\"", "\"name\": \"r\", \"name\": \"s\""),
+       "the member 'name' is there twice; keep one"},
+      {with("\"rows\": 12", "\"rows\": 12, \"rows\": 12"), "the member 'rows' is there twice; keep one"},
+      {with("\"kind\"", "\"kind\": \"cone\", \"x\": {\"y\": {}}, \"z\""), "'x' is nested too deeply"},
+      {good.substr(0, 60), "this is not JSON (after "},
+      {"", "line 1, column 1: this is not JSON (after the file)"},
+      {"\n\n  {\"name\" 3}", "line 3, column 11: this is not JSON"},
+      {good + "x", "this is not JSON"},
+      {"[]", "holds an array of 0 and no object; describe a robot"},
+      {"3", "holds 3 and no object"},
+      {std::string(200'000, '['), "is nested too deeply"},
+      {std::string("{\"a\xff\": 1}"), "this is not JSON"},
+      {good + std::string(1 << 20, ' '), "too many for a robot; give a description of at most 1048576 bytes"},
+  };
+  for (const auto& [text, expected] : cases) {
+    const std::string what = complaint(text);
+    EXPECT_NE(what.find(expected), std::string::npos) << what << "\nexpected: " << expected;
+    EXPECT_NE(what.find("; "), std::string::npos) << what;
+    for (const char c : what) EXPECT_TRUE(c >= ' ' && c <= '~') << what;
+  }
+  std::filesystem::remove(file_);
+  try {
+    static_cast<void>(read_robot(file_));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("there is no such file"), std::string::npos);
+  }
+  EXPECT_THROW(static_cast<void>(read_robot(std::filesystem::temp_directory_path())), std::runtime_error);
+}
+
+TEST_F(RobotFile, SurvivesEveryTruncationAndFlippedByte) {
+  std::ifstream stream(kRobots / "uav.json", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  ASSERT_GT(text.size(), 100U);
+  for (std::size_t i = 0; i + 2 < text.size(); ++i) EXPECT_NE(complaint(text.substr(0, i)), "") << i;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    for (const int bit : {0, 3, 7}) {
+      std::string damaged = text;
+      damaged[i] = static_cast<char>(static_cast<unsigned char>(damaged[i]) ^ (1U << bit));
+      try {
+        read(damaged).robot.check();
+      } catch (const std::runtime_error&) {
+      }
+    }
+}
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,152 @@
+// What is remembered as unseen, against trying everything again after every change.
+
+#include "assignment/unseen_frontiers.hpp"
+
+#include "support/random.hpp"
+
+#include <frontlux/planner/frontier_assignment.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using detail::FeasibleRegion;
+using detail::UnseenFrontiers;
+using test::Random;
+
+constexpr double kDegree = std::numbers::pi / 180, kResolution = 0.3;
+
+VoxelKey random_key(Random& random) {
+  return {static_cast<std::uint16_t>(32768 + random.below(60)),
+          static_cast<std::uint16_t>(32768 + random.below(60)),
+          static_cast<std::uint16_t>(32768 + random.below(16))};
+}
+
+// A map of walls that opens and closes here and there, with a corridor that does so too.
+class Changing {
+ public:
+  explicit Changing(std::uint64_t seed) : random_(seed) {
+    for (int x = 0; x < 60; ++x)
+      for (int y = 0; y < 60; ++y)
+        for (int z = 0; z < 16; ++z)
+          if (const bool wall = x % 12 == 0 || y % 12 == 0 || z % 8 == 0; wall && !random_.one_in(60))
+            grid.set({static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
+                      static_cast<std::uint16_t>(32768 + z)},
+                     Occupancy::kOccupied);
+    for (int i = 0; i < 600; ++i) frontiers.push_back(random_key(random_));
+    sort(frontiers);
+    for (int i = 0; i < 60; ++i) corridor.push_back(random_key(random_));
+    sort(corridor);
+  }
+
+  // Returns what is no longer occupied.
+  std::vector<VoxelKey> change() {
+    std::vector<VoxelKey> opened;
+    const VoxelKey around = random_key(random_);
+    const auto near = [&](const VoxelKey& key) {
+      return std::abs(key.x - around.x) < 6 && std::abs(key.y - around.y) < 6;
+    };
+    for (int i = 0; i < 40; ++i) {
+      const VoxelKey key = random_key(random_);
+      const auto state = static_cast<Occupancy>(random_.below(3));
+      if (!near(key)) continue;
+      if (grid.at(key) == Occupancy::kOccupied && state != Occupancy::kOccupied) opened.push_back(key);
+      grid.set(key, state);
+    }
+    if (random_.one_in(3)) {
+      std::erase_if(corridor, [&](const VoxelKey& key) { return near(key) && random_.one_in(2); });
+      if (random_.one_in(2)) corridor.push_back(random_key(random_));
+    }
+    if (random_.one_in(20)) corridor.clear();
+    sort(corridor);
+    std::erase_if(frontiers, [&](const VoxelKey&) { return random_.one_in(50); });
+    for (int i = 0; i < 10; ++i) frontiers.push_back(random_key(random_));
+    sort(frontiers);
+    return opened;
+  }
+
+  VoxelGrid grid{kResolution};
+  std::vector<VoxelKey> frontiers, corridor;
+
+ private:
+  static void sort(std::vector<VoxelKey>& keys) {
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  }
+
+  Random random_;
+};
+
+std::vector<VoxelKey> seen(const std::vector<VoxelKey>& frontiers, const AssignedFrontiers& share) {
+  std::vector<VoxelKey> keys;
+  for (const std::uint32_t i : share.frontiers) keys.push_back(frontiers[i]);
+  return keys;
+}
+
+TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
+  std::uint64_t rays = 0, rays_for_all = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Changing scene(seed);
+    const FieldOfView view = seed % 2 == 0
+                                 ? FieldOfView{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}
+                                 : FieldOfView{FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 4.0};
+    const FeasibleRegion region(view, kResolution);
+    UnseenFrontiers unseen;
+    for (int step = 0; step < 25; ++step) {
+      const auto opened = scene.change();
+      unseen.follow(opened, scene.corridor, region);
+      const auto caster = make_grid_ray_caster(scene.grid);
+      const AssignedFrontiers all =
+          find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.corridor, view});
+      const AssignedFrontiers some = find_visible_frontiers(*caster, scene.grid, scene.frontiers,
+                                                        {scene.corridor, view, {}, unseen.keys()});
+      ASSERT_EQ(some.frontiers, all.frontiers) << "seed " << seed << ", step " << step;
+      rays += some.rays;
+      rays_for_all += all.rays;
+      std::vector<VoxelKey> left;
+      const auto found = seen(scene.frontiers, all);
+      std::set_difference(scene.frontiers.begin(), scene.frontiers.end(), found.begin(), found.end(),
+                          std::back_inserter(left));
+      unseen.set(std::move(left));
+    }
+  }
+  EXPECT_LT(rays, rays_for_all * 3 / 4);
+}
+
+// What was tried while there was no corridor says nothing once there is one again, though it is that of
+// before.
+TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
+  const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
+  const std::vector<VoxelKey> cell = {{30000, 30000, 30000}};
+  const VoxelKey near{30003, 30000, 30000}, far{40000, 30000, 30000};
+  UnseenFrontiers unseen;
+  unseen.follow({}, cell, region);
+  unseen.forget();
+  unseen.set({near, far});
+  unseen.follow({}, cell, region);
+  EXPECT_TRUE(std::ranges::equal(unseen.keys(), std::vector{far}));
+}
+
+// Over the whole key range there are too many cubes to note changes in.
+TEST(UnseenFrontiers, AreForgottenByChangesAllOverTheKeyRange) {
+  const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
+  const VoxelKey frontier{30000, 30000, 30000};
+  const std::vector<VoxelKey> corner = {{0, 0, 0}}, corners = {{0, 0, 0}, {65535, 65535, 65535}};
+  UnseenFrontiers unseen;
+  unseen.set({frontier});
+  unseen.follow(corner, {}, region);
+  EXPECT_EQ(unseen.keys().size(), 1U);
+  unseen.follow(corners, {}, region);
+  EXPECT_TRUE(unseen.keys().empty());
+}
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,152 @@
+// Which cells remain, against the ray of every cell and a flood voxel by voxel.
+
+#include "assignment/visibility_flood.hpp"
+
+#include "support/random.hpp"
+
+#include <frontlux/ray_caster.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <set>
+#include <vector>
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::Random;
+
+constexpr int kSize = 20;  // [voxels] of the map, along x and y; along z it is twice as high
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Scene {
+  VoxelGrid grid{0.5};
+  std::vector<VoxelKey> cells, targets;
+};
+
+Scene random_scene(std::uint64_t seed) {
+  Random random(seed);
+  Scene scene;
+  const int wall = 2 + random.below(8);
+  const std::array<int, 3> corner = {random.one_in(2) ? 0 : 32750, 32767,
+                                     random.one_in(3) ? 65536 - 2 * kSize : 7};
+  for (int x = 0; x < kSize; ++x)
+    for (int y = 0; y < kSize; ++y)
+      for (int z = 0; z < 2 * kSize; ++z) {
+        const VoxelKey key{static_cast<std::uint16_t>(corner[0] + x),
+                           static_cast<std::uint16_t>(corner[1] + y),
+                           static_cast<std::uint16_t>(corner[2] + z)};
+        if (random.one_in(wall) || z % 11 == 5) {
+          if (!random.one_in(10)) scene.grid.set(key, Occupancy::kOccupied);
+        } else if (random.one_in(2)) {
+          scene.grid.set(key, Occupancy::kFree);
+        }
+        if (random.one_in(3)) scene.cells.push_back(key);
+        if (random.one_in(600)) scene.targets.push_back(key);
+      }
+  return scene;
+}
+
+KeyBox box_around(const std::vector<VoxelKey>& keys) {
+  KeyBox box{keys[0], keys[0]};
+  for (const VoxelKey& k : keys) {
+    box.min = {std::min(box.min.x, k.x), std::min(box.min.y, k.y), std::min(box.min.z, k.z)};
+    box.max = {std::max(box.max.x, k.x), std::max(box.max.y, k.y), std::max(box.max.z, k.z)};
+  }
+  return box;
+}
+
+std::vector<FieldOfView> views() {
+  return {{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0},
+          {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0},
+          {FieldOfView::Shape::kCone, 170 * kDegree, 0.0, 5.0}};
+}
+
+TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
+  std::size_t seeing = 0, kept = 0, in_view = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Scene scene = random_scene(seed);
+    const auto caster = make_grid_ray_caster(scene.grid);
+    for (const FieldOfView& view : views()) {
+      const FeasibleRegion region(view, scene.grid.resolution());
+      const auto approach = VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets));
+      ASSERT_TRUE(approach);
+      VisibilityFlood::Row row;
+      for (const VoxelKey& target : scene.targets) {
+        std::vector<VoxelKey> found;
+        approach->cells(target, row, found);
+        std::ranges::sort(found);
+        ASSERT_TRUE(std::ranges::adjacent_find(found) == found.end()) << "a cell twice, seed " << seed;
+        std::size_t feasible = 0;
+        for (const VoxelKey& cell : scene.cells) {
+          if (!view.contains_at_some_yaw(
+                  Eigen::Vector3d(cell.x - target.x, cell.y - target.y, cell.z - target.z) * 0.5))
+            continue;
+          ++in_view;
+          const bool is_found = std::ranges::binary_search(found, cell);
+          feasible += is_found ? 1 : 0;
+          const KeySegment segment{cell, target};
+          std::uint8_t visible = 0;
+          caster->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
+          seeing += visible;
+          ASSERT_TRUE(is_found || visible == 0) << "seed " << seed;
+        }
+        ASSERT_EQ(feasible, found.size())
+            << "cells that are not of the corridor or not in view, seed " << seed;
+        kept += found.size();
+      }
+    }
+  }
+  EXPECT_GT(seeing, 10'000U);
+  EXPECT_LT(kept, in_view * 2 / 3);
+}
+
+TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
+  VoxelGrid grid(0.5);
+  std::vector<VoxelKey> cells;
+  for (std::uint16_t y = 100; y < 120; ++y)
+    for (std::uint16_t z = 100; z < 120; ++z) {
+      grid.set({110, y, z}, Occupancy::kOccupied);
+      for (std::uint16_t x = 111; x < 120; ++x) cells.push_back({x, y, z});
+    }
+  const FeasibleRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0}, 0.5);
+  const VoxelKey target{108, 110, 110};
+  const auto found_from = [&] {
+    const auto approach = VisibilityFlood::make(grid, cells, region, {target, target});
+    VisibilityFlood::Row row;
+    std::vector<VoxelKey> found;
+    approach->cells(target, row, found);
+    return found;
+  };
+  EXPECT_TRUE(found_from().empty());
+  grid.set({110, 110, 110}, Occupancy::kFree);
+  const std::vector<VoxelKey> found = found_from();
+  EXPECT_TRUE(std::ranges::find(found, VoxelKey{119, 110, 110}) != found.end());
+}
+
+TEST(VisibilityFlood, LeavesRegionsThatAreTooHighToOthers) {
+  const Scene scene = random_scene(1);
+  const FeasibleRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 90 * kDegree, 50.0}, 0.5);
+  ASSERT_GT(region.greatest_height(), 63);
+  EXPECT_FALSE(VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets)));
+}
+
+TEST(FeasibleRegion, SpreadsOffsetsOverAllOfIt) {
+  for (const FieldOfView& view : views()) {
+    const FeasibleRegion region(view, 0.5);
+    const auto offsets = region.spread_offsets(64);
+    ASSERT_EQ(offsets.size(), 64U);
+    std::array<int, 8> in_octant{};
+    for (const auto& [x, y, z] : offsets) {
+      ASSERT_TRUE(view.contains_at_some_yaw(Eigen::Vector3d(x, y, z) * 0.5));
+      ++in_octant[static_cast<std::size_t>((x > 0 ? 1 : 0) + (y > 0 ? 2 : 0) + (z > 0 ? 4 : 0))];
+    }
+    for (const int count : in_octant) EXPECT_GE(count, 3);
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail

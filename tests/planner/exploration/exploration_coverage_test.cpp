@@ -1,0 +1,61 @@
+// Guards what explorations come to: coverage by step, no collisions, an end of their own. The thresholds lie
+// some percent below the least of three seeds when this was written.
+
+#include "planner/exploration/team_in_world.hpp"
+#include "support/maps.hpp"
+
+#include <frontlux/sim/coverage.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::drive_by;
+using test::TeamInWorld;
+using test::uav_and_ugv;
+
+/// Explores to the end.
+/// @param least  by step, the coverage of observable space at its end
+void expect_coverage(std::string_view world, std::uint64_t seed,
+                     const std::vector<std::pair<std::size_t, double>>& least, std::size_t most_steps) {
+  SCOPED_TRACE(std::string(world) + ", seed " + std::to_string(seed));
+  const TeamInWorld team(world, seed, uav_and_ugv());
+  sim::SimulatedRobots robots = team.bodies(sim::AtContact::kStay);
+  Exploration exploration(team.options(), team.empty_map());
+  exploration.begin(team.starts, drive_by(robots));
+  std::vector<double> curve = {sim::measure(team.truth, exploration.mapping().grid()).of_observable()};
+  while (!exploration.end() && curve.size() <= most_steps) {
+    exploration.step(drive_by(robots));
+    curve.push_back(sim::measure(team.truth, exploration.mapping().grid()).of_observable());
+  }
+  ASSERT_TRUE(exploration.end().has_value()) << "no end after " << curve.size() - 1 << " steps";
+  EXPECT_NE(exploration.end(), ExplorationEnd::kStepLimit);
+  for (const auto& [step, coverage] : least)
+    EXPECT_GE(curve[std::min(step, curve.size() - 1)], coverage) << "at step " << step;
+  EXPECT_EQ(robots.total().physical, 0U);
+  // The box of whole voxels is larger than the body; a surface seen at a grazing angle may be within it.
+  EXPECT_LE(robots.total().lattice, 2U);
+  EXPECT_LE(robots.held_back(), 1U) << "ways lead where bodies do not fit";
+}
+
+TEST(ExplorationCoverage, OfARoom) {
+  // 97 to 97.4 % or 84.8 % after two steps, 99.5 to 100 % after three, ends after 4 or 5.
+  for (const std::uint64_t seed : {1, 2, 3})
+    expect_coverage("room", seed, {{2, 0.75}, {4, 0.97}, {12, 0.99}}, 15);
+}
+
+TEST(ExplorationCoverage, OfAStorage) {
+  // 76.0 to 78.7 % after 10 steps, 94.6 to 96.9 % after 20, 99.6 to 99.9 % after 28, ends after 32 to 38.
+  for (const std::uint64_t seed : {2, 1, 3}) {
+    expect_coverage("storage", seed, {{10, 0.70}, {20, 0.90}, {28, 0.97}, {60, 0.99}}, 60);
+    if (!test::long_mode()) break;
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner

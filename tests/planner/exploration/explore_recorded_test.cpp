@@ -1,0 +1,149 @@
+// The example docs/examples/explore_recorded.cpp with a robot that knows it by files only.
+
+#include "planner/exploration/team_in_world.hpp"
+#include "support/command.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/planner/pose.hpp>
+#include <frontlux/sim/coverage.hpp>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <variant>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::content_of;
+using test::TeamInWorld;
+
+class ExploreRecorded : public testing::Test {
+ protected:
+  ExploreRecorded() : folder_(fs::temp_directory_path() / ("frontlux_recorded_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_ / "scans");
+    std::ofstream(folder_ / "robot.json") << R"({"name": "uav", "motion": "space", "box_m": [0.8, 0.8, 0.8],
+              "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 8,
+                         "columns": 100, "rows": 75}})";
+  }
+  ~ExploreRecorded() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::vector<std::string> words(const Pose& start, const std::string& seconds) const {
+    std::vector<std::string> all = {FRONTLUX_EXPLORE_RECORDED, (folder_ / "robot.json").string(),
+                                    (folder_ / "scans").string()};
+    for (const double number : {start.position.x(), start.position.y(), start.position.z(), start.yaw})
+      all.push_back(std::to_string(number));
+    all.push_back(seconds);
+    return all;
+  }
+  [[nodiscard]] pid_t begin(std::vector<std::string> all) const {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    static_cast<void>(std::freopen((folder_ / "out").c_str(), "w", stdout));
+    static_cast<void>(std::freopen((folder_ / "err").c_str(), "w", stderr));
+    std::vector<char*> argv;
+    for (std::string& word : all) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+
+  // Writes what a robot measures as a file in the sensor's frame, and where it was.
+  void answer(const Scan& scan, const Pose& at) {
+    const std::string name = "scan" + std::to_string(++scans_) + ".ply";
+    std::ofstream ply(folder_ / "scans" / name, std::ios::binary);
+    ply << "ply\nformat binary_little_endian 1.0\nelement vertex " << scan.ranges.size()
+        << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    const Eigen::AngleAxisf turn(static_cast<float>(-at.yaw), Eigen::Vector3f::UnitZ());
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+      const float range = std::isinf(scan.ranges[i]) ? 100.0F : scan.ranges[i];
+      const Eigen::Vector3f point = turn * scan.directions[i] * range;
+      ply.write(reinterpret_cast<const char*>(point.data()), 3 * sizeof(float));
+    }
+    ply.close();
+    std::ostringstream line;
+    line.precision(17);
+    line << name << ',' << at.position.x() << ',' << at.position.y() << ',' << at.position.z() << ','
+         << at.yaw << '\n';
+    table_ += line.str();
+    std::ofstream(folder_ / "scans/poses.new") << table_;
+    fs::rename(folder_ / "scans/poses.new", folder_ / "scans/poses.csv");
+  }
+
+  fs::path folder_;
+  int scans_ = 0;
+  std::string table_ = "file,x,y,z,yaw\n";
+};
+
+TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
+  const std::vector<RobotDescription> robot(1, read_robot(folder_ / "robot.json"));
+  const TeamInWorld team("room", 1, robot);
+  sim::SimulatedRobots robots = team.bodies();
+  const Pose start = team.starts[0].pose;
+  const pid_t child = begin(words(start, "60"));
+  ASSERT_GT(child, 0);
+  // The robot goes where next.csv says, until the program has ended.
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (!fs::exists(folder_ / "scans/next.csv")) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      continue;
+    }
+    const auto next = read_pose_list(folder_ / "scans/next.csv");
+    fs::remove(folder_ / "scans/next.csv");
+    ASSERT_EQ(next.size(), 1U);
+    answer(robots.drive(0, next[0].pose).value(), next[0].pose);
+  }
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  const std::string told = content_of(folder_ / "out"), map = content_of(folder_ / "scans/map.bt");
+  EXPECT_NE(told.find("\nend: "), std::string::npos) << told;
+  EXPECT_GT(scans_, 10);
+  EXPECT_EQ(robots.total().physical, 0U);
+
+  // What it mapped is the room: nearly all of it, and free space where there is free space.
+  const auto grid = make_voxel_grid(
+      *std::get<std::shared_ptr<octomap::OcTree>>(read_octree((folder_ / "scans/map.bt").string())));
+  EXPECT_GT(sim::measure(team.truth, grid).of_observable(), 0.9);
+
+  // The folder is a recording: without a robot, and without waiting, it gives the same.
+  fs::remove(folder_ / "scans/map.bt");
+  const pid_t again = begin(words(start, "0"));
+  ASSERT_EQ(waitpid(again, &status, 0), again);
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  EXPECT_EQ(content_of(folder_ / "out"), told);
+  EXPECT_TRUE(content_of(folder_ / "scans/map.bt") == map);
+}
+
+TEST_F(ExploreRecorded, EndsWithoutAnAnswer) {
+  int status = 0;
+  const pid_t child = begin(words({{1.05, 1.05, 1.65}, 0.0}, "0"));
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  EXPECT_NE(content_of(folder_ / "out").find("end: "), std::string::npos);
+  // The first place that it would have the robot look from is where the robot is.
+  const auto next = read_pose_list(folder_ / "scans/next.csv");
+  ASSERT_EQ(next.size(), 1U);
+  EXPECT_TRUE(test::same(next[0].pose, Pose{{1.05, 1.05, 1.65}, 0.0}));
+
+  std::ofstream(folder_ / "scans/poses.csv") << "scan1.ply,1.05,1.05,1.65,0\n";
+  const pid_t missing = begin(words({{1.05, 1.05, 1.65}, 0.0}, "0"));
+  ASSERT_EQ(waitpid(missing, &status, 0), missing);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2);
+  EXPECT_NE(content_of(folder_ / "err").find("scan1.ply"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/io/robot_file.hpp>
+#include <frontlux/sim/built_in_worlds.hpp>
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
+#include <frontlux/sim/start_pose.hpp>
+
+#include <gtest/gtest.h>
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace frontlux::test {
+
+using planner::Exploration;
+using planner::ExplorationOptions;
+using planner::ExplorationStep;
+using planner::Pose;
+using planner::RobotStep;
+
+/// A built-in world at 0.3 m, and robots at their starts in it.
+struct TeamInWorld {
+  sim::World world;
+  Eigen::Vector3d around;
+  sim::GroundTruth truth;
+  std::vector<planner::RobotDescription> robots;
+  std::vector<planner::ExplorationStart> starts;
+
+  TeamInWorld(std::string_view name, std::uint64_t seed, std::vector<planner::RobotDescription> team)
+      : world(sim::make_world(name, seed)),
+        around(sim::free_start(world, 0.3, true)),
+        truth(world, 0.3, around),
+        robots(std::move(team)) {
+    std::vector<planner::Robot> bodies;
+    for (auto& [robot, columns, rows] : robots) {
+      robot.travel.floor = sim::ground_below(truth, around);
+      bodies.push_back(robot);
+    }
+    const auto poses = sim::find_starts(truth, around, bodies);
+    for (std::size_t r = 0; r < poses.size(); ++r) {
+      if (!poses[r]) throw std::runtime_error("no start for robot " + std::to_string(r));
+      starts.push_back({*poses[r], sim::start_bubble(truth, bodies[r], *poses[r])});
+    }
+  }
+
+  [[nodiscard]] ExplorationOptions options(planner::Method method = planner::Method::kDefault) const {
+    ExplorationOptions options = planner::exploration_options(method);
+    for (const auto& description : robots)
+      options.team.push_back({description.robot, planner::goal_options(description.robot, method)});
+    return options;
+  }
+  [[nodiscard]] planner::Mapping empty_map() const {
+    return planner::Mapping({.resolution = 0.3, .bounds = truth.bounds()});
+  }
+  [[nodiscard]] sim::SimulatedRobots bodies(sim::AtContact at_contact = sim::AtContact::kGoOn) const {
+    return sim::SimulatedRobots(world, truth, robots, {}, 1, at_contact);
+  }
+};
+
+inline std::vector<planner::RobotDescription> uav_and_ugv() {
+  return {planner::ugv_description(), planner::uav_description()};
+}
+
+inline planner::Drive drive_by(sim::SimulatedRobots& robots) {
+  return [&robots](std::size_t robot, const Pose& viewpoint) { return robots.drive(robot, viewpoint); };
+}
+
+/// The bytes of its file.
+inline std::string bytes_of(const planner::Mapping& mapping) {
+  std::ostringstream bytes;
+  mapping.tree().write(bytes);
+  return bytes.str();
+}
+
+inline bool same(const Pose& a, const Pose& b) { return a.position == b.position && a.yaw == b.yaw; }
+inline bool same(std::span<const Pose> a, std::span<const Pose> b) {
+  return std::ranges::equal(a, b, [](const Pose& x, const Pose& y) { return same(x, y); });
+}
+
+/// All but the times are the same, to the last bit.
+inline void expect_same(const ExplorationStep& a, const ExplorationStep& b) {
+  ASSERT_EQ(a.number, b.number);
+  EXPECT_EQ(a.frontiers, b.frontiers) << "step " << a.number;
+  EXPECT_EQ(a.unassigned, b.unassigned);
+  EXPECT_EQ(a.abandoned, b.abandoned);
+  EXPECT_EQ(a.rays, b.rays);
+  ASSERT_EQ(a.robots.size(), b.robots.size());
+  for (std::size_t r = 0; r < a.robots.size(); ++r) {
+    const RobotStep &x = a.robots[r], &y = b.robots[r];
+    EXPECT_EQ(x.goal.state, y.goal.state);
+    ASSERT_EQ(x.goal.pose.has_value(), y.goal.pose.has_value());
+    if (x.goal.pose) {
+      EXPECT_TRUE(same(*x.goal.pose, *y.goal.pose)) << "step " << a.number << ", robot " << r;
+    }
+    EXPECT_EQ(x.goal.gain, y.goal.gain);
+    EXPECT_EQ(x.goal.quality, y.goal.quality);
+    EXPECT_EQ(x.goal.assigned, y.goal.assigned);
+    EXPECT_EQ(x.image.size(), y.image.size());
+    EXPECT_EQ(x.path, y.path);
+    EXPECT_TRUE(same(x.planned, y.planned)) << "step " << a.number << ", robot " << r;
+    EXPECT_EQ(x.gain_tangent, y.gain_tangent);
+    EXPECT_EQ(x.gain_predicted, y.gain_predicted);
+    EXPECT_EQ(x.travelled, y.travelled);
+    EXPECT_EQ(x.length, y.length);
+    EXPECT_EQ(x.gained, y.gained);
+    EXPECT_TRUE(x.changed == y.changed) << "step " << a.number << ", robot " << r;
+    EXPECT_EQ(x.blocked, y.blocked);
+    EXPECT_EQ(x.still_unknown, y.still_unknown);
+  }
+}
+
+}  // namespace frontlux::test

@@ -1,0 +1,95 @@
+#include "frontier/small_clusters.hpp"
+
+#include "frontier/abandoned_frontiers.hpp"
+#include "support/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Random;
+
+// Size of the cluster of each voxel, by a flood fill that visits all of it.
+std::map<VoxelKey, std::size_t> cluster_sizes(std::span<const VoxelKey> frontiers) {
+  std::set<VoxelKey> left(frontiers.begin(), frontiers.end());
+  std::map<VoxelKey, std::size_t> sizes;
+  while (!left.empty()) {
+    std::vector<VoxelKey> cluster = {*left.begin()};
+    left.erase(left.begin());
+    for (std::size_t i = 0; i < cluster.size(); ++i)
+      for (auto next = left.begin(); next != left.end();) {
+        const auto near = [](int a, int b) { return a - b <= 1 && b - a <= 1; };
+        const VoxelKey at = cluster[i];
+        if (near(at.x, next->x) && near(at.y, next->y) && near(at.z, next->z)) {
+          cluster.push_back(*next);
+          next = left.erase(next);
+        } else {
+          ++next;
+        }
+      }
+    for (const VoxelKey& key : cluster) sizes[key] = cluster.size();
+  }
+  return sizes;
+}
+
+TEST(SmallClusters, AreThoseThatAFloodFillFinds) {
+  int small = 0, large = 0;
+  for (const int origin : {0, 32700, 0xFFFF - 19})
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      Random random(seed);
+      VoxelGrid grid(0.3);
+      for (int i = 0; i < 30; ++i) {
+        const auto along = [&] { return static_cast<std::uint16_t>(origin + random.below(20)); };
+        grid.set({along(), along(), along()}, random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree);
+      }
+      const FrontierSet frontiers(grid, {{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}});
+      const auto sizes = cluster_sizes(frontiers.keys());
+      std::vector<VoxelKey> some;
+      for (const VoxelKey& key : frontiers.keys())
+        if (!random.one_in(4)) some.push_back(key);  // clusters are those of all, whichever are asked for
+      for (const int size : {-1, 1, 4, 6, 7, 12, 1000}) {
+        std::vector<VoxelKey> expected;
+        for (const VoxelKey& key : some)
+          if (static_cast<int>(sizes.at(key)) >= size) expected.push_back(key);
+        EXPECT_EQ(detail::in_large_clusters(frontiers, some, size), expected) << size;
+        if (size == 7) {
+          large += static_cast<int>(expected.size());
+          small += static_cast<int>(some.size() - expected.size());
+        }
+      }
+    }
+  EXPECT_GT(small, 50);
+  EXPECT_GT(large, 50);
+}
+
+TEST(AbandonedFrontiers, AreGivenUpAfterSoManyVisits) {
+  for (const int visits : {1, 2, 5}) {
+    Random random(static_cast<std::uint64_t>(visits));
+    detail::AbandonedFrontiers abandoned(visits);
+    std::map<VoxelKey, int> count;
+    std::vector<VoxelKey> all;
+    for (std::uint16_t i = 0; i < 50; ++i) all.push_back({i, 7, 9});
+    for (int round = 0; round < 12; ++round) {
+      std::vector<VoxelKey> rest;
+      for (const VoxelKey& key : all) {
+        EXPECT_EQ(abandoned.abandoned(key), count[key] >= visits);
+        if (count[key] < visits) rest.push_back(key);
+      }
+      EXPECT_EQ(abandoned.without_abandoned(all), rest);
+      std::vector<VoxelKey> seen;
+      for (const VoxelKey& key : all)
+        if (random.one_in(3)) seen.push_back(key);
+      abandoned.visited(seen);
+      for (const VoxelKey& key : seen) ++count[key];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner

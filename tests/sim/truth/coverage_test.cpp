@@ -1,0 +1,90 @@
+// Against counting every voxel of the bounds.
+
+#include "sim/mesh/box_mesh.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/sim/coverage.hpp>
+
+#include <gtest/gtest.h>
+
+namespace frontlux::sim {
+namespace {
+
+GroundTruth room_with_a_vault() {
+  World world{"room", {}, {Eigen::Vector3d(-1.5, -3, 0), Eigen::Vector3d(4.5, 3, 3)}, std::nullopt};
+  test::add_box(world.mesh, {Eigen::Vector3f(-1.4F, -2.9F, 0.05F), Eigen::Vector3f(4.4F, 2.9F, 2.95F)});
+  test::add_box(world.mesh, {Eigen::Vector3f(1, 1, 0.6F), Eigen::Vector3f(3.4F, 2.2F, 2)});
+  return {world, 0.1, {0, 0, 1}};
+}
+
+Coverage counted(const GroundTruth& truth, const VoxelGrid& grid) {
+  Coverage coverage;
+  const KeyBox& box = truth.bounds();
+  for (unsigned x = box.min.x; x <= box.max.x; ++x)
+    for (unsigned y = box.min.y; y <= box.max.y; ++y)
+      for (unsigned z = box.min.z; z <= box.max.z; ++z) {
+        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                           static_cast<std::uint16_t>(z)};
+        const bool known = grid.at(key) != Occupancy::kUnknown;
+        ++coverage.bounding;
+        coverage.known_bounding += known ? 1 : 0;
+        if (truth.at(key) == Truth::kHidden) continue;
+        ++coverage.observable;
+        coverage.known_observable += known ? 1 : 0;
+      }
+  return coverage;
+}
+
+// Single voxels and blocks of any size, within the bounds and around them.
+void scribble(VoxelGrid& grid, frontlux::test::Random& random, int strokes) {
+  for (int i = 0; i < strokes; ++i) {
+    const int level = random.one_in(3) ? random.below(6) : 0;
+    const auto coordinate = [&] {
+      const int key = Lattice::kOrigin - 50 + random.below(120);
+      return static_cast<std::uint16_t>(key >> level << level);
+    };
+    grid.fill({{coordinate(), coordinate(), coordinate()}, level}, static_cast<Occupancy>(random.below(3)));
+  }
+}
+
+TEST(Coverage, MeasuredAndFollowedAsCounted) {
+  const GroundTruth truth = room_with_a_vault();
+  VoxelGrid grid(0.1);
+  Coverage followed = measure(truth, grid);
+  EXPECT_EQ(followed, (Coverage{0, truth.observable_voxels(), 0, truth.bounding_voxels()}));
+  frontlux::test::Random random(1);
+  for (int round = 0; round < 20; ++round) {
+    const VoxelGrid before = grid;
+    scribble(grid, random, 200);
+    followed = follow(truth, followed, before, grid);
+    const Coverage expected = counted(truth, grid);
+    ASSERT_EQ(measure(truth, grid), expected) << round;
+    ASSERT_EQ(followed, expected) << round;
+  }
+  EXPECT_GT(followed.known_observable, 10'000U);
+  EXPECT_LT(followed.of_observable(), 1.0);
+}
+
+TEST(Coverage, FullMapsCoverAll) {
+  const GroundTruth truth = room_with_a_vault();
+  VoxelGrid grid(0.1);
+  truth.for_each_observable([&](const VoxelKey& key, Truth state) {
+    grid.set(key, state == Truth::kFree ? Occupancy::kFree : Occupancy::kOccupied);
+  });
+  const Coverage coverage = measure(truth, grid);
+  EXPECT_EQ(coverage.of_observable(), 1.0);
+  EXPECT_EQ(coverage.known_bounding, truth.observable_voxels());
+  grid.fill({{0, 0, 0}, 16}, Occupancy::kFree);
+  EXPECT_EQ(measure(truth, grid).of_bounding(), 1.0);
+}
+
+TEST(Coverage, RefusesAnotherResolution) {
+  const GroundTruth truth = room_with_a_vault();
+  const VoxelGrid same(0.1), other(0.2);
+  EXPECT_THROW(static_cast<void>(measure(truth, other)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(follow(truth, {}, same, other)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(follow(truth, {}, other, same)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace frontlux::sim

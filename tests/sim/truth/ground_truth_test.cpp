@@ -1,0 +1,380 @@
+// Against box worlds in closed form, flooded by another method; against rays; and what must be refused.
+
+#include "sim/mesh/box_mesh.hpp"
+#include "support/random.hpp"
+
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/surface.hpp>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+using frontlux::test::Random;
+
+constexpr double kEdge = 0.3;
+
+World world_of(const std::vector<Eigen::AlignedBox3f>& boxes, const Eigen::AlignedBox3d& bounds) {
+  World world{"boxes", {}, bounds, std::nullopt};
+  for (const auto& box : boxes) test::add_box(world.mesh, box);
+  return world;
+}
+
+VoxelKey key_of(int x, int y, int z) {
+  const auto key = [](int cell) { return static_cast<std::uint16_t>(cell + Lattice::kOrigin); };
+  return {key(x), key(y), key(z)};
+}
+
+// The truth of a world of boxes (their surfaces; a box may be flat) over [0, n) voxels on each axis, with the
+// definitions taken by the word: nothing here knows of triangles.
+class BoxTruth {
+ public:
+  BoxTruth(std::vector<Eigen::AlignedBox3f> boxes, int n, const Eigen::Vector3i& start)
+      : boxes_(std::move(boxes)), n_(n), reached_(static_cast<std::size_t>(n * n * n)) {
+    reached_[index(start)] = true;
+    // Sweeps over everything until nothing changes: slow, and not how the ground truth floods.
+    for (bool changed = true; changed;) {
+      changed = false;
+      for_each([&](const Eigen::Vector3i& cell) {
+        if (reached_[index(cell)] || solid(cell)) return;
+        for_each_neighbour(cell, [&](const Eigen::Vector3i& other, int axis) {
+          if (!reached_[index(other)] || wall(cell.cwiseMax(other), axis)) return;
+          reached_[index(cell)] = true;
+          changed = true;
+        });
+      });
+    }
+  }
+
+  [[nodiscard]] Truth at(const Eigen::Vector3i& cell) const {
+    if (reached_[index(cell)]) return Truth::kFree;
+    Truth truth = Truth::kHidden;
+    for_each_neighbour(cell, [&](const Eigen::Vector3i& other, int) {
+      if (reached_[index(other)]) truth = Truth::kSurface;
+    });
+    return truth;
+  }
+
+  [[nodiscard]] bool solid(const Eigen::Vector3i& cell) const { return on_a_surface(inside(cell)); }
+
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (int z = 0; z < n_; ++z)
+      for (int y = 0; y < n_; ++y)
+        for (int x = 0; x < n_; ++x) visit(Eigen::Vector3i(x, y, z));
+  }
+
+ private:
+  [[nodiscard]] static Eigen::AlignedBox3d inside(const Eigen::Vector3i& cell) {
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(0.001);
+    const Eigen::Vector3d low = cell.cast<double>() * kEdge;
+    return {low + margin, low + Eigen::Vector3d::Constant(kEdge) - margin};
+  }
+  // A box's surface meets what the box meets and does not swallow.
+  [[nodiscard]] bool on_a_surface(const Eigen::AlignedBox3d& region) const {
+    for (const auto& single : boxes_) {
+      const Eigen::AlignedBox3d box = single.cast<double>();
+      const bool meets = (box.min().array() <= region.max().array()).all() &&
+                         (box.max().array() >= region.min().array()).all();
+      const bool swallows = (box.min().array() < region.min().array()).all() &&
+                            (box.max().array() > region.max().array()).all();
+      if (meets && !swallows) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool wall(const Eigen::Vector3i& upper, int axis) const {
+    Eigen::AlignedBox3d face = inside(upper);
+    face.min()[axis] = upper[axis] * kEdge - 0.001;
+    face.max()[axis] = upper[axis] * kEdge + 0.001;
+    return on_a_surface(face);
+  }
+  template <class Visit>
+  void for_each_neighbour(const Eigen::Vector3i& cell, const Visit& visit) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int step : {-1, 1}) {
+        Eigen::Vector3i other = cell;
+        other[axis] += step;
+        if (other[axis] >= 0 && other[axis] < n_) visit(other, axis);
+      }
+    }
+  }
+  [[nodiscard]] std::size_t index(const Eigen::Vector3i& cell) const {
+    return static_cast<std::size_t>((cell.z() * n_ + cell.y()) * n_ + cell.x());
+  }
+
+  std::vector<Eigen::AlignedBox3f> boxes_;
+  int n_;
+  std::vector<bool> reached_;
+};
+
+// Boxes with sides anywhere, on voxel faces, within the margin of them, and just beyond it; some of them
+// flat.
+std::vector<Eigen::AlignedBox3f> random_boxes(Random& random, int count, int n) {
+  std::vector<Eigen::AlignedBox3f> boxes;
+  for (int i = 0; i < count; ++i) {
+    Eigen::AlignedBox3f box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto coordinate = [&] {
+        const double anywhere = random.uniform(-0.5, n * kEdge + 0.5);
+        const double face = std::round(anywhere / kEdge) * kEdge;
+        constexpr std::array<double, 4> kNear{0.0009, -0.0009, 0.0011, -0.0011};
+        switch (random.below(4)) {
+          case 0:
+            return anywhere;
+          case 1:
+            return face + kNear[static_cast<std::size_t>(random.below(4))];
+          default:
+            return face;
+        }
+      };
+      const auto a = static_cast<float>(coordinate()), b = static_cast<float>(coordinate());
+      box.min()[axis] = std::min(a, b);
+      box.max()[axis] = std::max(a, b);
+    }
+    if (random.one_in(3)) {
+      const int axis = random.below(3);
+      box.max()[axis] = box.min()[axis];
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+TEST(GroundTruth, RandomBoxWorldsByTheDefinition) {
+  Random random(1);
+  constexpr int kCells = 14;
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(kCells * kEdge));
+  std::size_t compared = 0, partly = 0;
+  for (int round = 0; round < 150; ++round) {
+    const auto boxes = random_boxes(random, 1 + random.below(7), kCells);
+    const Eigen::Vector3i start(random.below(kCells), random.below(kCells), random.below(kCells));
+    const World world = world_of(boxes, bounds);
+    const Eigen::Vector3d point = (start.cast<double>() + Eigen::Vector3d::Constant(0.5)) * kEdge;
+    const BoxTruth expected(boxes, kCells, start);
+    if (expected.solid(start)) {
+      EXPECT_THROW(GroundTruth(world, kEdge, point), std::invalid_argument);
+      continue;
+    }
+    const GroundTruth truth(world, kEdge, point);
+    std::array<std::uint64_t, 3> counts{};
+    expected.for_each([&](const Eigen::Vector3i& cell) {
+      const VoxelKey key = key_of(cell.x(), cell.y(), cell.z());
+      ASSERT_EQ(truth.at(key), expected.at(cell)) << "round " << round << ", cell " << cell.transpose();
+      ASSERT_EQ(truth.holds_surface(key), expected.solid(cell)) << cell.transpose();
+      ++counts[static_cast<std::size_t>(truth.at(key))];
+    });
+    EXPECT_EQ(truth.free_voxels(), counts[1]);
+    EXPECT_EQ(truth.surface_voxels(), counts[2]);
+    EXPECT_EQ(truth.bounding_voxels(), counts[0] + counts[1] + counts[2]);
+    ++compared;
+    partly += counts[0] > 100 && counts[1] > 100 ? 1 : 0;
+  }
+  EXPECT_GT(compared, 80U);
+  EXPECT_GT(partly, 15U);
+}
+
+// A room of 8 x 8 x 8 voxels, its walls within voxels, and then exactly on the faces between voxels.
+TEST(GroundTruth, CountsOfARoom) {
+  for (const float wall : {0.15F, 0.3F}) {
+    const World world = world_of({{Eigen::Vector3f::Constant(wall), Eigen::Vector3f::Constant(3.0F - wall)}},
+                                 {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(3.0)});
+    const GroundTruth truth(world, 0.3, {1.5, 1.5, 1.5});
+    EXPECT_EQ(truth.bounding_voxels(), 1000U);
+    EXPECT_EQ(truth.free_voxels(), 512U);
+    EXPECT_EQ(truth.surface_voxels(), 384U);
+    EXPECT_EQ(truth.at(key_of(0, 5, 5)), Truth::kSurface);
+    EXPECT_EQ(truth.at(key_of(0, 0, 5)), Truth::kHidden);
+    EXPECT_EQ(truth.at(key_of(-1, 5, 5)), Truth::kHidden);
+    EXPECT_EQ(truth.holds_surface(key_of(0, 5, 5)), wall == 0.15F);
+    std::uint64_t visited = 0;
+    truth.for_each_observable([&](const VoxelKey& key, Truth state) {
+      ++visited;
+      ASSERT_EQ(state, truth.at(key));
+    });
+    EXPECT_EQ(visited, truth.observable_voxels());
+  }
+}
+
+TEST(GroundTruth, SealedRoomsAreNotObservable) {
+  const Eigen::AlignedBox3f room(Eigen::Vector3f(0.1F, 0.1F, 0.1F), Eigen::Vector3f(8.9F, 5.9F, 2.9F));
+  const Eigen::AlignedBox3f vault(Eigen::Vector3f(5.0F, 1.0F, 0.4F), Eigen::Vector3f(7.9F, 4.0F, 2.6F));
+  const World world = world_of({room, vault}, {Eigen::Vector3d::Zero(), Eigen::Vector3d(9, 6, 3)});
+  const GroundTruth outside(world, 0.1, {1, 1, 1}), inside(world, 0.1, {6, 2, 1});
+  const Lattice lattice(0.1);
+  EXPECT_FALSE(outside.contains(*lattice.key(Eigen::Vector3f(6, 2, 1))));
+  EXPECT_FALSE(inside.contains(*lattice.key(Eigen::Vector3f(1, 1, 1))));
+  outside.for_each_observable([&](const VoxelKey& key, Truth truth) {
+    if (truth == Truth::kFree) {
+      ASSERT_NE(inside.at(key), Truth::kFree);
+    }
+  });
+  EXPECT_GT(inside.free_voxels(), 10'000U);
+}
+
+// A slanting sheet, one triangle pair thin, across a room: free space ends at its plane.
+TEST(GroundTruth, ThinSlantingWallsHold) {
+  Random random(2);
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Zero(), Eigen::Vector3d(6, 6, 3));
+  for (int round = 0; round < 30; ++round) {
+    const Eigen::Vector3d normal =
+        Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    const Eigen::Vector3d middle(random.uniform(2, 4), random.uniform(2, 4), random.uniform(1, 2));
+    const Eigen::Vector3d u = normal.unitOrthogonal() * 20, v = normal.cross(u);
+    World world{"sheet", {}, bounds, std::nullopt};
+    test::add_quad(world.mesh, (middle - u - v).cast<float>(), (middle + u - v).cast<float>(),
+                   (middle + u + v).cast<float>(), (middle - u + v).cast<float>());
+    const Eigen::Vector3d start = middle - normal * 0.7;
+    const GroundTruth truth(world, 0.1, start);
+    std::uint64_t before_plane = 0;
+    const auto& box = truth.bounds();
+    for (unsigned x = box.min.x; x <= box.max.x; ++x)
+      for (unsigned y = box.min.y; y <= box.max.y; ++y)
+        for (unsigned z = box.min.z; z <= box.max.z; ++z) {
+          const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+                             static_cast<std::uint16_t>(z)};
+          const Eigen::Vector3d center = truth.lattice().center(key).cast<double>();
+          const double side = normal.dot(center - middle);
+          // The farthest corner is half a diagonal away: a voxel further off than that is not cut.
+          if (side < -0.087) ++before_plane;
+          if (side < -0.087) {
+            ASSERT_EQ(truth.at(key), Truth::kFree) << round;
+          }
+          if (side > 0.0) {
+            ASSERT_NE(truth.at(key), Truth::kFree) << round;
+          }
+          if (side > 0.15) {
+            ASSERT_EQ(truth.at(key), Truth::kHidden) << round;
+          }
+        }
+    EXPECT_GT(before_plane, 1'000U);
+  }
+}
+
+// In a soup of triangles, the straight way between the centres of free neighbours meets nothing, and from a
+// voxel that was not reached there is a wall or a surface on the way to each free neighbour.
+TEST(GroundTruth, FreeNeighboursSeeEachOther) {
+  Random random(3);
+  const auto point = [&](double low, double high) {
+    return Eigen::Vector3f(static_cast<float>(random.uniform(low, high)),
+                           static_cast<float>(random.uniform(low, high)),
+                           static_cast<float>(random.uniform(low, high)));
+  };
+  World world{"soup", {}, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(6)}, std::nullopt};
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    const Eigen::Vector3f middle = point(0, 6);
+    for (int corner = 0; corner < 3; ++corner) world.mesh.vertices.push_back(middle + point(-1, 1));
+    world.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const Surface surface(world.mesh);
+  std::optional<GroundTruth> truth;
+  for (int x = 0; x < 30 && (!truth || truth->free_voxels() < 3'000); ++x) {
+    const Eigen::Vector3d start(0.2 * x + 0.1, 3.1, 3.1);
+    try {
+      truth.emplace(world, 0.2, start);
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  ASSERT_TRUE(truth);
+  ASSERT_GT(truth->free_voxels(), 3'000U);
+  std::vector<Surface::Ray> ways;
+  truth->for_each_observable([&](const VoxelKey& key, Truth state) {
+    if (state != Truth::kFree) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      VoxelKey other = key;
+      (axis == 0 ? other.x : axis == 1 ? other.y : other.z)++;
+      if (truth->at(other) != Truth::kFree) continue;
+      ways.push_back({truth->lattice().center(key), Eigen::Vector3f::Unit(axis), 0.2});
+    }
+  });
+  std::vector<Surface::Hit> hits(ways.size());
+  surface.cast(ways, hits);
+  ASSERT_GT(hits.size(), 5'000U);
+  // Both may be free and yet have a wall on the face between them, reached from two sides.
+  std::size_t walls = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].triangle == Surface::kNone) continue;
+    ASSERT_NEAR(hits[i].range, 0.1, 0.0011) << i;
+    ++walls;
+  }
+  EXPECT_LT(walls, hits.size() / 50);
+}
+
+TEST(GroundTruth, SameOnAnyNumberOfThreads) {
+  Random random(4);
+  const World world = world_of(random_boxes(random, 40, 60),
+                               {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(60 * kEdge)});
+  const auto states = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] {
+      std::vector<std::pair<VoxelKey, Truth>> found;
+      for (int i = 0; i < 60 && found.empty(); ++i) {
+        try {
+          const GroundTruth truth(world, kEdge, Eigen::Vector3d::Constant((i + 0.5) * kEdge));
+          truth.for_each_observable(
+              [&](const VoxelKey& key, Truth state) { found.emplace_back(key, state); });
+        } catch (const std::invalid_argument&) {
+        }
+      }
+      return found;
+    });
+  };
+  const auto one = states(1);
+  EXPECT_GT(one.size(), 1'000U);
+  EXPECT_EQ(one, states(2));
+}
+
+std::string refusal(const World& world, double resolution, const Eigen::Vector3d& start) {
+  try {
+    const GroundTruth truth(world, resolution, start);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(GroundTruth, RefusesWhatMakesNoSense) {
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Zero(), Eigen::Vector3d(9, 6, 3));
+  const World world = world_of({{Eigen::Vector3f(1, 1, 1), Eigen::Vector3f(2, 2, 2)}}, bounds);
+  EXPECT_EQ(refusal(world, 0.3, {0.5, 0.5, 0.5}), "accepted");
+  EXPECT_NE(refusal(world, 0.3, {1.01, 1.5, 1.5}).find("lies in a wall: triangle "), std::string::npos);
+  EXPECT_NE(refusal(world, 0.3, {9.5, 1.5, 1.5}).find("outside of the world's bounds"), std::string::npos);
+  EXPECT_NE(refusal(world, 0.3, {std::nan(""), 1.5, 1.5}).find("outside"), std::string::npos);
+  EXPECT_NE(refusal(world, 0.001, {0.5, 0.5, 0.5}).find("162000000000 voxels"), std::string::npos);
+  EXPECT_NE(refusal(world, 1e-5, {0.5, 0.5, 0.5}).find("larger voxels"), std::string::npos);
+  EXPECT_NE(refusal(world, 0.0, {0.5, 0.5, 0.5}), "accepted");
+  World broken = world;
+  broken.bounds.setEmpty();
+  EXPECT_NE(refusal(broken, 0.3, {0.5, 0.5, 0.5}).find("no volume"), std::string::npos);
+  broken.bounds = {Eigen::Vector3d::Zero(), Eigen::Vector3d(9, std::numeric_limits<double>::infinity(), 3)};
+  EXPECT_NE(refusal(broken, 0.3, {0.5, 0.5, 0.5}), "accepted");
+  broken = world;
+  broken.mesh.vertices[2].x() = std::nanf("");
+  EXPECT_NE(refusal(broken, 0.3, {0.5, 0.5, 0.5}).find("vertex 2"), std::string::npos);
+}
+
+TEST(VoxelsWithin, FacesBelongToTheInside) {
+  const Lattice lattice(0.3);
+  for (int low = -40; low < 40; ++low) {
+    for (int high = low + 1; high < low + 20; ++high) {
+      const Eigen::Vector3d min = Eigen::Vector3d::Constant(0.3 * low),
+                            max = Eigen::Vector3d::Constant(0.3 * high);
+      const KeyBox exact = voxels_within({min, max}, lattice);
+      EXPECT_EQ(exact, (KeyBox{key_of(low, low, low), key_of(high - 1, high - 1, high - 1)}));
+      EXPECT_EQ(volume(exact), static_cast<std::uint64_t>((high - low) * (high - low) * (high - low)));
+      const Eigen::Vector3d more = Eigen::Vector3d::Constant(0.01);
+      EXPECT_EQ(voxels_within({min - more, max + more}, lattice),
+                (KeyBox{key_of(low - 1, low - 1, low - 1), key_of(high, high, high)}));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::sim
