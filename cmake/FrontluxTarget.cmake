@@ -29,3 +29,14 @@ function(frontlux_target name)
     endif()
   endif()
 endfunction()
+
+# frontlux_install(NAME EXPORT): installs the library frontlux_NAME and its public headers as frontlux::NAME.
+function(frontlux_install name export)
+  # Before 1.0 a new minor version may break users, so it is a new library name.
+  set_target_properties(frontlux_${name} PROPERTIES EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(FRONTLUX_INSTALL)
+    install(TARGETS frontlux_${name} EXPORT ${export})
+    install(DIRECTORY include/frontlux DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  endif()
+endfunction()

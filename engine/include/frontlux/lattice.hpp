@@ -30,15 +30,14 @@ class Lattice {
     return static_cast<std::uint16_t>(static_cast<int>(cell) + kOrigin);
   }
 
-  /// Key of the voxel that holds a point [m]. Cells are half-open: a point on a face belongs to the upper
+  /// Key of the voxel that holds a point [m], of floats or doubles. Cells are half-open: a point on a face belongs to the upper
   /// one.
-  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3d& point) const {
-    const auto x = key(point.x()), y = key(point.y()), z = key(point.z());
+  template <class Point>
+  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::MatrixBase<Point>& point) const {
+    const auto x = key(static_cast<double>(point.x())), y = key(static_cast<double>(point.y())),
+               z = key(static_cast<double>(point.z()));
     if (!x || !y || !z) return std::nullopt;
     return VoxelKey{*x, *y, *z};
-  }
-  [[nodiscard]] std::optional<VoxelKey> key(const Eigen::Vector3f& point) const {
-    return key(Eigen::Vector3d(point.cast<double>()));
   }
 
   /// Centre along one axis [m].
