@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.22)
 file(READ ${INPUT} bytes HEX)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
 string(REGEX REPLACE "(0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,)" "\\1\n" bytes "${bytes}")
-file(WRITE ${OUTPUT} "#include \"page.hpp\"
+file(WRITE ${OUTPUT} "#include \"parts.hpp\"
 
 namespace frontlux::report::detail {
 namespace {

@@ -107,7 +107,7 @@ async function layersWork(page) {
   await page.selectOption("#colors", "height");
   await page.locator("#cut").fill("4");
   const cut = await look();
-  assert.notEqual(cut, all, "the cut takes nothing away");
+  assert.notEqual(cut, all, "the cut hides nothing");
   await page.locator("#cut").fill(await page.getAttribute("#cut", "max"));
   assert.equal(await look(), all, "without the cut it looks different");
   await page.selectOption("#follow", "0");
@@ -198,8 +198,8 @@ async function chartsAreRight(page, rows) {
   if (team) robots.forEach((robot, r) => curve(curves[1 + r], column(of(robot), "travelled_m"), column(of(robot), "robot_observable"), `${robot} by length`));
   // And the legend says what holds at the step that is shown.
   await page.evaluate(() => window.frontlux.page.timeline.seek(3));
-  const told = await page.locator("#chart-frontiers .legend .value").allTextContents();
-  assert.deepEqual(told.map((text) => Number(text.replaceAll(",", ""))), [first[3].frontiers, first[3].unassigned, first[3].abandoned]);
+  const shown = await page.locator("#chart-frontiers .legend .value").allTextContents();
+  assert.deepEqual(shown.map((text) => Number(text.replaceAll(",", ""))), [first[3].frontiers, first[3].unassigned, first[3].abandoned]);
 }
 
 /** From above, a click on the highest voxel of a column reads that voxel. */
@@ -228,7 +228,7 @@ async function picksAreRight(page) {
     const hit = await page.evaluate(([x, y]) => window.frontlux.page.pickAt(x, y), at);
     assert.equal(hit?.kind, "voxel");
     if (JSON.stringify(hit.key) !== JSON.stringify(key)) ++hidden; // the view is no straight one: others lean over it
-    else assert.match(await page.textContent("#picked"), new RegExp(`Occupied voxel.*Key${key.join(", ")}First known byu[ag]v`));
+    else assert.match(await page.textContent("#picked"), new RegExp(`Occupied voxel.*Key${key.join(", ")}First seen byu[ag]v`));
   }
   assert.ok(hidden < 0.2 * tops.length, `${hidden} of ${tops.length} clicks read another voxel`);
   const box = await page.locator("#view canvas").boundingBox();
@@ -252,7 +252,7 @@ async function picksAreRight(page) {
   await page.click("#view-home");
 }
 
-/** Whoever cannot see the page is told what each control is for. */
+/** Every control has a name for screen readers. */
 async function controlsHaveNames(page) {
   const nameless = await page.evaluate(() => [...document.querySelectorAll("button, input, select, canvas[tabindex], [role=img]")].filter((control) => !(control.getAttribute("aria-label") || control.textContent.trim() || [...(control.labels ?? [])].some((label) => label.textContent.trim()))).map((control) => control.outerHTML));
   assert.deepEqual(nameless, []);
@@ -336,7 +336,7 @@ async function withoutGraphics() {
   const browser = await chromium.launch({ executablePath, args: kWithout });
   try {
     const { page, trouble } = await open(browser, reports);
-    assert.equal(await page.isVisible("#no-webgl"), true, "nobody is told that WebGL is missing");
+    assert.equal(await page.isVisible("#no-webgl"), true, "the page does not say that WebGL is missing");
     await chartsAreRight(page, await readTable(`${reports}/0/steps.csv`));
     await page.keyboard.press("Home");
     assert.match(await page.textContent("#step-label"), /^Step 0 of/);

@@ -40,8 +40,8 @@ void write_numbers(const std::filesystem::path& file, const Recording& recording
       out << step.number << ',' << head.robots[r].robot.name << ',' << of(observable, head.observable) << ','
           << of(bounding, head.bounding) << ',' << of(known[r].observable, head.observable) << ','
           << of(known[r].bounding, head.bounding) << ',' << step.frontiers << ',' << step.unassigned << ','
-          << step.abandoned << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted << ','
-          << robot.gained;
+          << step.abandoned << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted
+          << ',' << robot.gained;
       for (std::size_t phase = 0; phase + 1 < step.seconds.size(); ++phase) out << ',' << step.seconds[phase];
       out << ',' << step.planning_seconds() << '\n';
     }

@@ -247,19 +247,19 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
             nlohmann::json({"frontiers", "caster", "goals", "paths", "optimization", "moving"}));
   ASSERT_EQ(facts["steps"].size(), room().steps.size());
   for (std::size_t s = 0; s < room().steps.size(); ++s) {
-    const auto& told = facts["steps"][s];
+    const auto& reported = facts["steps"][s];
     const auto& [step, known, collisions] = room().steps[s];
-    EXPECT_EQ(told["number"], step.number);
-    EXPECT_EQ(told["frontiers"], step.frontiers);
-    EXPECT_EQ(told["unassigned"], step.unassigned);
-    EXPECT_EQ(told["abandoned"], step.abandoned);
-    EXPECT_EQ(told["rays"], step.rays);
-    EXPECT_EQ(told["collisions"], collisions);
-    EXPECT_EQ(told["seconds"].get<std::vector<double>>(),
+    EXPECT_EQ(reported["number"], step.number);
+    EXPECT_EQ(reported["frontiers"], step.frontiers);
+    EXPECT_EQ(reported["unassigned"], step.unassigned);
+    EXPECT_EQ(reported["abandoned"], step.abandoned);
+    EXPECT_EQ(reported["rays"], step.rays);
+    EXPECT_EQ(reported["collisions"], collisions);
+    EXPECT_EQ(reported["seconds"].get<std::vector<double>>(),
               std::vector(step.seconds.begin(), step.seconds.end()));
     for (std::size_t r = 0; r < 2; ++r) {
-      const auto& robot = told["robots"][r];
-      EXPECT_EQ(told["known"][r], nlohmann::json({known[r].observable, known[r].bounding}));
+      const auto& robot = reported["robots"][r];
+      EXPECT_EQ(reported["known"][r], nlohmann::json({known[r].observable, known[r].bounding}));
       EXPECT_EQ(robot["state"], name_of(step.robots[r].goal.state));
       EXPECT_EQ(robot["reason"], step.robots[r].goal.reason);
       EXPECT_EQ(robot.contains("goal"), step.robots[r].goal.pose.has_value());
@@ -284,9 +284,9 @@ TEST_F(ReportTest, NoNameBecomesMarkup) {
   for (const std::string_view mark : {"<script", "</script", "</title", "<!--"})
     EXPECT_EQ(count(page, mark), count(plain, mark)) << mark;
   EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;/title&gt;&lt;img src=x"), std::string::npos);
-  // The text is all there, inside. Only the byte that is no UTF-8 is for the browser to replace.
+  // The text is all there, inside, except for the byte that is not UTF-8.
   const std::string bytes = inflated(from_base64(packed_runs(page).at(0)));
-  EXPECT_EQ(count(bytes, "</script></title><img src=x onerror=alert(1)>&\\\"'\\u0001\xff<!--"), 6U);
+  EXPECT_EQ(count(bytes, "</script></title><img src=x onerror=alert(1)>&\\\"'\\u0001\xef\xbf\xbd<!--"), 6U);
 }
 
 TEST_F(ReportTest, NumbersThatAreNoneDoNoHarm) {

@@ -59,7 +59,7 @@ function drawn(mesher, corner) {
     // Counter-clockwise as seen from the side that it looks to.
     const u = [0, 1, 2].map((k) => at(1, k) - at(0, k)), v = [0, 1, 2].map((k) => at(2, k) - at(1, k));
     const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    assert.ok(normal[axis] * (side & 1 ? 1 : -1) > 0, "a face looks the wrong way");
+    assert.ok(normal[axis] * (side & 1 ? 1 : -1) > 0, "a face has the wrong orientation");
   }
   for (let i = 0; i < mesher.frontiers; ++i) out.push(`frontier ${[0, 1, 2].map((k) => corner[k] + mesher.points[4 * i + k])}`);
   return out.sort();

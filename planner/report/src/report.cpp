@@ -1,9 +1,7 @@
 #include "compression.hpp"
-#include "page.hpp"
-#include "run_data.hpp"
-#include "run_facts.hpp"
-#include <frontlux/file.hpp>
+#include "parts.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/report/report.hpp>
 
 #include <cstddef>
@@ -38,7 +36,7 @@ std::string escaped(std::string_view text) {
 }
 
 void check(std::span<const ReportedRun> runs) {
-  if (runs.empty()) throw std::invalid_argument("a report needs a run, but there is none");
+  if (runs.empty()) throw std::invalid_argument("a report needs at least one run");
   for (const ReportedRun& run : runs) {
     if (run.recording == nullptr) throw std::invalid_argument(run.name + ": a run without a recording");
     const std::size_t robots = run.recording->head.robots.size();
@@ -46,7 +44,7 @@ void check(std::span<const ReportedRun> runs) {
     if (run.recording->steps.empty()) throw std::invalid_argument(run.name + ": a recording without steps");
     for (const planner::RecordedStep& step : run.recording->steps)
       if (step.step.robots.size() != robots || step.known.size() != robots)
-        throw std::invalid_argument(run.name + ": step " + std::to_string(step.step.number) + " tells of " +
+        throw std::invalid_argument(run.name + ": step " + std::to_string(step.step.number) + " has " +
                                     std::to_string(step.step.robots.size()) + " robots instead of " +
                                     std::to_string(robots));
   }

@@ -1,8 +1,7 @@
-#include "run_data.hpp"
-
-#include "byte_writer.hpp"
+#include "parts.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +14,32 @@ namespace {
 
 constexpr unsigned kChunkBits = 5;
 constexpr unsigned kInChunk = (1U << kChunkBits) - 1;
+
+// Numbers as bytes, in the order in which the page reads them (web/src/byte_reader.js).
+class ByteWriter {
+ public:
+  void u8(std::uint8_t number) { bytes_ += static_cast<char>(number); }
+
+  void count(std::uint64_t number) {
+    for (; number >= 0x80; number >>= 7U) u8(static_cast<std::uint8_t>((number & 0x7FU) | 0x80U));
+    u8(static_cast<std::uint8_t>(number));
+  }
+
+  // Small numbers of either sign take few bytes.
+  void difference(std::int64_t number) {
+    count((static_cast<std::uint64_t>(number) << 1U) ^ static_cast<std::uint64_t>(number >> 63));
+  }
+
+  void f32(double number) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
+    for (unsigned shift = 0; shift < 32; shift += 8) u8(static_cast<std::uint8_t>(bits >> shift));
+  }
+
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
 
 // A changed voxel by where the page keeps it.
 struct Placed {
@@ -56,8 +81,8 @@ void write_changes(ByteWriter& out, std::span<const planner::VoxelChange> change
   }
 }
 
-std::uint8_t byte_of(double share) {
-  return static_cast<std::uint8_t>(share > 0.0 ? std::lround(255.0 * std::min(share, 1.0)) : 0);
+std::uint8_t byte_of(double fraction) {
+  return static_cast<std::uint8_t>(fraction > 0.0 ? std::lround(255.0 * std::min(fraction, 1.0)) : 0);
 }
 
 void write_image(ByteWriter& out, std::vector<planner::RenderedCell> cells) {

@@ -1,113 +1,95 @@
-#include "run_facts.hpp"
+#include "parts.hpp"
 
-#include "json_text.hpp"
+#include <nlohmann/json.hpp>
 
 #include <array>
-#include <cstdint>
-#include <initializer_list>
-#include <string_view>
 
 namespace frontlux::report::detail {
 namespace {
 
-void add_numbers(JsonText& json, std::string_view name, std::initializer_list<double> numbers) {
-  json.name(name).open('[');
-  for (const double number : numbers) json.number(number);
-  json.close(']');
+using nlohmann::json;
+
+json numbers_of(const planner::Pose& pose) {
+  return {pose.position.x(), pose.position.y(), pose.position.z(), pose.yaw};
 }
 
-void add_pose(JsonText& json, std::string_view name, const planner::Pose& pose) {
-  add_numbers(json, name, {pose.position.x(), pose.position.y(), pose.position.z(), pose.yaw});
-}
-
-void add_robot(JsonText& json, const planner::RobotDescription& description, const planner::Pose* start) {
-  constexpr std::array<std::string_view, 3> kShapes = {"spinning", "pyramid", "cone"};
+json facts_of(const planner::RobotDescription& description) {
+  constexpr std::array kShapes = {"spinning", "pyramid", "cone"};
   const planner::Robot& robot = description.robot;
-  json.open('{').name("name").text(robot.name);
-  json.name("plane").yes(robot.travel.motion == planner::Motion::kPlane);
-  add_numbers(json, "extents",
-              {robot.travel.extents.x(), robot.travel.extents.y(), robot.travel.extents.z()});
-  json.name("sensor_height").number(robot.mount_height());
-  json.name("shape").text(kShapes.at(static_cast<std::size_t>(robot.view.shape)));
-  json.name("horizontal").number(robot.view.horizontal);
-  json.name("vertical").number(robot.view.vertical);
-  json.name("max_range").number(robot.view.max_range);
-  json.name("columns").number(std::uint64_t{description.columns});
-  json.name("rows").number(std::uint64_t{description.rows});
-  if (start != nullptr) add_pose(json, "start", *start);
-  json.close('}');
+  const Eigen::Vector3d& extents = robot.travel.extents;
+  return {{"name", robot.name},
+          {"plane", robot.travel.motion == planner::Motion::kPlane},
+          {"extents", {extents.x(), extents.y(), extents.z()}},
+          {"sensor_height", robot.mount_height()},
+          {"shape", kShapes.at(static_cast<std::size_t>(robot.view.shape))},
+          {"horizontal", robot.view.horizontal},
+          {"vertical", robot.view.vertical},
+          {"max_range", robot.view.max_range},
+          {"columns", description.columns},
+          {"rows", description.rows}};
 }
 
-void add_robot_step(JsonText& json, const planner::RobotStep& robot) {
+json facts_of(const planner::RobotStep& robot) {
   const planner::Goal& goal = robot.goal;
-  json.open('{').name("state").text(name_of(goal.state)).name("reason").text(goal.reason);
-  if (goal.pose) {
-    add_pose(json, "goal", *goal.pose);
-    json.name("distance").number(goal.distance).name("gain").number(goal.gain);
-    json.name("standard_error").number(goal.standard_error).name("quality").number(goal.quality);
-  }
-  json.name("assigned").number(std::uint64_t{goal.assigned});
-  json.name("released").number(std::uint64_t{goal.released});
-  json.name("received").number(std::uint64_t{goal.received});
-  json.name("left_over").number(std::uint64_t{goal.left_over});
-  json.name("path").text(describe(robot.path));
-  json.name("gain_tangent").number(robot.gain_tangent).name("gain_predicted").number(robot.gain_predicted);
-  json.name("gained").number(robot.gained).name("length").number(robot.length);
-  json.name("still_unknown").number(std::uint64_t{robot.still_unknown.size()}).close('}');
+  json facts = {{"state", name_of(goal.state)},
+                {"reason", goal.reason},
+                {"assigned", goal.assigned},
+                {"released", goal.released},
+                {"received", goal.received},
+                {"left_over", goal.left_over},
+                {"path", describe(robot.path)},
+                {"gain_tangent", robot.gain_tangent},
+                {"gain_predicted", robot.gain_predicted},
+                {"gained", robot.gained},
+                {"length", robot.length},
+                {"still_unknown", robot.still_unknown.size()}};
+  if (goal.pose)
+    facts.update({{"goal", numbers_of(*goal.pose)},
+                  {"distance", goal.distance},
+                  {"gain", goal.gain},
+                  {"standard_error", goal.standard_error},
+                  {"quality", goal.quality}});
+  return facts;
 }
 
-void add_step(JsonText& json, const planner::RecordedStep& recorded) {
+json facts_of(const planner::RecordedStep& recorded) {
   const planner::ExplorationStep& step = recorded.step;
-  json.open('{').name("number").number(step.number);
-  json.name("frontiers").number(std::uint64_t{step.frontiers});
-  json.name("unassigned").number(std::uint64_t{step.unassigned});
-  json.name("abandoned").number(std::uint64_t{step.abandoned});
-  json.name("rays").number(step.rays).name("collisions").number(recorded.collisions);
-  json.name("seconds").open('[');
-  for (const double seconds : step.seconds) json.number(seconds);
-  json.close(']').name("known").open('[');
+  json facts = {
+      {"number", step.number},       {"frontiers", step.frontiers}, {"unassigned", step.unassigned},
+      {"abandoned", step.abandoned}, {"rays", step.rays},           {"collisions", recorded.collisions},
+      {"seconds", step.seconds},     {"known", json::array()},      {"robots", json::array()}};
   for (const planner::KnownVoxels& known : recorded.known)
-    json.open('[').number(known.observable).number(known.bounding).close(']');
-  json.close(']').name("robots").open('[');
-  for (const planner::RobotStep& robot : step.robots) add_robot_step(json, robot);
-  json.close(']').close('}');
+    facts["known"].push_back(json::array({known.observable, known.bounding}));
+  for (const planner::RobotStep& robot : step.robots) facts["robots"].push_back(facts_of(robot));
+  return facts;
 }
 
-void add_key(JsonText& json, const VoxelKey& key) {
-  json.open('[').number(std::uint64_t{key.x}).number(std::uint64_t{key.y}).number(std::uint64_t{key.z});
-  json.close(']');
-}
+json numbers_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
 }  // namespace
 
 std::string run_facts(const ReportedRun& run, const std::string& version) {
   const planner::Recording& recording = *run.recording;
   const planner::RecordingHead& head = recording.head;
-  JsonText json;
-  json.open('{').name("name").text(run.name).name("written_by").text(version);
-  json.name("world").text(head.world).name("resolution").number(head.resolution);
-  json.name("bounds").open('[');
-  add_key(json, head.bounds.min);
-  add_key(json, head.bounds.max);
-  json.close(']');
-  json.name("observable").number(head.observable).name("bounding").number(head.bounding);
-  json.name("options").text(head.options);  // as text: it need not be the JSON that it should be
-  json.name("phases").open('[');
+  json facts = {{"name", run.name},
+                {"written_by", version},
+                {"world", head.world},
+                {"resolution", head.resolution},
+                {"bounds", {numbers_of(head.bounds.min), numbers_of(head.bounds.max)}},
+                {"observable", head.observable},
+                {"bounding", head.bounding},
+                {"options", head.options},  // as text: it need not be the JSON that it should be
+                {"end", nullptr},
+                {"truncated", recording.truncated}};
+  if (recording.end) facts["end"] = *recording.end;
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
-    json.text(name_of(static_cast<planner::Phase>(phase)));
-  json.close(']').name("end");
-  if (recording.end)
-    json.text(*recording.end);
-  else
-    json.null();
-  json.name("truncated").yes(recording.truncated);
-  json.name("robots").open('[');
-  for (std::size_t i = 0; i < head.robots.size(); ++i)
-    add_robot(json, head.robots[i], i < head.starts.size() ? &head.starts[i].pose : nullptr);
-  json.close(']').name("steps").open('[');
-  for (const planner::RecordedStep& step : recording.steps) add_step(json, step);
-  json.close(']').close('}');
-  return json.str();
+    facts["phases"].push_back(name_of(static_cast<planner::Phase>(phase)));
+  for (std::size_t i = 0; i < head.robots.size(); ++i) {
+    facts["robots"].push_back(facts_of(head.robots[i]));
+    if (i < head.starts.size()) facts["robots"][i]["start"] = numbers_of(head.starts[i].pose);
+  }
+  for (const planner::RecordedStep& step : recording.steps) facts["steps"].push_back(facts_of(step));
+  return facts.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace frontlux::report::detail

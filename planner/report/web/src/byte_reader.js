@@ -1,4 +1,4 @@
-/** Reads what src/byte_writer.hpp wrote. Throws a RangeError where the bytes end too early. */
+/** Reads what src/run_data.cpp wrote. Throws a RangeError where the bytes end too early. */
 export class ByteReader {
   constructor(bytes, at = 0) {
     this.bytes = bytes;

@@ -6,7 +6,7 @@ import { percent, seconds, whole } from "./run_numbers.js";
 const HEIGHT = 170;
 
 /**
- * The charts of the run that is replayed, with the other runs' coverage beside. A line marks the step that
+ * The charts of the run that is replayed, and the coverage of the other runs. A line marks the step that
  * the time line shows; a click goes to a step.
  */
 export class Charts {
@@ -18,7 +18,7 @@ export class Charts {
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
-  /** @param runs [{ name, facts, numbers }] @param shown number of the one that is replayed */
+  /** @param runs [{ name, facts, numbers }] @param shown index of the run that is replayed */
   load(runs, shown, theme) {
     this.runs = runs;
     this.shown = shown;
@@ -45,16 +45,16 @@ export class Charts {
       ...others.map((run) => ({ name: run.name, xs: x === numbers.steps ? run.numbers.steps : run.numbers.teamTravelled, ys: run.numbers.coverage, color: muted, dash: run.dash.length ? run.dash : [6, 4], other: true })),
     ];
     return [
-      { id: "coverage-step", title: "Coverage by step", note: "share of what can be observed", unit: percent, share: true, x: "step", series: coverage(numbers.steps, () => numbers.steps) },
-      { id: "coverage-length", title: "Coverage by path length", note: "all robots' metres together for the team, each one's own for its part", unit: percent, share: true, x: "m", atX: (s) => numbers.teamTravelled[s], series: coverage(numbers.teamTravelled, (n, r) => n.travelled[r]) },
-      { id: "frontiers", title: "Frontiers left", note: "at the beginning of the step", unit: whole, x: "step", series: [
+      { id: "coverage-step", title: "Coverage by step", note: "fraction of the observable space", unit: percent, fraction: true, x: "step", series: coverage(numbers.steps, () => numbers.steps) },
+      { id: "coverage-length", title: "Coverage by path length", note: "sum of all paths for the team, own path for each robot", unit: percent, fraction: true, x: "m", atX: (s) => numbers.teamTravelled[s], series: coverage(numbers.teamTravelled, (n, r) => n.travelled[r]) },
+      { id: "frontiers", title: "Frontiers left", note: "at the start of the step", unit: whole, x: "step", series: [
         { name: "frontiers", xs: numbers.steps, ys: numbers.frontiers, color: SCENE[theme].frontier },
-        { name: "nobody's", xs: numbers.steps, ys: numbers.unassigned, color: ink, dash: [6, 3] },
+        { name: "unassigned", xs: numbers.steps, ys: numbers.unassigned, color: ink, dash: [6, 3] },
         { name: "abandoned", xs: numbers.steps, ys: numbers.abandoned, color: muted, dash: [2, 3] },
       ] },
       { id: "planning", title: "Planning time by phase", note: "stacked, whole team", unit: seconds, x: "step", stacked: true, series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: numbers.steps, ys, color: PHASES[theme][p] })) },
-      { id: "gain", title: "Gain: predicted and gained", note: "frontiers that the paths were to see, and those that became known", unit: whole, x: "step", series: robots.flatMap(({ name, color, r }) => [
-        { name: `${name} predicted`, xs: numbers.steps, ys: numbers.predicted[r], color, dash: [5, 4] },
+      { id: "gain", title: "Gain of the paths", note: "frontiers expected in view, and frontiers that became known", unit: whole, x: "step", series: robots.flatMap(({ name, color, r }) => [
+        { name: `${name} expected`, xs: numbers.steps, ys: numbers.predicted[r], color, dash: [5, 4] },
         { name: `${name} gained`, xs: numbers.steps, ys: numbers.gained[r], color },
       ]) },
     ];
@@ -85,7 +85,7 @@ export class Charts {
       width: this.width, height: HEIGHT, padding: [8, 12, 0, 0], legend: { show: false },
       hooks: { ready: [() => this.mark(this.timeline.position.step)] },
       cursor: { y: false, drag: { x: false, y: false }, points: { show: !spec.stacked } },
-      scales: { x: { time: false, range: spec.stacked ? (_, low, high) => [low - 0.6, Math.max(high, low + 1) + 0.6] : (_, low, high) => [low, high > low ? high : low + 1] }, y: { range: (_, low, high) => [0, spec.share ? 1 : high > 0 ? high * 1.06 : 1] } },
+      scales: { x: { time: false, range: spec.stacked ? (_, low, high) => [low - 0.6, Math.max(high, low + 1) + 0.6] : (_, low, high) => [low, high > low ? high : low + 1] }, y: { range: (_, low, high) => [0, spec.fraction ? 1 : high > 0 ? high * 1.06 : 1] } },
       axes: [
         { ...axis, size: 22, label: spec.x === "m" ? "path length, m" : "step", labelSize: 16, labelGap: -2, gap: 2, values: integers, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] },
         { ...axis, size: 56, values: (_, ticks) => ticks.map((tick) => (spec.unit === percent ? percent(tick, 0) : spec.unit === seconds ? (tick === 0 ? "0" : seconds(tick)) : whole(tick))) },
@@ -131,7 +131,7 @@ export class Charts {
   }
 }
 
-/** One x for all series. Stacked ones are sums, the tallest first, so that each is drawn over those above it. */
+/** One x for all series. Stacked ones are sums, the tallest first, so that each is drawn over the taller ones. */
 function dataOf(spec) {
   if (spec.stacked) {
     const sums = [];
@@ -142,7 +142,7 @@ function dataOf(spec) {
   return uPlot.join(spec.series.map((series) => strictlyRising(series.xs, series.ys)));
 }
 
-/** Where a robot did not move, its last value counts. */
+/** A robot that did not move keeps its last value only. */
 function strictlyRising(xs, ys) {
   const x = [], y = [];
   xs.forEach((value, i) => {

@@ -1,6 +1,6 @@
 /**
  * Makes an element. `text` is text, whatever it holds; `on` names listeners; the rest are attributes, left out
- * where they are false or undefined.
+ * if they are false or undefined.
  */
 export function el(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
@@ -13,7 +13,7 @@ export function el(tag, properties = {}, ...children) {
   return element;
 }
 
-/** A coloured mark of a legend; the colour is set as a property, which no policy forbids. */
+/** A coloured mark of a legend; the colour is set as a property, which the content policy allows. */
 export function swatch(color, kind = "") {
   const mark = el("span", { class: `swatch ${kind}`, "aria-hidden": "true" });
   mark.style.background = color;

@@ -1,5 +1,5 @@
 import { DataTexture, Mesh, MeshBasicMaterial, NearestFilter, PlaneGeometry, SRGBColorSpace, DoubleSide } from "three";
-import { shareColor } from "./palette.js";
+import { qualityColor } from "./palette.js";
 
 const ORIGIN = 32768;
 const MOST = 4096; // texels along an edge
@@ -9,7 +9,7 @@ export class ImageView {
   constructor(run, robot) {
     this.run = run;
     this.robot = robot;
-    this.colors = Array.from({ length: 256 }, (_, i) => shareColor(i / 255));
+    this.colors = Array.from({ length: 256 }, (_, i) => qualityColor(i / 255));
     this.box = boxOf(run, robot);
     this.shown = undefined; // step
     if (!this.box) return;
@@ -26,7 +26,7 @@ export class ImageView {
     this.mesh.renderOrder = 1;
   }
 
-  /** Shows the image of a step; nothing if it has none. */
+  /** Shows the image of a step; hides it if the step has none. */
   show(step) {
     if (!this.box || this.shown === step) return;
     this.shown = step;
@@ -38,7 +38,7 @@ export class ImageView {
     for (let i = 0; i < image.count; ++i) {
       const at = 4 * (image.x[i] - low[0] + columns * (image.y[i] - low[1])), color = this.colors[image.quality[i]];
       for (let k = 0; k < 3; ++k) this.texels[at + k] = color[k];
-      this.texels[at + 3] = 70 + 0.72 * image.quality[i]; // what is worth nothing does not hide the floor
+      this.texels[at + 3] = 70 + 0.72 * image.quality[i]; // cells without gain do not hide the floor
     }
     this.texture.needsUpdate = true;
     this.mesh.position.z = this.floor(image.z[0]) + 0.04;

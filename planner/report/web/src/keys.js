@@ -1,6 +1,6 @@
 const TURN = 0.08, MOVE = 0.06, ZOOM = 1.12;
 
-/** Keys of the whole page; those that a control in focus needs are its own. */
+/** Keys of the whole page; a control in focus keeps those that it needs. */
 export function addKeys(page) {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -2,7 +2,7 @@ import { Charts } from "./charts.js";
 import { el } from "./dom.js";
 import { comparison, details, glossary, header, stepTable, teamName } from "./facts_view.js";
 import { addKeys } from "./keys.js";
-import { describe, pick } from "./picking.js";
+import { describePick, pick } from "./picking.js";
 import { readRun } from "./run_data.js";
 import { numbersOf, percent } from "./run_numbers.js";
 import { NoWebGL, ReplayScene } from "./scene.js";
@@ -38,7 +38,7 @@ class Page {
   build() {
     const { runs } = this, written = runs[0].facts.written_by;
     this.view = el("div", { class: "view", id: "view" });
-    this.told = el("div", { class: "picked", id: "picked", role: "status", hidden: true });
+    this.picked = el("div", { class: "picked", id: "picked", role: "status", hidden: true });
     this.controls = makeTimeControls(this.timeline, () => this.run);
     this.chartHost = el("div", { class: "charts", id: "charts" });
     this.details = el("section", { class: "details", "aria-label": "Facts" });
@@ -46,18 +46,18 @@ class Page {
     this.makeScene();
     const choose = runs.length > 1 ? el("label", { class: "field" }, el("span", { text: "Replay" }), el("select", { id: "run", on: { change: (event) => this.select(Number(event.target.value)) } }, ...runs.map((run, i) => el("option", { value: i, text: run.name })))) : null;
     this.themeButton = el("button", { type: "button", id: "theme", on: { click: () => this.switchTheme() } });
-    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Every step as a table" }), el("div", { class: "body" }));
+    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of all steps" }), el("div", { class: "body" }));
     document.getElementById("app").replaceChildren(
       el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs, written)),
       runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, comparison(runs)) : null,
       el("div", { class: "main" }, this.stage, el("section", { "aria-label": "Charts" }, this.chartHost)),
       this.details, this.steps,
-      el("details", { class: "fold" }, el("summary", { text: "Words used here" }), glossary()),
+      el("details", { class: "fold" }, el("summary", { text: "Glossary" }), glossary()),
       el("details", { class: "fold" }, el("summary", { text: "Mouse and keys" }), keyTable()));
     for (const child of [...document.getElementById("app").childNodes]) if (child.nodeType === Node.TEXT_NODE) child.remove();
   }
 
-  /** The stage fills what the header leaves of the window, and all of it once that is scrolled away. */
+  /** The stage fills the window below the header, and the whole window once the header is scrolled away. */
   fit() {
     const top = this.stage.parentElement.offsetTop;
     root.style.setProperty("--head", `${Math.min(top, innerHeight / 3)}px`);
@@ -69,23 +69,23 @@ class Page {
     } catch (error) {
       if (!(error instanceof NoWebGL)) throw error;
       this.scene = null;
-      this.view.append(el("div", { class: "no-webgl", id: "no-webgl", role: "note" }, el("strong", { text: "The replay in 3-D needs WebGL 2, which this browser does not offer here." }), el("p", { text: "Switch on hardware acceleration, or open this file in another browser. Time line, charts and tables work as they are." })));
+      this.view.append(el("div", { class: "no-webgl", id: "no-webgl", role: "note" }, el("strong", { text: "The 3-D replay needs WebGL 2, which is not available in this browser." }), el("p", { text: "Enable hardware acceleration, or open this file in another browser. The time line, charts and tables work without it." })));
       return;
     }
     const { canvas } = this.scene;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
-    canvas.setAttribute("aria-label", "Map in 3-D. Drag to turn, right-drag to move, wheel to zoom; with keys W A S D, Q E, R F, plus and minus. The table of steps below holds the same run in numbers.");
+    canvas.setAttribute("aria-label", "3-D map. Drag to turn, right-drag to move, wheel to zoom, or use the keys W A S D, Q E, R V, plus and minus. The table of steps below holds the numbers of the same run.");
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      this.tell([["The graphics were lost", "reload the page to see the map again"]]);
+      this.describe([["WebGL context lost", "reload the page to see the map again"]]);
     });
     canvas.addEventListener("pointerdown", (event) => (this.pressed = [event.clientX, event.clientY]));
     canvas.addEventListener("click", (event) => {
       const [x, y] = this.pressed ?? [0, 0];
       if (Math.hypot(event.clientX - x, event.clientY - y) < 4) this.pickAt(event.offsetX, event.offsetY);
     });
-    this.view.append(this.told);
+    this.view.append(this.picked);
   }
 
   /** Replays another run. */
@@ -114,8 +114,8 @@ class Page {
   show(position) {
     this.scene?.show(position);
     this.charts.mark(position.step);
-    if (this.tells !== position.step) this.tell(null);
-    this.tells = position.step;
+    if (this.describedStep !== position.step) this.describe(null);
+    this.describedStep = position.step;
   }
 
   fillSteps() {
@@ -141,21 +141,21 @@ class Page {
   pickAt(x, y) {
     const { clientWidth: width, clientHeight: height } = this.view;
     const hit = pick(this.scene, (2 * x) / width - 1, 1 - (2 * y) / height);
-    this.tell(hit && describe(this.scene, hit));
+    this.describe(hit && describePick(this.scene, hit));
     return hit;
   }
 
-  tell(rows) {
-    this.told.hidden = !rows;
-    this.told.replaceChildren(...(rows ?? []).map(([name, value]) => el("div", {}, el("span", { class: "note", text: name }), el("span", { text: value }))));
+  describe(rows) {
+    this.picked.hidden = !rows;
+    this.picked.replaceChildren(...(rows ?? []).map(([name, value]) => el("div", {}, el("span", { class: "note", text: name }), el("span", { text: value }))));
   }
 }
 
 function keyTable() {
   const keys = [
-    ["Space", "play, pause"], ["← →", "one step back, on"], ["Home End", "first, last step"], ["1 to 8", "layers on and off"],
-    ["H T", "whole map, from the top"], ["F", "follow the next robot"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "closer, further"],
-    ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click to read a voxel, viewpoint or place"],
+    ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 8", "layers on and off"],
+    ["H T", "show the whole map, view from above"], ["F", "camera: next robot or none"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "zoom in, out"],
+    ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click for details of a voxel, viewpoint or cell"],
   ];
   return el("dl", { class: "words" }, ...keys.flatMap(([key, meaning]) => [el("dt", { text: key }), el("dd", { text: meaning })]));
 }

@@ -1,4 +1,4 @@
-/** Colours that people tell apart whatever colours they see: hues of Okabe and Ito, and scales that get lighter evenly. */
+/** Colours for any colour vision: hues of Okabe and Ito, and scales of evenly rising lightness. */
 
 const ROBOTS = {
   light: ["#d55e00", "#0072b2", "#009e73", "#aa4499", "#8a6d00", "#3d5a80", "#7a3b00", "#005f5f"],
@@ -21,8 +21,8 @@ export const SCENE = {
 };
 
 /** From dark violet (0) over teal to light yellow (1), as `frontlux render` draws view quality: [r, g, b], 0 to 255. */
-export function shareColor(share) {
-  const t = Math.min(Math.max(share, 0), 1);
+export function qualityColor(fraction) {
+  const t = Math.min(Math.max(fraction, 0), 1);
   const lightness = 0.28 + 0.64 * t, hue = ((302 - 197 * t) * Math.PI) / 180;
   const chroma = t < 0.5 ? 0.15 - 0.1 * t : 0.1 + 0.16 * (t - 0.5);
   const a = chroma * Math.cos(hue), b = chroma * Math.sin(hue);
@@ -46,6 +46,6 @@ export function scaleGradient(colors) {
   return `linear-gradient(to right, ${colors.join(", ")})`;
 }
 
-export function shareStops() {
-  return Array.from({ length: 9 }, (_, i) => `rgb(${shareColor(i / 8).join(",")})`);
+export function qualityStops() {
+  return Array.from({ length: 9 }, (_, i) => `rgb(${qualityColor(i / 8).join(",")})`);
 }

@@ -6,7 +6,7 @@ const FAR = 4000; // voxels looked at along a ray
 const raycaster = new Raycaster();
 const point = new Vector3();
 
-/** What is under a place of the view, given from -1 to 1 along both axes: the nearest of what is shown. */
+/** The nearest object shown at a position of the view, from -1 to 1 along both axes. */
 export function pick(scene, x, y) {
   raycaster.setFromCamera(new Vector2(x, y), scene.camera);
   const { ray } = raycaster, found = [];
@@ -16,11 +16,11 @@ export function pick(scene, x, y) {
   return found.filter(Boolean).sort((a, b) => a.distance - b.distance)[0] ?? null;
 }
 
-/** Goes from voxel to voxel along the ray until one is drawn. */
+/** Visits the voxels along the ray until one is drawn. */
 function pickVoxel(scene, ray) {
   const { store, voxels } = scene, size = voxels.resolution, { mesher } = voxels;
   const origin = ray.origin.toArray().map((k) => k / size + ORIGIN), direction = ray.direction.toArray();
-  const key = origin.map(Math.floor), way = direction.map(Math.sign);
+  const key = origin.map(Math.floor), sign = direction.map(Math.sign);
   const next = direction.map((d, k) => (d === 0 ? Infinity : (key[k] + (d > 0 ? 1 : 0) - origin[k]) / d));
   const each = direction.map((d) => (d === 0 ? Infinity : Math.abs(1 / d)));
   let last = UNKNOWN, entered = 0;
@@ -34,7 +34,7 @@ function pickVoxel(scene, ray) {
     const axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : next[1] < next[2] ? 1 : 2;
     entered = next[axis];
     next[axis] += each[axis];
-    key[axis] += way[axis];
+    key[axis] += sign[axis];
   }
   return null;
 }
@@ -66,14 +66,14 @@ function pickCell(image, ray) {
 }
 
 /** What was picked, in words: [name, value] pairs. */
-export function describe(scene, hit) {
+export function describePick(scene, hit) {
   const { run, store } = scene, { facts } = run, size = facts.resolution;
   const metres = (key) => key.map((k) => ((k - ORIGIN + 0.5) * size).toFixed(2)).join(", ") + " m";
   if (hit.kind === "voxel" || hit.kind === "frontier") {
     const rows = [[hit.kind === "voxel" ? "Occupied voxel" : "Frontier", metres(hit.key)], ["Key", hit.key.join(", ")]];
     if (hit.kind === "voxel") {
       const owner = (hit.voxel >> 2) - 1, since = store.since(...hit.key);
-      rows.push(["First known by", facts.robots[owner]?.name ?? "?"]);
+      rows.push(["First seen by", facts.robots[owner]?.name ?? "?"]);
       if (since >= 0) rows.push(["Occupied since", `step ${facts.steps[since].number}`]);
     }
     return rows;
@@ -82,18 +82,18 @@ export function describe(scene, hit) {
   if (hit.kind === "cell") {
     const image = run.images[step * run.robots + hit.robot];
     return [
-      ["Place on the floor", `${metres([image.x[hit.i], image.y[hit.i]])} (x, y), ${name}`],
+      ["Cell on the floor", `${metres([image.x[hit.i], image.y[hit.i]])} (x, y), ${name}`],
       ["View quality", ((image.quality[hit.i] / 255) ** 2 * image.qualityMost).toFixed(1)],
       ["Expected gain", `${((image.gain[hit.i] / 255) * image.gainMost).toFixed(0)} frontiers`],
     ];
   }
   const path = run.paths[step * run.robots + hit.robot], at = path.begin + 4 * hit.i, [x, y, z, yaw] = run.poses.subarray(at, at + 4);
-  const told = facts.steps[step].robots[hit.robot];
+  const planned = facts.steps[step].robots[hit.robot];
   return [
     ["Viewpoint", `${hit.i + 1} of ${path.count}, ${name}, step ${facts.steps[step].number}`],
-    ["Place", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`],
-    ["Looks towards", `${((yaw * 180) / Math.PI).toFixed(1)}°`],
-    ["Path's gain", `${told.gain_predicted} frontiers predicted, ${told.gained} gained`],
-    ["Travelled", hit.i < path.travelled ? "yes" : "not reached"],
+    ["Position", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`],
+    ["Yaw", `${((yaw * 180) / Math.PI).toFixed(1)}°`],
+    ["Gain of the path", `${planned.gain_predicted} frontiers expected, ${planned.gained} gained`],
+    ["Reached", hit.i < path.travelled ? "yes" : "no"],
   ];
 }

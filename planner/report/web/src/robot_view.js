@@ -6,7 +6,7 @@ import { poseAt } from "./run_data.js";
 
 const spot = new Object3D();
 
-/** One robot: its collision box, what its sensor sees, where it was, where it means to go. */
+/** One robot: its collision box, the field of view, the travelled path, the planned path and the goal. */
 export class RobotView {
   constructor(run, r) {
     this.run = run;
@@ -30,7 +30,7 @@ export class RobotView {
     this.shown = undefined;
   }
 
-  /** The box of whole voxels that has to be free around the robot, and a wedge that shows where it looks. */
+  /** The box of whole voxels that has to be free around the robot, and a wedge that shows its yaw. */
   makeBody() {
     const { robot } = this, size = this.run.facts.resolution;
     const odd = (length) => 2 * Math.ceil((length / size - 1) / 2 - 1e-9) + 1;
@@ -96,7 +96,7 @@ export class RobotView {
     return group;
   }
 
-  /** The whole way; how much of it is shown is a number. */
+  /** The travelled path of the whole run; `instanceCount` says how much of it is shown. */
   makeTrail() {
     const { run, r } = this, points = [];
     this.trailEnd = []; // segments by the end of each step
@@ -118,7 +118,7 @@ export class RobotView {
     return lines;
   }
 
-  /** The way planned in one step, and an arrow at each viewpoint. */
+  /** The path planned in one step, with an arrow at each viewpoint. */
   makePlan() {
     const { run, r } = this;
     let most = 2;

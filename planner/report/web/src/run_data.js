@@ -3,7 +3,7 @@ import { ByteReader } from "./byte_reader.js";
 export const CHUNK = 32; // edge of a chunk in voxels; src/run_data.cpp cuts them
 export const UNKNOWN = 0, FREE = 1, OCCUPIED = 2;
 
-/** A list of numbers that grows, in one typed array. */
+/** A growing list of numbers in one typed array. */
 class Pool {
   constructor(Type) {
     this.items = new Type(4096);
@@ -40,7 +40,7 @@ export class ChunkTable {
   get length() {
     return this.corners.length / 3;
   }
-  /** Makes it if it is not there. */
+  /** Adds the chunk if it is new. */
   number(x, y, z) {
     const name = (x * 4096 + y) * 4096 + z;
     let number = this.numbers.get(name);
@@ -114,7 +114,7 @@ function readImage(reader) {
   return { count, gainMost, qualityMost, x: axes[0], y: axes[1], z: axes[2], gain: reader.take(count), quality: reader.take(count) };
 }
 
-/** Where robot `r` is at the end of step `s` or, along < 1, on its way there: [x, y, z, yaw] into `out`. */
+/** Where robot `r` is at the end of step `s` or, along < 1, while it moves there: [x, y, z, yaw] into `out`. */
 export function poseAt(run, s, r, along, out) {
   const path = run.paths[s * run.robots + r];
   const moves = path.travelled > 0;
@@ -128,12 +128,12 @@ export function poseAt(run, s, r, along, out) {
     return out;
   }
   if (along >= 1 || path.travelled === 1) return copyPose(run, path, path.travelled - 1, out);
-  const reached = Math.max(0, along) * (path.travelled - 1), from = Math.floor(reached), share = reached - from;
+  const reached = Math.max(0, along) * (path.travelled - 1), from = Math.floor(reached), fraction = reached - from;
   const a = path.begin + 4 * from;
-  for (let i = 0; i < 3; ++i) out[i] = run.poses[a + i] * (1 - share) + run.poses[a + 4 + i] * share;
+  for (let i = 0; i < 3; ++i) out[i] = run.poses[a + i] * (1 - fraction) + run.poses[a + 4 + i] * fraction;
   let turn = run.poses[a + 7] - run.poses[a + 3];
   turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
-  out[3] = run.poses[a + 3] + share * turn;
+  out[3] = run.poses[a + 3] + fraction * turn;
   return out;
 }
 

@@ -1,4 +1,4 @@
-/** What the charts and tables say of a run, from its recording. Lengths in metres, times in seconds, shares from 0 to 1. */
+/** The numbers of a run that the charts and tables show. Lengths in metres, times in seconds, fractions from 0 to 1. */
 export function numbersOf(facts) {
   const robots = facts.robots.length, steps = facts.steps.length;
   const column = (of) => facts.steps.map(of);
@@ -31,7 +31,7 @@ export function numbersOf(facts) {
     steps: planned.length,
     coverage: steps ? numbers.coverage[last] : NaN,
     coverageBox: steps ? numbers.coverageBox[last] : NaN,
-    shares: facts.robots.map((_, r) => (steps ? of(facts.steps[last].known[r][0], sum(facts.steps[last].known.map((known) => known[0]))) : NaN)),
+    fractions: facts.robots.map((_, r) => (steps ? of(facts.steps[last].known[r][0], sum(facts.steps[last].known.map((known) => known[0]))) : NaN)),
     lengths: facts.robots.map((_, r) => (steps ? numbers.travelled[r][last] : 0)),
     length: steps ? numbers.teamTravelled[last] : 0,
     planningTotal: sum(planning),
@@ -44,9 +44,9 @@ export function numbersOf(facts) {
   return numbers;
 }
 
-/** The first step at whose end this share was known; -1: never. */
-export function stepOfCoverage(numbers, share) {
-  return numbers.coverage.findIndex((value) => value >= share);
+/** The first step at whose end the coverage is at least this fraction; -1: none. */
+export function stepOfCoverage(numbers, fraction) {
+  return numbers.coverage.findIndex((value) => value >= fraction);
 }
 
 function runningSum(list) {
@@ -54,7 +54,7 @@ function runningSum(list) {
   return list.map((value) => (sum += value));
 }
 
-export const NOT_GIVEN = "not given";
+export const NOT_SET = "not set";
 
 /** Options as [name, value] pairs, those of members as name.member; nothing if the text is not a JSON object. */
 export function optionsOf(facts) {
@@ -67,17 +67,17 @@ export function optionsOf(facts) {
   const rows = [];
   const visit = (prefix, value) => {
     if (value !== null && typeof value === "object" && !Array.isArray(value)) for (const [name, member] of Object.entries(value)) visit(prefix === "" ? name : `${prefix}.${name}`, member);
-    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") || "none" : value === "" ? NOT_GIVEN : String(value)]);
+    else rows.push([prefix, Array.isArray(value) ? value.map((item) => (typeof item === "object" ? JSON.stringify(item) : String(item))).join(", ") || "none" : value === "" ? NOT_SET : String(value)]);
   };
   if (options !== null && typeof options === "object" && !Array.isArray(options)) visit("", options);
   return rows;
 }
 
-/** What is not all does not read as 100 %. */
-export function percent(share, digits = 1) {
-  if (!Number.isFinite(share)) return "unknown";
-  const text = (100 * share).toFixed(digits), step = 10 ** -digits;
-  return `${share < 1 && Number(text) === 100 ? (100 - step).toFixed(digits) : text} %`;
+/** A fraction below 1 never reads as 100 %. */
+export function percent(fraction, digits = 1) {
+  if (!Number.isFinite(fraction)) return "unknown";
+  const text = (100 * fraction).toFixed(digits), step = 10 ** -digits;
+  return `${fraction < 1 && Number(text) === 100 ? (100 - step).toFixed(digits) : text} %`;
 }
 export const metres = (length) => (Number.isFinite(length) ? `${length.toFixed(length < 100 ? 1 : 0)} m` : "unknown");
 export function seconds(time) {

@@ -15,11 +15,11 @@ export const LAYERS = ["voxels", "frontiers", "quality", "robots", "views", "tra
 /** Thrown where the browser cannot draw in three dimensions. */
 export class NoWebGL extends Error {}
 
-/** The replay in 3-D. Draws when something has changed, and not otherwise. */
+/** The replay in 3-D. Draws only when something has changed. */
 export class ReplayScene {
   constructor(host) {
     this.host = host;
-    // Asked for first, since the renderer complains aloud.
+    // Checked first, because the renderer writes to the console if it fails.
     if (!document.createElement("canvas").getContext("webgl2")) throw new NoWebGL("there is no WebGL 2");
     try {
       this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
@@ -43,7 +43,7 @@ export class ReplayScene {
     this.asPlanned = false; // the map before the step instead of after it
     this.follow = -1;
     this.theme = "light";
-    this.standing = null; // from where the whole map is looked at, until somebody moves the camera
+    this.standing = null; // direction from which the whole map is shown, until the user moves the camera
     this.labels = [];
     this.drawn = 0; // frames, for tests
     this.position = { step: 0, along: 1 };
@@ -78,7 +78,7 @@ export class ReplayScene {
     this.scene.add(new AmbientLight(0xffffff, 1.9), makeSun());
   }
 
-  /** Shows a step: at its end, or on the way there. */
+  /** Shows a step: its end, or the robots on their paths. */
   show(position) {
     const { step, along } = position;
     this.position = { step, along };
@@ -168,14 +168,14 @@ export class ReplayScene {
     this.show(this.position);
   }
 
-  /** The middle of all that becomes known, and half its extent [m]. */
+  /** The centre of the box of all voxels that become known, and half its edges [m]. */
   extent() {
     const size = this.run.facts.resolution;
     const low = this.store.low.map((k) => (k - ORIGIN) * size), high = this.store.high.map((k) => (k + 1 - ORIGIN) * size);
     return { middle: low.map((k, i) => (k + high[i]) / 2), half: low.map((k, i) => (high[i] - k) / 2) };
   }
 
-  /** From above and aside, with all of the world in view. */
+  /** From above and from one side, with the whole map in view. */
   home() {
     const { half } = this.extent();
     const long = half[0] >= half[1];
@@ -194,7 +194,7 @@ export class ReplayScene {
     this.camera.position.copy(target).add(from.normalize());
     this.camera.lookAt(target);
     this.camera.updateMatrixWorld();
-    // So far away that the corners of the box fit: each asks for a distance of its own.
+    // The smallest distance at which all corners of the box are in view.
     const turned = this.camera.matrixWorldInverse.copy(this.camera.matrixWorld).invert();
     let distance = 2;
     for (let corner = 0; corner < 8; ++corner) {
@@ -213,7 +213,7 @@ export class ReplayScene {
     this.draw();
   }
 
-  /** For keys: angles [rad], shares of the distance. */
+  /** For keys: angles [rad], fractions of the distance. */
   orbit(turn, tilt) {
     this.standing = null;
     const offset = this.camera.position.clone().sub(this.controls.target), length = offset.length();
@@ -257,7 +257,7 @@ export class ReplayScene {
     this.draw();
   }
 
-  /** At the next frame, once. */
+  /** Once, at the next frame. */
   draw() {
     if (this.waiting || !this.run) return;
     this.waiting = requestAnimationFrame(this.frame);
@@ -280,14 +280,14 @@ export class ReplayScene {
     });
   }
 
-  /** Frames a second while the camera turns, each one waited for. */
+  /** Frames a second while the camera turns, waiting for each frame. */
   measure(frames) {
     const gl = this.renderer.getContext(), began = performance.now();
     const pixel = new Uint8Array(4);
     for (let i = 0; i < frames; ++i) {
       this.orbit((2 * Math.PI) / frames, 0);
       this.render();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // until all is drawn
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until everything is drawn
     }
     return (1000 * frames) / (performance.now() - began);
   }

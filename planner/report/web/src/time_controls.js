@@ -1,7 +1,7 @@
 import { el } from "./dom.js";
 import { percent } from "./run_numbers.js";
 
-// Drawn, since not every machine has letters for them: in a square of 16.
+// Drawn as paths in a square of 16, since not every font has these symbols.
 const ICONS = {
   play: "M4 2v12l9-6z", pause: "M3 2h3.6v12H3zM9.4 2H13v12H9.4z", first: "M2 2h2.4v12H2zM14 2v12L5.4 8z", last: "M11.6 2H14v12h-2.4zM2 2v12l8.6-6z",
   back: "M11 2v12L3 8zM12 2h1.5v12H12z", forward: "M5 2v12l8-6zM2.5 2H4v12H2.5z",
@@ -28,16 +28,16 @@ export function makeTimeControls(timeline, current) {
   } } });
   const speed = el("select", { id: "speed", "aria-label": "Speed", on: { change: () => (timeline.speed = Number(speed.value)) } }, ...SPEEDS.map((value) => el("option", { value, text: `${value} steps/s` })));
   speed.value = String(timeline.speed);
-  const told = el("output", { id: "step-label", for: "time" });
+  const label = el("output", { id: "step-label", for: "time" });
   const update = () => {
     const { facts, numbers } = current(), { step } = timeline;
     const number = facts.steps[step]?.number ?? 0, last = facts.steps.at(-1)?.number ?? 0;
     slider.max = Math.max(0, timeline.steps - 1);
     slider.value = step;
     slider.style.setProperty("--done", `${timeline.steps > 1 ? (100 * step) / (timeline.steps - 1) : 100}%`);
-    // On the way the map is still the one that the step began with.
-    const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], text = `Step ${number} of ${last}${Number.isFinite(known) ? ` · ${percent(known)} known` : ""}`;
-    told.textContent = text;
+    // While robots move, the map is the one at the start of the step.
+    const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], text = `Step ${number} of ${last}${Number.isFinite(known) ? ` · ${percent(known)} mapped` : ""}`;
+    label.textContent = text;
     slider.setAttribute("aria-valuetext", text);
     if (play.dataset.playing !== String(timeline.playing)) {
       play.dataset.playing = String(timeline.playing);
@@ -49,8 +49,8 @@ export function makeTimeControls(timeline, current) {
   timeline.addEventListener("change", update);
   const bar = el("div", { class: "timeline", role: "group", "aria-label": "Time line" },
     el("div", { class: "buttons" },
-      button("first", "To the start (Home)", () => timeline.move(-timeline.step)), button("back", "One step back (←)", () => timeline.move(-1)), play,
-      button("forward", "One step on (→)", () => timeline.move(1)), button("last", "To the end (End)", () => timeline.move(timeline.steps))),
-    slider, told, speed);
+      button("first", "First step (Home)", () => timeline.move(-timeline.step)), button("back", "Previous step (←)", () => timeline.move(-1)), play,
+      button("forward", "Next step (→)", () => timeline.move(1)), button("last", "Last step (End)", () => timeline.move(timeline.steps))),
+    slider, label, speed);
   return { bar, update };
 }

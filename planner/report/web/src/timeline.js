@@ -1,4 +1,4 @@
-/** Which step is shown. Tells its listeners of { step, along }: along 1 is the end of the step, less is on the way there. */
+/** The step that is shown. Sends { step, along } to its listeners: along is the fraction of the paths that the robots have travelled. */
 export class Timeline extends EventTarget {
   constructor(steps) {
     super();
@@ -23,7 +23,7 @@ export class Timeline extends EventTarget {
   seek(step) {
     this.step = Math.min(Math.max(step, 0), Math.max(0, this.steps - 1));
     this.along = 1;
-    this.tell();
+    this.notify();
   }
 
   move(by) {
@@ -40,7 +40,7 @@ export class Timeline extends EventTarget {
     }
     this.playing = true;
     this.last = performance.now();
-    this.tell();
+    this.notify();
     requestAnimationFrame(this.tick);
   }
 
@@ -48,7 +48,7 @@ export class Timeline extends EventTarget {
     if (!this.playing) return;
     this.playing = false;
     this.along = 1;
-    this.tell();
+    this.notify();
   }
 
   advance(now) {
@@ -61,11 +61,11 @@ export class Timeline extends EventTarget {
     }
     this.along = Math.min(along, 1);
     if (along >= 1) this.playing = false;
-    this.tell();
+    this.notify();
     if (this.playing) requestAnimationFrame(this.tick);
   }
 
-  tell() {
+  notify() {
     this.dispatchEvent(new CustomEvent("change", { detail: this.position }));
   }
 }

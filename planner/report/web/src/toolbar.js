@@ -1,13 +1,13 @@
 import { el, swatch } from "./dom.js";
 import { LAYERS } from "./scene.js";
-import { SCENE, scaleGradient, shareStops, robotColor } from "./palette.js";
+import { SCENE, scaleGradient, qualityStops, robotColor } from "./palette.js";
 
 const NAMES = {
   voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
-  views: "Fields of view", travelled: "Trails", planned: "Plans", goals: "Goals",
+  views: "Fields of view", travelled: "Travelled paths", planned: "Planned paths", goals: "Goals",
 };
 
-/** What is shown, in which colours and from where. */
+/** Controls for layers, colours and the camera. */
 export function makeToolbar(scene, facts) {
   const boxes = {};
   const layer = (name, i) => {
@@ -17,11 +17,11 @@ export function makeToolbar(scene, facts) {
   };
   const select = (id, label, choices, change) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text }))));
   const check = (id, label, title, change) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));
-  const colors = select("colors", "Colour by", [["height", "height"], ["owner", "who saw it first"]], (value) => {
+  const colors = select("colors", "Colour by", [["height", "height"], ["owner", "first robot"]], (value) => {
     scene.setByOwner(value === "owner");
     drawKey();
   });
-  const follow = select("follow", "Follow", [["-1", "nobody"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setFollow(Number(value)));
+  const follow = select("follow", "Follow", [["-1", "none"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setFollow(Number(value)));
   const layers = scene.layerCount();
   const cut = el("input", { type: "range", id: "cut", min: 1, max: layers, step: 1, on: { input: () => scene.setCut(Number(cut.value)) } });
   cut.value = layers;
@@ -37,17 +37,17 @@ export function makeToolbar(scene, facts) {
     const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text);
     key.replaceChildren(
       ...(scene.byOwner ? [] : [bar(SCENE[theme].heights, `${((low - 32768) * size).toFixed(1)} m`, `${((high + 1 - 32768) * size).toFixed(1)} m`, "height")]),
-      ...(scene.images.length > 0 ? [bar(shareStops(), "low", "high", "view quality")] : []),
+      ...(scene.images.length > 0 ? [bar(qualityStops(), "low", "high", "view quality")] : []),
       el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot, r) => dot(robotColor(r, theme), robot.name))));
   };
   drawKey();
   const bar = el("div", { class: "toolbar" },
     el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...LAYERS.map(layer)),
     el("fieldset", {}, el("legend", { text: "View" }),
-      view("view-home", "Whole", "all of the map from the side (H)", () => scene.home()), view("view-top", "Top", "from straight above (T)", () => scene.top()), follow, colors,
-      el("label", { class: "field", title: "take away what is above" }, el("span", { text: "Cut at" }), cut),
-      check("closed", "Back sides", "also the faces of voxels behind which nothing is known", (on) => scene.setClosed(on)),
-      check("as-planned", "Before the step", "the map that the step was planned on, instead of what it led to", (on) => scene.setAsPlanned(on))));
+      view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), follow, colors,
+      el("label", { class: "field", title: "hide the voxels above" }, el("span", { text: "Cut above" }), cut),
+      check("closed", "Back faces", "also show the faces next to unknown space", (on) => scene.setClosed(on)),
+      check("as-planned", "Before the step", "show the map on which the step was planned, instead of the map after it", (on) => scene.setAsPlanned(on))));
   return {
     bar, key, drawKey,
     toggleLayer(i) {

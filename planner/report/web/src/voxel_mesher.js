@@ -5,16 +5,16 @@ const STRIDE = [1, P, P * P];
 const STATE = 3;
 
 /**
- * Makes what is drawn of one chunk: the faces of occupied voxels that look onto free space, merged into
- * rectangles where the same robot saw them first, and frontiers. Works in buffers of its own, which the next
- * chunk overwrites.
+ * Makes the shapes of one chunk: the faces of occupied voxels next to free space, merged into rectangles
+ * if the same robot saw them first, and frontiers. The buffers belong to the mesher; the next chunk
+ * overwrites them.
  */
 export class VoxelMesher {
   constructor(store, bounds) {
     this.store = store;
     this.bounds = bounds; // [[x, y, z], [x, y, z]] keys; frontiers lie within
     this.cut = 65536; // voxels with this z or above are not shown
-    this.closed = false; // also faces that look onto unknown space
+    this.closed = false; // also faces next to unknown space
     this.padded = new Uint8Array(P * P * P);
     this.mask = new Uint8Array(CHUNK * CHUNK);
     this.corners = new Uint8Array(16 * 4096); // x, y, z, side | owner << 3; four for each face
@@ -55,7 +55,7 @@ export class VoxelMesher {
     }
   }
 
-  /** What the cut opens looks as if it were free. */
+  /** The voxels above the cut count as free. */
   openCut(corner) {
     if (corner[2] + this.top !== this.cut) return;
     const layer = (this.top + 1) * P * P;
@@ -67,7 +67,7 @@ export class VoxelMesher {
     const axis = side >> 1, u = axis === 0 ? 1 : 0, v = axis === 2 ? 1 : 2;
     const ahead = side & 1 ? STRIDE[axis] : -STRIDE[axis];
     const layers = axis === 2 ? this.top : CHUNK, rows = v === 2 ? this.top : CHUNK;
-    const open = this.closed ? 0b011 : 0b010; // states that a face may look onto, by bit
+    const open = this.closed ? 0b011 : 0b010; // states next to which a face is drawn, by bit
     for (let layer = 0; layer < layers; ++layer) {
       let any = false;
       for (let j = 0; j < rows; ++j) {
@@ -112,7 +112,7 @@ export class VoxelMesher {
       larger.set(this.corners);
       this.corners = larger;
     }
-    // Counter-clockwise as seen from outside; the axes u and v turn the other way around y.
+    // Counter-clockwise as seen from outside; the axes u and v turn in the other direction around y.
     const flip = ((tag & 1) === 1) === (axis !== 1);
     for (let corner = 0; corner < 4; ++corner) {
       const k = flip ? corner : 3 - corner, at = 16 * this.faces + 4 * corner;

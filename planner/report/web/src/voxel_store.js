@@ -4,23 +4,23 @@ const VOXELS = CHUNK ** 3;
 const STATE = 3;
 
 /**
- * The map of a run at the end of one of its steps. Moves between steps by the changes only, and remembers
- * which chunks look different since.
+ * The map of a run at the end of one of its steps. Applies only the changes between steps, and remembers
+ * which chunks have changed.
  *
- * A voxel is one byte: its state in two bits, above them 1 + the robot that first made it known.
+ * A voxel is one byte: its state in two bits, above them 1 + the robot that observed it first.
  */
 export class VoxelStore {
   constructor(run) {
     this.run = run;
     const { chunks } = run;
-    this.inner = chunks.length; // those after are neighbours, which hold nothing but frontiers
+    this.inner = chunks.length; // the chunks after them are neighbours, which hold frontiers only
     for (let c = 0; c < this.inner; ++c) this.addNeighbours(c);
     this.chunks = Array.from({ length: chunks.length }, () => new Uint8Array(VOXELS));
     this.neighbours = new Int32Array(6 * chunks.length);
     for (let c = 0; c < chunks.length; ++c)
       for (let side = 0; side < 6; ++side) this.neighbours[6 * c + side] = this.findNeighbour(c, side);
     this.occupied = new Int32Array(chunks.length); // voxels in each chunk
-    this.before = new Uint8Array(run.locals.length); // what a change finds and leaves
+    this.before = new Uint8Array(run.locals.length); // a voxel before and after each change
     this.after = new Uint8Array(run.locals.length);
     this.dirty = new Uint8Array(chunks.length);
     this.step = -1; // nothing is known
@@ -34,9 +34,9 @@ export class VoxelStore {
   addNeighbours(c) {
     const { corners } = this.run.chunks, at = [0, 1, 2].map((k) => corners.items[3 * c + k] / CHUNK);
     for (let axis = 0; axis < 3; ++axis)
-      for (const way of [-1, 1]) {
+      for (const sign of [-1, 1]) {
         const next = [...at];
-        next[axis] += way;
+        next[axis] += sign;
         if (next[axis] >= 0 && next[axis] < 65536 / CHUNK) this.run.chunks.number(...next);
       }
   }
@@ -48,7 +48,7 @@ export class VoxelStore {
     return corner[side >> 1] < 0 ? -1 : this.run.chunks.find(...corner);
   }
 
-  /** Goes one step on and writes down what its changes find and leave. */
+  /** Applies one step and records the voxels before and after its changes. */
   learn(s) {
     const { run } = this;
     for (let r = 0; r < run.robots; ++r) {
@@ -97,10 +97,10 @@ export class VoxelStore {
     while (this.step > s) this.go(this.step--, this.before, -1);
   }
 
-  go(s, bytes, way) {
+  go(s, bytes, sign) {
     const { run } = this;
     const first = run.blocks[s * run.robots], last = run.blocks[(s + 1) * run.robots] - 1;
-    for (let g = way > 0 ? first : last; g >= first && g <= last; g += way) this.replace(g, bytes);
+    for (let g = sign > 0 ? first : last; g >= first && g <= last; g += sign) this.replace(g, bytes);
   }
 
   replace(g, bytes) {

@@ -93,7 +93,7 @@ export class VoxelView {
     for (const mesh of this.meshes) mesh.geometry.setIndex(this.index);
   }
 
-  /** Voxels in the layer of this key and above are taken away. */
+  /** Hides the voxels in the layer of this key and above. */
   setCut(key) {
     const corners = this.store.run.chunks.corners.items, low = Math.min(key, this.mesher.cut);
     this.mesher.cut = key;
@@ -110,7 +110,7 @@ export class VoxelView {
   setColors(theme, byOwner) {
     const scene = SCENE[theme], { uniforms } = this.facesMaterial;
     scene.heights.forEach((color, i) => setVector(uniforms.heights.value[i], color));
-    // Paler than the robots themselves, so that their ways stand out.
+    // Paler than the robots themselves, so that their paths stand out.
     setVector(wall, scene.wall);
     for (let i = 1; i < 16; ++i) {
       setVector(uniforms.owners.value[i], robotColor(i - 1, theme));
@@ -151,7 +151,7 @@ function makeIndex(faces) {
 }
 
 const color = new Color(), wall = new Vector3();
-/** As the screen shows it, not as light adds up. */
+/** In sRGB, not linear. */
 function setVector(vector, css) {
   color.set(css).convertLinearToSRGB();
   vector.set(color.r, color.g, color.b);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <frontlux/report/report.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace frontlux::report::detail {
+
+/// The page that web/build.mjs makes, with two marks that a report replaces by its title and its runs.
+[[nodiscard]] std::string_view page();
+
+inline constexpr std::string_view kTitleMark = "@@frontlux-title@@";
+inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
+
+/// Everything about a run except voxels, images and paths, as a JSON object: what it was, and the numbers of
+/// each step. Numbers that are not finite become null, bytes that are not UTF-8 the replacement character.
+[[nodiscard]] std::string run_facts(const ReportedRun& run, const std::string& version);
+
+/// Changed voxels, images and paths of a run, as bytes that web/src/run_data.js reads. For each step and each
+/// robot:
+///
+///     count of chunks (cubes of 32^3 voxels that hold a change), sorted by x, then y, then z; for each:
+///       x, y, z of the chunk (key / 32) as counts; count of voxels; for each, sorted by
+///       l = x + 32 y + 1024 z within the chunk: (l - the l before, at first 0) * 4 + its state afterwards
+///     count of rendered cells, sorted by z, y, x; if there are any:
+///       greatest gain and greatest quality as f32; differences of x of all cells to the one before (at
+///       first 0), those of y, those of z; of each cell gain / greatest as a byte; of each cell
+///       sqrt(quality / greatest) as a byte
+///     count of planned viewpoints, those travelled, and of each x, y, z, yaw as f32
+///
+/// A count takes seven bits a byte, the lowest first; the top bit says that another byte follows. A
+/// difference d is written as the count 2 d, or -2 d - 1 if it is negative. f32 is single precision, lowest
+/// byte first.
+[[nodiscard]] std::string run_data(const planner::Recording& recording);
+
+}  // namespace frontlux::report::detail
