@@ -83,14 +83,14 @@ class Ours {
     Stopwatch watch;
     double insertion = 0;
     for (const Scan* scan : {&step.lidar, &step.camera}) {
-      const auto keys = mapping_.insert(*scan);
+      const frontlux::MapChange change = mapping_.insert(*scan);
       insertion += watch.lap();
       const auto& spent = mapping_.insertion_time();
       times.tree += spent.tree;
       times.mirror += spent.mirror;
-      frontiers_.update(mapping_.grid(), keys);
+      frontiers_.update(change);
       times.frontiers += watch.lap();
-      changed_ += keys.size();
+      changed_ += change.keys.size();
     }
     times.rays = insertion - times.tree - times.mirror;  // checks and end points with them
     watch.lap();

@@ -1,13 +1,13 @@
 // What it costs to choose goals: rendering view quality and distributing frontiers, by every caster on the
 // same map. Answers are compared before anything is timed.
 
-#include "rays/generated_map.hpp"
 #include "google_benchmark.hpp"
 #include "machine.hpp"
 #include "planner/planner_scene.hpp"
 #include "program.hpp"
-#include "report.hpp"
+#include "rays/generated_map.hpp"
 #include "rays/subject.hpp"
+#include "report.hpp"
 
 #include <CLI/CLI.hpp>
 #include <benchmark/benchmark.h>
@@ -185,7 +185,8 @@ void add_all_in_space(const PlannerScene& scene, const Options& options, Session
     const auto step = [&scene, way, after](ViewQualityImage& followed, bool& scanned) {
       scanned = !scanned;
       return followed.update(scanned ? *after : *way.caster, scene.aerial_viewpoints,
-                             scanned ? scene.scanned_frontiers : scene.frontiers, scene.change);
+                             scanned ? scene.scanned_frontiers : scene.frontiers,
+                             {scanned ? scene.scanned : scene.subject.grid, scene.changed});
     };
     render(image);
     ViewQualityImage followed = image;
@@ -215,7 +216,7 @@ void add_all_in_space(const PlannerScene& scene, const Options& options, Session
 void add_distributions(const PlannerScene& scene, const Options& options, Session& session) {
   const auto distribute = [&scene](const std::string& caster) {
     return planner::assign_frontiers(*scene.subject.contender(caster).caster, scene.subject.grid,
-                                         scene.frontiers, scene.agents());
+                                     scene.frontiers, scene.agents());
   };
   const auto truth = distribute("grid");
   for (const char* caster : {"octomap", "grid", "embree"}) {
@@ -263,7 +264,8 @@ void add_space(const PlannerScene& scene, const Options& options, Session& sessi
     const auto step = [&scene, &before, after](ViewQualityImage& followed, bool& scanned) {
       scanned = !scanned;
       return followed.update(scanned ? *after : before, scene.aerial_viewpoints,
-                             scanned ? scene.scanned_frontiers : scene.frontiers, scene.change);
+                             scanned ? scene.scanned_frontiers : scene.frontiers,
+                             {scanned ? scene.scanned : scene.subject.grid, scene.changed});
     };
     bool scanned = false;
     ViewQualityImage followed = image;
@@ -276,7 +278,7 @@ void add_space(const PlannerScene& scene, const Options& options, Session& sessi
     const std::vector<std::pair<std::string, double>> counters = {
         {"viewpoints", static_cast<double>(image.size())},
         {"frontiers", static_cast<double>(scene.frontiers.size())},
-        {"changed_voxels", static_cast<double>(scene.changed_voxels)},
+        {"changed_voxels", static_cast<double>(scene.changed.size())},
         {"rendered_again", rendered}};
     for (const int threads : options.threads) {
       session.images.push_back(std::make_unique<ViewQualityImage>(image));
@@ -305,7 +307,7 @@ void prepare(const std::filesystem::path& file, const Options& options, Session&
     std::cout << "  " << scene.frontiers.size() << " frontiers; corridors of " << scene.ground_cells.size()
               << " and " << scene.aerial_cells.size()
               << " cells; viewpoints: " << scene.ground_viewpoints.size() << " on the ground, "
-              << scene.aerial_viewpoints.size() << " in space; a scan changes " << scene.changed_voxels
+              << scene.aerial_viewpoints.size() << " in space; a scan changes " << scene.changed.size()
               << " voxels" << std::endl;
     add_renderings(scene, options, session);
     add_all_on_ground(scene, options, session);

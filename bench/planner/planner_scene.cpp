@@ -39,7 +39,7 @@ std::vector<VoxelKey> largest_corridor(const planner::TravelOptions& travel, con
   TravelCorridor corridor(travel, grid.lattice(), bounds);
   std::vector<VoxelKey> best;
   for (unsigned trial = 0, found = 0; trial < kTrials && found < kEnough && !starts.empty(); ++trial) {
-    corridor.update(grid, {},
+    corridor.update({grid},
                     starts[static_cast<std::size_t>(uniform(1, trial) * static_cast<double>(starts.size()))]);
     if (corridor.cells().empty()) continue;
     ++found;
@@ -49,8 +49,8 @@ std::vector<VoxelKey> largest_corridor(const planner::TravelOptions& travel, con
 }
 
 // Frees what a camera would: all unknown voxels in view that no occupied one hides.
-std::size_t scan(VoxelGrid& grid, const RayCaster& caster, const VoxelKey& from, double yaw,
-                 const FieldOfView& view) {
+std::vector<VoxelKey> scan(VoxelGrid& grid, const RayCaster& caster, const VoxelKey& from, double yaw,
+                           const FieldOfView& view) {
   const int reach = static_cast<int>(view.max_range / grid.resolution());
   std::vector<KeySegment> segments;
   for (int x = -reach; x <= reach; ++x)
@@ -63,11 +63,11 @@ std::size_t scan(VoxelGrid& grid, const RayCaster& caster, const VoxelKey& from,
       }
   std::vector<std::uint8_t> visible(segments.size());
   caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kPass);
-  std::size_t changed = 0;
+  std::vector<VoxelKey> changed;
   for (std::size_t i = 0; i < segments.size(); ++i)
     if (visible[i] != 0) {
       grid.set(segments[i].to, Occupancy::kFree);
-      ++changed;
+      changed.push_back(segments[i].to);
     }
   return changed;
 }
@@ -108,9 +108,8 @@ PlannerScene::PlannerScene(const Subject& map, planner::Adjacency adjacency, std
   for (std::size_t i = 0; i < image.size(); ++i)
     if (image.values()[i].gain >= image.values()[best].gain) best = i;
   window = best_window(image.bin_hits(best), aerial.view.horizontal);
-  changed_voxels = scan(scanned, caster, image.viewpoints()[best], window.yaw, aerial.view);
+  changed = scan(scanned, caster, image.viewpoints()[best], window.yaw, aerial.view);
   scanned_frontiers = frontiers_of(scanned, *bounds, adjacency);
-  for_each_change(grid, scanned, [&](const Block& block) { change.push_back(block); });
 }
 
 std::vector<planner::FrontierAgent> PlannerScene::agents() const {

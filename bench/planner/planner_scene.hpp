@@ -2,8 +2,8 @@
 
 #include "rays/subject.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/view_quality.hpp>
 
@@ -25,8 +25,7 @@ struct PlannerScene {
   std::vector<VoxelKey> aerial_viewpoints;  ///< to render
   VoxelGrid scanned;                        ///< the map after one more scan of the aerial robot
   std::vector<VoxelKey> scanned_frontiers;  ///< and its frontiers
-  std::vector<Block> change;                ///< between both maps
-  std::size_t changed_voxels = 0;
+  std::vector<VoxelKey> changed;            ///< voxels that the scan changed, sorted
 
   /// @throws std::runtime_error if the map has no frontiers or no free space
   PlannerScene(const Subject& subject, planner::Adjacency adjacency, std::size_t ground_viewpoints,

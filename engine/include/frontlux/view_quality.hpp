@@ -2,6 +2,7 @@
 
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/lattice.hpp>
+#include <frontlux/map_change.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -119,13 +120,11 @@ class ViewQualityImage {
 
   /// Renders only the viewpoints that are new or that have a changed voxel, or a target that came or went,
   /// where it could matter. The image is afterwards what `render` would have made of it.
-  /// @param caster   that has followed the change
-  /// @param changed  blocks that together hold every voxel whose state differs since the last call, as
-  ///                 `for_each_change` reports them; single voxels are blocks with `log2_edge` 0
+  /// @param caster  of the map as it is now
+  /// @param change  since the last call
   /// @return how many viewpoints were rendered
-  /// @throws std::invalid_argument if a block is not aligned or larger than the key range
   std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
-                     std::span<const VoxelKey> targets, std::span<const Block> changed);
+                     std::span<const VoxelKey> targets, const MapChange& change);
 
   [[nodiscard]] std::size_t size() const { return viewpoints_.size(); }
   [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }

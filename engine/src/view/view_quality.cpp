@@ -113,10 +113,11 @@ void ViewQualityImage::render(const RayCaster& caster, std::span<const VoxelKey>
 }
 
 std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
-                                     std::span<const VoxelKey> targets, std::span<const Block> changed) {
+                                     std::span<const VoxelKey> targets, const MapChange& change) {
   check_count(viewpoints.size());
   auto index = std::make_shared<const detail::TargetIndex>(targets);
-  const detail::ChangedSurroundings surroundings(changed, *targets_, *index, effective(options_).sampling);
+  const detail::ChangedSurroundings surroundings(change.keys, *targets_, *index,
+                                                 effective(options_).sampling);
   const bool same = std::equal(viewpoints.begin(), viewpoints.end(), viewpoints_.begin(), viewpoints_.end());
   auto order = same ? order_ : sorted(viewpoints);
   const auto kept = find_kept(*order, *order_, *reach_, surroundings.boxes());

@@ -5,8 +5,8 @@
 #include "text.hpp"
 
 #include <frontlux/field_of_view.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/io/path_file.hpp>
+#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/position_refinement.hpp>
@@ -141,7 +141,7 @@ TravelCorridor make_corridor(const Options& options, TravelOptions travel, const
   travel.without_ground = {{robot, robot}};  // no sensor sees the floor that it starts on
   try {
     TravelCorridor corridor(travel, grid.lattice(), *bounds);
-    corridor.update(grid, {}, robot);
+    corridor.update({grid}, robot);
     return corridor;
   } catch (const std::invalid_argument& error) {
     throw BadInput(options.map + ": " + error.what());

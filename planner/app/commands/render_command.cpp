@@ -2,11 +2,11 @@
 
 #include "bad_input.hpp"
 #include "cell_table.hpp"
+#include "draw/png_file.hpp"
+#include "draw/view_picture.hpp"
 #include "frontier_count.hpp"
 #include "map_file.hpp"
-#include "draw/png_file.hpp"
 #include "text.hpp"
-#include "draw/view_picture.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/goal_selection.hpp>
@@ -187,7 +187,7 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
   view.caster_ms = building.read();
   GoalSelection selection({view.member}, lattice, *bounds);
   const Stopwatch selecting;
-  view.goals = selection.select(*caster, grid, frontiers.keys(), {&view.pose, 1});
+  view.goals = selection.select(*caster, {grid}, frontiers.keys(), {&view.pose, 1});
   view.selection_ms = selecting.read();
   check_goal(view, selection, options, lattice);
   view.corridor = selection.corridor(0).cells().size();
@@ -199,7 +199,7 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
     rendered.options.rule = GoalRule::kViewQuality;
     rendered.options.rendering.estimator = ViewQualityOptions::Estimator::kUnbiased;  // clusters count, too
     GoalSelection image({rendered}, lattice, *bounds);
-    static_cast<void>(image.select(*caster, grid, frontiers.keys(), {&view.pose, 1}));
+    static_cast<void>(image.select(*caster, {grid}, frontiers.keys(), {&view.pose, 1}));
     view.cells = image.rendered_cells(0);
   }
   return view;

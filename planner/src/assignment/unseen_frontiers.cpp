@@ -70,15 +70,19 @@ class Surroundings {
 
 }  // namespace
 
-void UnseenFrontiers::follow(std::span<const VoxelKey> opened, std::span<const VoxelKey> corridor,
+void UnseenFrontiers::update(const MapChange& change, std::span<const VoxelKey> corridor,
                              const FeasibleRegion& region) {
   std::vector<VoxelKey> changed;
   if (!keys_.empty()) {
     std::set_difference(corridor.begin(), corridor.end(), corridor_.begin(), corridor_.end(),
                         std::back_inserter(changed));
-    changed.insert(changed.end(), opened.begin(), opened.end());
+    if (grid_)
+      std::ranges::copy_if(change.keys, std::back_inserter(changed), [&](const VoxelKey& key) {
+        return grid_->at(key) == Occupancy::kOccupied && change.grid.at(key) != Occupancy::kOccupied;
+      });
   }
   corridor_.assign(corridor.begin(), corridor.end());
+  grid_ = change.grid;
   if (changed.empty()) return;
   std::vector<Cube> cubes;
   for (const VoxelKey& key : changed)

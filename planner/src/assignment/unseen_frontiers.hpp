@@ -2,8 +2,9 @@
 
 #include "assignment/feasible_region.hpp"
 
-#include <frontlux/voxel_grid.hpp>
+#include <frontlux/map_change.hpp>
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,11 +16,10 @@ namespace frontlux::planner::detail {
 /// place, and within its reach.
 class UnseenFrontiers {
  public:
-  /// Forgets those near what has changed since the last call.
-  /// @param opened    voxels that were occupied and are not any more, in any order
+  /// Forgets those near what has changed.
+  /// @param change    since the last call
   /// @param corridor  cells that the robot can go to now, sorted
-  void follow(std::span<const VoxelKey> opened, std::span<const VoxelKey> corridor,
-              const FeasibleRegion& region);
+  void update(const MapChange& change, std::span<const VoxelKey> corridor, const FeasibleRegion& region);
 
   /// Forgets all, the corridor too: whatever cells there are at the next call are new ones.
   void forget() {
@@ -27,13 +27,14 @@ class UnseenFrontiers {
     corridor_.clear();
   }
 
-  /// Those that have been tried from all cells of the corridor last followed, sorted.
+  /// Those that have been tried from all cells of the corridor of the last update, sorted.
   void set(std::vector<VoxelKey> keys) { keys_ = std::move(keys); }
 
   [[nodiscard]] std::span<const VoxelKey> keys() const { return keys_; }
 
  private:
   std::vector<VoxelKey> keys_, corridor_;
+  std::optional<VoxelGrid> grid_;  // of the last update
 };
 
 }  // namespace frontlux::planner::detail

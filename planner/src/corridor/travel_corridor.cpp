@@ -187,7 +187,7 @@ struct TravelCorridor::State {
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
   void lay_out(const VoxelKey& robot);
-  void read(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
+  void read(const MapChange& change, const VoxelKey& robot);
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
     return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
            (closed.empty() || !std::binary_search(closed.begin(), closed.end(), cell));
@@ -234,8 +234,8 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   }
 }
 
-void TravelCorridor::State::read(const VoxelGrid& grid, std::span<const VoxelKey> changed,
-                                 const VoxelKey& robot) {
+void TravelCorridor::State::read(const MapChange& change, const VoxelKey& robot) {
+  const auto& [grid, changed] = change;
   if (!erosion || (options.motion == Motion::kPlane && plane != robot.z)) {
     lay_out(robot);
     erosion->read(grid);
@@ -281,11 +281,12 @@ TravelCorridor::~TravelCorridor() = default;
 TravelCorridor::TravelCorridor(TravelCorridor&&) noexcept = default;
 TravelCorridor& TravelCorridor::operator=(TravelCorridor&&) noexcept = default;
 
-void TravelCorridor::update(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot) {
+void TravelCorridor::update(const MapChange& change, const VoxelKey& robot) {
+  const VoxelGrid& grid = change.grid;
   if (grid.resolution() != state_->lattice.resolution())
     refuse("the grid has a resolution of " + std::to_string(grid.resolution()) + " m, the corridor " +
            std::to_string(state_->lattice.resolution()) + " m");
-  state_->read(grid, changed, robot);
+  state_->read(change, robot);
   state_->state = state_->find_state(grid, robot);
   state_->cells.clear();
   if (state_->state != CorridorState::kReady) return;

@@ -1,7 +1,7 @@
-#include "goal/counting_ray_caster.hpp"
 #include "exploration/exploration_state.hpp"
 #include "exploration/path_execution.hpp"
 #include "exploration/phase_clock.hpp"
+#include "goal/counting_ray_caster.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/look_around.hpp>
@@ -92,7 +92,8 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
     for (std::size_t r = 0; r < starts.size(); ++r) {
       RobotStep& robot = step.robots[r];
       const VoxelGrid before = state.mapping.grid();
-      State::Keys touched = state.mapping.mark_free(starts[r].known_free);
+      const auto marked = state.mapping.mark_free(starts[r].known_free).keys;
+      State::Keys touched(marked.begin(), marked.end());
       // The first look is the way's first viewpoint, at which `travel` does not measure.
       robot.path = PathOutcome::kInPlace;
       robot.planned = {starts[r].pose};

@@ -19,9 +19,8 @@ TeamGoals Exploration::State::select_goals(ExplorationStep& step) {
     for (std::optional<TravelCorridor>& way : ways) {
       const auto robot = static_cast<std::size_t>(&way - ways.data());
       const auto cell = cell_at(poses[robot].position);
-      if (way && cell) way->update(grid, unread, *cell);
+      if (way && cell) way->update(change(), *cell);
     }
-    unread.clear();
     wanted = abandoned.without_abandoned(frontiers.keys());
     large = detail::in_large_clusters(frontiers, wanted, options.min_cluster_size);
     step.frontiers = frontiers.size();
@@ -33,10 +32,10 @@ TeamGoals Exploration::State::select_goals(ExplorationStep& step) {
   }
   const detail::PhaseClock clock(step, Phase::kGoals);
   const auto has_goal = [](const Goal& goal) { return goal.pose.has_value(); };
-  TeamGoals goals = selection->select(*caster, grid, large, poses);
+  TeamGoals goals = selection->select(*caster, change(), large, poses);
   step.rays += goals.rays;
   if (large.size() < wanted.size() && std::none_of(goals.goals.begin(), goals.goals.end(), has_goal)) {
-    goals = selection->select(*caster, grid, wanted, poses);
+    goals = selection->select(*caster, {grid}, wanted, poses);
     step.rays += goals.rays;
   }
   step.unassigned = goals.unassigned;

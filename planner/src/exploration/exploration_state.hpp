@@ -35,7 +35,7 @@ struct Exploration::State {
   std::vector<std::optional<TravelCorridor>> ways = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
-  Keys unread = {};                            // changed since the corridors were last brought up to date
+  Keys changed = {};                           // by the last step, sorted
   std::uint64_t number = 0;
   int quiet = 0;
   bool idle = false;
@@ -43,6 +43,7 @@ struct Exploration::State {
   State(ExplorationOptions given, Mapping map);
 
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
+  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
   [[nodiscard]] const TravelCorridor& way_of(std::size_t robot) const {
     return ways[robot] ? *ways[robot] : selection->corridor(robot);

@@ -47,7 +47,7 @@ void Exploration::State::go(std::size_t robot, const Plan& plan, const Drive& dr
   const std::size_t reached = step.travelled - (step.blocked.empty() ? 0 : 1);
   if (plan.gain)
     step.still_unknown = still_unknown(mapping.grid(), *plan.gain,
-                                  std::span<const Pose>(step.planned).first(reached), plan.targets);
+                                       std::span<const Pose>(step.planned).first(reached), plan.targets);
 }
 
 // What a robot's part of a step leaves behind.
@@ -64,11 +64,12 @@ void Exploration::State::take(const RobotStep& step, std::size_t robot) {
 
 // Brings the frontiers up to date with what the robots changed.
 void Exploration::State::follow(const ExplorationStep& step) {
-  Keys changed;
+  changed.clear();
   for (const RobotStep& robot : step.robots)
-    for (const VoxelChange& change : robot.changed) changed.push_back(change.key);
-  frontiers.update(mapping.grid(), changed);
-  unread.insert(unread.end(), changed.begin(), changed.end());
+    for (const VoxelChange& voxel : robot.changed) changed.push_back(voxel.key);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  frontiers.update(change());
 }
 
 }  // namespace frontlux::planner

@@ -70,8 +70,8 @@ std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& a
   return changed;
 }
 
-PathExecution travel(std::size_t robot, std::span<Pose> viewpoints, const TravelOptions* body, const Drive& drive,
-               Mapping& mapping) {
+PathExecution travel(std::size_t robot, std::span<Pose> viewpoints, const TravelOptions* body,
+                     const Drive& drive, Mapping& mapping) {
   PathExecution journey;
   if (viewpoints.empty()) return journey;
   const VoxelGrid before = mapping.grid();
@@ -88,7 +88,7 @@ PathExecution travel(std::size_t robot, std::span<Pose> viewpoints, const Travel
       scan = drive(robot, to);
       if (!scan) break;
     }
-    const auto keys = mapping.insert(*scan);
+    const auto keys = mapping.insert(*scan).keys;
     touched.insert(touched.end(), keys.begin(), keys.end());
     if (blocked) {
       ++journey.travelled;

@@ -1,5 +1,5 @@
-#include "mapping/brick_table.hpp"
 #include "frontier/frontier_brick.hpp"
+#include "mapping/brick_table.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 
@@ -170,12 +170,12 @@ FrontierSet::~FrontierSet() = default;
 FrontierSet::FrontierSet(FrontierSet&&) noexcept = default;
 FrontierSet& FrontierSet::operator=(FrontierSet&&) noexcept = default;
 
-void FrontierSet::update(const VoxelGrid& grid, std::span<const VoxelKey> changed) {
+void FrontierSet::update(const MapChange& change) {
   BrickTable<int> around;
   VoxelKey corner;
   std::size_t at = 0;
   bool any = false;
-  for (const VoxelKey& key : changed) {
+  for (const VoxelKey& key : change.keys) {
     const VoxelKey its_corner = detail::brick_corner(key);
     if (!any || its_corner != corner) {  // sorted keys stay in a brick for a while
       corner = its_corner;
@@ -184,7 +184,7 @@ void FrontierSet::update(const VoxelGrid& grid, std::span<const VoxelKey> change
     }
     around.value(at) |= state_->around[State::number(key)];
   }
-  state_->refresh(grid, around);
+  state_->refresh(change.grid, around);
 }
 
 std::span<const VoxelKey> FrontierSet::keys() const { return state_->keys; }

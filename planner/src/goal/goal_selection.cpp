@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -12,8 +13,6 @@ namespace frontlux::planner {
 namespace {
 
 using detail::GoalQuery;
-
-constexpr int kMaxFollowedEdge = 6;  // log2 [voxels] of the largest changed block that is followed by voxel
 
 void check(const TeamMember& member) {
   try {
@@ -52,27 +51,7 @@ void GoalSelection::State::renew_corridor(std::size_t robot) {
   members[robot].unseen.forget();
 }
 
-// Corridors take changed voxels; changes of large blocks are met by reading the map again.
-void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> poses) {
-  Keys changed, opened;
-  bool too_large = false;
-  if (seen)
-    for_each_change(*seen, grid, [&](const Block& block) {
-      too_large = too_large || block.log2_edge > kMaxFollowedEdge;
-      if (too_large) return;
-      const int edge = 1 << block.log2_edge;
-      for (int x = 0; x < edge; ++x)
-        for (int y = 0; y < edge; ++y)
-          for (int z = 0; z < edge; ++z) {
-            const VoxelKey key{static_cast<std::uint16_t>(block.corner.x + x),
-                               static_cast<std::uint16_t>(block.corner.y + y),
-                               static_cast<std::uint16_t>(block.corner.z + z)};
-            const Occupancy before = seen->at(key), now = grid.at(key);
-            if (before == now) continue;
-            changed.push_back(key);
-            if (before == Occupancy::kOccupied) opened.push_back(key);
-          }
-    });
+void GoalSelection::State::update(const MapChange& change, std::span<const Pose> poses) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
     member.position = poses[r].position;
@@ -80,24 +59,26 @@ void GoalSelection::State::follow(const VoxelGrid& grid, std::span<const Pose> p
     member.share.clear();
     member.abandoned.clear();
     member.targets.clear();
-    if (too_large) renew_corridor(r);
-    const auto x = lattice.key(member.position.x()), y = lattice.key(member.position.y()),
-               z = lattice.key(member.position.z());
-    if (!x || !y || !z) {
+    if (member.image.size() > 0) {
+      Keys changed;
+      std::ranges::set_union(member.changed, change.keys, std::back_inserter(changed));
+      member.changed = std::move(changed);
+    }
+    const auto cell = lattice.key(member.position);
+    if (!cell) {
       renew_corridor(r);  // which, not updated, has no cells
       continue;
     }
-    member.cell = {*x, *y, *z};
-    member.corridor.update(grid, changed, member.cell);
-    member.unseen.follow(opened, member.corridor.cells(),
+    member.cell = *cell;
+    member.corridor.update(change, member.cell);
+    member.unseen.update(change, member.corridor.cells(),
                          detail::FeasibleRegion(team[r].robot.view, lattice.resolution()));
   }
-  seen = grid;
 }
 
 GoalSelection::GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
                              bool distribute)
-    : state_(std::make_unique<State>(State{std::move(team), lattice, bounds, distribute, {}, {}})) {
+    : state_(std::make_unique<State>(State{std::move(team), lattice, bounds, distribute, {}})) {
   for (std::size_t r = 0; r < state_->team.size(); ++r) {
     const TeamMember& member = state_->team[r];
     check(member);
@@ -112,9 +93,10 @@ GoalSelection::~GoalSelection() = default;
 GoalSelection::GoalSelection(GoalSelection&&) noexcept = default;
 GoalSelection& GoalSelection::operator=(GoalSelection&&) noexcept = default;
 
-TeamGoals GoalSelection::select(const RayCaster& caster, const VoxelGrid& grid,
+TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change,
                                 std::span<const VoxelKey> frontiers, std::span<const Pose> poses) {
   State& state = *state_;
+  const VoxelGrid& grid = change.grid;
   if (poses.size() != state.team.size())
     throw std::invalid_argument("goal selection: " + std::to_string(poses.size()) + " poses for " +
                                 std::to_string(state.team.size()) + " robots");
@@ -134,7 +116,7 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const VoxelGrid& grid,
   TeamGoals result;
   result.frontiers = sorted.size();
   result.goals.resize(poses.size());
-  state.follow(grid, poses);
+  state.update(change, poses);
   for (std::size_t r = 0; r < poses.size(); ++r) {
     Goal& goal = result.goals[r];
     const CorridorState corridor = state.members[r].corridor.state();
@@ -171,7 +153,7 @@ std::vector<RenderedCell> GoalSelection::rendered_cells(std::size_t robot) const
   std::vector<RenderedCell> cells;
   if (!member.rendered) return cells;
   // Rating asks no caster; this one only stands where a query has one.
-  const auto caster = make_grid_ray_caster(*member.imaged);
+  const auto caster = make_grid_ray_caster(VoxelGrid(state_->lattice.resolution()));
   const GoalQuery asked = state_->query(*caster, robot, member.targets);
   cells.reserve(member.image.size());
   for (std::size_t i = 0; i < member.image.size(); ++i) cells.push_back(detail::rate(asked, member.image, i));

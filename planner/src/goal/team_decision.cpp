@@ -79,11 +79,8 @@ std::optional<RenderedCell> GoalSelection::State::render(const GoalQuery& query,
     viewpoints = std::move(possible.cells);
     counted = possible.counted;
   }
-  std::vector<Block> changed;
-  if (member.imaged)
-    for_each_change(*member.imaged, grid, [&](const Block& block) { changed.push_back(block); });
-  member.image.update(query.caster, viewpoints, query.targets, changed);
-  member.imaged = grid;
+  member.image.update(query.caster, viewpoints, query.targets, {grid, member.changed});
+  member.changed.clear();
   member.rendered = true;
   const std::optional<RenderedCell> best = detail::best_cell(query, member.image);
   return counted && (!best || detail::better(query, *counted, *best)) ? counted : best;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "goal/goal_query.hpp"
 #include "assignment/unseen_frontiers.hpp"
+#include "goal/goal_query.hpp"
 
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/goal_selection.hpp>
@@ -21,14 +21,14 @@ struct GoalSelection::State {
   struct Member {
     TravelCorridor corridor;
     ViewQualityImage image;
-    std::optional<VoxelGrid> imaged = {};                // the map that the image shows
+    Keys changed = {};                                   // since the image was last rendered
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
     VoxelKey cell = {};                                  // that it is in
     Keys share = {};                                     // frontiers to choose from
     std::vector<FrontierSight> sights = {};              // of its share as it was distributed, sorted
     detail::UnseenFrontiers unseen = {};                 // of those distributed
-    Keys blocked = {};                                    // cells it does not go through, in any order
-    Keys abandoned = {};                                  // frontiers it made nothing of
+    Keys blocked = {};                                   // cells it does not go through, in any order
+    Keys abandoned = {};                                 // frontiers it made nothing of
     Keys targets = {};                                   // those its goal was last chosen for
     bool rendered = false;                               // whether the image is that of `targets`
   };
@@ -38,12 +38,11 @@ struct GoalSelection::State {
   KeyBox bounds;
   bool distributes;  // else every robot goes for all that it sees
   std::vector<Member> members;
-  std::optional<VoxelGrid> seen;  // the map that the corridors follow
 
   // goal_selection.cpp
   [[nodiscard]] TravelCorridor new_corridor(const TeamMember& member) const;
   void renew_corridor(std::size_t robot);
-  void follow(const VoxelGrid& grid, std::span<const Pose> poses);
+  void update(const MapChange& change, std::span<const Pose> poses);
   [[nodiscard]] bool can_move(std::size_t robot) const {
     return members[robot].corridor.state() == CorridorState::kReady;
   }

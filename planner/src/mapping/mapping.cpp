@@ -1,6 +1,6 @@
 #include "mapping/scan_voxels.hpp"
-#include <frontlux/file.hpp>
 
+#include <frontlux/file.hpp>
 #include <frontlux/planner/mapping.hpp>
 
 #include <octomap/OcTree.h>
@@ -202,6 +202,7 @@ struct Mapping::State {
   InsertionTime time{};
   std::vector<detail::RayEnd> rays{};  // kept for their memory
   std::vector<Change> changes{};
+  std::vector<VoxelKey> keys{};  // of the last change
 
   explicit State(const MappingOptions& options)
       : tree(options.resolution),
@@ -214,20 +215,19 @@ struct Mapping::State {
     rays.push_back({end, key.value_or(VoxelKey{}), key.has_value(), hit});
   }
 
-  std::vector<VoxelKey> insert_rays(const Eigen::Vector3f& origin) {
+  MapChange insert_rays(const Eigen::Vector3f& origin) {
     const auto start = std::chrono::steady_clock::now();
     const auto updates = detail::voxels_of_scan(grid.lattice(), bounds, origin, rays);
     time.rays = seconds_since(start);
     const auto before_tree = std::chrono::steady_clock::now();
     tree.update(updates, changes);
     time.tree = seconds_since(before_tree);
-    return follow_changes();
+    return write_to_grid();
   }
 
-  std::vector<VoxelKey> follow_changes() {
+  MapChange write_to_grid() {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<VoxelKey> keys;
-    keys.reserve(changes.size());
+    keys.clear();
     for (const auto& [key, state] : changes) {
       grid.set(key, state);
       keys.push_back(key);
@@ -235,12 +235,12 @@ struct Mapping::State {
     changes.clear();
     std::sort(keys.begin(), keys.end());
     time.mirror = seconds_since(start);
-    return keys;
+    return {grid, keys};
   }
 
   // Voxels of the box whose centre is inside the shape.
   template <class Inside>
-  std::vector<VoxelKey> mark_free(const Eigen::AlignedBox3d& box, const Inside& inside) {
+  MapChange mark_free(const Eigen::AlignedBox3d& box, const Inside& inside) {
     const auto clipped = [&](const Eigen::Vector3d& corner, std::size_t axis) {
       const double cell =
           std::floor(corner[static_cast<Eigen::Index>(axis)] / grid.resolution()) + Lattice::kOrigin;
@@ -260,7 +260,7 @@ struct Mapping::State {
           if (inside(Eigen::Vector3d(lattice.center(key(x)), lattice.center(key(y)), lattice.center(key(z)))))
             tree.set_free({key(x), key(y), key(z)}, changes);
         }
-    return follow_changes();
+    return write_to_grid();
   }
 };
 
@@ -277,7 +277,7 @@ Mapping::~Mapping() = default;
 Mapping::Mapping(Mapping&&) noexcept = default;
 Mapping& Mapping::operator=(Mapping&&) noexcept = default;
 
-std::vector<VoxelKey> Mapping::insert(const Scan& scan) {
+MapChange Mapping::insert(const Scan& scan) {
   check(scan);
   if (!state_->grid.lattice().key(scan.origin))
     throw std::invalid_argument("the scan begins outside the key range of the map");
@@ -293,8 +293,8 @@ std::vector<VoxelKey> Mapping::insert(const Scan& scan) {
   return state_->insert_rays(scan.origin);
 }
 
-std::vector<VoxelKey> Mapping::insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
-                                      double max_range) {
+MapChange Mapping::insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
+                          double max_range) {
   if (!state_->grid.lattice().key(origin))
     throw std::invalid_argument("the scan begins outside the key range of the map");
   if (!(max_range > 0.0))
@@ -316,7 +316,7 @@ namespace {
 constexpr double kOnSurface = 1e-9;  // [m] a centre that lies on the surface is inside, whatever the rounding
 }
 
-std::vector<VoxelKey> Mapping::mark_free(const Eigen::AlignedBox3d& box) {
+MapChange Mapping::mark_free(const Eigen::AlignedBox3d& box) {
   if (!box.min().allFinite() || !box.max().allFinite() || box.isEmpty())
     throw std::invalid_argument("the box to mark free is empty or not finite");
   return state_->mark_free(box, [&](const Eigen::Vector3d& center) {
@@ -324,7 +324,7 @@ std::vector<VoxelKey> Mapping::mark_free(const Eigen::AlignedBox3d& box) {
   });
 }
 
-std::vector<VoxelKey> Mapping::mark_free(const Ball& ball) {
+MapChange Mapping::mark_free(const Ball& ball) {
   check_length("the radius of the ball", ball.radius);
   if (!ball.center.allFinite())
     throw std::invalid_argument("the centre of the ball to mark free is not finite");
@@ -334,7 +334,7 @@ std::vector<VoxelKey> Mapping::mark_free(const Ball& ball) {
   });
 }
 
-std::vector<VoxelKey> Mapping::mark_free(const Cylinder& cylinder) {
+MapChange Mapping::mark_free(const Cylinder& cylinder) {
   check_length("the radius of the cylinder", cylinder.radius);
   check_length("the height of the cylinder", cylinder.height);
   if (!cylinder.bottom.allFinite())
@@ -348,10 +348,10 @@ std::vector<VoxelKey> Mapping::mark_free(const Cylinder& cylinder) {
       });
 }
 
-std::vector<VoxelKey> Mapping::mark_free(std::span<const VoxelKey> voxels) {
+MapChange Mapping::mark_free(std::span<const VoxelKey> voxels) {
   for (const VoxelKey& key : voxels)
     if (state_->bounds.contains(key)) state_->tree.set_free(key, state_->changes);
-  return state_->follow_changes();
+  return state_->write_to_grid();
 }
 
 const octomap::OcTree& Mapping::tree() const { return state_->tree; }

@@ -2,8 +2,9 @@
 // and the walk over the grid. Then against itself: on every instruction set, on other threads, kept and from
 // scratch.
 
-#include "view/exact/exact_render.hpp"
+#include "support/changed_keys.hpp"
 #include "support/random.hpp"
+#include "view/exact/exact_render.hpp"
 #include "walk/walk.hpp"
 
 #include <frontlux/view_quality.hpp>
@@ -307,10 +308,9 @@ TEST(ExactViewQuality, FollowsChangesAsIfRenderedAnew) {
       if (random.one_in(3)) some.targets.erase(some.targets.begin() + random.below(9));
       if (random.one_in(3)) some.viewpoints.erase(some.viewpoints.begin() + random.below(9));
       if (random.one_in(3)) some.viewpoints.push_back({key(near.x ^ 1), near.y, near.z});
-      std::vector<Block> changed;
-      for_each_change(before, some.grid, [&](const Block& block) { changed.push_back(block); });
+      const std::vector<VoxelKey> changed = test::changed_keys(before, some.grid);
       caster->update(some.grid);
-      rendered += followed.update(*caster, some.viewpoints, some.targets, changed);
+      rendered += followed.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
       all += some.viewpoints.size();
       const auto render = [&](const ViewQualityOptions& options) {
         return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,

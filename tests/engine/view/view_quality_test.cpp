@@ -1,6 +1,7 @@
 // The renderer against brute force: every target asked one by one with the field of view's own test and the
 // grid caster. What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
 
+#include "support/changed_keys.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/view_quality.hpp>
@@ -350,23 +351,15 @@ TEST(ViewQuality, NamesTheValueThatIsWrong) {
   has(with(view, {}), "out of the numbers' range");
   has(complaint([&] { const ViewQualityImage image(Lattice(1e-200), lidar(), {}); }), "resolution");
   EXPECT_EQ(with(lidar(), {}), "no complaint");
-
-  ViewQualityImage image(lattice, lidar(), {});
-  const auto caster = make_grid_ray_caster(VoxelGrid(0.3));
-  const auto following = [&](const Block& block) {
-    return complaint([&] { image.update(*caster, {}, {}, {&block, 1}); });
-  };
-  has(following({{4, 0, 0}, 3}), "(4, 0, 0)");
-  has(following({{0, 0, 0}, 17}), "log2_edge 17");
-  has(following({{0, 0, 0}, -1}), "log2_edge -1");
 }
 
-// Edits of all kinds, told as single voxels or as blocks; each time the image has to be what rendering makes.
+// Edits of all kinds, told by the voxels that changed or also by some that did not; each time the image has
+// to be what rendering makes.
 TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
   for (const Sampling sampling : kSamplings)
-    for (const bool as_blocks : {false, true}) {
+    for (const bool exactly : {false, true}) {
       Hall hall(7);
-      Random random(as_blocks ? 8 : 9);
+      Random random(exactly ? 8 : 9);
       const auto caster = make_embree_ray_caster(hall.grid);
       const ViewQualityOptions options{.samples = 24, .sampling = sampling, .azimuth_bins = 12};
       ViewQualityImage image(hall.grid.lattice(), camera(), options);
@@ -374,7 +367,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
       std::size_t rendered = 0, all = 0;
       for (int step = 0; step < 25; ++step) {
         const VoxelGrid before = hall.grid;
-        std::vector<Block> changed;
+        std::vector<VoxelKey> changed;
         const int x = random.below(Hall::kLength), y = random.below(Hall::kLength);
         const int edits = random.one_in(5) ? 0 : 1 + random.below(6);
         for (int e = 0; e < edits; ++e) {
@@ -383,26 +376,24 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
           };
           const VoxelKey k{near(x), near(y), key(hall.low + random.below(Hall::kHeight))};
           hall.grid.set(k, static_cast<Occupancy>(random.below(3)));
-          changed.push_back({k, 0});
+          changed.push_back(k);
         }
-        if (as_blocks) {
-          changed.clear();
-          for_each_change(before, hall.grid, [&](const Block& block) { changed.push_back(block); });
-        }
+        std::sort(changed.begin(), changed.end());
+        if (exactly) changed = test::changed_keys(before, hall.grid);
         hall.observe();
         // Targets and viewpoints come and go for other reasons than the map as well.
         if (random.one_in(3)) hall.targets.erase(hall.targets.begin() + random.below(300));
         if (random.one_in(3)) std::reverse(hall.viewpoints.begin(), hall.viewpoints.end());
         if (random.one_in(4)) hall.viewpoints.resize(hall.viewpoints.size() * 3 / 4);
         caster->update(hall.grid);
-        rendered += image.update(*caster, hall.viewpoints, hall.targets, changed);
+        rendered += image.update(*caster, hall.viewpoints, hall.targets, {hall.grid, changed});
         all += hall.viewpoints.size();
         expect_equal(image, render(*caster, hall, hall.viewpoints, camera(), options));
         if (HasFatalFailure()) return;
       }
       EXPECT_GT(rendered, all / 50);
       EXPECT_LT(rendered, all * 3 / 4) << "of " << all;
-      EXPECT_EQ(image.update(*caster, hall.viewpoints, hall.targets, {}), 0U);
+      EXPECT_EQ(image.update(*caster, hall.viewpoints, hall.targets, {hall.grid}), 0U);
     }
 }
 
@@ -412,7 +403,7 @@ TEST(ViewQualityImage, TakesItsOwnViewpointsBack) {
   auto image = render(*caster, hall, hall.viewpoints, camera(), {.azimuth_bins = 4});
   const auto whole = image;
   const std::size_t half = image.size() / 2;
-  EXPECT_EQ(image.update(*caster, image.viewpoints().subspan(half), hall.targets, {}), 0U);
+  EXPECT_EQ(image.update(*caster, image.viewpoints().subspan(half), hall.targets, {hall.grid}), 0U);
   ASSERT_EQ(image.size(), whole.size() - half);
   for (std::size_t i = 0; i < image.size(); ++i) {
     ASSERT_EQ(image.values()[i], whole.values()[i + half]);

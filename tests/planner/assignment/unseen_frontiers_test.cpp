@@ -47,9 +47,9 @@ class Changing {
     sort(corridor);
   }
 
-  // Returns what is no longer occupied.
+  // Returns the voxels that may have changed.
   std::vector<VoxelKey> change() {
-    std::vector<VoxelKey> opened;
+    std::vector<VoxelKey> changed;
     const VoxelKey around = random_key(random_);
     const auto near = [&](const VoxelKey& key) {
       return std::abs(key.x - around.x) < 6 && std::abs(key.y - around.y) < 6;
@@ -58,7 +58,7 @@ class Changing {
       const VoxelKey key = random_key(random_);
       const auto state = static_cast<Occupancy>(random_.below(3));
       if (!near(key)) continue;
-      if (grid.at(key) == Occupancy::kOccupied && state != Occupancy::kOccupied) opened.push_back(key);
+      changed.push_back(key);
       grid.set(key, state);
     }
     if (random_.one_in(3)) {
@@ -70,7 +70,8 @@ class Changing {
     std::erase_if(frontiers, [&](const VoxelKey&) { return random_.one_in(50); });
     for (int i = 0; i < 10; ++i) frontiers.push_back(random_key(random_));
     sort(frontiers);
-    return opened;
+    sort(changed);
+    return changed;
   }
 
   VoxelGrid grid{kResolution};
@@ -101,13 +102,13 @@ TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
     const FeasibleRegion region(view, kResolution);
     UnseenFrontiers unseen;
     for (int step = 0; step < 25; ++step) {
-      const auto opened = scene.change();
-      unseen.follow(opened, scene.corridor, region);
+      const auto changed = scene.change();
+      unseen.update({scene.grid, changed}, scene.corridor, region);
       const auto caster = make_grid_ray_caster(scene.grid);
       const AssignedFrontiers all =
           find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.corridor, view});
       const AssignedFrontiers some = find_visible_frontiers(*caster, scene.grid, scene.frontiers,
-                                                        {scene.corridor, view, {}, unseen.keys()});
+                                                            {scene.corridor, view, {}, unseen.keys()});
       ASSERT_EQ(some.frontiers, all.frontiers) << "seed " << seed << ", step " << step;
       rays += some.rays;
       rays_for_all += all.rays;
@@ -127,11 +128,12 @@ TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
   const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
   const std::vector<VoxelKey> cell = {{30000, 30000, 30000}};
   const VoxelKey near{30003, 30000, 30000}, far{40000, 30000, 30000};
+  const VoxelGrid grid(kResolution);
   UnseenFrontiers unseen;
-  unseen.follow({}, cell, region);
+  unseen.update({grid}, cell, region);
   unseen.forget();
   unseen.set({near, far});
-  unseen.follow({}, cell, region);
+  unseen.update({grid}, cell, region);
   EXPECT_TRUE(std::ranges::equal(unseen.keys(), std::vector{far}));
 }
 
@@ -140,12 +142,16 @@ TEST(UnseenFrontiers, AreForgottenByChangesAllOverTheKeyRange) {
   const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
   const VoxelKey frontier{30000, 30000, 30000};
   const std::vector<VoxelKey> corner = {{0, 0, 0}}, corners = {{0, 0, 0}, {65535, 65535, 65535}};
-  UnseenFrontiers unseen;
-  unseen.set({frontier});
-  unseen.follow(corner, {}, region);
-  EXPECT_EQ(unseen.keys().size(), 1U);
-  unseen.follow(corners, {}, region);
-  EXPECT_TRUE(unseen.keys().empty());
+  VoxelGrid occupied(kResolution);
+  for (const VoxelKey& key : corners) occupied.set(key, Occupancy::kOccupied);
+  const VoxelGrid opened(kResolution);
+  for (const auto& [changed, left] : {std::pair{corner, 1U}, {corners, 0U}}) {
+    UnseenFrontiers unseen;
+    unseen.update({occupied}, {}, region);
+    unseen.set({frontier});
+    unseen.update({opened, changed}, {}, region);
+    EXPECT_EQ(unseen.keys().size(), left);
+  }
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Ways for the body itself: wherever on a voxel the robot is, all that its body covers is known free.
 
-#include <frontlux/planner/segment_voxels.hpp>
 #include "support/random.hpp"
 
 #include <frontlux/planner/path_planner.hpp>
+#include <frontlux/planner/segment_voxels.hpp>
 
 #include <gtest/gtest.h>
 
@@ -83,7 +83,7 @@ TEST(BodyWay, IsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
       if (plane) travel.sensor_height = 0.35;
       const Scene scene(static_cast<std::uint64_t>(100 * resolution), resolution);
       TravelCorridor corridor(travel, scene.grid.lattice(), scene.bounds);
-      corridor.update(scene.grid, {}, key(12, 12, plane ? 1 : 5));
+      corridor.update({scene.grid}, key(12, 12, plane ? 1 : 5));
       const Lattice& lattice = scene.grid.lattice();
       const Eigen::Vector3d d = corridor.reach();
       test::Random random(5);
@@ -171,7 +171,7 @@ TEST(BodyWay, PlansFromAndToAnywhereInTheBody) {
       test::Random random(8);
       // The robot's own cell may be anywhere that is passable.
       for (int x = 3; x < 20 && corridor.state() != CorridorState::kReady; ++x)
-        corridor.update(scene.grid, {}, key(x, 12, plane ? 1 : 5));
+        corridor.update({scene.grid}, key(x, 12, plane ? 1 : 5));
       ASSERT_EQ(corridor.state(), CorridorState::kReady);
       const Lattice& lattice = scene.grid.lattice();
       const auto cells = corridor.cells();

@@ -212,7 +212,7 @@ TEST(TravelCorridor, IsWhatItsDefinitionSays) {
       VoxelGrid grid = random_map(seed, robot.resolution, seed % 2 == 0 ? 40 : 400);
       TravelCorridor corridor(robot.options, grid.lattice(), kBounds);
       clear_around(grid, robot, corridor);
-      corridor.update(grid, {}, robot.at);
+      corridor.update({grid}, robot.at);
       expect_as_defined(corridor, grid, robot);
       if (testing::Test::HasFatalFailure()) return;
       cells += corridor.cells().size();
@@ -239,9 +239,9 @@ TEST(TravelCorridor, FollowsChangesAsIfMadeAnew) {
       if (!cells.empty() && random.one_in(2))
         here.at = cells[static_cast<std::size_t>(random.below(static_cast<int>(cells.size())))];
       if (random.one_in(10)) here.at = moved(here.at, 0, 0, random.one_in(2) ? 1 : -1);
-      corridor.update(grid, changed, here.at);
+      corridor.update({grid, changed}, here.at);
       TravelCorridor fresh(robot.options, grid.lattice(), kBounds);
-      fresh.update(grid, {}, here.at);
+      fresh.update({grid}, here.at);
       ASSERT_EQ(corridor.state(), fresh.state());
       ASSERT_TRUE(std::ranges::equal(corridor.cells(), fresh.cells()));
       for_each_key(kBounds, [&](const VoxelKey& key) {
@@ -261,20 +261,20 @@ TEST(TravelCorridor, KeepsToGround) {
     if (key.z == 32767 && key.x > 32768 + 9) grid.set(key, Occupancy::kFree);
   });
   TravelCorridor corridor(ugv_travel(), grid.lattice(), kBounds);
-  corridor.update(grid, {}, key_at(0, 0, 2));
+  corridor.update({grid}, key_at(0, 0, 2));
   ASSERT_EQ(corridor.state(), CorridorState::kReady);
   int farthest = 0;
   for (const VoxelKey& key : corridor.cells()) farthest = std::max(farthest, key.x - 32768);
   EXPECT_EQ(farthest, 7);  // the last ring's neighbour, and two voxels from what is known to be open
 
-  corridor.update(grid, {}, key_at(9, 0, 2));
+  corridor.update({grid}, key_at(9, 0, 2));
   EXPECT_EQ(corridor.state(), CorridorState::kWithoutGround);
   EXPECT_TRUE(corridor.cells().empty());
 
   TravelOptions lenient = ugv_travel();
   lenient.require_ground = false;
   TravelCorridor flying(lenient, grid.lattice(), kBounds);
-  flying.update(grid, {}, key_at(0, 0, 2));
+  flying.update({grid}, key_at(0, 0, 2));
   for (const VoxelKey& key : flying.cells()) farthest = std::max(farthest, key.x - 32768);
   EXPECT_EQ(farthest, 12);  // half a box from the bounds
 }
@@ -288,7 +288,7 @@ TEST(TravelCorridor, HasReasonsForHavingNoCells) {
   EXPECT_TRUE(corridor.path_to(key_at(0, 0, 6)).empty());
   const auto state = [&](const VoxelKey& robot) {
     TravelCorridor fresh(uav_travel(), grid.lattice(), kBounds);
-    fresh.update(grid, {}, robot);
+    fresh.update({grid}, robot);
     EXPECT_EQ(fresh.cells().empty(), fresh.state() != CorridorState::kReady);
     EXPECT_FALSE(describe(fresh.state()).empty());
     return fresh.state();
@@ -313,13 +313,13 @@ TEST(TravelCorridor, WorksAtTheEndsOfTheKeyRange) {
   TravelOptions options = uav_travel();
   options.floor = -1e9;
   TravelCorridor corridor(options, grid.lattice(), corner);
-  corridor.update(grid, {}, {5, 5, 5});
+  corridor.update({grid}, {5, 5, 5});
   EXPECT_EQ(corridor.cells().size(), 512U);
   EXPECT_EQ(corridor.cells()[0], (VoxelKey{1, 1, 1}));
   TravelCorridor ugv(ugv_travel(), grid.lattice(), corner);
-  ugv.update(grid, {}, {5, 5, 1});  // its box would stand below the key range
+  ugv.update({grid}, {5, 5, 1});  // its box would stand below the key range
   EXPECT_EQ(ugv.state(), CorridorState::kBoxNotFree);
-  ugv.update(grid, {}, {5, 5, 2});  // and here its floor lies there
+  ugv.update({grid}, {5, 5, 2});  // and here its floor lies there
   EXPECT_EQ(ugv.state(), CorridorState::kWithoutGround);
 }
 
@@ -346,7 +346,7 @@ TEST(TravelCorridor, RefusesOptionsThatCannotBe) {
   EXPECT_THROW(TravelCorridor(uav_travel(), lattice, {{0, 0, 0}, {65535, 65535, 65535}}),
                std::invalid_argument);
   TravelCorridor corridor(uav_travel(), lattice, kBounds);
-  EXPECT_THROW(corridor.update(VoxelGrid(0.1), {}, key_at(0, 0, 6)), std::invalid_argument);
+  EXPECT_THROW(corridor.update({VoxelGrid(0.1)}, key_at(0, 0, 6)), std::invalid_argument);
 }
 
 }  // namespace

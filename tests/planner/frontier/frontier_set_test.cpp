@@ -84,7 +84,7 @@ TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
                                key_at(key.y + ((v >> log2_edge) & ((1 << log2_edge) - 1))),
                                key_at(key.z + (v >> (2 * log2_edge)))});
         }
-        set.update(grid, changed);
+        set.update({grid, changed});
         const std::string where = "at " + std::to_string(x) + ", round " + std::to_string(round);
         expect_frontiers(set, grid, bounds, adjacency, where);
         expect_frontiers(FrontierSet(grid, bounds, adjacency), grid, bounds, adjacency, where + ", anew");
@@ -118,9 +118,7 @@ TEST(FrontierSet, FollowsAMapScanByScan) {
     FrontierSet set(mapping.grid(), bounds, adjacency);
     EXPECT_EQ(set.size(), 0U);
     for (int i = 0; i < 40; ++i) {
-      const auto changed =
-          i == 3 ? mapping.mark_free(Ball{{1, 1, 0}, 1.5}) : mapping.insert(random_scan(random));
-      set.update(mapping.grid(), changed);
+      set.update(i == 3 ? mapping.mark_free(Ball{{1, 1, 0}, 1.5}) : mapping.insert(random_scan(random)));
       expect_frontiers(set, mapping.grid(), bounds, adjacency, "scan " + std::to_string(i));
       if (HasFatalFailure()) return;
     }

@@ -32,7 +32,7 @@ class GoalFallback : public testing::TestWithParam<Method> {
                                  const std::array<Pose, 2>& poses) const {
     const auto caster = make_grid_ray_caster(room.grid);
     GoalSelection selection(team(), room.grid.lattice(), room.bounds());
-    return selection.select(*caster, room.grid, frontiers, poses);
+    return selection.select(*caster, {room.grid}, frontiers, poses);
   }
 
   static void expect_none(const Goal& goal, GoalState state) {
@@ -173,7 +173,7 @@ TEST_P(GoalFallback, NobodyNeedsNoGoal) {
   const auto caster = make_grid_ray_caster(room.grid);
   GoalSelection selection({}, room.grid.lattice(), room.bounds());
   const std::vector<VoxelKey> frontiers = {room.key(1, 1, 1)};
-  const TeamGoals result = selection.select(*caster, room.grid, frontiers, {});
+  const TeamGoals result = selection.select(*caster, {room.grid}, frontiers, {});
   EXPECT_TRUE(result.goals.empty());
   EXPECT_EQ(result.unassigned, 1U);
 }

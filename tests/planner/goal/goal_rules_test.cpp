@@ -74,7 +74,7 @@ TEST(GoalSelection, ClustersAsANaiveSearchFindsThem) {
         if (room.grid.at(room.key(x, 4, z)) == Occupancy::kUnknown) frontiers.push_back(room.key(x, 4, z));
     std::sort(frontiers.begin(), frontiers.end());
     frontiers.erase(std::unique(frontiers.begin(), frontiers.end()), frontiers.end());
-    const TeamGoals team = selection.select(*caster, room.grid, frontiers, {&pose, 1});
+    const TeamGoals team = selection.select(*caster, {room.grid}, frontiers, {&pose, 1});
     const std::vector<VoxelKey> cells(selection.corridor(0).cells().begin(),
                                       selection.corridor(0).cells().end());
     if (cells.empty()) continue;
@@ -101,7 +101,7 @@ TEST(GoalSelection, TheWindowHoldsTheClustersTargetWhateverElseCouldBeSeen) {
   member.options.cluster_edge = 1.2;
   GoalSelection selection({member}, room.grid.lattice(), room.bounds());
   const Pose pose = room.pose(17, 17, 4);
-  const Goal goal = selection.select(*caster, room.grid, frontiers, {&pose, 1}).goals[0];
+  const Goal goal = selection.select(*caster, {room.grid}, frontiers, {&pose, 1}).goals[0];
   const auto cells = selection.corridor(0).cells();
   expect_goal(goal, naive_cluster_goal(*caster, {cells.begin(), cells.end()}, room.key(17, 17, 4), frontiers,
                                        member.robot.view, room.grid.lattice()));
@@ -126,7 +126,7 @@ TEST(GoalSelection, NearestIsTheFirstCellByStepsThatSeesAny) {
       // Everything, or only what lies at the other side of the room.
       auto frontiers = room.frontiers();
       std::erase_if(frontiers, [&](const VoxelKey& key) { return key.x < GoalRoom::kLow + from; });
-      const Goal goal = selection.select(*caster, room.grid, frontiers, {&pose, 1}).goals[0];
+      const Goal goal = selection.select(*caster, {room.grid}, frontiers, {&pose, 1}).goals[0];
       const auto cells = selection.corridor(0).cells();
       const auto steps = naive_steps(cells, room.key(5, 20, 2));
       const auto share = naive_share(*caster, kResolution, frontiers, cells, member.robot.view);

@@ -47,7 +47,7 @@ Chosen choose(const GoalRoom& room, const RayCaster& caster, const TeamMember& m
   GoalSelection selection({member}, room.grid.lattice(), room.bounds());
   const planner::Pose pose = room.pose(4, 4, 3);
   Chosen chosen;
-  chosen.goal = selection.select(caster, room.grid, room.frontiers(), {&pose, 1}).goals[0];
+  chosen.goal = selection.select(caster, {room.grid}, room.frontiers(), {&pose, 1}).goals[0];
   chosen.cells = selection.rendered_cells(0);
   return chosen;
 }

@@ -46,7 +46,7 @@ struct Scene {
   }
   [[nodiscard]] TravelCorridor corridor(const TravelOptions& options, const VoxelKey& robot) const {
     TravelCorridor made(options, grid.lattice(), bounds);
-    made.update(grid, {}, robot);
+    made.update({grid}, robot);
     return made;
   }
 };

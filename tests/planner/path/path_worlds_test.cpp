@@ -90,7 +90,7 @@ void check_pairs(const std::string& name, const KnownWorld& known, const TravelO
   TravelCorridor corridor(travel, lattice, known.truth.bounds());
   Eigen::Vector3d robot = *known.world.start;
   robot.z() = height > 0.0 ? height : 1.35;
-  corridor.update(known.grid, {}, voxel_at(lattice, robot));
+  corridor.update({known.grid}, voxel_at(lattice, robot));
   ASSERT_EQ(corridor.state(), CorridorState::kReady) << describe(corridor.state());
 
   test::Random random(5);
@@ -103,7 +103,7 @@ void check_pairs(const std::string& name, const KnownWorld& known, const TravelO
     Pose goal = random_pose(random, lattice, corridor, height);
     while (!way_is_free(corridor, lattice, goal.position, goal.position))
       goal = random_pose(random, lattice, corridor, height);
-    corridor.update(known.grid, {}, voxel_at(lattice, start.position));
+    corridor.update({known.grid}, voxel_at(lattice, start.position));
     const PathKey key{7, static_cast<std::uint64_t>(i), 0};
     const auto before = std::chrono::steady_clock::now();
     const PathPlan plan = plan_path(corridor, lattice, start, goal, key, options);

@@ -40,7 +40,7 @@ struct Hall {
   }
   [[nodiscard]] TravelCorridor corridor(const Robot& robot, const Pose& at) const {
     TravelCorridor made(robot.travel, grid.lattice(), bounds);
-    made.update(grid, {}, voxel_at(at.position));
+    made.update({grid}, voxel_at(at.position));
     return made;
   }
   [[nodiscard]] VoxelKey voxel_at(const Eigen::Vector3d& at) const {

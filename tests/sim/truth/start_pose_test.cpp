@@ -211,7 +211,7 @@ TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
     const Eigen::Vector3d& at = starts[1]->position;
     const VoxelKey key{truth.lattice().key(at.x()).value(), truth.lattice().key(at.y()).value(),
                        truth.lattice().key(at.z()).value()};
-    corridor.update(mapping.grid(), {}, key);
+    corridor.update({mapping.grid()}, key);
     EXPECT_EQ(corridor.state(), planner::CorridorState::kReady) << name << describe(corridor.state());
     EXPECT_TRUE(corridor.contains(key)) << name;
   }
@@ -272,7 +272,7 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
         }
     EXPECT_EQ(std::set<VoxelKey>(bubble.begin(), bubble.end()), expected);
     planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
-    EXPECT_EQ(mapping.mark_free(bubble), bubble);
+    EXPECT_TRUE(std::ranges::equal(mapping.mark_free(bubble).keys, bubble));
     EXPECT_EQ(mapping.grid().count()[1], bubble.size());
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/map_change.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <Eigen/Core>
@@ -28,8 +29,8 @@ struct FrontierCluster {
 
 /// The frontiers of a map: the unknown voxels inside the bounds that have a free neighbour.
 ///
-/// Follows a map by its changed voxels, in time that follows the bricks around them; the result is the same
-/// as of a new set. Thread safety: as a standard container.
+/// An update takes time for the bricks around the changed voxels only; the result is the same as of a new
+/// set. Thread safety: as a standard container.
 class FrontierSet {
  public:
   /// @param bounds  voxels outside are no frontiers; free voxels outside count as neighbours
@@ -38,10 +39,8 @@ class FrontierSet {
   FrontierSet(FrontierSet&&) noexcept;
   FrontierSet& operator=(FrontierSet&&) noexcept;
 
-  /// Follows a map that has changed.
-  /// @param changed  every voxel whose state is not what it was at the last update, in any order; more do no
-  ///                 harm
-  void update(const VoxelGrid& grid, std::span<const VoxelKey> changed);
+  /// @param change  since the last update
+  void update(const MapChange& change);
 
   /// All frontiers, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> keys() const;

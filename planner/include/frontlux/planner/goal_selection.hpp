@@ -135,9 +135,9 @@ struct TeamMember {
 /// that sees nothing of what it got from anywhere it can go to releases it to the others, and one that is
 /// left with nothing takes of the others what their goals do not see.
 ///
-/// Follows a map that changes: corridors and rendered cells keep what a change does not reach, and the
-/// result is the same as that of a new object. It does not depend on the number of threads, nor on whether
-/// the caster walks the grid or uses Embree.
+/// Corridors and rendered cells keep from step to step what a change of the map does not reach; the result is
+/// the same as that of a new object. It does not depend on the number of threads, nor on whether the caster
+/// walks the grid or uses Embree.
 ///
 /// Thread safety: as a standard container. Works in TBB's current arena.
 class GoalSelection {
@@ -152,12 +152,13 @@ class GoalSelection {
   GoalSelection& operator=(GoalSelection&&) noexcept;
 
   /// One step.
-  /// @param caster     of the same map as `grid`
+  /// @param caster     of the map as it is now
+  /// @param change     since the last step
   /// @param frontiers  all of the map's, in any order
   /// @param poses      of the robots' sensors, one for each
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
-  [[nodiscard]] TeamGoals select(const RayCaster& caster, const VoxelGrid& grid,
+  [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
 
   /// From the next step on a robot does not go through these cells: see `TravelCorridor::block`.

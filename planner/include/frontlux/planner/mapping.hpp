@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/map_change.hpp>
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -57,8 +58,8 @@ struct InsertionTime {
 /// evaluation: every voxel that its rays pass or end in gets one update, a hit if any ray ended there, else a
 /// miss. The voxels in which rays end without a hit get none.
 ///
-/// Every method that changes the map returns the keys of the voxels that became unknown, free or occupied and
-/// were not so before, sorted.
+/// Every method that changes the map returns the change, with no more keys than it has to have. The keys are
+/// valid until the next call of one.
 ///
 /// Thread safety: as a standard container. Insertion spreads its rays over TBB's current arena; what comes
 /// out does not depend on the number of threads.
@@ -74,23 +75,23 @@ class Mapping {
   /// A scan: rays with a return end in a hit, `surface_depth` behind the surface. Rays of infinite range
   /// clear the way up to `max_range`, rays of range NaN tell nothing.
   /// @throws std::invalid_argument if the scan fails `check` or begins outside the key range
-  std::vector<VoxelKey> insert(const Scan& scan);
+  MapChange insert(const Scan& scan);
 
   /// The end points of rays from `origin` [m], world frame, taken as they are. Points beyond `max_range` [m]
   /// clear the way up to it and are no hits; points that are not finite tell nothing.
   /// @throws std::invalid_argument if the origin lies outside the key range or the range is not above 0
-  std::vector<VoxelKey> insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
-                               double max_range = std::numeric_limits<double>::infinity());
+  MapChange insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
+                   double max_range = std::numeric_limits<double>::infinity());
 
   /// Declares free what a robot knows to be free without seeing it: voxels whose centre lies in the shape,
   /// its surface included. They become as free as one miss makes an unknown voxel, unless they are freer
   /// already; so sensors can still correct it.
   /// @throws std::invalid_argument if a number of the shape is not finite or a length is negative
-  std::vector<VoxelKey> mark_free(const Eigen::AlignedBox3d& box);
-  std::vector<VoxelKey> mark_free(const Ball& ball);
-  std::vector<VoxelKey> mark_free(const Cylinder& cylinder);
+  MapChange mark_free(const Eigen::AlignedBox3d& box);
+  MapChange mark_free(const Ball& ball);
+  MapChange mark_free(const Cylinder& cylinder);
   /// The same for chosen voxels; those outside the bounds are left out.
-  std::vector<VoxelKey> mark_free(std::span<const VoxelKey> voxels);
+  MapChange mark_free(std::span<const VoxelKey> voxels);
 
   /// The map itself. Its change detection is off, since insertion reports changes by itself.
   [[nodiscard]] const octomap::OcTree& tree() const;

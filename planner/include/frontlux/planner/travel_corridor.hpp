@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/map_change.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -107,13 +108,12 @@ class TravelCorridor {
   TravelCorridor(TravelCorridor&&) noexcept;
   TravelCorridor& operator=(TravelCorridor&&) noexcept;
 
-  /// Follows a map that has changed and a robot that has moved. The first update reads the whole map, and so
-  /// does one with the robot on another plane.
-  /// @param changed  every voxel whose state is not what it was at the last update, in any order; more do no
-  ///                 harm
-  /// @param robot    the voxel of its sensor
+  /// The map has changed, or the robot has moved. The first update reads the whole map, and so does one with
+  /// the robot on another plane.
+  /// @param change  since the last update
+  /// @param robot   the voxel of its sensor
   /// @throws std::invalid_argument if the grid has another resolution
-  void update(const VoxelGrid& grid, std::span<const VoxelKey> changed, const VoxelKey& robot);
+  void update(const MapChange& change, const VoxelKey& robot);
 
   /// Takes these cells for impassable from the next update on, whatever the map says: something is there that
   /// no sensor has shown.

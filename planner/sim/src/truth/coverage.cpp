@@ -43,26 +43,4 @@ Coverage measure(const GroundTruth& truth, const VoxelGrid& known) {
   return coverage;
 }
 
-Coverage follow(const GroundTruth& truth, const Coverage& coverage, const VoxelGrid& before,
-                const VoxelGrid& after) {
-  check_resolution(truth, before);
-  check_resolution(truth, after);
-  Coverage changed = coverage;
-  for_each_change(before, after, [&](const Block& block) {
-    for_each_voxel(block, truth.bounds(), [&](const VoxelKey& key) {
-      const bool was = before.at(key) != Occupancy::kUnknown, is = after.at(key) != Occupancy::kUnknown;
-      if (was == is) return;
-      const bool observable = truth.contains(key);
-      if (is) {
-        ++changed.known_bounding;
-        changed.known_observable += observable ? 1 : 0;
-      } else {
-        --changed.known_bounding;
-        changed.known_observable -= observable ? 1 : 0;
-      }
-    });
-  });
-  return changed;
-}
-
 }  // namespace frontlux::sim

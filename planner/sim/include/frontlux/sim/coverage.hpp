@@ -25,10 +25,4 @@ struct Coverage {
 /// @throws std::invalid_argument if the resolutions differ
 [[nodiscard]] Coverage measure(const GroundTruth& truth, const VoxelGrid& known);
 
-/// The same for a map that has changed, in time that grows with the change only.
-/// @param before a copy of the map as it was, and `coverage` its coverage
-/// @throws std::invalid_argument if the resolutions differ
-[[nodiscard]] Coverage follow(const GroundTruth& truth, const Coverage& coverage, const VoxelGrid& before,
-                              const VoxelGrid& after);
-
 }  // namespace frontlux::sim
