@@ -31,11 +31,14 @@ void ChangedSurroundings::add_voxels(std::span<const VoxelKey> changed) {
   // The way to a target passes through voxels whose centres are up to half a voxel off the straight line,
   // along each axis; castRay's own rounding may lead it a little further.
   constexpr int kOffTheLine = 1;
-  std::vector<std::uint64_t> codes;
-  codes.reserve(changed.size());
-  for (const VoxelKey& key : changed) codes.push_back(cell_code(key));
-  std::sort(codes.begin(), codes.end());
-  for_each_cube(codes, [&](const CellBox& box, std::uint64_t) { boxes_.push_back(box.grown(kOffTheLine)); });
+  std::vector<std::uint64_t> cubes;  // of 8 voxels a side
+  for (const VoxelKey& key : changed)
+    if (const std::uint64_t cube = cell_code(key) >> kBlockCode; cubes.empty() || cubes.back() != cube)
+      cubes.push_back(cube);
+  std::sort(cubes.begin(), cubes.end());
+  cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
+  for (const std::uint64_t cube : cubes)
+    boxes_.push_back(CellBox::of(cell_of_code(cube << kBlockCode), 3).grown(kOffTheLine));
 }
 
 void ChangedSurroundings::add_targets(const TargetIndex& before, const TargetIndex& now, bool whole_cubes) {

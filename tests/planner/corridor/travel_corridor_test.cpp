@@ -1,6 +1,5 @@
 // Corridors against definitions applied cell by cell, and a plain Dijkstra over a set.
 
-#include "support/key_box.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
@@ -19,7 +18,6 @@
 namespace frontlux::planner {
 namespace {
 
-using test::for_each_key;
 using test::Random;
 
 VoxelKey key_at(int x, int y, int z) {

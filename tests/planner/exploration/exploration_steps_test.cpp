@@ -1,7 +1,6 @@
 // Whole explorations of built-in worlds, every step of which is judged by what it may do and what it says.
 
 #include "planner/exploration/team_in_world.hpp"
-#include "support/key_box.hpp"
 
 #include <frontlux/planner/visible_pairs.hpp>
 
@@ -17,7 +16,6 @@ namespace frontlux::planner {
 namespace {
 
 using test::drive_by;
-using test::for_each_key;
 using test::same;
 using test::TeamInWorld;
 using test::uav_and_ugv;

@@ -1,6 +1,5 @@
 // With exact sensing a map invents nothing: every occupied voxel touches a true surface, and every free one
 // can be seen into from where the robot was, without looking through a wall.
-#include "support/key_box.hpp"
 #include "support/maps.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -28,7 +27,6 @@
 namespace frontlux::sim {
 namespace {
 
-using test::for_each_key;
 
 using planner::Mapping;
 
