@@ -12,7 +12,8 @@
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/io/path_file.hpp>
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/point_cloud.hpp>
+#include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
 
 #include <chrono>
@@ -31,11 +32,11 @@ using namespace frontlux::planner;
 namespace {
 
 // The scan of a file, as the mapping takes it.
-Scan scan_of(const RecordedPose& recorded, const std::filesystem::path& folder, double max_range) {
+Scan scan_of(const io::RecordedPose& recorded, const std::filesystem::path& folder, double max_range) {
   Scan scan;
   scan.origin = recorded.T_world_sensor.translation().cast<float>();
   scan.max_range = max_range;
-  for (const Eigen::Vector3f& point : read_point_cloud(folder / recorded.file)) {
+  for (const Eigen::Vector3f& point : io::read_point_cloud(folder / recorded.file)) {
     const Eigen::Vector3d ray = recorded.T_world_sensor.linear() * point.cast<double>();
     const double range = ray.norm();
     if (!std::isfinite(range) || range == 0.0) continue;  // not measured
@@ -61,14 +62,14 @@ std::optional<Scan> drive(const std::filesystem::path& folder, std::size_t& answ
   const auto begin = std::chrono::steady_clock::now();
   for (bool asked = false;; asked = true) {
     if (std::filesystem::exists(folder / "poses.csv")) {
-      const auto recorded = read_pose_file(folder / "poses.csv");
+      const auto recorded = io::read_pose_file(folder / "poses.csv");
       if (recorded.size() > answers) {
-        const RecordedPose& answer = recorded[answers++];
+        const io::RecordedPose& answer = recorded[answers++];
         if (!is_near(answer.T_world_sensor, viewpoint)) return std::nullopt;
         return scan_of(answer, folder, max_range);
       }
     }
-    if (!asked) write_path(folder / "next.csv", {&viewpoint, 1});
+    if (!asked) io::write_path(folder / "next.csv", {&viewpoint, 1});
     if (std::chrono::steady_clock::now() - begin >= patience) return std::nullopt;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
   }
   try {
     const auto number = [&](int i) { return std::stod(argv[i]); };
-    explore(read_robot(argv[1]), argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
+    explore(io::read_robot(argv[1]), argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
   } catch (const std::exception& error) {
     std::cerr << "explore_recorded: " << error.what() << '\n';
     return 2;

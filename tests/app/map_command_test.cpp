@@ -4,7 +4,7 @@
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/scan_graph.hpp>
 
 #include <gtest/gtest.h>
 #include <octomap/ScanGraph.h>
@@ -71,9 +71,9 @@ TEST_F(MapCommandTest, MapsAGraphAsOctomapDoes) {
   EXPECT_EQ(answer.err, "");
   EXPECT_NE(answer.out.find("scans        3\npoints       900\n"), std::string::npos) << answer.out;
   OcTree expected(0.2);
-  for (const auto& scan : read_scan_graph(path("scans.graph"))) {
+  for (const auto& scan : io::read_scan_graph(path("scans.graph"))) {
     octomap::Pointcloud cloud;
-    for (const auto& p : points_in_world(scan)) cloud.push_back(p.x(), p.y(), p.z());
+    for (const auto& p : io::points_in_world(scan)) cloud.push_back(p.x(), p.y(), p.z());
     const Eigen::Vector3f at = scan.T_world_sensor.translation().cast<float>();
     expected.insertPointCloud(cloud, {at.x(), at.y(), at.z()}, 3.5);
   }

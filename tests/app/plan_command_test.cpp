@@ -200,7 +200,7 @@ TEST_F(PlanCommandTest, TurnsThePathToSeeMoreFrontiers) {
 
 TEST_F(PlanCommandTest, WritesAPlyWithDirectionsOfView) {
   const std::vector<Pose> poses = {{{1, 2, 3}, 0.0}, {{2, 2, 3}, 1.5}, {{2, 3, 3.5}, -3.0}};
-  write_path(path("path.ply"), poses);
+  io::write_path(path("path.ply"), poses);
   std::istringstream ply(content_of(path("path.ply")));
   std::string line;
   std::size_t vertices = 0, edges = 0;
@@ -226,8 +226,8 @@ TEST_F(PlanCommandTest, WritesAPlyWithDirectionsOfView) {
   }
   EXPECT_TRUE(ply);
   EXPECT_EQ(joined, (std::set<std::pair<int, int>>{{0, 1}, {1, 2}, {0, 3}, {1, 4}, {2, 5}}));
-  EXPECT_THROW(write_path(path("path.txt"), poses), std::invalid_argument);
-  EXPECT_THROW(write_path(path("none/path.csv"), poses), std::runtime_error);
+  EXPECT_THROW(io::write_path(path("path.txt"), poses), std::invalid_argument);
+  EXPECT_THROW(io::write_path(path("none/path.csv"), poses), std::runtime_error);
 }
 
 TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {

@@ -24,6 +24,9 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 
+/// The ending of a file's name in lower case, with its dot.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& file);
+
 /// A piece of a file that may be shown on a terminal: in quotes, printable, not too long.
 [[nodiscard]] std::string quote(std::string_view text);
 

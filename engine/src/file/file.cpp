@@ -79,6 +79,13 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   if (error) cannot(error.message(), "check the permissions of the folder and of the file that is there");
 }
 
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
 std::string quote(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown = "'";

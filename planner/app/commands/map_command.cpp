@@ -6,7 +6,9 @@
 #include "text.hpp"
 
 #include <frontlux/planner/mapping.hpp>
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/point_cloud.hpp>
+#include <frontlux/io/pose_file.hpp>
+#include <frontlux/io/scan_graph.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -28,7 +30,7 @@ namespace {
 
 using planner::Mapping;
 using planner::MappingOptions;
-using planner::RecordedScan;
+using io::RecordedScan;
 
 struct Options {
   std::string scans, output, poses;
@@ -43,18 +45,18 @@ struct Recording {
 };
 
 Recording open_folder(const std::filesystem::path& folder, const std::string& pose_file) {
-  const auto poses = std::make_shared<std::vector<planner::RecordedPose>>(
-      planner::read_pose_file(pose_file.empty() ? folder / "poses.csv" : std::filesystem::path(pose_file)));
+  const auto poses = std::make_shared<std::vector<io::RecordedPose>>(
+      io::read_pose_file(pose_file.empty() ? folder / "poses.csv" : std::filesystem::path(pose_file)));
   const auto file = [folder, poses](std::size_t i) { return folder / (*poses)[i].file; };
   return {poses->size(), [file](std::size_t i) { return file(i).string(); },
           [file, poses](std::size_t i) {
-            return RecordedScan{(*poses)[i].T_world_sensor, planner::read_point_cloud(file(i))};
+            return RecordedScan{(*poses)[i].T_world_sensor, io::read_point_cloud(file(i))};
           }};
 }
 
 Recording open_graph(const std::filesystem::path& file, const std::string& pose_file) {
   if (!pose_file.empty()) throw BadInput("--poses: a scan graph has its own poses; leave the option out");
-  const auto scans = std::make_shared<std::vector<RecordedScan>>(planner::read_scan_graph(file));
+  const auto scans = std::make_shared<std::vector<RecordedScan>>(io::read_scan_graph(file));
   return {scans->size(), [file](std::size_t i) { return file.string() + ": scan " + std::to_string(i + 1); },
           [scans](std::size_t i) { return (*scans)[i]; }};
 }
@@ -95,7 +97,7 @@ std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& m
     if (!mapping.grid().lattice().key(origin))
       throw BadInput(recording.name(i) +
                      ": its pose lies outside the map's key range; check it, or give a coarser --resolution");
-    mapping.insert(origin, planner::points_in_world(scan), max_range);
+    mapping.insert(origin, io::points_in_world(scan), max_range);
     points += scan.points.size();
   }
   return points;

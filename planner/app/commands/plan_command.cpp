@@ -297,7 +297,7 @@ void plan(const Options& options) {
   }
 
   try {
-    if (!options.output.empty()) planner::write_path(options.output, found.viewpoints);
+    if (!options.output.empty()) io::write_path(options.output, found.viewpoints);
   } catch (const std::runtime_error& error) {
     throw BadInput(std::string("--output: ") + error.what());
   }

@@ -7,8 +7,8 @@
 #include "text.hpp"
 #include "world_source.hpp"
 
+#include <frontlux/io/pose_file.hpp>
 #include <frontlux/planner/mapping.hpp>
-#include <frontlux/io/robot_file.hpp>
 #include <frontlux/sim/coverage.hpp>
 #include <frontlux/sim/scan_world.hpp>
 #include <frontlux/sim/start_pose.hpp>
@@ -79,7 +79,7 @@ GroundTruth make_truth(const SourcedWorld& sourced, double resolution) {
   }
 }
 
-void add_listed_views(const Options& options, const std::vector<planner::ListedPose>& poses,
+void add_listed_views(const Options& options, const std::vector<io::ListedPose>& poses,
                       const GroundTruth& truth, Plan& plan) {
   for (const auto& [pose, line] : poses) {
     const Eigen::Vector3d& at = pose.position;
@@ -179,8 +179,8 @@ void run(Options& options) {
   const sim::ScanWorldOptions scan_with = scan_options(options);
   if (is_built_in_world(options.source.world)) options.source.seed = options.seed;
   check_map_output(options.output);
-  std::vector<planner::ListedPose> poses;
-  if (options.poses) poses = planner::read_pose_list(*options.poses);
+  std::vector<io::ListedPose> poses;
+  if (options.poses) poses = io::read_pose_list(*options.poses);
 
   SourcedWorld sourced = make_world(options.source);
   for (auto& [pose, line] : poses) pose.position.z() += sourced.ground_shift;

@@ -3,6 +3,7 @@
 #include "bad_input.hpp"
 #include "text.hpp"
 
+#include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
@@ -74,7 +75,7 @@ std::vector<RobotDescription> parse_team(const std::string& text, Method method)
 // Robots of the same name get numbers; those on the ground come first, since they choose first.
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
   auto robots = parse_team(options.team, method);
-  for (const std::string& file : options.robot_files) robots.push_back(planner::read_robot(file));
+  for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
   if (robots.empty()) throw BadInput("--team: there is no robot; give one there or with --robot");
   if (robots.size() > kMaxRobots)
     throw BadInput("--team: " + std::to_string(robots.size()) + " robots are too many; at most " +

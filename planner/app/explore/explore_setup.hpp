@@ -5,7 +5,6 @@
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
-#include <frontlux/io/robot_file.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
 

@@ -1,4 +1,3 @@
-
 #include <frontlux/file.hpp>
 #include <frontlux/io/path_file.hpp>
 
@@ -11,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 namespace {
 
 constexpr double kArrow = 0.3;  // [m]
@@ -29,14 +28,14 @@ void append(std::string& line, std::initializer_list<Number> numbers, char betwe
   line += '\n';
 }
 
-std::string csv_of(std::span<const Pose> viewpoints) {
+std::string csv_of(std::span<const planner::Pose> viewpoints) {
   std::string lines = "x,y,z,yaw\n";
-  for (const Pose& v : viewpoints)
+  for (const planner::Pose& v : viewpoints)
     append(lines, {v.position.x(), v.position.y(), v.position.z(), v.yaw}, ',');
   return lines;
 }
 
-std::string ply_of(std::span<const Pose> viewpoints) {
+std::string ply_of(std::span<const planner::Pose> viewpoints) {
   const std::size_t count = viewpoints.size(), along = count > 0 ? count - 1 : 0;
   std::string text =
       "ply\nformat ascii 1.0\ncomment frontlux path: metres, z up; points, then the tips of their arrows\n"
@@ -46,7 +45,7 @@ std::string ply_of(std::span<const Pose> viewpoints) {
       "property float nz\nelement edge " +
       std::to_string(along + count) + "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
   for (const double arrow : {0.0, kArrow})
-    for (const Pose& v : viewpoints) {
+    for (const planner::Pose& v : viewpoints) {
       const Eigen::Vector3d view(std::cos(v.yaw), std::sin(v.yaw), 0.0);
       const Eigen::Vector3f at = (v.position + arrow * view).cast<float>(), normal = view.cast<float>();
       append(text, {at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()}, ' ');
@@ -58,13 +57,13 @@ std::string ply_of(std::span<const Pose> viewpoints) {
 
 }  // namespace
 
-void write_path(const std::filesystem::path& file, std::span<const Pose> viewpoints) {
+void write_path(const std::filesystem::path& file, std::span<const planner::Pose> viewpoints) {
   const bool csv = file.extension() == ".csv";
   if (!csv && file.extension() != ".ply")
     throw std::invalid_argument(file.string() + " is no name for a path; give one that ends in .csv or .ply");
   const std::string text = csv ? csv_of(viewpoints) : ply_of(viewpoints);
-  write_file(
-      file, [&](std::ostream& out) { out.write(text.data(), static_cast<std::streamsize>(text.size())); });
+  write_file(file,
+             [&](std::ostream& out) { out.write(text.data(), static_cast<std::streamsize>(text.size())); });
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

@@ -1,21 +1,16 @@
-#include "input_file.hpp"
-#include "recorded_pose.hpp"
+#include "parsing.hpp"
+#include "rigid_pose.hpp"
 
 #include <frontlux/file.hpp>
-#include <frontlux/planner/pose.hpp>
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/pose_file.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 namespace {
-
-constexpr const char* kFormat = "write file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw";
-constexpr const char* kListFormat = "write x,y,z,yaw";
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t";
@@ -23,85 +18,84 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kBlank) + 1);
 }
 
-std::vector<std::string_view> fields_of(std::string_view line) {
+// A line of a table.
+struct Row {
+  const std::filesystem::path& file;
+  const char* format;
+  std::size_t line;
   std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
+
+  [[noreturn]] void fail_here(const std::string& what) const {
+    fail(file, "line " + std::to_string(line) + ": " + what, format);
   }
-}
+  [[nodiscard]] double finite(std::size_t i) const {
+    const auto number = to_number(fields[i]);
+    if (!number || !std::isfinite(*number)) fail_here(quote(fields[i]) + " is no finite number");
+    return *number;
+  }
+};
 
-[[noreturn]] void fail_at(const std::filesystem::path& file, std::size_t line, const std::string& what,
-                          const char* format) {
-  frontlux::fail(file, "line " + std::to_string(line) + ": " + what, format);
-}
-
-double finite(const std::filesystem::path& file, std::size_t line, std::string_view field,
-              const char* format) {
-  const auto number = detail::to_number(field);
-  if (!number || !std::isfinite(*number))
-    fail_at(file, line, quote(field) + " is no finite number", format);
-  return *number;
-}
-
-RecordedPose pose_of(const std::filesystem::path& file, std::size_t line,
-                     const std::vector<std::string_view>& fields) {
-  if (fields.size() != 5 && fields.size() != 8)
-    fail_at(file, line, "has " + std::to_string(fields.size()) + " fields instead of 5 or 8", kFormat);
-  if (fields[0].empty()) fail_at(file, line, "names no file", kFormat);
-  std::array<double, 7> n{};
-  for (std::size_t i = 1; i < fields.size(); ++i) n[i - 1] = finite(file, line, fields[i], kFormat);
-  const bool has_yaw = fields.size() == 5;
-  const Eigen::Quaterniond orientation =
-      has_yaw ? Eigen::Quaterniond(Eigen::AngleAxisd(n[3], Eigen::Vector3d::UnitZ()))
-              : Eigen::Quaterniond(n[6], n[3], n[4], n[5]);
-  const auto pose = detail::pose_from({n[0], n[1], n[2]}, orientation);
-  if (!pose) fail_at(file, line, "the quaternion is not of length 1", kFormat);
-  return {std::string(fields[0]), line, *pose};
-}
-
-// Calls `take(line, fields)` for every line that holds something, but for one of names at the beginning,
-// which has no number in its field `numeric`.
+// Calls `take(row)` for every line with content, except a first line of names: one that begins with `name`
+// and has no number in its field `numeric`.
 template <class Take>
-void for_each_row(const std::filesystem::path& file, std::string_view name, std::size_t numeric,
-                  const Take& take) {
+void for_each_row(const std::filesystem::path& file, const char* format, std::string_view name,
+                  std::size_t numeric, const Take& take) {
   const std::string text = read_file(file);
-  detail::Lines lines(text);
-  bool first = true;
-  while (const auto line = lines.next()) {
+  Lines lines(text);
+  bool first = true, empty = true;
+  while (auto line = lines.next()) {
     if (trimmed(*line).empty() || trimmed(*line).starts_with('#')) continue;
-    const auto fields = fields_of(*line);
+    Row row{file, format, lines.number(), {}};
+    for (std::size_t comma = line->find(','); comma != std::string_view::npos; comma = line->find(',')) {
+      row.fields.push_back(trimmed(line->substr(0, comma)));
+      line->remove_prefix(comma + 1);
+    }
+    row.fields.push_back(trimmed(*line));
     const bool names =
-        first && fields[0] == name && fields.size() > numeric && !detail::to_number(fields[numeric]);
+        first && row.fields[0] == name && row.fields.size() > numeric && !to_number(row.fields[numeric]);
     first = false;
-    if (!names) take(lines.number(), fields);
+    if (names) continue;
+    take(row);
+    empty = false;
   }
+  if (empty) fail(file, "holds no pose", format);
+}
+
+Eigen::Vector3d position_at(const Row& row, std::size_t i) {
+  return {row.finite(i), row.finite(i + 1), row.finite(i + 2)};
+}
+
+RecordedPose recorded_pose(const Row& row) {
+  const std::size_t fields = row.fields.size();
+  if (fields != 5 && fields != 8)
+    row.fail_here("has " + std::to_string(fields) + " fields instead of 5 or 8");
+  if (row.fields[0].empty()) row.fail_here("names no file");
+  const Eigen::Vector3d position = position_at(row, 1);
+  const Eigen::Quaterniond orientation =
+      fields == 5 ? Eigen::Quaterniond(Eigen::AngleAxisd(row.finite(4), Eigen::Vector3d::UnitZ()))
+                  : Eigen::Quaterniond(row.finite(7), row.finite(4), row.finite(5), row.finite(6));
+  const auto pose = rigid_pose(position, orientation);
+  if (!pose) row.fail_here("the quaternion is not of length 1");
+  return {std::string(row.fields[0]), row.line, *pose};
 }
 
 }  // namespace
 
 std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file) {
   std::vector<RecordedPose> poses;
-  for_each_row(file, "file", 1, [&](std::size_t line, const std::vector<std::string_view>& fields) {
-    poses.push_back(pose_of(file, line, fields));
-  });
-  if (poses.empty()) frontlux::fail(file, "holds no pose", kFormat);
+  for_each_row(file, "write file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw", "file", 1,
+               [&](const Row& row) { poses.push_back(recorded_pose(row)); });
   return poses;
 }
 
 std::vector<ListedPose> read_pose_list(const std::filesystem::path& file) {
   std::vector<ListedPose> poses;
-  for_each_row(file, "x", 0, [&](std::size_t line, const std::vector<std::string_view>& fields) {
-    if (fields.size() != 4)
-      fail_at(file, line, "has " + std::to_string(fields.size()) + " fields instead of 4", kListFormat);
-    std::array<double, 4> n{};
-    for (std::size_t i = 0; i < 4; ++i) n[i] = finite(file, line, fields[i], kListFormat);
-    poses.push_back({{{n[0], n[1], n[2]}, n[3]}, line});
+  for_each_row(file, "write x,y,z,yaw", "x", 0, [&](const Row& row) {
+    if (row.fields.size() != 4)
+      row.fail_here("has " + std::to_string(row.fields.size()) + " fields instead of 4");
+    poses.push_back({{position_at(row, 0), row.finite(3)}, row.line});
   });
-  if (poses.empty()) frontlux::fail(file, "holds no pose", kListFormat);
   return poses;
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

@@ -1,5 +1,3 @@
-#include "input_file.hpp"
-
 #include <frontlux/file.hpp>
 #include <frontlux/io/robot_file.hpp>
 
@@ -17,10 +15,13 @@
 #include <utility>
 #include <vector>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 namespace {
 
 using nlohmann::json;
+using planner::Motion;
+using planner::RobotDescription;
+using planner::TravelOptions;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 20;
@@ -46,7 +47,7 @@ class Members {
       : file_(file), object_(object), prefix_(std::move(prefix)) {}
 
   [[noreturn]] void refuse(const char* name, const std::string& what, const std::string& advice) const {
-    frontlux::fail(file_, prefix_ + name + " " + what, advice);
+    fail(file_, prefix_ + name + " " + what, advice);
   }
 
   [[nodiscard]] const json* find(const char* name) {
@@ -92,7 +93,7 @@ class Members {
     return value == nullptr ? otherwise : value->get<bool>();
   }
 
-  // Members that mean something for another kind of robot or sensor.
+  // Members of another kind of robot or sensor.
   void not_here(std::initializer_list<const char*> names, const std::string& why) const {
     for (const char* name : names)
       if (object_.contains(name)) refuse(name, why, "leave it out");
@@ -102,8 +103,7 @@ class Members {
       if (std::ranges::find(known_, name) != known_.end()) continue;
       std::string all;
       for (const std::string& one : known_) all += (all.empty() ? "" : ", ") + one;
-      frontlux::fail(file_, "the member " + quote(prefix_ + name) + " is not known",
-                   "known here: " + all);
+      fail(file_, "the member " + quote(prefix_ + name) + " is not known", "known here: " + all);
     }
   }
 
@@ -142,7 +142,7 @@ json parsed(const std::filesystem::path& file, const std::string& text) {
       case json::parse_event_t::object_start:
       case json::parse_event_t::array_start:
         if (level >= kMaxDepth)
-          frontlux::fail(file, last + " is nested too deeply", "see docs/robots.md for the members of a robot");
+          fail(file, last + " is nested too deeply", "see docs/robots.md for the members of a robot");
         names.resize(level + 1);
         names.back().clear();
         break;
@@ -150,7 +150,7 @@ json parsed(const std::filesystem::path& file, const std::string& text) {
         const auto& name = value.get_ref<const std::string&>();
         last = quote(name);
         if (!names.back().insert(name).second)
-          frontlux::fail(file, "the member " + last + " is there twice", "keep one of them");
+          fail(file, "the member " + last + " is there twice", "keep one of them");
         break;
       }
       case json::parse_event_t::object_end:
@@ -165,10 +165,10 @@ json parsed(const std::filesystem::path& file, const std::string& text) {
   try {
     return json::parse(text, look);
   } catch (const json::parse_error& error) {
-    frontlux::fail(file, place_of(text, error.byte) + ": this is not JSON (after " + last + ")",
-                 "look for a missing comma, quote or bracket; NaN, infinity and comments are not JSON");
+    fail(file, place_of(text, error.byte) + ": this is not JSON (after " + last + ")",
+         "look for a missing comma, quote or bracket; NaN, infinity and comments are not JSON");
   } catch (const json::out_of_range&) {
-    frontlux::fail(file, "a number is too large, in or after " + last, "give a smaller one");
+    fail(file, "a number is too large, in or after " + last, "give a smaller one");
   }
 }
 
@@ -203,15 +203,16 @@ void read_sensor(const std::filesystem::path& file, const json& object, RobotDes
   members.expect_no_more();
 }
 
-void read_ground(Members& members, TravelOptions& travel) {
-  const json* ground = members.find("ground_m");
-  if (ground == nullptr) return;
-  if (!ground->is_array() || ground->size() != 2)
-    members.refuse("ground_m", "is " + Members::shown(*ground), "give two numbers in metres, along x and y");
-  travel.ground_extents.emplace();
-  for (std::size_t i = 0; i < 2; ++i)
-    (*travel.ground_extents)[static_cast<Eigen::Index>(i)] =
-        members.number("ground_m", (*ground)[i], "m along each axis", kBox);
+// Edges in metres, one along each axis.
+template <int kAxes>
+Eigen::Matrix<double, kAxes, 1> edges(const Members& members, const char* name, const json& value,
+                                      const std::string& what) {
+  if (!value.is_array() || value.size() != kAxes)
+    members.refuse(name, "is " + Members::shown(value), "give " + what);
+  Eigen::Matrix<double, kAxes, 1> edges;
+  for (int i = 0; i < kAxes; ++i)
+    edges[i] = members.number(name, value[static_cast<std::size_t>(i)], "m along each axis", kBox);
+  return edges;
 }
 
 void read_travel(Members& members, TravelOptions& travel) {
@@ -221,20 +222,17 @@ void read_travel(Members& members, TravelOptions& travel) {
     members.refuse("motion", "is " + quote(motion), "give " + motions);
   travel.motion = motion == "plane" ? Motion::kPlane : Motion::kSpace;
 
-  const std::string edges = "three numbers in metres, along x, y and z";
-  const json& box = members.get("box_m", edges);
-  if (!box.is_array() || box.size() != 3)
-    members.refuse("box_m", "is " + Members::shown(box), "give " + edges);
-  for (std::size_t i = 0; i < 3; ++i)
-    travel.extents[static_cast<Eigen::Index>(i)] = members.number("box_m", box[i], "m along each axis", kBox);
-
+  const std::string three = "three numbers in metres, along x, y and z";
+  travel.extents = edges<3>(members, "box_m", members.get("box_m", three), three);
   if (travel.motion == Motion::kPlane) {
     members.not_here({"min_height_m", "node_edge_m"}, "is for a robot with the motion \"space\"");
     travel.sensor_height = members.number("mount_height_m", "m", kHeight);
     travel.require_ground = members.flag("require_ground", travel.require_ground);
-    read_ground(members, travel);
+    if (const json* ground = members.find("ground_m"))
+      travel.ground_extents = edges<2>(members, "ground_m", *ground, "two numbers in metres, along x and y");
   } else {
-    members.not_here({"mount_height_m", "require_ground", "ground_m"}, "is for a robot with the motion \"plane\"");
+    members.not_here({"mount_height_m", "require_ground", "ground_m"},
+                     "is for a robot with the motion \"plane\"");
     travel.min_height = members.number("min_height_m", "m", kHeight, travel.min_height);
     if (members.find("node_edge_m") != nullptr)
       travel.node_edge = members.number("node_edge_m", "m", {travel.extents.maxCoeff(), kBox.high});
@@ -247,12 +245,12 @@ RobotDescription read_robot(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);
   if (!no_size && size > kMaxBytes)
-    frontlux::fail(file, "has " + std::to_string(size) + " bytes, too many for a robot",
-                 "give a description of at most " + std::to_string(kMaxBytes) + " bytes");
+    fail(file, "has " + std::to_string(size) + " bytes, too many for a robot",
+         "give a description of at most " + std::to_string(kMaxBytes) + " bytes");
   const json object = parsed(file, read_file(file));
   if (!object.is_object())
-    frontlux::fail(file, "holds " + Members::shown(object) + " and no object",
-                 "describe a robot between { and }, see docs/robots.md");
+    fail(file, "holds " + Members::shown(object) + " and no object",
+         "describe a robot between { and }, see docs/robots.md");
 
   RobotDescription robot;
   Members members(file, object, "");
@@ -273,4 +271,4 @@ RobotDescription read_robot(const std::filesystem::path& file) {
   return robot;
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

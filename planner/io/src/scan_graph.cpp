@@ -1,15 +1,15 @@
-#include "input_file.hpp"
-#include "recorded_pose.hpp"
+#include "parsing.hpp"
+#include "rigid_pose.hpp"
 
 #include <frontlux/file.hpp>
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/scan_graph.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 namespace {
 
 constexpr const char* kAskForAnotherCopy =
@@ -42,13 +42,13 @@ class GraphReader {
   static constexpr std::size_t kMinNodeBytes = 4 + kPoseBytes + 4, kEdgeBytes = 4 + 4 + kPoseBytes + 8;
 
   [[noreturn]] void fail_here(const std::string& what) const {
-    frontlux::fail(file_, what + " (byte " + std::to_string(at_) + ")", kAskForAnotherCopy);
+    fail(file_, what + " (byte " + std::to_string(at_) + ")", kAskForAnotherCopy);
   }
 
   template <class Number>
   Number take() {
     if (bytes_.size() - at_ < sizeof(Number)) fail_here("ends in the middle of a number");
-    const auto number = detail::from_little_endian<Number>(bytes_.data() + at_);
+    const auto number = from_bytes<Number>(bytes_.data() + at_, std::endian::little);
     at_ += sizeof(Number);
     return number;
   }
@@ -79,7 +79,7 @@ class GraphReader {
     const Eigen::Vector3d position = take_vector();
     take_size(4, "quaternion");
     const auto w = take<double>(), x = take<double>(), y = take<double>(), z = take<double>();
-    const auto pose = detail::pose_from(position, Eigen::Quaterniond(w, x, y, z));
+    const auto pose = rigid_pose(position, Eigen::Quaterniond(w, x, y, z));
     if (!pose) fail_here("has a pose that is not finite or whose quaternion is not of length 1");
     return *pose;
   }
@@ -90,7 +90,7 @@ class GraphReader {
     scan.points.reserve(points);
     for (std::size_t i = 0; i < points; ++i) {
       const Eigen::Vector3d p = take_vector();
-      scan.points.emplace_back(detail::to_float(p.x()), detail::to_float(p.y()), detail::to_float(p.z()));
+      scan.points.emplace_back(p.unaryExpr(&to_float));
     }
     scan.T_world_sensor = take_pose();
     take<std::uint32_t>();  // id
@@ -104,9 +104,17 @@ class GraphReader {
 
 }  // namespace
 
+std::vector<Eigen::Vector3f> points_in_world(const RecordedScan& scan) {
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(scan.points.size());
+  for (const Eigen::Vector3f& point : scan.points)
+    points.emplace_back((scan.T_world_sensor * point.cast<double>()).unaryExpr(&to_float));
+  return points;
+}
+
 std::vector<RecordedScan> read_scan_graph(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   return GraphReader(file, bytes).read();
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

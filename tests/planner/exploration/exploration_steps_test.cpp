@@ -2,6 +2,7 @@
 
 #include "planner/exploration/team_in_world.hpp"
 
+#include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <gtest/gtest.h>
@@ -252,7 +253,7 @@ TEST(ExplorationSteps, HoldWhatTheyPromiseInAStorage) {
 }
 
 TEST(ExplorationSteps, HoldWhatTheyPromiseForAnyTeam) {
-  const auto sonar = read_robot(std::string(FRONTLUX_DATA_DIR) + "/robots/sonar.json");
+  const auto sonar = io::read_robot(std::string(FRONTLUX_DATA_DIR) + "/robots/sonar.json");
   const std::vector<std::vector<RobotDescription>> teams = {
       {uav_description()},
       {ugv_description()},

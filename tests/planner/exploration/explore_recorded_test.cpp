@@ -4,7 +4,8 @@
 #include "support/command.hpp"
 
 #include <frontlux/octomap.hpp>
-#include <frontlux/planner/pose.hpp>
+#include <frontlux/io/pose_file.hpp>
+#include <frontlux/io/robot_file.hpp>
 #include <frontlux/sim/coverage.hpp>
 
 #include <gtest/gtest.h>
@@ -89,7 +90,7 @@ class ExploreRecorded : public testing::Test {
 };
 
 TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
-  const std::vector<RobotDescription> robot(1, read_robot(folder_ / "robot.json"));
+  const std::vector<RobotDescription> robot(1, io::read_robot(folder_ / "robot.json"));
   const TeamInWorld team("room", 1, robot);
   sim::SimulatedRobots robots = team.bodies();
   const Pose start = team.starts[0].pose;
@@ -102,7 +103,7 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       continue;
     }
-    const auto next = read_pose_list(folder_ / "scans/next.csv");
+    const auto next = io::read_pose_list(folder_ / "scans/next.csv");
     fs::remove(folder_ / "scans/next.csv");
     ASSERT_EQ(next.size(), 1U);
     answer(robots.drive(0, next[0].pose).value(), next[0].pose);
@@ -134,7 +135,7 @@ TEST_F(ExploreRecorded, EndsWithoutAnAnswer) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
   EXPECT_NE(content_of(folder_ / "out").find("end: "), std::string::npos);
   // The first place that it would have the robot look from is where the robot is.
-  const auto next = read_pose_list(folder_ / "scans/next.csv");
+  const auto next = io::read_pose_list(folder_ / "scans/next.csv");
   ASSERT_EQ(next.size(), 1U);
   EXPECT_TRUE(test::same(next[0].pose, Pose{{1.05, 1.05, 1.65}, 0.0}));
 

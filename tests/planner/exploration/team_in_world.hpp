@@ -1,7 +1,7 @@
 #pragma once
 
 #include <frontlux/planner/exploration.hpp>
-#include <frontlux/io/robot_file.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/simulated_robots.hpp>

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 
 /// Reads a robot from a JSON file; docs/robots.md shows one and says what each member means.
 /// @throws std::runtime_error naming the file, the member, what is wrong and what to do
-[[nodiscard]] RobotDescription read_robot(const std::filesystem::path& file);
+[[nodiscard]] planner::RobotDescription read_robot(const std::filesystem::path& file);
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

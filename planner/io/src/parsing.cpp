@@ -1,15 +1,11 @@
-#include "input_file.hpp"
+#include "parsing.hpp"
 
-#include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <stdexcept>
 #include <system_error>
 
-namespace frontlux::planner::detail {
+namespace frontlux::io {
 namespace {
 
 template <class Number>
@@ -52,4 +48,10 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-}  // namespace frontlux::planner::detail
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (auto word = take_word(line); !word.empty(); word = take_word(line)) words.push_back(word);
+  return words;
+}
+
+}  // namespace frontlux::io

@@ -1,16 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <type_traits>
+#include <vector>
 
-namespace frontlux::planner::detail {
+namespace frontlux::io {
 
 /// The number that the text is, from end to end; nan and inf are numbers. In every locale the same.
 [[nodiscard]] std::optional<double> to_number(std::string_view text);
@@ -19,15 +19,24 @@ namespace frontlux::planner::detail {
 /// Infinite if it is too large for a float.
 [[nodiscard]] float to_float(double number);
 
-/// A number of little-endian bytes.
+/// A number of `sizeof(Number)` bytes, in this order.
 template <class Number>
-[[nodiscard]] Number from_little_endian(const char* bytes) {
-  static_assert(std::endian::native == std::endian::little, "swap the bytes here for another machine");
-  static_assert(std::is_arithmetic_v<Number>);
-  Number number;
-  std::memcpy(&number, bytes, sizeof number);
-  return number;
+[[nodiscard]] Number from_bytes(const char* bytes, std::endian order) {
+  std::array<char, sizeof(Number)> raw;
+  std::memcpy(raw.data(), bytes, raw.size());
+  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<Number>(raw);
 }
+
+/// How a number is stored in a binary file.
+struct NumberType {
+  std::size_t bytes;
+  double (*read)(const char* bytes, std::endian order);
+};
+template <class Number>
+inline constexpr NumberType kNumberType{sizeof(Number), [](const char* bytes, std::endian order) {
+                                          return static_cast<double>(from_bytes<Number>(bytes, order));
+                                        }};
 
 /// Takes a file's text line by line.
 class Lines {
@@ -48,4 +57,7 @@ class Lines {
 /// Takes the next word off a line; empty if there is none. Blanks and tabs are between words.
 [[nodiscard]] std::string_view take_word(std::string_view& line);
 
-}  // namespace frontlux::planner::detail
+/// All words of a line.
+[[nodiscard]] std::vector<std::string_view> words_of(std::string_view line);
+
+}  // namespace frontlux::io

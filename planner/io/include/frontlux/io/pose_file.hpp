@@ -1,0 +1,38 @@
+#pragma once
+
+#include <frontlux/planner/pose.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace frontlux::io {
+
+/// Both readers pass over a first line of names, empty lines and lines that begin with #. Fields stand
+/// between commas.
+
+/// Where the sensor was when a file was recorded.
+struct RecordedPose {
+  std::string file;      ///< as the pose file names it
+  std::size_t line = 0;  ///< of the pose file, from 1
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+};
+
+/// Reads a line for each scan: `file,x,y,z,qx,qy,qz,qw` or `file,x,y,z,yaw` [m, rad].
+/// @throws std::runtime_error naming the file, the line, what is wrong and what to do
+[[nodiscard]] std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file);
+
+/// A pose of a list.
+struct ListedPose {
+  planner::Pose pose;
+  std::size_t line = 0;  ///< of the file, from 1
+};
+
+/// Reads a pose on each line: `x,y,z,yaw` [m, rad].
+/// @throws std::runtime_error naming the file, the line, what is wrong and what to do
+[[nodiscard]] std::vector<ListedPose> read_pose_list(const std::filesystem::path& file);
+
+}  // namespace frontlux::io
