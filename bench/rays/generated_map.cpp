@@ -1,6 +1,6 @@
 #include "rays/generated_map.hpp"
 
-#include <frontlux/synthetic/cache.hpp>
+#include <frontlux/synthetic/maps.hpp>
 
 #include <iostream>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solids.hpp"
+#include "floor_plan.hpp"
 
 #include <frontlux/synthetic/box_set.hpp>
 #include <frontlux/synthetic/random.hpp>
@@ -31,7 +31,9 @@ class Modules {
   /// @pre openings in order, two modules or more apart from each other and from the line's ends
   void add_wall(const WallLine& line, const Rise& rise, const std::vector<Opening>& openings);
 
-  /// As `Solids::add_furniture`. @param space  between wall lines
+  /// Crates, shelves and tables in a room, as far as `count` tries find room beside each other and in front
+  /// of the doors.
+  /// @param space  between wall lines
   void add_furniture(const Rect& space, int floor, int count, std::vector<Rect>& keep_clear, Random& random);
 
   std::vector<Box> boxes;

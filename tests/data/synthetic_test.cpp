@@ -1,5 +1,4 @@
 #include <frontlux/synthetic/box_set.hpp>
-#include <frontlux/synthetic/cache.hpp>
 #include <frontlux/synthetic/maps.hpp>
 #include <frontlux/synthetic/random.hpp>
 #include <frontlux/synthetic/scanner.hpp>

@@ -8,6 +8,7 @@
 #include "world_source.hpp"
 
 #include <frontlux/io/pose_file.hpp>
+#include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/coverage.hpp>
 #include <frontlux/sim/scan_world.hpp>
@@ -118,7 +119,7 @@ void add_sweep(const Options& options, const GroundTruth& truth, const Eigen::Ve
     plan.starts += row(name, "starts at " + to_text(Eigen::Vector3f(pose->position.cast<float>())) + " m");
     const auto bubble = sim::start_bubble(truth, robots[i], *pose);
     plan.bubble.insert(plan.bubble.end(), bubble.begin(), bubble.end());
-    for (const Pose& view : sim::look_around(robots[i].view, *pose)) plan.views.push_back({i, view});
+    for (const Pose& view : planner::look_around(robots[i].view, *pose)) plan.views.push_back({i, view});
     for (const Pose& view : sim::sweep(truth, robots[i], *pose, spacing)) after.push_back({i, view});
   }
   if (plan.views.empty())

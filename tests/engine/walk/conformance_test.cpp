@@ -8,7 +8,7 @@
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/ray_caster.hpp>
-#include <frontlux/synthetic/cache.hpp>
+#include <frontlux/synthetic/maps.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,6 @@
-#include "mesh/raw_mesh.hpp"
+#include "mesh/mesh_import.hpp"
+
+#include <frontlux/file.hpp>
 
 #include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
@@ -11,6 +13,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +23,7 @@ namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t{1} << 28U;  // instances of one mesh can be many
 
-void append(const aiMesh& part, const aiMatrix4x4& to_root, RawMesh& mesh) {
+void append(const aiMesh& part, const aiMatrix4x4& to_root, io::RawMesh& mesh) {
   const std::size_t first = mesh.vertices.size();
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D v = to_root * part.mVertices[i];
@@ -32,7 +35,7 @@ void append(const aiMesh& part, const aiMatrix4x4& to_root, RawMesh& mesh) {
     mesh.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
   }
   if (mesh.triangles.size() > kMaxTriangles || mesh.vertices.size() > kMaxTriangles)
-    throw MeshFault("holds more than " + std::to_string(kMaxTriangles) + " triangles; simplify it");
+    throw std::length_error("holds more than " + std::to_string(kMaxTriangles) + " triangles");
 }
 
 // Leaves those that read this ending. Otherwise Assimp looks for signatures and reads what a file is not
@@ -48,15 +51,17 @@ void keep_importers(Assimp::Importer& importer, const std::string& ending) {
 
 }  // namespace
 
-RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
+io::RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
+  constexpr const char* kAdvice = "repair or simplify the mesh, or save it as .ply";
   try {
     Assimp::Importer importer;
     keep_importers(importer, ending);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_frame);
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
-    if (scene == nullptr || scene->mRootNode == nullptr) throw MeshFault(importer.GetErrorString());
-    RawMesh mesh;
+    if (scene == nullptr || scene->mRootNode == nullptr)
+      throw std::invalid_argument(importer.GetErrorString());
+    io::RawMesh mesh;
     std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{scene->mRootNode, aiMatrix4x4()}};
     while (!open.empty()) {
       const auto [node, to_root] = open.back();
@@ -66,12 +71,10 @@ RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending
       for (unsigned i = 0; i < node->mNumChildren; ++i) open.emplace_back(node->mChildren[i], here);
     }
     return mesh;
-  } catch (const MeshFault&) {
-    throw;
   } catch (const std::bad_alloc&) {
-    throw MeshFault("holds more than fits into this machine's memory");
+    throw;
   } catch (const std::exception& error) {
-    throw MeshFault(error.what());
+    fail(file, error.what(), kAdvice);
   }
 }
 

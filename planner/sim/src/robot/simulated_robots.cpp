@@ -1,6 +1,7 @@
-#include "sensing/counter_random.hpp"
-#include <frontlux/planner/segment_voxels.hpp>
+#include "sensing/keyed_random.hpp"
 
+#include <frontlux/key_box.hpp>
+#include <frontlux/planner/segment_voxels.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
 #include <algorithm>
@@ -20,20 +21,20 @@ using planner::TravelOptions;
 }
 
 VoxelKey key_of(const Lattice& lattice, const Eigen::Vector3d& point) {
-  const auto x = lattice.key(point.x()), y = lattice.key(point.y()), z = lattice.key(point.z());
-  if (!x || !y || !z)
+  const auto key = lattice.key(point);
+  if (!key)
     refuse("the viewpoint " + std::to_string(point.x()) + ", " + std::to_string(point.y()) + ", " +
            std::to_string(point.z()) + " m is not finite, or outside of the map's key range");
-  return {*x, *y, *z};
+  return *key;
 }
 
-// The box and not the node, if the robot plans with nodes.
+// If the robot plans with nodes, its box counts here.
 TravelOptions with_box(TravelOptions travel) {
   travel.node_edge = 0.0;
   return travel;
 }
 
-// The body itself, a margin less on all sides.
+// The body itself, smaller by a margin on all sides.
 Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
                             const Eigen::Vector3d& sensor) {
   const Eigen::Vector3d half = travel.extents / 2;
@@ -66,12 +67,6 @@ SimulatedRobots::SimulatedRobots(const World& world, const GroundTruth& truth,
   for (const planner::RobotDescription& robot : robots_) sensors_.push_back(sensor_of(robot, errors));
 }
 
-void SimulatedRobots::check(std::size_t robot) const {
-  if (robot >= robots_.size())
-    refuse("there is no robot " + std::to_string(robot) + ", but " + std::to_string(robots_.size()) +
-           ", counted from 0");
-}
-
 Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, const Eigen::Vector3d& from,
                                                const Eigen::Vector3d& to) const {
   const Lattice& lattice = truth_->lattice();
@@ -87,32 +82,19 @@ Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, cons
 }
 
 std::optional<planner::Scan> SimulatedRobots::drive(std::size_t robot, const planner::Pose& viewpoint) {
-  check(robot);
+  if (robot >= robots_.size())
+    refuse("there is no robot " + std::to_string(robot) + ", but " + std::to_string(robots_.size()) +
+           ", counted from 0");
   static_cast<void>(key_of(truth_->lattice(), viewpoint.position));
   if (!std::isfinite(viewpoint.yaw)) refuse("the viewpoint's yaw is not finite");
   Progress& now = progress_[robot];
   const Eigen::Vector3d from = now.pose ? now.pose->position : viewpoint.position;
-  last_ = collisions_between(robots_[robot].robot.travel, from, viewpoint.position);
-  if (at_contact_ == AtContact::kStay && now.pose && last_.physical > 0) {
-    last_ = {};
-    ++held_back_;
-    return std::nullopt;
-  }
-  now.collisions += last_;
+  const Collisions met = collisions_between(robots_[robot].robot.travel, from, viewpoint.position);
+  if (at_contact_ == AtContact::kStay && now.pose && met.physical > 0) return std::nullopt;
+  total_ += met;
   now.pose = viewpoint;
-  const std::uint64_t errors = CounterRandom(CounterRandom(seed_, robot).bits(0), now.scans++).bits(0);
+  const std::uint64_t errors = random_of(random_of(seed_, robot).bits(), now.scans++).bits();
   return sense(surface_, sensors_[robot], viewpoint, errors);
-}
-
-const Collisions& SimulatedRobots::of(std::size_t robot) const {
-  check(robot);
-  return progress_[robot].collisions;
-}
-
-Collisions SimulatedRobots::total() const {
-  Collisions all;
-  for (const Progress& one : progress_) all += one.collisions;
-  return all;
 }
 
 }  // namespace frontlux::sim

@@ -1,5 +1,3 @@
-#include "mesh/mesh_check.hpp"
-
 #include <frontlux/sim/swept_box.hpp>
 
 #include <algorithm>
@@ -7,60 +5,53 @@
 
 namespace frontlux::sim {
 
-SweptBox::SweptBox(const Eigen::AlignedBox3d& start, const Eigen::Vector3d& way)
-    : center_(start.center()), half_(start.sizes() / 2), way_(way), bounds_(start) {
-  bounds_.extend(start.min() + way).extend(start.max() + way);
+SweptBox::SweptBox(const Eigen::AlignedBox3d& start, const Eigen::Vector3d& motion)
+    : center_(start.center()), half_(start.sizes() / 2), motion_(motion), bounds_(start) {
+  bounds_.extend(start.min() + motion).extend(start.max() + motion);
 }
 
 bool SweptBox::apart(const Eigen::Vector3d& axis, const std::array<Eigen::Vector3d, 3>& triangle) const {
-  const double reach = axis.cwiseAbs().dot(half_), gone = axis.dot(way_);
-  const double low = std::min(0.0, gone) - reach, high = std::max(0.0, gone) + reach;
+  const double reach = axis.cwiseAbs().dot(half_), moved = axis.dot(motion_);
+  const double low = std::min(0.0, moved) - reach, high = std::max(0.0, moved) + reach;
   const double a = axis.dot(triangle[0]), b = axis.dot(triangle[1]), c = axis.dot(triangle[2]);
   return std::min({a, b, c}) > high || std::max({a, b, c}) < low;
 }
 
 bool SweptBox::touches(const std::array<Eigen::Vector3d, 3>& triangle) const {
-  // The swept space is convex, its edges are those of the box and the way. So it is apart from the triangle
-  // if it is along a normal of one of its faces or of the triangle, or across an edge of each. Directions
-  // without length part nothing.
+  // Separating axes, as in TriangleOverlap. The swept space is convex; its edges are those of the box and the
+  // motion.
   const std::array<Eigen::Vector3d, 3> at{triangle[0] - center_, triangle[1] - center_,
                                           triangle[2] - center_};
   const std::array<Eigen::Vector3d, 3> sides{at[1] - at[0], at[2] - at[1], at[0] - at[2]};
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d edge = Eigen::Vector3d::Unit(axis);
-    if (apart(edge, at) || apart(edge.cross(way_), at)) return false;
+    if (apart(edge, at) || apart(edge.cross(motion_), at)) return false;
     for (const Eigen::Vector3d& side : sides)
       if (apart(edge.cross(side), at)) return false;
   }
   for (const Eigen::Vector3d& side : sides)
-    if (apart(way_.cross(side), at)) return false;
+    if (apart(motion_.cross(side), at)) return false;
   return !apart(sides[0].cross(sides[1]), at);
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+TriangleBvh::TriangleBvh(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
   check(mesh);
   std::iota(order_.begin(), order_.end(), 0U);
   if (!order_.empty()) grow(0, static_cast<std::uint32_t>(order_.size()));
 }
 
-std::array<Eigen::Vector3d, 3> TriangleTree::corners(std::uint32_t triangle) const {
-  const auto& [a, b, c] = mesh_.triangles[triangle];
-  return {mesh_.vertices[a].cast<double>(), mesh_.vertices[b].cast<double>(),
-          mesh_.vertices[c].cast<double>()};
-}
-
-// Halves by number, so the tree is no deeper than a mesh has bits to count it, whatever lies where.
-std::uint32_t TriangleTree::grow(std::uint32_t begin, std::uint32_t end) {
+// Both children get half of the triangles, so 32 levels are enough for any mesh.
+std::uint32_t TriangleBvh::grow(std::uint32_t begin, std::uint32_t end) {
   constexpr std::uint32_t kLeaf = 4;
   const auto number = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({{}, begin, end, 0});
   Eigen::AlignedBox3d all, middles;
   const auto middle = [this](std::uint32_t triangle) -> Eigen::Vector3d {
-    const auto [a, b, c] = corners(triangle);
+    const auto [a, b, c] = corners_of(mesh_, triangle);
     return a + b + c;
   };
   for (std::uint32_t i = begin; i < end; ++i) {
-    for (const Eigen::Vector3d& corner : corners(order_[i])) all.extend(corner);
+    for (const Eigen::Vector3d& corner : corners_of(mesh_, order_[i])) all.extend(corner);
     middles.extend(middle(order_[i]));
   }
   nodes_[number].bounds = all;
@@ -75,7 +66,7 @@ std::uint32_t TriangleTree::grow(std::uint32_t begin, std::uint32_t end) {
   return number;
 }
 
-std::uint64_t TriangleTree::count(const SweptBox& box) const {
+std::uint64_t TriangleBvh::count(const SweptBox& box) const {
   std::uint64_t met = 0;
   std::vector<std::uint32_t> open;
   if (!nodes_.empty()) open.push_back(0);
@@ -90,7 +81,7 @@ std::uint64_t TriangleTree::count(const SweptBox& box) const {
       continue;
     }
     for (std::uint32_t i = node.begin; i < node.end; ++i)
-      met += static_cast<std::uint64_t>(box.touches(corners(order_[i])));
+      met += static_cast<std::uint64_t>(box.touches(corners_of(mesh_, order_[i])));
   }
   return met;
 }

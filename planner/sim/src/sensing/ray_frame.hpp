@@ -11,13 +11,13 @@ namespace frontlux::sim {
 /// Corners of a triangle [m], as the mesh has them.
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// A ray seen along itself: space is sheared so that the ray becomes an axis, and a triangle is hit if its
-/// shadow on the plane across that axis covers the axis.
+/// A ray seen along itself: space is sheared so that the ray becomes an axis. A triangle is hit if its
+/// projection on the plane across that axis covers the axis.
 ///
-/// No ray slips through an edge: a corner has one shadow, whichever triangle it is computed for, and on which
-/// side of an edge the axis lies comes out right, or as "on the edge", which counts as a hit for both
-/// triangles. That needs the products below to be rounded one by one (no fused multiply-add), as rounding
-/// then cannot turn the order of two products around.
+/// No ray slips through an edge: a corner has the same projection for each of its triangles. The side of an
+/// edge on which the axis lies comes out right, or as "on the edge", which counts as a hit for both
+/// triangles. That needs the products below to be rounded one by one (no fused multiply-add), because then
+/// rounding cannot reverse the order of two products.
 class RayFrame {
  public:
   RayFrame(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) : origin_(origin) {

@@ -1,4 +1,4 @@
-#include "sensing/counter_random.hpp"
+#include "sensing/keyed_random.hpp"
 
 #include <frontlux/sim/sensor.hpp>
 
@@ -15,7 +15,6 @@
 namespace frontlux::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kMostRays = std::size_t{1} << 26;
 
 std::vector<Eigen::Vector3d> pyramid(const FieldOfView& view, std::size_t columns, std::size_t rows) {
@@ -74,10 +73,19 @@ std::vector<Eigen::Vector3d> directions_of(const FieldOfView& view, std::size_t 
   throw std::invalid_argument("sensor: the field of view has an unknown shape");
 }
 
+// Between 0 and 1, neither of them included.
+double open_unit(SplitMix64& random) { return (static_cast<double>(random.bits() >> 12) + 0.5) * 0x1p-52; }
+
+// Of mean 0 and deviation 1 (Box and Muller).
+double normal(SplitMix64& random) {
+  const double radius = std::sqrt(-2.0 * std::log(open_unit(random)));
+  return radius * std::cos(2.0 * std::numbers::pi * open_unit(random));
+}
+
 }  // namespace
 
 Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors)
-    : field_of_view_(field_of_view), columns_(columns), rows_(rows), errors_(errors) {
+    : field_of_view_(field_of_view), errors_(errors) {
   field_of_view.check();
   if (columns == 0 || rows == 0 || columns > kMostRays / rows)
     throw std::invalid_argument("sensor: " + std::to_string(columns) + " x " + std::to_string(rows) +
@@ -89,18 +97,6 @@ Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_
     throw std::invalid_argument("sensor: dropout is " + std::to_string(errors.dropout) +
                                 ", but has to be a probability");
   directions_ = directions_of(field_of_view, columns, rows);
-}
-
-Sensor depth_camera(RangeErrors errors) {
-  return {{FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 10.0}, 160, 120, errors};
-}
-
-Sensor lidar(RangeErrors errors) {
-  return {{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0}, 720, 32, errors};
-}
-
-Sensor cone_sensor(double opening, double max_range, std::size_t rays, RangeErrors errors) {
-  return {{FieldOfView::Shape::kCone, opening, 0.0, max_range}, rays, 1, errors};
 }
 
 Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {
@@ -128,11 +124,11 @@ planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner:
 
   const auto [sigma, dropout] = sensor.errors();
   const auto measured = [&, sigma = sigma, dropout = dropout](std::size_t i) {
-    const CounterRandom random(seed, i);
-    if (dropout > 0.0 && random.uniform(0) < dropout) return std::numeric_limits<double>::quiet_NaN();
+    SplitMix64 random = random_of(seed, i);
+    if (open_unit(random) < dropout) return std::numeric_limits<double>::quiet_NaN();
     const double range = hits[i].range;
     if (sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
-    return std::clamp(range + sigma * random.normal(1), 0.0, max_range);
+    return std::clamp(range + sigma * normal(random), 0.0, max_range);
   };
   constexpr std::size_t kGrain = 1024;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {

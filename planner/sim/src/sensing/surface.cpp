@@ -1,4 +1,3 @@
-#include "mesh/mesh_check.hpp"
 #include "sensing/ray_frame.hpp"
 
 #include <frontlux/sim/surface.hpp>
@@ -18,8 +17,8 @@
 namespace frontlux::sim {
 namespace {
 
-// Sets how floating-point numbers are rounded and, back again, as the caller had it, flags included. Our
-// argument about edges needs rounding to nearest; Embree wants denormals flushed to zero while it works.
+// Sets how floating-point numbers are rounded, and restores the caller's mode, flags included. Our argument
+// about edges needs rounding to nearest; Embree wants denormals flushed to zero while it works.
 class FloatingPointMode {
  public:
   static constexpr unsigned kToNearest = 0x1F80, kFlushed = kToNearest | 0x8000 | 0x0040;
@@ -58,7 +57,7 @@ struct Geometry {
   }
 };
 
-// What a query hands to the callback. Embree's hierarchy only tells which triangles are worth a look.
+// What a query hands to the callback. Embree's hierarchy only finds the triangles that may be hit.
 struct Query {
   RTCIntersectContext embree;  // first: callbacks get a pointer to it
   RayFrame frame;
@@ -67,8 +66,8 @@ struct Query {
   std::uint32_t triangle = Surface::kNone;
 };
 
-// A little more, so that Embree's single precision keeps what is exactly there. Of lengths that are not
-// negative but for rounding.
+// A little more, so that Embree's single precision loses nothing that is exactly there. Rounding may make a
+// length negative.
 float widened(double length) { return static_cast<float>(std::max(length, 0.0) * (1.0 + 0x1p-20)); }
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {
@@ -218,7 +217,5 @@ void Surface::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
                     [&](const auto& range) { piece(range.begin(), range.end()); });
 }
-
-std::size_t Surface::triangle_count() const { return scene_->mesh.triangles.size(); }
 
 }  // namespace frontlux::sim

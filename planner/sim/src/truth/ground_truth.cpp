@@ -1,8 +1,7 @@
-#include "world/cell_paint.hpp"
-#include "mesh/mesh_check.hpp"
+#include "mesh/triangle_overlap.hpp"
+#include "truth/cell_paint.hpp"
 
 #include <frontlux/sim/ground_truth.hpp>
-#include <frontlux/sim/triangle_overlap.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,21 +27,17 @@ Eigen::Vector3<std::int64_t> vector(const VoxelKey& key) { return {key.x, key.y,
 
 CellFrame make_frame(const KeyBox& bounds, const Lattice& lattice) {
   const double edge = lattice.resolution();
-  const auto corner = [&](std::uint16_t key) { return (static_cast<int>(key) - Lattice::kOrigin) * edge; };
-  return {{corner(bounds.min.x), corner(bounds.min.y), corner(bounds.min.z)},
+  return {{lower_face(lattice, bounds.min.x), lower_face(lattice, bounds.min.y),
+           lower_face(lattice, bounds.min.z)},
           edge,
           std::min(GroundTruth::kMargin, edge / 4),
           vector(bounds.max) - vector(bounds.min) + Eigen::Vector3<std::int64_t>::Ones()};
 }
 
-// Which triangle makes a voxel solid.
-std::size_t culprit(const TriangleMesh& mesh, const Eigen::AlignedBox3d& inside) {
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& [a, b, c] = mesh.triangles[i];
-    const TriangleOverlap triangle(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
-                                   mesh.vertices[c].cast<double>());
-    if (triangle.touches(inside)) return i;
-  }
+// The first triangle that passes through a voxel.
+std::size_t triangle_in(const TriangleMesh& mesh, const Eigen::AlignedBox3d& inside) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (TriangleOverlap(corners_of(mesh, i)).touches(inside)) return i;
   throw std::logic_error("ground truth: a voxel without a surface counts as solid");
 }
 
@@ -53,7 +48,7 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
     refuse("the bounds, from (", bounds.min().transpose(), ") to (", bounds.max().transpose(),
            ") m, have no volume or are not finite");
   constexpr double kSliver = 1e-6;
-  std::array<std::uint16_t, 3> low{}, high{};
+  std::array<int, 3> low{}, high{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const double first = std::floor(bounds.min()[axis] / lattice.resolution() + kSliver);
@@ -62,10 +57,10 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
       refuse("the bounds reach from ", bounds.min()[axis], " to ", bounds.max()[axis], " m, but at ",
              lattice.resolution(), " m the map ends at +-", Lattice::kOrigin * lattice.resolution(),
              " m; use larger voxels, or scale or move the world");
-    low[i] = static_cast<std::uint16_t>(static_cast<int>(first) + Lattice::kOrigin);
-    high[i] = static_cast<std::uint16_t>(static_cast<int>(last) + Lattice::kOrigin);
+    low[i] = static_cast<int>(first) + Lattice::kOrigin;
+    high[i] = static_cast<int>(last) + Lattice::kOrigin;
   }
-  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  return {make_key(low[0], low[1], low[2]), make_key(high[0], high[1], high[2])};
 }
 
 std::uint64_t volume(const KeyBox& box) {
@@ -81,21 +76,20 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
   if (bounding_voxels() > kMostVoxels)
     refuse("the world has ", bounding_voxels(), " voxels of ", resolution,
            " m within its bounds, but 2^31 is the limit; use larger voxels or scale the world down");
-  const auto x = lattice_.key(start.x()), y = lattice_.key(start.y()), z = lattice_.key(start.z());
-  if (!x || !y || !z || !bounds_.contains({*x, *y, *z}))
+  const auto first = lattice_.key(start);
+  if (!first || !bounds_.contains(*first))
     refuse("the start (", start.transpose(), ") m lies outside of the world's bounds, (",
            world.bounds.min().transpose(), ") to (", world.bounds.max().transpose(), ") m");
-  const VoxelKey first{*x, *y, *z};
 
   const CellFrame frame = make_frame(bounds_, lattice_);
   cells_.resize(bounding_voxels());
   paint(world.mesh, frame, cells_);
-  if (holds_surface(first)) {
-    const auto cell = (vector(first) - vector(bounds_.min)).eval();
+  if (holds_surface(*first)) {
+    const auto cell = (vector(*first) - vector(bounds_.min)).eval();
     refuse("the start (", start.transpose(), ") m lies in a wall: triangle ",
-           culprit(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel");
+           triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel");
   }
-  flood(index(first));
+  flood(index(*first));
 }
 
 std::size_t GroundTruth::index(const VoxelKey& key) const {
@@ -154,24 +148,17 @@ bool GroundTruth::holds_surface(const VoxelKey& key) const {
 }
 
 bool GroundTruth::open(const VoxelKey& key, std::size_t axis) const {
-  const std::array<std::uint16_t, 3> at_axis{key.x, key.y, key.z},
-      last{bounds_.max.x, bounds_.max.y, bounds_.max.z};
-  if (axis > 2 || !bounds_.contains(key) || at_axis[axis] == last[axis]) return false;
-  VoxelKey next = key;
-  (axis == 0 ? next.x : axis == 1 ? next.y : next.z) += 1;
-  const std::uint8_t above = cells_[index(next)];
+  const auto next = offset_key(key, axis == 0, axis == 1, axis == 2);
+  if (axis > 2 || !next || !bounds_.contains(key) || !bounds_.contains(*next)) return false;
+  const std::uint8_t above = cells_[index(*next)];
   const unsigned wall = unsigned{cell::kWallBelow} << axis;
   return (cells_[index(key)] & above & cell::kReached) != 0 && (above & wall) == 0;
 }
 
 void GroundTruth::for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const {
-  for (unsigned z = bounds_.min.z; z <= bounds_.max.z; ++z)
-    for (unsigned y = bounds_.min.y; y <= bounds_.max.y; ++y)
-      for (unsigned x = bounds_.min.x; x <= bounds_.max.x; ++x) {
-        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                           static_cast<std::uint16_t>(z)};
-        if (const Truth truth = at(key); truth != Truth::kHidden) visit(key, truth);
-      }
+  for_each_key(bounds_, [&](const VoxelKey& key) {
+    if (const Truth truth = at(key); truth != Truth::kHidden) visit(key, truth);
+  });
 }
 
 }  // namespace frontlux::sim

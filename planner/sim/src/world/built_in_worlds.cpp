@@ -1,5 +1,4 @@
-#include "world/generators.hpp"
-#include "world/layout_random.hpp"
+#include "world/building.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
 
@@ -21,7 +20,7 @@ constexpr std::array kWorlds = {
 constexpr std::array kBuilders = {build_maze, build_factory, build_station, build_storage, build_room};
 static_assert(kWorlds.size() == kBuilders.size());
 
-// The same floor plan looks another way from its other side.
+// A mirrored floor plan is another one to a robot.
 void mirror(Building& building, std::uint64_t seed) {
   LayoutRandom random(seed, 1);
   const bool x = random.chance(50), y = random.chance(50);

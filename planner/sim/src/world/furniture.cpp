@@ -9,6 +9,23 @@ constexpr int kOuterWall = 3, kInnerWall = 2, kDoorHeight = 23, kBay = 25, kShel
 
 }  // namespace
 
+std::optional<Rect> FloorPlan::place(LayoutRandom& random, int along_x, int along_y) {
+  const Rect inner = area_.grown(-kPassage);
+  if (inner.x.length() < along_x || inner.y.length() < along_y) return std::nullopt;
+  for (int draw = 0; draw < 300; ++draw) {
+    const int x = random.whole(inner.x.from, inner.x.to - along_x);
+    const int y = random.whole(inner.y.from, inner.y.to - along_y);
+    const Rect rect{{x, x + along_x}, {y, y + along_y}};
+    if (std::none_of(taken_.begin(), taken_.end(), [with_passage = rect.grown(kPassage)](const Rect& other) {
+          return with_passage.overlaps(other);
+        })) {
+      taken_.push_back(rect);
+      return rect;
+    }
+  }
+  return std::nullopt;
+}
+
 void add_hall(Solid& solid, const Rect& inside, int height) {
   solid.add(inside.grown(kOuterWall), {-kOuterWall, height + kOuterWall});
   solid.cut(inside, {0, height});

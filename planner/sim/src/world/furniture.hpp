@@ -1,11 +1,35 @@
 #pragma once
 
-#include "world/layout_random.hpp"
-#include "world/solid.hpp"
+#include "world/building.hpp"
+
+#include <optional>
+#include <vector>
 
 namespace frontlux::sim {
 
-/// Parts that several built-in worlds have. All lengths in decimetres.
+/// Parts of several built-in worlds. All lengths in decimetres.
+
+/// The distance between any two things on the floor [dm]. At voxels of 0.3 m it holds five whole ones
+/// wherever it begins, as many as a UGV of 1 m needs.
+constexpr int kPassage = 20;
+
+/// A part of a floor. Things are placed on it with a passage around each, so no part of the floor is ever cut
+/// off.
+class FloorPlan {
+ public:
+  /// @param area between walls or other things: nothing is placed nearer than a passage to its sides
+  explicit FloorPlan(const Rect& area) : area_(area) {}
+
+  /// Nothing will be placed nearer than a passage to this.
+  void occupy(const Rect& rect) { taken_.push_back(rect); }
+
+  /// Draws a free rectangle of this size and occupies it; nothing if 300 draws found none.
+  std::optional<Rect> place(LayoutRandom& random, int along_x, int along_y);
+
+ private:
+  Rect area_;
+  std::vector<Rect> taken_;
+};
 
 /// The inside of a world: walls, floor and ceiling 3 dm thick around it.
 void add_hall(Solid& solid, const Rect& inside, int height);
@@ -25,7 +49,7 @@ void add_bench(Solid& solid, const Rect& rect);
 /// An upright tank, round as far as decimetres allow. @pre the rectangle is square
 void add_tank(Solid& solid, const Rect& rect, int height);
 
-/// Solid stairs rising along x, from x.from to x.to or, if `down`, the other way round.
+/// Solid stairs rising along x, or falling if `down`.
 void add_stairs(Solid& solid, const Rect& rect, Span z, bool down);
 
 /// A railing 11 dm high and 1 dm thick along a side of a floor.

@@ -1,5 +1,7 @@
 #include "world/cell_surface.hpp"
 
+#include <frontlux/key_box.hpp>
+#include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/map_world.hpp>
 
 #include <cstddef>
@@ -11,30 +13,30 @@ namespace frontlux::sim {
 namespace {
 
 constexpr std::size_t kMaxFaces = std::size_t{1} << 26U;
-constexpr std::size_t kMaxSides = std::size_t{1} << 30U;  // looked at; some ten seconds
+constexpr std::size_t kMaxSides = std::size_t{1} << 30U;  // compared; some ten seconds
 
 using Cell = std::array<int, 3>;
 
 bool is_occupied(const VoxelGrid& grid, const Cell& c) {
   for (const int k : c)
     if (k < 0 || k >= Lattice::kKeysPerAxis) return false;
-  const auto along = [&](std::size_t i) { return static_cast<std::uint16_t>(c[i]); };
-  return grid.at({along(0), along(1), along(2)}) == Occupancy::kOccupied;
+  return grid.at(make_key(c[0], c[1], c[2])) == Occupancy::kOccupied;
 }
 
-class Surface {
+class SurfaceFaces {
  public:
-  explicit Surface(const VoxelGrid& grid) : grid_(grid) {}
+  explicit SurfaceFaces(const VoxelGrid& grid) : grid_(grid) {}
 
-  // Looks at the sides of all cells from `low`, a block of `edge` cells all of which are occupied.
-  void add(const Cell& low, int edge) {
+  // Adds the faces of a cube of `edge` cells a side, all occupied, that border on other cells.
+  void add(const VoxelKey& corner, int edge) {
+    const Cell low = {corner.x, corner.y, corner.z};
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const int side : {0, 1}) {
         Cell c = low, beyond = low;
         if (side == 1) c[axis] += edge - 1;
         beyond[axis] = c[axis] + (side == 0 ? -1 : 1);
-        looked_at_ += static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
-        if (looked_at_ > kMaxSides) refuse();
+        compared_ += static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
+        if (compared_ > kMaxSides) refuse();
         const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
         for (int i = 0; i < edge; ++i)
           for (int j = 0; j < edge; ++j) {
@@ -55,40 +57,35 @@ class Surface {
  private:
   [[noreturn]] static void refuse() {
     throw std::runtime_error("the map's occupied voxels have more than " + std::to_string(kMaxFaces) +
-                             " faces, or lie in blocks too large to look at; use a coarser or smaller map");
+                             " faces, or lie in blocks that are too large; use a coarser or smaller map");
   }
 
   const VoxelGrid& grid_;
   CellFaces faces_;
-  std::size_t count_ = 0, looked_at_ = 0;
+  std::size_t count_ = 0, compared_ = 0;
 };
 
 }  // namespace
 
 World make_map_world(const VoxelGrid& grid) {
-  Surface surface(grid);
+  SurfaceFaces faces(grid);
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
-    const Cell low = {block.corner.x, block.corner.y, block.corner.z};
+    const int edge = 1 << block.log2_edge;
     if (brick == nullptr) {
-      if (state == Occupancy::kOccupied) surface.add(low, 1 << block.log2_edge);
+      if (state == Occupancy::kOccupied) faces.add(block.corner, edge);
       return;
     }
-    const int edge = 1 << block.log2_edge;
-    for (int x = 0; x < edge; ++x)
-      for (int y = 0; y < edge; ++y)
-        for (int z = 0; z < edge; ++z) {
-          const Cell c = {low[0] + x, low[1] + y, low[2] + z};
-          if (is_occupied(grid, c)) surface.add(c, 1);
-        }
+    for_each_key(cube(block.corner, edge), [&](const VoxelKey& key) {
+      if (brick->at(key) == Occupancy::kOccupied) faces.add(key, 1);
+    });
   });
-  const auto face_at = [&](int line) { return (line - Lattice::kOrigin) * grid.resolution(); };
+  const auto face_at = [&](int line) { return lower_face(grid.lattice(), line); };
   World world;
   world.mesh =
-      mesh_of(surface.take(), [&](int, std::int32_t line) { return static_cast<float>(face_at(line)); });
-  const KeyBox known = grid.known_bounds().value();
-  world.bounds.extend(Eigen::Vector3d(face_at(known.min.x), face_at(known.min.y), face_at(known.min.z)));
-  world.bounds.extend(
-      Eigen::Vector3d(face_at(known.max.x + 1), face_at(known.max.y + 1), face_at(known.max.z + 1)));
+      mesh_of(faces.take(), [&](int, std::int32_t line) { return static_cast<float>(face_at(line)); });
+  const auto [low, high] = grid.known_bounds().value();
+  world.bounds = {Eigen::Vector3d(face_at(low.x), face_at(low.y), face_at(low.z)),
+                  Eigen::Vector3d(face_at(high.x + 1), face_at(high.y + 1), face_at(high.z + 1))};
   return world;
 }
 

@@ -1,5 +1,5 @@
+#include "world/building.hpp"
 #include "world/furniture.hpp"
-#include "world/generators.hpp"
 
 #include <algorithm>
 #include <array>
@@ -89,11 +89,11 @@ class Maze {
     at(c).open[step] = true;
     at(next_to(c, step)).open[(step + 2) % 4] = true;
   }
-  [[nodiscard]] int ways_of(Cell c) {
+  [[nodiscard]] int exits_of(Cell c) {
     return static_cast<int>(std::count(at(c).open.begin(), at(c).open.end(), true));
   }
 
-  // A tree of passages that reaches every cell.
+  // Passages without loops that reach every cell.
   void grow_from(Cell start) {
     std::vector<Cell> trail = {start};
     at(start).reached = true;
@@ -129,21 +129,21 @@ class Maze {
     }
   }
 
-  // Dead ends that become low, with a second way out: shortcuts for the UGV alone. Being dead ends they are
-  // on nobody's only way.
+  // Dead ends that become low and get a second exit: shortcuts for the UGV alone. No other cell is reached
+  // through a dead end alone.
   void dig_tunnels(Solid& solid, Cell start) {
     std::vector<Cell> ends;
     for (int i = 0; i < kCells; ++i)
       for (int j = 0; j < kCells; ++j)
-        if (ways_of({i, j}) == 1 && Cell{i, j} != start) ends.push_back({i, j});
+        if (exits_of({i, j}) == 1 && Cell{i, j} != start) ends.push_back({i, j});
     for (int n = 0; n < kTunnels && !ends.empty(); ++n) {
       const auto pick = ends.begin() + random_.whole(0, static_cast<int>(ends.size()) - 1);
       const Cell cell = *pick;
       ends.erase(pick);
-      if (ways_of(cell) != 1) continue;  // a tunnel ends here
-      const auto& ways = at(cell).open;
+      if (exits_of(cell) != 1) continue;  // a tunnel ends here
+      const auto& exits = at(cell).open;
       const auto entrance =
-          static_cast<std::size_t>(std::find(ways.begin(), ways.end(), true) - ways.begin());
+          static_cast<std::size_t>(std::find(exits.begin(), exits.end(), true) - exits.begin());
       const int height = random_.whole(10, 12);
       solid.add(rect_of(cell), {height, kHeight});
       solid.add(wall_between(cell, entrance), {height, kHeight});

@@ -1,6 +1,5 @@
-#include "world/floor_plan.hpp"
+#include "world/building.hpp"
 #include "world/furniture.hpp"
-#include "world/generators.hpp"
 
 #include <algorithm>
 #include <vector>

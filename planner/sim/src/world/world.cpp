@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace frontlux::sim {
 namespace {
+
+constexpr float kFarthestVertex = 1e9F;  // [m] single precision is of no use beyond
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -27,6 +31,27 @@ bool is_closed(const TriangleMesh& mesh) {
 
 }  // namespace
 
+std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return {mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(), mesh.vertices[c].cast<double>()};
+}
+
+void check(const TriangleMesh& mesh) {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument("mesh: " + what); };
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    for (const float coordinate : mesh.vertices[i])
+      if (!(std::abs(coordinate) <= kFarthestVertex))
+        refuse("vertex " + std::to_string(i) + " has the coordinate " + std::to_string(coordinate) +
+               ", but has to lie within 1e9 m");
+  if (mesh.triangles.size() >= std::numeric_limits<std::uint32_t>::max())
+    refuse(std::to_string(mesh.triangles.size()) + " triangles, but their numbers have to fit in 32 bits");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      if (vertex >= mesh.vertices.size())
+        refuse("triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) +
+               ", but there are " + std::to_string(mesh.vertices.size()));
+}
+
 Eigen::AlignedBox3d bounds_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d bounds;
   for (const auto& triangle : mesh.triangles)
@@ -36,10 +61,9 @@ Eigen::AlignedBox3d bounds_of(const TriangleMesh& mesh) {
 
 double surface_area(const TriangleMesh& mesh) {
   double twice = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3d corner = mesh.vertices[a].cast<double>();
-    twice +=
-        (mesh.vertices[b].cast<double>() - corner).cross(mesh.vertices[c].cast<double>() - corner).norm();
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = corners_of(mesh, i);
+    twice += (b - a).cross(c - a).norm();
   }
   return twice / 2.0;
 }
@@ -50,10 +74,10 @@ std::optional<double> solid_volume(const TriangleMesh& mesh) {
   const Eigen::Vector3d apex =
       mesh.triangles.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : bounds_of(mesh).center();
   double six_times = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    six_times +=
-        (mesh.vertices[a].cast<double>() - apex)
-            .dot((mesh.vertices[b].cast<double>() - apex).cross(mesh.vertices[c].cast<double>() - apex));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = corners_of(mesh, i);
+    six_times += (a - apex).dot((b - apex).cross(c - apex));
+  }
   return six_times / 6.0;
 }
 

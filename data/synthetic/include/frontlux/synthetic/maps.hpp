@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,6 +37,14 @@ struct MapRecipe {
 /// @throws std::runtime_error naming the file, if it cannot be written
 void write_map(const MapRecipe& recipe, std::uint64_t seed, const std::filesystem::path& file,
                const ScanProgress& progress = {});
+
+/// The file of a synthetic map (seed 1) in a directory; made first if it is not there.
+/// @param directory  made if missing
+/// @param progress   called with a text while the map is made
+/// @throws std::invalid_argument if there is no such map
+/// @throws std::runtime_error naming the file, if it cannot be written
+[[nodiscard]] std::filesystem::path ensure_map(std::string_view name, const std::filesystem::path& directory,
+                                               const std::function<void(std::string_view)>& progress = {});
 
 /// `make_building_scene` seen up to 9 m from each of 100 places: 77 x 77 x 10 m, a quarter of it unknown.
 /// Takes some seconds at 0.3 m, about a minute at 0.1 m. The tree holds probabilities; the file of the same

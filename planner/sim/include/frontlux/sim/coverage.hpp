@@ -7,7 +7,8 @@
 
 namespace frontlux::sim {
 
-/// How much of a world a map knows, in voxels. Known is what is free or occupied, right or wrong.
+/// How much of a world a map knows, in voxels. A voxel is known if it is free or occupied, whether rightly or
+/// not.
 struct Coverage {
   std::uint64_t known_observable = 0, observable = 0;  ///< of the observable voxels
   std::uint64_t known_bounding = 0, bounding = 0;      ///< of all voxels within the world's bounds
@@ -21,7 +22,7 @@ struct Coverage {
   friend bool operator==(const Coverage&, const Coverage&) = default;
 };
 
-/// Looks at every known voxel of the map.
+/// Counts every known voxel of the map.
 /// @throws std::invalid_argument if the resolutions differ
 [[nodiscard]] Coverage measure(const GroundTruth& truth, const VoxelGrid& known);
 

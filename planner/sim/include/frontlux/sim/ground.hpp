@@ -8,8 +8,8 @@
 
 namespace frontlux::sim {
 
-/// Height [m] of the first surface straight below a point, or at most 1 cm above it, so that a point on the
-/// floor finds the floor in spite of rounding; nothing if there is none. Vertical surfaces do not count.
+/// Height [m] of the first surface straight below a point or at most 1 cm above it, because a point on the
+/// floor may be rounded to below it; nothing if there is none. Vertical surfaces do not count.
 [[nodiscard]] std::optional<double> floor_below(const TriangleMesh& mesh, const Eigen::Vector3d& point);
 
 /// Shifts a world along z, by at most half a voxel, so that its floor lies 0.05 m (half a voxel, if that is

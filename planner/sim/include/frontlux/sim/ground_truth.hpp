@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/sim/world.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -13,11 +14,11 @@
 
 namespace frontlux::sim {
 
-/// What there is to be learnt about a voxel of a world.
+/// What robots can observe of a voxel of a world.
 enum class Truth : std::uint8_t {
   kHidden,   ///< nothing: beyond the bounds, within a solid, or in a room that is closed
-  kFree,     ///< no surface in it, and a way to it through such voxels from the start
-  kSurface,  ///< not free, but behind a face of a free voxel
+  kFree,     ///< no surface passes through it, and it can be reached from the start through such voxels
+  kSurface,  ///< not free, but a neighbour of a free voxel
 };
 
 /// The voxels whose interior the box meets, by more than a millionth of a voxel.
@@ -25,21 +26,26 @@ enum class Truth : std::uint8_t {
 /// @throws std::invalid_argument if the box is empty, flat or not finite, or beyond the lattice's keys
 [[nodiscard]] KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice);
 
+/// [m] of the lower face of the voxels with a key along one axis.
+[[nodiscard]] inline double lower_face(const Lattice& lattice, int key) {
+  return (key - Lattice::kOrigin) * lattice.resolution();
+}
+
 /// Number of voxels in a box of keys.
 [[nodiscard]] std::uint64_t volume(const KeyBox& box);
 
-/// Which voxels of a world a robot can get to know: what coverage is measured against.
+/// The voxels of a world that robots can observe. Coverage is measured against them.
 ///
-/// A surface within `margin` of a voxel's face counts as lying on the face, and belongs to neither voxel: it
-/// is a wall between the two. The mapping puts end points as far beyond the surface, so the voxel behind such
-/// a wall, seen from either side, is the one that it maps as occupied. A free voxel therefore has no surface
-/// in it (but for the margin), one can go straight from its centre to that of a free neighbour unless there
-/// is a wall between them, and no wall is so thin that the free space leaks through it.
+/// A surface within `kMargin` of a voxel's face counts as lying on the face. It belongs to neither voxel: it
+/// is a wall between the two. The mapping shifts end points beyond the surface by as much, so it maps the
+/// voxel behind such a wall as occupied, seen from either side. A free voxel therefore has no surface in it
+/// (but for the margin), the segment from its centre to that of a free neighbour is free unless there is a
+/// wall between them, and free space does not leak through any wall, however thin.
 ///
 /// Takes a byte for each voxel of the bounds. A value; reading is safe from any number of threads.
 class GroundTruth {
  public:
-  static constexpr double kMargin = 1e-3;  ///< [m] or a quarter of a voxel, if that is less
+  static constexpr double kMargin = 1e-3;  ///< [m] or a quarter of a voxel if that is less
 
   /// @param resolution edge length of a voxel [m]
   /// @param start [m] a point in free space, in the world frame
@@ -57,7 +63,7 @@ class GroundTruth {
   [[nodiscard]] bool contains(const VoxelKey& key) const { return at(key) != Truth::kHidden; }
   /// Whether a surface passes through the voxel, deeper than the margin; observable or not.
   [[nodiscard]] bool holds_surface(const VoxelKey& key) const;
-  /// Whether one can go from this voxel to the next one up an axis: both are free, without a wall between.
+  /// Whether this voxel and the next one up an axis are free, without a wall between them.
   /// @param axis 0, 1 or 2
   [[nodiscard]] bool open(const VoxelKey& key, std::size_t axis) const;
 

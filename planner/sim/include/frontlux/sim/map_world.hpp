@@ -5,9 +5,9 @@
 
 namespace frontlux::sim {
 
-/// The world of which a map tells: its occupied voxels are solid, everything else is free. The surface is
-/// that between occupied and other voxels, in rectangles as large as rows allow, closed and without cracks.
-/// The bounds are those of the known voxels. No name, no start.
+/// The world that a map shows: its occupied voxels are solid, everything else is free. The surface lies
+/// between occupied and other voxels, in rectangles as large as rows allow, closed and without cracks. The
+/// bounds are those of the known voxels. No name, no start.
 /// @throws std::runtime_error if nothing is occupied, or the surface has more than 2^26 voxel faces
 [[nodiscard]] World make_map_world(const VoxelGrid& grid);
 

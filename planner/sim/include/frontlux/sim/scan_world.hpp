@@ -1,6 +1,5 @@
 #pragma once
 
-#include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -24,11 +23,9 @@ struct View {
   planner::Pose sensor_pose;
 };
 
-using planner::look_around;
-
-/// Views from all over the free space. Space is divided into cubes of edge `spacing`; in each one where the
-/// robot finds a place, it looks around from the place nearest to the middle. The places of a robot on a
-/// plane are on the layer that it starts on. In the order of the cubes: x fastest, z slowest.
+/// Views from all over the free space. Space is divided into cubes of edge `spacing`. In each cube where the
+/// robot fits somewhere, it looks around from the position nearest to the middle. A robot on a plane stays on
+/// the layer that it starts on. In the order of the cubes: x fastest, z slowest.
 /// @param start   of the robot's sensor
 /// @param spacing [m], rounded to whole voxels, one at least
 /// @throws std::invalid_argument unless the spacing is finite, positive and 256 voxels at most
@@ -40,14 +37,14 @@ struct ScanWorldOptions {
   std::uint64_t seed = 1;  ///< of the errors
 };
 
-/// Told after each scan how many are done; false stops.
+/// Called after each scan with the number of those done; false stops.
 using ScanWorldProgress = std::function<bool(std::size_t done)>;
 
 /// Takes all views, in their order, into the map. The same arguments give the same map, on any number of
 /// threads.
 /// @return the number of scans taken: all, unless stopped
-/// @throws std::invalid_argument if a robot's sensor cannot be, a view names no robot, or a pose is not
-/// finite or outside the map's key range
+/// @throws std::invalid_argument if a robot's sensor is not valid, there is no robot of a view's number, or a
+/// pose is not finite or outside the map's key range
 std::size_t scan_world(const Surface& surface, std::span<const planner::RobotDescription> robots,
                        std::span<const View> views, const ScanWorldOptions& options,
                        planner::Mapping& mapping, const ScanWorldProgress& progress = {});

@@ -15,10 +15,10 @@
 
 namespace frontlux::sim {
 
-/// How a sensor errs. By default it does not.
+/// Errors of a range sensor; none by default.
 struct RangeErrors {
   double sigma = 0.0;    ///< [m] standard deviation of the Gaussian noise on a range
-  double dropout = 0.0;  ///< probability that a ray gives no measurement, whatever it meets
+  double dropout = 0.0;  ///< probability that a ray gives no measurement
 };
 
 /// A range sensor: its field of view, the rays that fill it, and its errors.
@@ -34,8 +34,6 @@ class Sensor {
   Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors = {});
 
   [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
-  [[nodiscard]] std::size_t columns() const { return columns_; }
-  [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] const RangeErrors& errors() const { return errors_; }
 
   /// Unit vectors in the sensor's frame (x forward, y left, z up), columns() * rows() of them.
@@ -44,28 +42,17 @@ class Sensor {
 
  private:
   FieldOfView field_of_view_;
-  std::size_t columns_, rows_;
   RangeErrors errors_;
   std::vector<Eigen::Vector3d> directions_;
 };
 
-/// The aerial robot's: 160 x 120 pixels, 90 x 72 degrees, 10 m.
-[[nodiscard]] Sensor depth_camera(RangeErrors errors = {});
-
-/// The ground robot's: 32 beams x 720 azimuths, +-20 degrees, 6 m.
-[[nodiscard]] Sensor lidar(RangeErrors errors = {});
-
-/// A cone of `rays` rays about the forward axis.
-/// @param opening [rad] full angle, in (0, pi)
-/// @param max_range [m]
-[[nodiscard]] Sensor cone_sensor(double opening, double max_range, std::size_t rays, RangeErrors errors = {});
-
-/// A robot's own. @throws std::invalid_argument as the sensor does
+/// The sensor of a robot. @throws std::invalid_argument as the sensor does
 [[nodiscard]] Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors = {});
 
-/// What the sensor measures from here. A hit within the sensor's range gives its range with noise, held
-/// within 0 and max_range; no hit gives infinity; a dropout, which may befall any ray, NaN. Errors are drawn
-/// by seed and number of the ray: the same arguments give the same bytes on any number of threads.
+/// What the sensor measures from here. A hit within the sensor's range gives its range with noise, clamped to
+/// [0, max_range]; no hit gives infinity; a ray that drops out, whatever it meets, gives NaN. Errors depend
+/// on the seed and the number of the ray alone: the same arguments give the same bytes on any number of
+/// threads.
 /// @param sensor_pose of the sensor itself, in the world frame
 /// @throws std::invalid_argument if the pose is not finite
 [[nodiscard]] planner::Scan sense(const Surface& surface, const Sensor& sensor,

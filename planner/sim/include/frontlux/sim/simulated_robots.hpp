@@ -14,20 +14,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace frontlux::sim {
 
-/// What robots ran into, by two notions. Both let a depth of `GroundTruth::kMargin` pass, as the ground truth
-/// does, so that a body may lean on what lies on a voxel's face.
+/// Collisions, counted in two ways. Both ignore a depth of `GroundTruth::kMargin`, as the ground truth does,
+/// so a body may touch a surface that lies on a voxel's face.
 struct Collisions {
-  /// Voxels that the sensor came through with a surface in the collision box around them, as it is measured
-  /// in whole voxels to plan with. The box is a little larger than the body, so that this says more than that
-  /// a body hit something.
+  /// Voxels that the sensor passed with a surface in the collision box around them, the box of whole voxels
+  /// that planning uses. It is a little larger than the body, so a count here need not be a body that hit
+  /// something.
   std::uint64_t lattice = 0;
-  /// Triangles that the body itself met: a box of exactly its extents around the sensor, on a plane from the
-  /// lower face of the layer that it stands on, on all of its straight way.
+  /// Triangles that the body itself met on its straight motions: a box of exactly its extents around the
+  /// sensor, for a robot on a plane from the lower face of the layer that it stands on.
   std::uint64_t physical = 0;
 
   Collisions& operator+=(const Collisions& more) {
@@ -38,64 +37,54 @@ struct Collisions {
   friend constexpr bool operator==(const Collisions&, const Collisions&) = default;
 };
 
-/// What a robot does whose body is about to meet something.
+/// What a robot does if its body would meet something.
 enum class AtContact : std::uint8_t {
-  kGoOn,  ///< it goes on, and the collision is counted
-  kStay,  ///< its bumper holds it back: it does not set out, and that is counted
+  kGoOn,  ///< it moves, and the collision is counted
+  kStay,  ///< its bumper stops it: it does not move
 };
 
-/// Robots that go where they are told through a world that only they know. `drive` is what
-/// `planner::Exploration` asks for.
+/// Robots that move and sense in a simulated world. `drive` is the `planner::Drive` of an exploration.
 ///
-/// Robots neither see nor touch each other, and that is not
-/// counted. Thread safety: as a standard container.
+/// Robots neither see nor touch each other, and collisions between them are not counted. Thread safety: as a
+/// standard container.
 class SimulatedRobots {
  public:
   /// @param world  its mesh is copied
   /// @param truth  of the same world @pre lives as long as the robots
   /// @param seed   of the sensors' errors
-  /// @throws std::invalid_argument if the mesh, a sensor or an error cannot be
+  /// @throws std::invalid_argument if the mesh, a sensor or an error is not valid
   SimulatedRobots(const World& world, const GroundTruth& truth, std::vector<planner::RobotDescription> robots,
                   const RangeErrors& errors, std::uint64_t seed, AtContact at_contact = AtContact::kGoOn);
 
-  /// Moves a robot's sensor straight from where it is to a viewpoint, and tells what it measures there;
-  /// nothing if its bumper holds it back. The first time the robot appears there. The errors depend on the
-  /// seed, the robot, and how many scans it took before, on nothing else.
+  /// Moves a robot's sensor straight from where it is to a viewpoint; the first time the robot appears there.
+  /// The errors of its scan depend on the seed, the robot and the number of its scans before, and on nothing
+  /// else.
+  /// @return the scan from there; nothing if its bumper stopped it
   /// @throws std::invalid_argument if there is no such robot, or the viewpoint is not finite or outside the
   /// lattice's keys
   std::optional<planner::Scan> drive(std::size_t robot, const planner::Pose& viewpoint);
 
-  [[nodiscard]] std::span<const planner::RobotDescription> robots() const { return robots_; }
-  /// Of the last call of `drive`.
-  [[nodiscard]] const Collisions& last() const { return last_; }
-  /// Of one robot since it appeared. @throws std::invalid_argument if there is no such robot
-  [[nodiscard]] const Collisions& of(std::size_t robot) const;
-  /// Of all robots.
-  [[nodiscard]] Collisions total() const;
-  /// How often a bumper has held a robot back.
-  [[nodiscard]] std::uint64_t held_back() const { return held_back_; }
+  /// Of all robots since they appeared.
+  [[nodiscard]] const Collisions& total() const { return total_; }
 
  private:
   struct Progress {
     std::optional<planner::Pose> pose;
     std::uint64_t scans = 0;
-    Collisions collisions;
   };
 
-  void check(std::size_t robot) const;
   [[nodiscard]] Collisions collisions_between(const planner::TravelOptions& travel,
                                               const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   const GroundTruth* truth_;
   Surface surface_;
-  TriangleTree solids_;
+  TriangleBvh solids_;
   std::vector<planner::RobotDescription> robots_;
   std::vector<Sensor> sensors_;
   std::vector<Progress> progress_;
   std::uint64_t seed_;
   AtContact at_contact_;
-  std::uint64_t held_back_ = 0;
-  Collisions last_;
+  Collisions total_;
 };
 
 }  // namespace frontlux::sim

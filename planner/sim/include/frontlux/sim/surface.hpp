@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -44,12 +43,10 @@ class Surface {
   Surface& operator=(Surface&&) noexcept;
 
   /// hits[i] belongs to rays[i]: the nearest hit with range <= max_range; of several at the same range, the
-  /// triangle of the smallest number. Long batches are shared out over TBB's current arena.
+  /// triangle of the smallest number. Long batches are divided among the threads of TBB's current arena.
   /// @throws std::invalid_argument if the sizes differ, or naming a ray whose origin or direction is not
   /// finite, whose direction has no length, or whose max_range is negative or NaN
   void cast(std::span<const Ray> rays, std::span<Hit> hits) const;
-
-  [[nodiscard]] std::size_t triangle_count() const;
 
  private:
   struct Scene;

@@ -12,12 +12,13 @@
 
 namespace frontlux::sim {
 
-/// The space that an axis-aligned box passes through as it moves straight: what it meets there is found at
-/// once and not step by step.
+/// The space that an axis-aligned box passes through on a straight motion. It is compared at once and not
+/// step by step.
 class SweptBox {
  public:
-  /// @param start where the box begins, not empty  @param way [m] from there on
-  SweptBox(const Eigen::AlignedBox3d& start, const Eigen::Vector3d& way);
+  /// @param start the box where the motion begins, not empty
+  /// @param motion [m]
+  SweptBox(const Eigen::AlignedBox3d& start, const Eigen::Vector3d& motion);
 
   /// The smallest axis-aligned box around.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
@@ -29,21 +30,21 @@ class SweptBox {
  private:
   [[nodiscard]] bool apart(const Eigen::Vector3d& axis, const std::array<Eigen::Vector3d, 3>& triangle) const;
 
-  Eigen::Vector3d center_, half_, way_;
+  Eigen::Vector3d center_, half_, motion_;
   Eigen::AlignedBox3d bounds_;
 };
 
-/// The triangles of a mesh, sorted so that those near a box are found quickly.
-class TriangleTree {
+/// A bounding volume hierarchy of a mesh's triangles.
+class TriangleBvh {
  public:
-  /// Copies the mesh. @throws std::invalid_argument naming the vertex or triangle that cannot be
-  explicit TriangleTree(const TriangleMesh& mesh);
+  /// Copies the mesh. @throws std::invalid_argument as `check(mesh)`
+  explicit TriangleBvh(const TriangleMesh& mesh);
 
-  /// Number of triangles that a box touches on its way.
+  /// Number of triangles that a box touches on its motion.
   [[nodiscard]] std::uint64_t count(const SweptBox& box) const;
 
  private:
-  // Nodes in the order of a walk from the root; a node's first child follows it.
+  // In depth-first order: the first child of a node comes right after it.
   struct Node {
     Eigen::AlignedBox3d bounds;
     std::uint32_t begin = 0, end = 0;  // of its triangles, in `order_`
@@ -51,7 +52,6 @@ class TriangleTree {
   };
 
   std::uint32_t grow(std::uint32_t begin, std::uint32_t end);
-  [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::uint32_t triangle) const;
 
   TriangleMesh mesh_;
   std::vector<std::uint32_t> order_;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,6 +18,13 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
 };
 
+/// The corners of a triangle [m].
+[[nodiscard]] std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, std::size_t triangle);
+
+/// @throws std::invalid_argument naming the vertex or triangle, if a coordinate is not finite or beyond 1e9
+/// m, an index has no vertex, or triangles cannot be numbered with 32 bits
+void check(const TriangleMesh& mesh);
+
 /// The smallest box around all triangles; empty if there are none.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const TriangleMesh& mesh);
 
@@ -28,7 +36,7 @@ struct TriangleMesh {
 /// @return nothing if the surface is not closed and wound one way: some edge lacks its counterpart
 [[nodiscard]] std::optional<double> solid_volume(const TriangleMesh& mesh);
 
-/// The truth that robots explore: what stands in for the real world. World frame, metres, z up.
+/// A simulated world that robots explore. World frame, metres, z up.
 struct World {
   std::string name;
   TriangleMesh mesh;
@@ -37,8 +45,8 @@ struct World {
       start;  ///< [m] a place in free space, on or above the floor, if one is known
 };
 
-/// Number of voxels that meet `bounds`, counted without a limit; 0 if the box is empty. To be looked at
-/// before memory is spent on a map of this size.
+/// Number of voxels that meet `bounds`, counted without a limit; 0 if the box is empty. Check it before you
+/// allocate a map of this size.
 /// @param resolution edge length of a voxel [m]
 /// @throws std::invalid_argument unless the resolution is finite and positive and the bounds are finite
 [[nodiscard]] double voxel_count(const Eigen::AlignedBox3d& bounds, double resolution);

@@ -1,6 +1,6 @@
-#include "world/cell_paint.hpp"
+#include "truth/cell_paint.hpp"
 
-#include <frontlux/sim/triangle_overlap.hpp>
+#include "mesh/triangle_overlap.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -21,9 +21,7 @@ class Painter {
   Painter(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::uint8_t>& cells)
       : frame_(frame), cells_(cells) {
     triangles_.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles)
-      triangles_.emplace_back(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
-                              mesh.vertices[c].cast<double>());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) triangles_.emplace_back(corners_of(mesh, i));
   }
 
   // All triangles, in one slab of cells: slabs share no cell, so each may have its own thread.
@@ -46,7 +44,7 @@ class Painter {
     return {cell(triangle.bounds().min() - room), cell(triangle.bounds().max() + room)};
   }
 
-  // By halves, as most of a slanting triangle's bounds is not near it.
+  // Halves the block again and again, because most of a slanting triangle's bounds is not near it.
   void paint(const TriangleOverlap& triangle, const Block& block) {
     if (!triangle.touches(frame_.box(block.low, block.high, frame_.margin))) return;
     Eigen::Index axis = 0;

@@ -20,20 +20,20 @@ std::string to_text(const Eigen::Vector3d& p) {
 
 std::optional<double> floor_below(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
   std::optional<double> floor;
-  for (const auto& triangle : mesh.triangles) {
-    std::array<Eigen::Vector3d, 3> corner;
-    for (std::size_t i = 0; i < 3; ++i) corner[i] = mesh.vertices[triangle[i]].cast<double>() - point;
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    std::array<Eigen::Vector3d, 3> corner = corners_of(mesh, triangle);
+    for (Eigen::Vector3d& c : corner) c -= point;
     // Twice the areas, seen from above, of the triangles that the point makes with each side.
-    std::array<double, 3> share{};
+    std::array<double, 3> area{};
     for (std::size_t i = 0; i < 3; ++i) {
       const auto &a = corner[(i + 1) % 3], &b = corner[(i + 2) % 3];
-      share[i] = a.x() * b.y() - a.y() * b.x();
+      area[i] = a.x() * b.y() - a.y() * b.x();
     }
-    const double all = share[0] + share[1] + share[2];
-    const auto [least, most] = std::minmax_element(share.begin(), share.end());
+    const double all = area[0] + area[1] + area[2];
+    const auto [least, most] = std::minmax_element(area.begin(), area.end());
     if (all == 0.0 || (*least < 0.0 && *most > 0.0)) continue;
     const double z =
-        (share[0] * corner[0].z() + share[1] * corner[1].z() + share[2] * corner[2].z()) / all + point.z();
+        (area[0] * corner[0].z() + area[1] * corner[1].z() + area[2] * corner[2].z()) / all + point.z();
     if (z <= point.z() + kReach && (!floor || z > *floor)) floor = z;
   }
   return floor;

@@ -11,7 +11,7 @@
 namespace frontlux::sim {
 
 namespace cell {
-/// What is known about one voxel of the ground truth.
+/// What the ground truth stores of a voxel.
 enum Flag : std::uint8_t {
   kSolid = 1,          ///< a surface passes through it, deeper than the margin
   kWallBelow = 2,      ///< a surface on its lower face across x; two more bits for y and z
@@ -36,8 +36,8 @@ struct CellFrame {
   }
 };
 
-/// Marks the cells (x fastest) that surfaces pass through, and the faces that they lie on. In parallel over
-/// TBB's current arena. Of a solid cell the faces are not marked.
+/// Marks the cells (x fastest) that surfaces pass through, and the faces that they lie on, in parallel over TBB's current
+/// arena. The faces of a solid cell are not marked.
 /// @pre cells.size() is the product of frame.size, and the mesh is valid
 void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::uint8_t>& cells);
 

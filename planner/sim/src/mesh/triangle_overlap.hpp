@@ -10,8 +10,8 @@ namespace frontlux::sim {
 /// One triangle, prepared to be compared with many boxes.
 class TriangleOverlap {
  public:
-  /// Corners [m]; they may coincide or lie on a line.
-  TriangleOverlap(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+  /// @param corners [m] they may coincide or lie on a line
+  explicit TriangleOverlap(const std::array<Eigen::Vector3d, 3>& corners);
 
   /// The smallest box around the triangle.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
@@ -21,14 +21,14 @@ class TriangleOverlap {
   [[nodiscard]] bool touches(const Eigen::AlignedBox3d& box) const;
 
  private:
-  // A direction, and from where to where the triangle reaches along it.
-  struct Shadow {
+  // What the triangle covers along a direction.
+  struct Projection {
     Eigen::Vector3d axis;
     double low, high;
   };
 
   Eigen::AlignedBox3d bounds_;
-  std::array<Shadow, 10> shadows_;
+  std::array<Projection, 10> projections_;
 };
 
 }  // namespace frontlux::sim

@@ -1,20 +1,20 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace frontlux::sim {
 
-/// Calls `visit(key)` for the free voxels of a box that can be reached from one of them within the box,
-/// without crossing a wall, through voxels that `may_enter(key)`: fewest steps first, in an order that
-/// depends on nothing else. Ends when `visit` returns true.
+/// Calls `visit(key)` for the free voxels of a box that can be reached from one of them within the box, without crossing
+/// a wall, through voxels for which `may_enter(key)`. Voxels of fewer steps come first; the order depends on nothing else.
+/// Ends when `visit` returns true.
 template <class MayEnter, class Visit>
-void walk_open(const GroundTruth& truth, const VoxelKey& from, const KeyBox& box, const MayEnter& may_enter,
-               const Visit& visit) {
+void flood_free(const GroundTruth& truth, const VoxelKey& from, const KeyBox& box, const MayEnter& may_enter,
+                const Visit& visit) {
   if (!box.contains(from) || truth.at(from) != Truth::kFree || !may_enter(from)) return;
   const std::size_t size_x = box.max.x - box.min.x + std::size_t{1};
   const std::size_t size_y = box.max.y - box.min.y + std::size_t{1};
@@ -30,13 +30,11 @@ void walk_open(const GroundTruth& truth, const VoxelKey& from, const KeyBox& box
       if (visit(here)) return;
       for (std::size_t axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
-          VoxelKey there = here;
-          std::uint16_t& along = axis == 0 ? there.x : axis == 1 ? there.y : there.z;
-          along = static_cast<std::uint16_t>(along + step);
-          if (!box.contains(there) || !truth.open(step < 0 ? there : here, axis)) continue;
-          if (seen[index(there)] || !may_enter(there)) continue;
-          seen[index(there)] = true;
-          next.push_back(there);
+          const auto there = offset_key(here, axis == 0 ? step : 0, axis == 1 ? step : 0, axis == 2 ? step : 0);
+          if (!there || !box.contains(*there) || !truth.open(step < 0 ? *there : here, axis)) continue;
+          if (seen[index(*there)] || !may_enter(*there)) continue;
+          seen[index(*there)] = true;
+          next.push_back(*there);
         }
     }
     std::swap(front, next);
