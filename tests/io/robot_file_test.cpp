@@ -1,6 +1,6 @@
-#include <frontlux/io/robot_file.hpp>
+#include "support/input_test.hpp"
 
-#include <gtest/gtest.h>
+#include <frontlux/io/robot_file.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -11,33 +11,19 @@
 #include <utility>
 #include <vector>
 
-namespace frontlux::planner {
+namespace frontlux::io {
 namespace {
 
-class RobotFile : public testing::Test {
+using planner::RobotDescription;
+using planner::TravelOptions;
+
+class RobotFile : public test::InputTest {
  protected:
-  RobotFile()
-      : file_(std::filesystem::temp_directory_path() /
-              ("frontlux_robot_" + std::to_string(getpid()) + ".json")) {}
-  ~RobotFile() override { std::filesystem::remove(file_); }
+  RobotFile() : InputTest([](const auto& file) { static_cast<void>(read_robot(file)); }) {}
 
   [[nodiscard]] RobotDescription read(const std::string& text) const {
-    std::ofstream(file_, std::ios::binary) << text;
-    return read_robot(file_);
+    return read_robot(save("r.json", text));
   }
-  // What the complaint says after the file's name.
-  [[nodiscard]] std::string complaint(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const std::runtime_error& error) {
-      const std::string what = error.what(), begin = file_.string() + ": ";
-      EXPECT_TRUE(what.starts_with(begin)) << what;
-      return what.substr(begin.size());
-    }
-    return "";
-  }
-
-  std::filesystem::path file_;
 };
 
 void expect_equal(const RobotDescription& a, const RobotDescription& b) {
@@ -66,10 +52,10 @@ void expect_equal(const RobotDescription& a, const RobotDescription& b) {
 const std::filesystem::path kRobots = std::filesystem::path(FRONTLUX_DATA_DIR) / "robots";
 
 TEST_F(RobotFile, ThoseOfThePaperAreTheBuiltInOnesToTheLastBit) {
-  expect_equal(read_robot(kRobots / "ugv.json"), ugv_description());
-  expect_equal(read_robot(kRobots / "uav.json"), uav_description());
-  EXPECT_EQ(ugv_description().columns * ugv_description().rows, 32U * 720U);
-  EXPECT_EQ(uav_description().columns, 160U);
+  expect_equal(read_robot(kRobots / "ugv.json"), planner::ugv_description());
+  expect_equal(read_robot(kRobots / "uav.json"), planner::uav_description());
+  EXPECT_EQ(ugv_description().columns * planner::ugv_description().rows, 32U * 720U);
+  EXPECT_EQ(planner::uav_description().columns, 160U);
 }
 
 TEST_F(RobotFile, ReadsAConeAndWhatIsLeftOut) {
@@ -91,7 +77,7 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
   const std::string good =
       R"({"name": "r", "motion": "plane", "box_m": [1, 1, 0.7], "mount_height_m": 0.75, "sensor": )"
       R"({"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 10, "columns": 16, "rows": 12}})";
-  EXPECT_EQ(complaint(good), "");
+  EXPECT_EQ(complaint("r.json", good), "");
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     const auto at = text.find(from);
@@ -150,18 +136,11 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {good + std::string(1 << 20, ' '), "too many for a robot; give a description of at most 1048576 bytes"},
   };
   for (const auto& [text, expected] : cases) {
-    const std::string what = complaint(text);
+    const std::string what = complaint("r.json", text);
     EXPECT_NE(what.find(expected), std::string::npos) << what << "\nexpected: " << expected;
-    EXPECT_NE(what.find("; "), std::string::npos) << what;
     for (const char c : what) EXPECT_TRUE(c >= ' ' && c <= '~') << what;
   }
-  std::filesystem::remove(file_);
-  try {
-    static_cast<void>(read_robot(file_));
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("there is no such file"), std::string::npos);
-  }
+  EXPECT_THROW(static_cast<void>(read_robot(folder_ / "none.json")), std::runtime_error);
   EXPECT_THROW(static_cast<void>(read_robot(std::filesystem::temp_directory_path())), std::runtime_error);
 }
 
@@ -169,7 +148,8 @@ TEST_F(RobotFile, SurvivesEveryTruncationAndFlippedByte) {
   std::ifstream stream(kRobots / "uav.json", std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   ASSERT_GT(text.size(), 100U);
-  for (std::size_t i = 0; i + 2 < text.size(); ++i) EXPECT_NE(complaint(text.substr(0, i)), "") << i;
+  for (std::size_t i = 0; i + 2 < text.size(); ++i)
+    EXPECT_NE(complaint("r.json", text.substr(0, i)), "") << i;
   for (std::size_t i = 0; i < text.size(); ++i)
     for (const int bit : {0, 3, 7}) {
       std::string damaged = text;
@@ -182,4 +162,4 @@ TEST_F(RobotFile, SurvivesEveryTruncationAndFlippedByte) {
 }
 
 }  // namespace
-}  // namespace frontlux::planner
+}  // namespace frontlux::io

@@ -1,3 +1,4 @@
+#include "support/input_test.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 
@@ -21,38 +22,16 @@
 namespace frontlux::sim {
 namespace {
 
-class MeshFile : public testing::Test {
+class MeshFile : public test::InputTest {
  protected:
-  MeshFile()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_mesh_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~MeshFile() override { std::filesystem::remove_all(folder_); }
+  MeshFile() : InputTest([](const auto& file) { static_cast<void>(read_mesh_world(file)); }) {}
 
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-
-  [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary) << bytes;
-    return file(name);
-  }
 
   static std::string content_of(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-
-  static void expect_refusal(const std::filesystem::path& path, const std::string& part) {
-    try {
-      static_cast<void>(read_mesh_world(path));
-      ADD_FAILURE() << path << " was read, but not: " << part;
-    } catch (const std::runtime_error& error) {
-      const std::string text = error.what();
-      EXPECT_TRUE(text.starts_with(path.string() + ": ")) << text;
-      EXPECT_NE(text.find(part), std::string::npos) << text << "\nlacks: " << part;
-    }
-  }
-
-  std::filesystem::path folder_;
 };
 
 // The corners of every triangle, which the order of vertices does not change.
@@ -72,6 +51,14 @@ const std::vector<Eigen::Vector3f> kHouse = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0
 const std::vector<std::array<int, 4>> kSides = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
+// The numbers, with blanks behind or between them.
+template <class Numbers>
+std::string text_of(const Numbers& numbers) {
+  std::string text;
+  for (const auto number : numbers) text += std::to_string(number) + " ";
+  return text;
+}
+
 std::string house_ply(const std::string& newline = "\n") {
   std::string text;
   const auto line = [&](const std::string& words) { text += words + newline; };
@@ -84,18 +71,14 @@ std::string house_ply(const std::string& newline = "\n") {
   line("element face 6");
   line("property list uint8 int32 vertex_index");
   line("end_header");
-  const auto number = [](float value) { return std::to_string(value); };
-  for (const auto& v : kHouse) line(number(v.x()) + " " + number(v.y()) + " 7 " + number(v.z()));
-  for (const auto& s : kSides)
-    line("4 " + std::to_string(s[0]) + " " + std::to_string(s[1]) + " " + std::to_string(s[2]) + " " +
-         std::to_string(s[3]));
+  for (const auto& v : kHouse) line(text_of(v.head<2>()) + "7 " + text_of(v.tail<1>()));
+  for (const auto& s : kSides) line("4 " + text_of(s));
   return text;
 }
 
 std::string house_obj() {
   std::string text;
-  for (const auto& v : kHouse)
-    text += "v " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+  for (const auto& v : kHouse) text += "v " + text_of(v) + "\n";
   for (const auto& s : kSides) {
     text += "f";
     for (const int i : s) text += " " + std::to_string(i + 1);
@@ -111,8 +94,7 @@ std::string house_stl() {
       text += "facet normal 0 0 0\nouter loop\n";
       for (const int corner : {a, b, c}) {
         const auto& v = kHouse[static_cast<std::size_t>(s[static_cast<std::size_t>(corner)])];
-        text += "vertex " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " +
-                std::to_string(v.z()) + "\n";
+        text += "vertex " + text_of(v) + "\n";
       }
       text += "endloop\nendfacet\n";
     }
@@ -121,10 +103,9 @@ std::string house_stl() {
 
 std::string house_dae(const std::string& up, const std::string& unit) {
   std::string positions, indices, counts;
-  for (const auto& v : kHouse)
-    positions += std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + " ";
+  for (const auto& v : kHouse) positions += text_of(v);
   for (const auto& s : kSides) {
-    for (const int i : s) indices += std::to_string(i) + " ";
+    indices += text_of(s);
     counts += "4 ";
   }
   return R"(<?xml version="1.0" encoding="utf-8"?>
@@ -200,65 +181,39 @@ TEST_F(MeshFile, RoundTripIsExact) {
 
 TEST_F(MeshFile, EveryFormatGivesTheSameHouse) {
   for (const auto& path :
-       {write("h.ply", house_ply()), write("crlf.PLY", house_ply("\r\n")), write("h.obj", house_obj()),
-        write("h.stl", house_stl()), write("h.dae", house_dae("Z_UP", "1"))}) {
+       {save("h.ply", house_ply()), save("crlf.PLY", house_ply("\r\n")), save("h.obj", house_obj()),
+        save("h.stl", house_stl()), save("h.dae", house_dae("Z_UP", "1"))}) {
     SCOPED_TRACE(path.string());
     expect_house(read_mesh_world(path), {0, 0, 0}, {2, 3, 5});
   }
   // y up in the file: its z comes towards us.
-  expect_house(read_mesh_world(write("h.gltf", house_gltf())), {10, -5, 0}, {12, 0, 3});
-  expect_house(read_mesh_world(write("y.dae", house_dae("Y_UP", "1"))), {0, -5, 0}, {2, 0, 3});
+  expect_house(read_mesh_world(save("h.gltf", house_gltf())), {10, -5, 0}, {12, 0, 3});
+  expect_house(read_mesh_world(save("y.dae", house_dae("Y_UP", "1"))), {0, -5, 0}, {2, 0, 3});
 }
 
 TEST_F(MeshFile, ScaleUnitAndAxisAreTaken) {
-  const auto ply = write("h.ply", house_ply());
+  const auto ply = save("h.ply", house_ply());
   expect_house(read_mesh_world(ply, {.scale = 0.5}), {0, 0, 0}, {1, 1.5, 2.5});
   expect_house(read_mesh_world(ply, {.scale = 1, .up = UpAxis::kY}), {0, -5, 0}, {2, 0, 3});
   expect_house(read_mesh_world(ply, {.scale = 1, .up = UpAxis::kX}), {0, 0, 0}, {3, 5, 2});
-  const auto inches = write("inch.dae", house_dae("Z_UP", "0.0254"));
+  const auto inches = save("inch.dae", house_dae("Z_UP", "0.0254"));
   expect_house(read_mesh_world(inches), {0, 0, 0}, {0.0508, 0.0762, 0.127});
   expect_house(read_mesh_world(inches, {.scale = 10}), {0, 0, 0}, {0.508, 0.762, 1.27});
-  expect_house(read_mesh_world(write("y.dae", house_dae("Y_UP", "1")), {.scale = 1, .up = UpAxis::kZ}),
+  expect_house(read_mesh_world(save("y.dae", house_dae("Y_UP", "1")), {.scale = 1, .up = UpAxis::kZ}),
                {0, 0, 0}, {2, 3, 5});
-  expect_house(read_mesh_world(write("h.gltf", house_gltf()), {.scale = 1, .up = UpAxis::kZ}), {10, 0, 0},
+  expect_house(read_mesh_world(save("h.gltf", house_gltf()), {.scale = 1, .up = UpAxis::kZ}), {10, 0, 0},
                {12, 3, 5});
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_THROW(static_cast<void>(read_mesh_world(ply, {.scale = scale})), std::invalid_argument);
 }
 
-TEST_F(MeshFile, BinaryPlyOfEitherByteOrderIsRead) {
-  for (const bool big : {false, true}) {
-    std::string bytes =
-        std::string("ply\nformat binary_") + (big ? "big" : "little") +
-        "_endian 1.0\nelement vertex 3\nproperty double x\nproperty float y\nproperty short z\n"
-        "element face 1\nproperty uchar flag\nproperty list ushort uint vertex_indices\nend_header\n";
-    const auto add = [&](auto value) {
-      std::string raw(reinterpret_cast<const char*>(&value), sizeof(value));
-      bytes += big ? std::string(raw.rbegin(), raw.rend()) : raw;
-    };
-    for (const auto& [x, y, z] :
-         {std::tuple(0.5, 1.25F, -3), std::tuple(2.0, 0.0F, 7), std::tuple(-1.0, 4.0F, 300)}) {
-      add(x);
-      add(y);
-      add(static_cast<std::int16_t>(z));
-    }
-    add(std::uint8_t{9});
-    add(std::uint16_t{3});
-    for (const std::uint32_t i : {0U, 1U, 2U}) add(i);
-    const World world = read_mesh_world(write("b.ply", bytes));
-    ASSERT_EQ(world.mesh.vertices.size(), 3U);
-    EXPECT_EQ(world.mesh.vertices[0], Eigen::Vector3f(0.5F, 1.25F, -3));
-    EXPECT_EQ(world.mesh.vertices[2], Eigen::Vector3f(-1, 4, 300));
-  }
-}
-
 TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOut) {
   const auto path =
-      write("h.ply",
-            "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
-            "0 0 0\n1 0 0\n2 0 0\n0 1 0\n0 0 0\n"
-            "3 0 1 2\n3 0 1 3\n3 0 4 3\n3 1 1 1\n");
+      save("h.ply",
+           "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n2 0 0\n0 1 0\n0 0 0\n"
+           "3 0 1 2\n3 0 1 3\n3 0 4 3\n3 1 1 1\n");
   const World world = read_mesh_world(path);
   EXPECT_EQ(world.mesh.triangles.size(), 1U);
   EXPECT_EQ(world.mesh.vertices.size(), 3U);
@@ -273,46 +228,30 @@ TEST_F(MeshFile, BadFilesAreRefusedByName) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   };
-  expect_refusal(file("none.ply"), "no such file");
-  expect_refusal(file("none.obj"), "no such file");
+  expect_refused(file("none.ply"), "no such file");
+  expect_refused(file("none.obj"), "no such file");
   std::filesystem::create_directories(file("folder.ply"));
-  expect_refusal(file("folder.ply"), "not a regular file");
-  expect_refusal(write("house.step", house), ".gltf");
-  expect_refusal(write("empty.ply", ""), "end_header");
-  expect_refusal(write("foreign.ply", "solid\n"), "begin with 'ply'");
-  for (const char* name : {"empty.obj", "empty.stl", "empty.dae", "empty.gltf", "empty.glb"})
-    expect_refusal(write(name, ""), "");
+  expect_refused(file("folder.ply"), "is a directory");
+  expect_refused("house.step", house, ".gltf");
+  for (const char* name : {"empty.ply", "empty.obj", "empty.stl", "empty.dae", "empty.gltf", "empty.glb"})
+    expect_refused(save(name, ""));
   for (const char* name : {"foreign.stl", "foreign.dae", "foreign.gltf", "foreign.glb"})
-    expect_refusal(write(name, house), "");
+    expect_refused(save(name, house));
   const auto ply = [&](const std::string& from, const std::string& to, const std::string& part) {
-    expect_refusal(write("bad.ply", replaced(from, to)), part);
+    expect_refused("bad.ply", replaced(from, to), part);
   };
-  ply("ascii", "ebcdic", "format");
-  ply("format ascii 1.0\n", "", "no format");
-  ply("float x", "quaternion x", "unknown type 'quaternion'");
-  ply("double y", "double why", "no y");
-  ply("element vertex 8", "element vertex eight", "malformed");
-  ply("element vertex 8", "element vertex -8", "malformed");
-  ply("element vertex 8", "element vertex 18446744073709551615", "too early");
-  ply("element vertex 8", "element vertex 99999999999999999999", "malformed");
-  ply("element vertex 8", "element vertex 7", "");
   ply("element face 6", "element face 0", "no triangles");
-  ply("element face 6", "element face 7", "too early");
   ply("4 0 3 2 1", "4 0 3 8 1", "vertex 8, but there are only 8");
-  ply("4 0 3 2 1", "4 0 -3 2 1", "index");
-  ply("4 0 3 2 1", "4 0 3.5 2 1", "index");
-  ply("4 0 3 2 1", "4000000000 0 3 2 1", "too early");
   ply("2.000000", "nan", "vertex 1 is not finite");
   ply("2.000000", "-inf", "vertex 1 is not finite");
   ply("2.000000", "1e39", "vertex 1 is not finite");
-  ply("2.000000", "two", "'two' is not a number");
-  expect_refusal(
-      write("flat.ply",
-            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 "
-            "2\n"),
+  expect_refused(
+      save("flat.ply",
+           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 "
+           "2\n"),
       "none of its 1 triangles has an area");
-  expect_refusal(write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "");
+  expect_refused(save("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"));
 }
 
 // Reads it, or refuses it as a runtime_error that names it; a world that is read is sound.
@@ -332,9 +271,9 @@ void expect_calm(const std::filesystem::path& path) {
 TEST_F(MeshFile, TruncatedPlyIsRefused) {
   write_ply(file("whole.ply"), make_world("room", 1).mesh);
   for (const std::string& bytes : {content_of(file("whole.ply")), house_ply()}) {
-    // The ASCII file misses nothing if only its last line break is cut.
-    for (std::size_t size = 0; size + 1 < bytes.size(); size += size < 400 ? 1 : 37)
-      expect_refusal(write("cut.ply", bytes.substr(0, size)), "");
+    // The ASCII file is complete without its last blank and line break.
+    for (std::size_t size = 0; size + 2 < bytes.size(); size += size < 400 ? 1 : 37)
+      expect_refused(save("cut.ply", bytes.substr(0, size)));
   }
 }
 
@@ -349,7 +288,7 @@ TEST_F(MeshFile, DamagedPlyDoesNoHarm) {
         const int range = random.one_in(2) ? header : static_cast<int>(bytes.size());
         bytes[static_cast<std::size_t>(random.below(range))] = static_cast<char>(random.below(256));
       }
-      expect_calm(write("damaged.ply", bytes));
+      expect_calm(save("damaged.ply", bytes));
       if (HasFatalFailure()) return;
     }
 }
@@ -360,7 +299,7 @@ TEST_F(MeshFile, OtherFormatsSurviveTruncation) {
         std::pair("cut.dae", house_dae("Z_UP", "1")), std::pair("cut.gltf", house_gltf())})
     for (std::size_t size = 0; size < bytes.size(); size += 11) {
       SCOPED_TRACE(size);
-      expect_calm(write(name, bytes.substr(0, size)));
+      expect_calm(save(name, bytes.substr(0, size)));
       if (HasFatalFailure()) return;
     }
 }
@@ -375,7 +314,7 @@ TEST_F(MeshFile, WritesWholeOrNotAtAll) {
   EXPECT_THROW(write_ply("", room.mesh), std::runtime_error);
   if (std::filesystem::exists("/dev/full")) {
     std::filesystem::create_symlink("/dev/full", file("full.ply.part" + std::to_string(getpid())));
-    static_cast<void>(write("full.ply", "as it was"));
+    static_cast<void>(save("full.ply", "as it was"));
     EXPECT_THROW(write_ply(file("full.ply"), room.mesh), std::runtime_error);
     EXPECT_EQ(content_of(file("full.ply")), "as it was");
   }

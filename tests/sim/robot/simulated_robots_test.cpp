@@ -1,9 +1,9 @@
+#include "mesh/triangle_overlap.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 #include <frontlux/sim/start_pose.hpp>
-#include <frontlux/sim/triangle_overlap.hpp>
 
 #include <gtest/gtest.h>
 
@@ -46,21 +46,21 @@ TEST(SweptBox, MeetsTheTrianglesThatABoxInManyStepsMeets) {
     const auto point = [&](double far) {
       return Eigen::Vector3d(random.uniform(-far, far), random.uniform(-far, far), random.uniform(-far, far));
     };
-    Eigen::Vector3d way = point(2.0), half = point(0.4).cwiseAbs() + Eigen::Vector3d::Constant(0.05);
-    if (random.one_in(4)) way[random.below(3)] = 0.0;
-    if (random.one_in(20)) way.setZero();
+    Eigen::Vector3d motion = point(2.0), half = point(0.4).cwiseAbs() + Eigen::Vector3d::Constant(0.05);
+    if (random.one_in(4)) motion[random.below(3)] = 0.0;
+    if (random.one_in(20)) motion.setZero();
     std::array<Eigen::Vector3d, 3> triangle{point(2.0), point(2.0), point(2.0)};
     if (random.one_in(4)) triangle[2] = triangle[1];
     if (random.one_in(4)) triangle[1].z() = triangle[0].z();
     const Eigen::Vector3d start = point(1.0);
-    const bool swept = SweptBox({start - half, start + half}, way).touches(triangle);
-    const TriangleOverlap overlap(triangle[0], triangle[1], triangle[2]);
+    const bool swept = SweptBox({start - half, start + half}, motion).touches(triangle);
+    const TriangleOverlap overlap(triangle);
     // A box of one step's size less is inside the swept space, one of a step more is around it.
     constexpr int kSteps = 400;
-    const double step = way.norm() / kSteps + 1e-9;
+    const double step = motion.norm() / kSteps + 1e-9;
     bool inside = false, around = false;
     for (int k = 0; k <= kSteps; ++k) {
-      const Eigen::Vector3d at = start + way * (static_cast<double>(k) / kSteps);
+      const Eigen::Vector3d at = start + motion * (static_cast<double>(k) / kSteps);
       const Eigen::Vector3d more = half + Eigen::Vector3d::Constant(step);
       inside = inside || overlap.touches({at - half, at + half});
       around = around || overlap.touches({at - more, at + more});
@@ -74,29 +74,34 @@ TEST(SweptBox, MeetsTheTrianglesThatABoxInManyStepsMeets) {
   EXPECT_GT(passed, 400);
 }
 
-TEST(TriangleTree, CountsAsALoopOverAllTriangles) {
+TEST(TriangleBvh, CountsAsALoopOverAllTriangles) {
   const World world = make_world("factory", 2);
-  const TriangleTree tree(world.mesh);
+  const TriangleBvh bvh(world.mesh);
   test::Random random(4);
   std::uint64_t all = 0;
   for (int i = 0; i < 300; ++i) {
-    Eigen::Vector3d at, way;
+    Eigen::Vector3d at, motion;
     for (int a = 0; a < 3; ++a) {
       at[a] = random.uniform(world.bounds.min()[a], world.bounds.max()[a]);
-      way[a] = random.uniform(-1.5, 1.5);
+      motion[a] = random.uniform(-1.5, 1.5);
     }
-    const SweptBox box({at - Eigen::Vector3d::Constant(0.4), at + Eigen::Vector3d::Constant(0.4)}, way);
+    const SweptBox box({at - Eigen::Vector3d::Constant(0.4), at + Eigen::Vector3d::Constant(0.4)}, motion);
     std::uint64_t count = 0;
-    for (const auto& [a, b, c] : world.mesh.triangles)
-      count += static_cast<std::uint64_t>(
-          box.touches({world.mesh.vertices[a].cast<double>(), world.mesh.vertices[b].cast<double>(),
-                       world.mesh.vertices[c].cast<double>()}));
-    EXPECT_EQ(tree.count(box), count);
+    for (std::size_t t = 0; t < world.mesh.triangles.size(); ++t)
+      count += static_cast<std::uint64_t>(box.touches(corners_of(world.mesh, t)));
+    EXPECT_EQ(bvh.count(box), count);
     all += count;
   }
   EXPECT_GT(all, 100U);
-  EXPECT_EQ(TriangleTree({}).count(SweptBox({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, {1, 1, 1})),
+  EXPECT_EQ(TriangleBvh({}).count(SweptBox({Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, {1, 1, 1})),
             0U);
+}
+
+// Drives, and tells what the robot ran into.
+Collisions collisions_of(SimulatedRobots& robots, std::size_t robot, const Pose& viewpoint) {
+  const Collisions before = robots.total();
+  EXPECT_TRUE(robots.drive(robot, viewpoint).has_value());
+  return {robots.total().lattice - before.lattice, robots.total().physical - before.physical};
 }
 
 TEST(SimulatedRobots, CountWhatTheyRunInto) {
@@ -104,8 +109,7 @@ TEST(SimulatedRobots, CountWhatTheyRunInto) {
   const GroundTruth truth(world, 0.3, *world.start);
   SimulatedRobots robots(world, truth, {planner::ugv_description(), planner::uav_description()}, {}, 1);
   const auto drive = [&](std::size_t robot, double x, double y, double z) {
-    EXPECT_TRUE(robots.drive(robot, {{x, y, z}}).has_value());
-    return robots.last();
+    return collisions_of(robots, robot, {{x, y, z}});
   };
   // Appears, turns, and goes beside the pane: nothing. The pane lies on a face, x = 10 voxels.
   EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), Collisions());
@@ -119,7 +123,7 @@ TEST(SimulatedRobots, CountWhatTheyRunInto) {
   EXPECT_EQ(drive(0, 4.05, 3.15, 0.75), (Collisions{0, 1}));
   EXPECT_EQ(drive(0, 4.05, 1.05, 0.75), Collisions());
   EXPECT_EQ(drive(0, 1.05, 1.05, 0.75), Collisions());
-  EXPECT_EQ(robots.of(0), (Collisions{0, 3}));
+  EXPECT_EQ(robots.total(), (Collisions{0, 3}));
   // The aerial one: 0.4 m to each side, and down to the floor.
   EXPECT_EQ(drive(1, 1.05, 3.15, 1.35), Collisions());
   EXPECT_EQ(drive(1, 2.59, 3.15, 1.35), Collisions());
@@ -127,8 +131,7 @@ TEST(SimulatedRobots, CountWhatTheyRunInto) {
   EXPECT_EQ(drive(1, 1.05, 3.15, 0.45), (Collisions{0, 1}));  // away from the pane
   // Both triangles of the floor meet where x + y = 6, away from here.
   EXPECT_EQ(drive(1, 1.05, 3.15, 0.3).physical, 1U);
-  EXPECT_EQ(robots.of(1).physical, 3U);
-  EXPECT_EQ(robots.total(), (Collisions{0, 6} += Collisions{robots.of(1).lattice, 0}));
+  EXPECT_EQ(robots.total().physical, 6U);
 }
 
 TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
@@ -143,7 +146,7 @@ TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
   std::uint64_t total = 0;
   for (int i = 0; i < 60; ++i) {
     const std::size_t robot = static_cast<std::size_t>(i % 2);
-    // Along one axis, so that it is clear which voxels are on the way.
+    // Along one axis, so that it is clear which voxels it passes.
     Eigen::Vector3d to = at[robot];
     const int axis = random.below(robot == 0 ? 2 : 3);
     to[axis] = std::clamp(to[axis] + random.uniform(-3.0, 3.0), world.bounds.min()[axis] + 1.0,
@@ -159,13 +162,10 @@ TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
       for (int x = -half; x <= half; ++x)
         for (int y = -half; y <= half; ++y)
           for (int z = -below; z <= above; ++z)
-            hit = hit || truth.holds_surface({static_cast<std::uint16_t>(c.x() + x),
-                                              static_cast<std::uint16_t>(c.y() + y),
-                                              static_cast<std::uint16_t>(c.z() + z)});
+            hit = hit || truth.holds_surface(make_key(c.x() + x, c.y() + y, c.z() + z));
       expected += static_cast<std::uint64_t>(hit);
     }
-    robots.drive(robot, {to});
-    EXPECT_EQ(robots.last().lattice, expected) << i;
+    EXPECT_EQ(collisions_of(robots, robot, {to}).lattice, expected) << i;
     total += expected;
     at[robot] = to;
   }
@@ -191,7 +191,19 @@ TEST(SimulatedRobots, ErrorsDependOnSeedRobotAndNumberOfItsScans) {
   EXPECT_FALSE(same_bits(*c.drive(0, pose), first));
   // Without errors it is what the sensor sees.
   SimulatedRobots exact(world, truth, {planner::uav_description()}, {}, 1);
-  EXPECT_TRUE(same_bits(*exact.drive(0, pose), sense(Surface(world.mesh), depth_camera(), pose, 5)));
+  EXPECT_TRUE(same_bits(*exact.drive(0, pose),
+                        sense(Surface(world.mesh), sensor_of(planner::uav_description()), pose, 5)));
+}
+
+TEST(SimulatedRobots, StayWhereABumperStopsThem) {
+  const World world = pane();
+  const GroundTruth truth(world, 0.3, *world.start);
+  SimulatedRobots robots(world, truth, {planner::ugv_description()}, {}, 1, AtContact::kStay);
+  EXPECT_TRUE(robots.drive(0, {{2.25, 3.15, 0.75}}).has_value());
+  EXPECT_FALSE(robots.drive(0, {{4.05, 3.15, 0.75}}).has_value());
+  // It is still on this side of the pane.
+  EXPECT_TRUE(robots.drive(0, {{1.05, 3.15, 0.75}}).has_value());
+  EXPECT_EQ(robots.total(), Collisions());
 }
 
 TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
@@ -200,7 +212,6 @@ TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
   SimulatedRobots robots(world, truth, {planner::ugv_description()}, {}, 1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(robots.drive(1, {{1, 1, 0.75}}), std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(robots.of(1)), std::invalid_argument);
   EXPECT_THROW(robots.drive(0, {{1, nan, 0.75}}), std::invalid_argument);
   EXPECT_THROW(robots.drive(0, {{1, 1, 1e9}}), std::invalid_argument);
   EXPECT_THROW(robots.drive(0, {{1, 1, 0.75}, nan}), std::invalid_argument);

@@ -1,13 +1,14 @@
 // With exact sensing a map invents nothing: every occupied voxel touches a true surface, and every free one
 // can be seen into from where the robot was, without looking through a wall.
+#include "mesh/triangle_overlap.hpp"
 #include "support/maps.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 #include <frontlux/sim/scan_world.hpp>
 #include <frontlux/sim/start_pose.hpp>
-#include <frontlux/sim/triangle_overlap.hpp>
 
 #include <gtest/gtest.h>
 
@@ -27,39 +28,25 @@
 namespace frontlux::sim {
 namespace {
 
-
 using planner::Mapping;
 
 Eigen::AlignedBox3d box_of(const Lattice& lattice, const KeyBox& keys, double grown = 0.0) {
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(lattice.resolution() / 2 + grown);
-  const auto center = [&](const VoxelKey& key) {
-    return Eigen::Vector3d(lattice.center(key.x), lattice.center(key.y), lattice.center(key.z));
-  };
-  return {center(keys.min) - half, center(keys.max) + half};
-}
-
-std::vector<TriangleOverlap> triangles_of(const TriangleMesh& mesh) {
-  std::vector<TriangleOverlap> triangles;
-  for (const auto& [a, b, c] : mesh.triangles)
-    triangles.emplace_back(mesh.vertices[a].cast<double>(), mesh.vertices[b].cast<double>(),
-                           mesh.vertices[c].cast<double>());
-  return triangles;
+  return {lattice.exact_center(keys.min) - half, lattice.exact_center(keys.max) + half};
 }
 
 // The voxels that a surface comes within 2 mm of, triangle by triangle.
 std::set<VoxelKey> touched_voxels(const World& world, const GroundTruth& truth) {
   constexpr double kNear = 2e-3;
   std::set<VoxelKey> touched;
-  for (const TriangleOverlap& triangle : triangles_of(world.mesh)) {
+  for (std::size_t i = 0; i < world.mesh.triangles.size(); ++i) {
+    const TriangleOverlap triangle(corners_of(world.mesh, i));
     const Eigen::Vector3d room = Eigen::Vector3d::Constant(kNear);
-    KeyBox reach =
-        planner::voxels_of(truth.lattice(), {triangle.bounds().min() - room, triangle.bounds().max() + room});
-    const KeyBox& all = truth.bounds();
-    reach.min = {std::max(reach.min.x, all.min.x), std::max(reach.min.y, all.min.y),
-                 std::max(reach.min.z, all.min.z)};
-    reach.max = {std::min(reach.max.x, all.max.x), std::min(reach.max.y, all.max.y),
-                 std::min(reach.max.z, all.max.z)};
-    for_each_key(reach, [&](const VoxelKey& key) {
+    const auto reach = intersection(
+        planner::voxels_of(truth.lattice(), {triangle.bounds().min() - room, triangle.bounds().max() + room}),
+        truth.bounds());
+    if (!reach) continue;
+    for_each_key(*reach, [&](const VoxelKey& key) {
       if (triangle.touches(box_of(truth.lattice(), {key, key}, kNear))) touched.insert(key);
     });
   }
@@ -106,7 +93,8 @@ class FinerTruth {
 
   // Whether a ray of this view enters the box by more than a rounding before it meets a surface.
   [[nodiscard]] bool crosses(const View& view, const Eigen::AlignedBox3d& box) const {
-    const Sensor sensor = view.robot == 1 ? depth_camera() : lidar();
+    const Sensor sensor =
+        sensor_of(view.robot == 1 ? planner::uav_description() : planner::ugv_description());
     if (box.exteriorDistance(view.sensor_pose.position) > sensor.field_of_view().max_range) return false;
     const planner::Scan scan = sense(surface_, sensor, view.sensor_pose, 1);
     constexpr double kRounding = 1e-5;  // [m] of the end points, which are floats
@@ -130,11 +118,11 @@ class FinerTruth {
     for (int x = 0; x < kSamples; ++x)
       for (int y = 0; y < kSamples; ++y)
         for (int z = 0; z < kSamples; ++z) {
-          const Eigen::Array3d share = (Eigen::Array3d(x, y, z) + 0.5) / kSamples;
-          const Eigen::Vector3d point = box.min() + (share * box.sizes().array()).matrix();
+          const Eigen::Array3d part = (Eigen::Array3d(x, y, z) + 0.5) / kSamples;
+          const Eigen::Vector3d point = box.min() + (part * box.sizes().array()).matrix();
           const Eigen::Vector3f from = sensor.cast<float>();
-          const Eigen::Vector3f way = point.cast<float>() - from;
-          rays.push_back({from, way, static_cast<double>(way.norm())});
+          const Eigen::Vector3f to = point.cast<float>() - from;
+          rays.push_back({from, to, static_cast<double>(to.norm())});
         }
     std::vector<Surface::Hit> hits(rays.size());
     surface_.cast(rays, hits);

@@ -20,6 +20,12 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 const Eigen::AlignedBox3f kRoom(Eigen::Vector3f(-3.1F, -4.7F, -0.05F), Eigen::Vector3f(5.3F, 2.9F, 2.6F));
 
+Sensor lidar(RangeErrors errors = {}) { return sensor_of(planner::ugv_description(), errors); }
+Sensor depth_camera(RangeErrors errors = {}) { return sensor_of(planner::uav_description(), errors); }
+Sensor cone(double opening, double max_range, std::size_t rays) {
+  return {{FieldOfView::Shape::kCone, opening, 0.0, max_range}, rays, 1};
+}
+
 // Range from a pose inside kRoom along a direction given by angles in the sensor's frame, from scratch.
 double expected_range(const planner::Pose& pose, double azimuth, double elevation) {
   const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth + pose.yaw),
@@ -86,7 +92,7 @@ TEST(Sensor, CameraInABoxRoom) {
 
 TEST(Sensor, ConeInABoxRoom) {
   const Surface surface(test::box_mesh(kRoom, 5));
-  const Sensor sonar = cone_sensor(30 * kDegree, 7.0, 501);
+  const Sensor sonar = cone(30 * kDegree, 7.0, 501);
   for (const auto& pose : poses()) {
     expect_ranges(sense(surface, sonar, pose, 1), 501, [&](std::size_t i) {
       const Eigen::Vector3d d = sonar.directions()[i];
@@ -96,7 +102,7 @@ TEST(Sensor, ConeInABoxRoom) {
 }
 
 TEST(Sensor, RaysFillTheFieldOfViewAndStayInIt) {
-  for (const Sensor& sensor : {lidar(), depth_camera(), cone_sensor(50 * kDegree, 4.0, 1000)}) {
+  for (const Sensor& sensor : {lidar(), depth_camera(), cone(50 * kDegree, 4.0, 1000)}) {
     FieldOfView view = sensor.field_of_view();
     view.vertical += 1e-9;  // the lidar's extremes lie on the border
     for (const Eigen::Vector3d& direction : sensor.directions()) {
@@ -114,15 +120,15 @@ TEST(Sensor, RaysFillTheFieldOfViewAndStayInIt) {
   EXPECT_NEAR(lowest, -std::sin(20 * kDegree), 1e-12);
 }
 
-// The share of a cone's rays within any smaller cone or any wedge is that of its solid angle.
+// The fraction of a cone's rays within any smaller cone or any wedge is that of its solid angle.
 TEST(Sensor, ConeRaysAreSpreadEvenly) {
   constexpr std::size_t kRays = 10'000;
-  const Sensor sonar = cone_sensor(60 * kDegree, 4.0, kRays);
+  const Sensor sonar = cone(60 * kDegree, 4.0, kRays);
   for (const double part : {5.0, 10.0, 20.0, 28.0}) {
     const auto inside = std::ranges::count_if(
         sonar.directions(), [&](const auto& d) { return d.x() >= std::cos(part * kDegree); });
-    const double share = (1 - std::cos(part * kDegree)) / (1 - std::cos(30 * kDegree));
-    EXPECT_NEAR(static_cast<double>(inside) / kRays, share, 2.0 / kRays) << part;
+    const double fraction = (1 - std::cos(part * kDegree)) / (1 - std::cos(30 * kDegree));
+    EXPECT_NEAR(static_cast<double>(inside) / kRays, fraction, 2.0 / kRays) << part;
   }
   std::vector<int> wedges(12);
   for (const auto& d : sonar.directions()) {
@@ -170,8 +176,8 @@ TEST(Sensor, NoiseIsNormal) {
       if (static_cast<double>(noisy.ranges[i]) - static_cast<double>(exact.ranges[i]) < 0.1 * z) ++below;
     }
     ASSERT_GT(count, 5'000);
-    const double share = 0.5 * std::erfc(-z / std::sqrt(2.0));
-    EXPECT_NEAR(below / count, share, 5 * std::sqrt(share * (1 - share) / count)) << z;
+    const double fraction = 0.5 * std::erfc(-z / std::sqrt(2.0));
+    EXPECT_NEAR(below / count, fraction, 5 * std::sqrt(fraction * (1 - fraction) / count)) << z;
   }
 }
 
@@ -239,7 +245,7 @@ TEST(Sensor, RefusesWhatMakesNoSense) {
   EXPECT_THROW(Sensor(view, 1, 1, {-0.1, 0.0}), std::invalid_argument);
   EXPECT_THROW(Sensor(view, 1, 1, {std::nan(""), 0.0}), std::invalid_argument);
   EXPECT_THROW(Sensor(view, 1, 1, {0.0, 1.1}), std::invalid_argument);
-  EXPECT_THROW(cone_sensor(4.0, 1.0, 10), std::invalid_argument);
+  EXPECT_THROW(cone(4.0, 1.0, 10), std::invalid_argument);
   const Surface surface(test::box_mesh(kRoom));
   EXPECT_THROW(sense(surface, lidar(), {{std::nan(""), 0, 0}, 0}, 0), std::invalid_argument);
   EXPECT_THROW(sense(surface, lidar(), {{1e300, 0, 0}, 0}, 0), std::invalid_argument);

@@ -3,6 +3,7 @@
 #include "sim/mesh/box_mesh.hpp"
 #include "support/random.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/sim/coverage.hpp>
 
 #include <gtest/gtest.h>
@@ -19,19 +20,14 @@ GroundTruth room_with_a_vault() {
 
 Coverage counted(const GroundTruth& truth, const VoxelGrid& grid) {
   Coverage coverage;
-  const KeyBox& box = truth.bounds();
-  for (unsigned x = box.min.x; x <= box.max.x; ++x)
-    for (unsigned y = box.min.y; y <= box.max.y; ++y)
-      for (unsigned z = box.min.z; z <= box.max.z; ++z) {
-        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                           static_cast<std::uint16_t>(z)};
-        const bool known = grid.at(key) != Occupancy::kUnknown;
-        ++coverage.bounding;
-        coverage.known_bounding += known ? 1 : 0;
-        if (truth.at(key) == Truth::kHidden) continue;
-        ++coverage.observable;
-        coverage.known_observable += known ? 1 : 0;
-      }
+  for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+    const bool known = grid.at(key) != Occupancy::kUnknown;
+    ++coverage.bounding;
+    coverage.known_bounding += known ? 1 : 0;
+    if (truth.at(key) == Truth::kHidden) return;
+    ++coverage.observable;
+    coverage.known_observable += known ? 1 : 0;
+  });
   return coverage;
 }
 
@@ -41,9 +37,10 @@ void scribble(VoxelGrid& grid, frontlux::test::Random& random, int strokes) {
     const int level = random.one_in(3) ? random.below(6) : 0;
     const auto coordinate = [&] {
       const int key = Lattice::kOrigin - 50 + random.below(120);
-      return static_cast<std::uint16_t>(key >> level << level);
+      return key >> level << level;
     };
-    grid.fill({{coordinate(), coordinate(), coordinate()}, level}, static_cast<Occupancy>(random.below(3)));
+    const int x = coordinate(), y = coordinate(), z = coordinate();
+    grid.fill({make_key(x, y, z), level}, static_cast<Occupancy>(random.below(3)));
   }
 }
 

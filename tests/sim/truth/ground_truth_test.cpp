@@ -3,6 +3,7 @@
 #include "sim/mesh/box_mesh.hpp"
 #include "support/random.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/surface.hpp>
 
@@ -29,8 +30,7 @@ World world_of(const std::vector<Eigen::AlignedBox3f>& boxes, const Eigen::Align
 }
 
 VoxelKey key_of(int x, int y, int z) {
-  const auto key = [](int cell) { return static_cast<std::uint16_t>(cell + Lattice::kOrigin); };
-  return {key(x), key(y), key(z)};
+  return make_key(x + Lattice::kOrigin, y + Lattice::kOrigin, z + Lattice::kOrigin);
 }
 
 // The truth of a world of boxes (their surfaces; a box may be flat) over [0, n) voxels on each axis, with the
@@ -234,32 +234,26 @@ TEST(GroundTruth, ThinSlantingWallsHold) {
     const Eigen::Vector3d start = middle - normal * 0.7;
     const GroundTruth truth(world, 0.1, start);
     std::uint64_t before_plane = 0;
-    const auto& box = truth.bounds();
-    for (unsigned x = box.min.x; x <= box.max.x; ++x)
-      for (unsigned y = box.min.y; y <= box.max.y; ++y)
-        for (unsigned z = box.min.z; z <= box.max.z; ++z) {
-          const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                             static_cast<std::uint16_t>(z)};
-          const Eigen::Vector3d center = truth.lattice().center(key).cast<double>();
-          const double side = normal.dot(center - middle);
-          // The farthest corner is half a diagonal away: a voxel further off than that is not cut.
-          if (side < -0.087) ++before_plane;
-          if (side < -0.087) {
-            ASSERT_EQ(truth.at(key), Truth::kFree) << round;
-          }
-          if (side > 0.0) {
-            ASSERT_NE(truth.at(key), Truth::kFree) << round;
-          }
-          if (side > 0.15) {
-            ASSERT_EQ(truth.at(key), Truth::kHidden) << round;
-          }
-        }
+    for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+      const double side = normal.dot(truth.lattice().exact_center(key) - middle);
+      // The farthest corner is half a diagonal away: a voxel further off than that is not cut.
+      if (side < -0.087) {
+        ++before_plane;
+        ASSERT_EQ(truth.at(key), Truth::kFree) << round;
+      }
+      if (side > 0.0) {
+        ASSERT_NE(truth.at(key), Truth::kFree) << round;
+      }
+      if (side > 0.15) {
+        ASSERT_EQ(truth.at(key), Truth::kHidden) << round;
+      }
+    });
     EXPECT_GT(before_plane, 1'000U);
   }
 }
 
-// In a soup of triangles, the straight way between the centres of free neighbours meets nothing, and from a
-// voxel that was not reached there is a wall or a surface on the way to each free neighbour.
+// In a soup of triangles, the segment between the centres of free neighbours meets nothing, or a wall on the
+// face between them.
 TEST(GroundTruth, FreeNeighboursSeeEachOther) {
   Random random(3);
   const auto point = [&](double low, double high) {
@@ -284,18 +278,16 @@ TEST(GroundTruth, FreeNeighboursSeeEachOther) {
   }
   ASSERT_TRUE(truth);
   ASSERT_GT(truth->free_voxels(), 3'000U);
-  std::vector<Surface::Ray> ways;
+  std::vector<Surface::Ray> segments;
   truth->for_each_observable([&](const VoxelKey& key, Truth state) {
     if (state != Truth::kFree) return;
     for (int axis = 0; axis < 3; ++axis) {
-      VoxelKey other = key;
-      (axis == 0 ? other.x : axis == 1 ? other.y : other.z)++;
-      if (truth->at(other) != Truth::kFree) continue;
-      ways.push_back({truth->lattice().center(key), Eigen::Vector3f::Unit(axis), 0.2});
+      if (truth->at(*offset_key(key, axis == 0, axis == 1, axis == 2)) != Truth::kFree) continue;
+      segments.push_back({truth->lattice().center(key), Eigen::Vector3f::Unit(axis), 0.2});
     }
   });
-  std::vector<Surface::Hit> hits(ways.size());
-  surface.cast(ways, hits);
+  std::vector<Surface::Hit> hits(segments.size());
+  surface.cast(segments, hits);
   ASSERT_GT(hits.size(), 5'000U);
   // Both may be free and yet have a wall on the face between them, reached from two sides.
   std::size_t walls = 0;

@@ -1,3 +1,7 @@
+#include "sim/mesh/box_mesh.hpp"
+
+#include <frontlux/key_box.hpp>
+#include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -21,33 +25,15 @@
 namespace frontlux::sim {
 namespace {
 
-// The surface of a box, a wall of no thickness on each side.
-void add_box(TriangleMesh& mesh, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const float z : {low.z(), high.z()})
-    for (const float y : {low.y(), high.y()})
-      for (const float x : {low.x(), high.x()}) mesh.vertices.emplace_back(x, y, z);
-  constexpr std::array<std::array<std::uint32_t, 3>, 12> kFaces = {{{0, 2, 1},
-                                                                    {1, 2, 3},
-                                                                    {4, 5, 6},
-                                                                    {5, 7, 6},
-                                                                    {0, 1, 4},
-                                                                    {1, 5, 4},
-                                                                    {2, 6, 3},
-                                                                    {3, 6, 7},
-                                                                    {0, 4, 2},
-                                                                    {2, 4, 6},
-                                                                    {1, 3, 5},
-                                                                    {3, 7, 5}}};
-  for (const auto& [a, b, c] : kFaces) mesh.triangles.push_back({first + a, first + b, first + c});
-}
-
 // A room of 6 x 6 x 3 m whose floor lies right; `things` stand in it.
 World room(std::initializer_list<std::pair<Eigen::Vector3f, Eigen::Vector3f>> things = {}) {
   World world;
   world.name = "test room";
-  add_box(world.mesh, {0, 0, -0.05F}, {6, 6, 2.95F});
-  for (const auto& [low, high] : things) add_box(world.mesh, low, high);
+  const auto add = [&](const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+    test::add_box(world.mesh, {low, high});
+  };
+  add({0, 0, -0.05F}, {6, 6, 2.95F});
+  for (const auto& [low, high] : things) add(low, high);
   world.bounds = {Eigen::Vector3d(-1.5, -1.5, -1.5), Eigen::Vector3d(7.5, 7.5, 4.5)};
   world.start = Eigen::Vector3d(3.15, 3.15, -0.05);
   return world;
@@ -117,7 +103,7 @@ TEST(StartPose, StandsOnTheFloorBesideObstacles) {
   EXPECT_FALSE(obstacle_at(truth, kUav, *uav).has_value());
 }
 
-TEST(StartPose, SaysWhatIsInTheWay) {
+TEST(StartPose, NamesTheObstacle) {
   const World world = room({{{2.4F, 2.4F, 0.35F}, {3.9F, 3.9F, 0.5F}}});
   const GroundTruth truth = truth_of(world);
   const auto why = [&](const planner::Robot& robot, double x, double y, double z) {
@@ -134,7 +120,7 @@ TEST(StartPose, SaysWhatIsInTheWay) {
 TEST(StartPose, FindsNothingWhereNothingFits) {
   World world = room();
   world.mesh = {};
-  add_box(world.mesh, {0, 0, -0.05F}, {0.9F, 6, 2.95F});
+  test::add_box(world.mesh, {Eigen::Vector3f(0, 0, -0.05F), Eigen::Vector3f(0.9F, 6, 2.95F)});
   world.start = Eigen::Vector3d(0.45, 3, 0.5);
   const GroundTruth truth(world, 0.3, *world.start);
   EXPECT_FALSE(ugv_start(truth, *world.start).has_value());
@@ -153,8 +139,7 @@ TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
       EXPECT_LT((ugv->position - start).head<2>().norm(), 0.3) << name << seed;
       ASSERT_TRUE(uav.has_value()) << name << seed;
       const KeyBox a = body_voxels(truth.lattice(), kUgv, *ugv), b = body_voxels(truth.lattice(), kUav, *uav);
-      EXPECT_TRUE(a.max.z < b.min.z || a.max.x < b.min.x || b.max.x < a.min.x || a.max.y < b.min.y ||
-                  b.max.y < a.min.y);
+      EXPECT_FALSE(intersection(a, b).has_value());
     }
 }
 
@@ -209,16 +194,15 @@ TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
     // The judge: the corridor of nodes itself begins there.
     planner::TravelCorridor corridor(nodes.travel, truth.lattice(), truth.bounds());
     const Eigen::Vector3d& at = starts[1]->position;
-    const VoxelKey key{truth.lattice().key(at.x()).value(), truth.lattice().key(at.y()).value(),
-                       truth.lattice().key(at.z()).value()};
-    corridor.update({mapping.grid()}, key);
+    const VoxelKey key = truth.lattice().key(at).value();
+    corridor.update(mapping.grid(), {}, key);
     EXPECT_EQ(corridor.state(), planner::CorridorState::kReady) << name << describe(corridor.state());
     EXPECT_TRUE(corridor.contains(key)) << name;
   }
   // Too low for a node of 1.2 m above 1.2 m: it starts where its box fits.
   World low = room();
   low.mesh = {};
-  add_box(low.mesh, {0, 0, -0.05F}, {6, 6, 2.2F});
+  test::add_box(low.mesh, {Eigen::Vector3f(0, 0, -0.05F), Eigen::Vector3f(6, 6, 2.2F)});
   const GroundTruth truth = truth_of(low);
   const auto starts = find_starts(truth, {3.15, 3.15, 0.15}, std::vector{nodes});
   ASSERT_TRUE(starts[0].has_value());
@@ -226,11 +210,11 @@ TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
 }
 
 TEST(Sweep, LooksAroundAsOftenAsTheSensorNeeds) {
-  EXPECT_EQ(look_around(kUgv.view, {}).size(), 1U);
-  EXPECT_EQ(look_around(kUav.view, {}).size(), 4U);
+  EXPECT_EQ(planner::look_around(kUgv.view, {}).size(), 1U);
+  EXPECT_EQ(planner::look_around(kUav.view, {}).size(), 4U);
   FieldOfView narrow = kUav.view;
   narrow.horizontal = 0.5;
-  const auto poses = look_around(narrow, {{1, 2, 3}, 0.25});
+  const auto poses = planner::look_around(narrow, {{1, 2, 3}, 0.25});
   ASSERT_EQ(poses.size(), 13U);
   EXPECT_EQ(poses[0].yaw, 0.25);
   for (const planner::Pose& pose : poses) EXPECT_EQ(pose.position, Eigen::Vector3d(1, 2, 3));
@@ -264,8 +248,7 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
         for (int k = 0; k < 9; ++k) {
           const Eigen::Vector3d center = 0.3 * (Eigen::Vector3d(x, y, k) + Eigen::Vector3d::Constant(0.5));
           if (center.x() > 3.9 || center.x() < 0 || center.y() < 0 || center.y() > 6) continue;
-          const VoxelKey key{static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
-                             static_cast<std::uint16_t>(32768 + k)};
+          const VoxelKey key = make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + k);
           const Eigen::Vector3d off = center - pose.position;
           const bool in = drives ? off.head<2>().norm() <= radius && k < 3 : off.norm() <= radius;
           if (in || body.contains(key)) expected.insert(key);

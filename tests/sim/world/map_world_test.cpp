@@ -1,5 +1,6 @@
 #include "support/random.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/sim/map_world.hpp>
 
 #include <gtest/gtest.h>
@@ -17,10 +18,7 @@ namespace {
 
 constexpr int kEdge = 12, kLow = Lattice::kOrigin - 5;  // across the origin and across bricks
 
-VoxelKey key(int x, int y, int z) {
-  const auto along = [](int i) { return static_cast<std::uint16_t>(kLow + i); };
-  return {along(x), along(y), along(z)};
-}
+VoxelKey key(int x, int y, int z) { return make_key(kLow + x, kLow + y, kLow + z); }
 
 VoxelGrid random_grid(std::uint64_t seed, int one_in) {
   VoxelGrid grid(0.25);
@@ -64,10 +62,9 @@ Faces faces_of(const VoxelGrid& grid, std::size_t& occupied) {
 // Which voxel faces the triangles cover, found at a point of each face that lies on no triangle's side.
 Faces faces_of(const World& world, double resolution) {
   Faces faces;
-  for (const auto& t : world.mesh.triangles) {
-    std::array<Eigen::Vector3d, 3> corner;
-    for (std::size_t i = 0; i < 3; ++i)
-      corner[i] = (world.mesh.vertices[t[i]].cast<double>() / resolution).array() + (Lattice::kOrigin - kLow);
+  for (std::size_t t = 0; t < world.mesh.triangles.size(); ++t) {
+    std::array<Eigen::Vector3d, 3> corner = corners_of(world.mesh, t);
+    for (auto& c : corner) c = (c / resolution).array() + (Lattice::kOrigin - kLow);
     int axis = 0;
     while (axis < 3 && !(corner[0][axis] == corner[1][axis] && corner[1][axis] == corner[2][axis])) ++axis;
     if (axis == 3) {

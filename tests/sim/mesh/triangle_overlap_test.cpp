@@ -1,11 +1,12 @@
 // Against clipping: what is left of the triangle after the box's six planes have cut it.
 
-#include "support/random.hpp"
+#include "mesh/triangle_overlap.hpp"
 
-#include <frontlux/sim/triangle_overlap.hpp>
+#include "support/random.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 namespace frontlux::sim {
@@ -33,6 +34,10 @@ bool clipping_leaves_something(std::vector<Eigen::Vector3d> polygon, const Eigen
   return !polygon.empty();
 }
 
+TriangleOverlap overlap_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  return TriangleOverlap(std::array{a, b, c});
+}
+
 TEST(TriangleOverlap, AgreesWithClipping) {
   frontlux::test::Random random(1);
   const auto point = [&](double reach) {
@@ -50,7 +55,7 @@ TEST(TriangleOverlap, AgreesWithClipping) {
     const Eigen::Vector3d hair = Eigen::Vector3d::Constant(1e-9);
     const bool surely = clipping_leaves_something({a, b, c}, {box.min() + hair, box.max() - hair});
     const bool maybe = clipping_leaves_something({a, b, c}, {box.min() - hair, box.max() + hair});
-    const bool answer = TriangleOverlap(a, b, c).touches(box);
+    const bool answer = overlap_of(a, b, c).touches(box);
     if (surely) {
       ASSERT_TRUE(answer) << i;
     }
@@ -66,7 +71,7 @@ TEST(TriangleOverlap, AgreesWithClipping) {
 }
 
 TEST(TriangleOverlap, BordersTouch) {
-  const TriangleOverlap triangle({1, 0, 0}, {1, 1, 0}, {1, 0, 1});
+  const TriangleOverlap triangle = overlap_of({1, 0, 0}, {1, 1, 0}, {1, 0, 1});
   const Eigen::AlignedBox3d unit(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
   EXPECT_TRUE(triangle.touches(unit));
   EXPECT_TRUE(triangle.touches({Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(2, 1, 1)}));
@@ -80,7 +85,8 @@ TEST(TriangleOverlap, SeparationAcrossEdges) {
   const Eigen::AlignedBox3d unit(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
   for (const double gap : {-0.01, 0.01}) {
     const double k = 1.0 + gap / 2;  // the edge x + y = 2 k passes the box's edge x = y = 1
-    const TriangleOverlap triangle({k + 1, k - 1, -0.5}, {k - 1, k + 1, 1.5}, {k + 2, k + 2, 0.5});
+    const TriangleOverlap triangle =
+        overlap_of({k + 1, k - 1, -0.5}, {k - 1, k + 1, 1.5}, {k + 2, k + 2, 0.5});
     EXPECT_EQ(triangle.touches(unit), gap < 0);
   }
 }
