@@ -195,7 +195,7 @@ TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
     planner::TravelCorridor corridor(nodes.travel, truth.lattice(), truth.bounds());
     const Eigen::Vector3d& at = starts[1]->position;
     const VoxelKey key = truth.lattice().key(at).value();
-    corridor.update(mapping.grid(), {}, key);
+    corridor.update({mapping.grid()}, key);
     EXPECT_EQ(corridor.state(), planner::CorridorState::kReady) << name << describe(corridor.state());
     EXPECT_TRUE(corridor.contains(key)) << name;
   }
