@@ -95,13 +95,15 @@ void print_ablation(std::span<const MapTrial> maps, const PathTrial& large, std:
       << " random walks through known free space, of 12 viewpoints 1.2 m apart, with a free cube of 0.8 m\n"
          "about every point. Camera 90 x 72 degrees, 10 m. The first and last yaw are given, along the path, "
          "and\n"
-         "count. A cell is the mean number of distinct frontiers in view of a path; a frontier is in view if "
+         "about every point. Camera 90 x 72 degrees, 10 m. The first and last yaw are given, along the path, "
+         "and\n"
+         "count. A cell is the mean number of distinct frontiers in view of a path. A frontier is in view if "
          "the\n"
-         "field of view contains it and neither an unknown nor an occupied voxel stands between. Every "
-         "method but\n"
-         "the first returns the tangent's yaws where those see more, and none of its own steps that sees "
-         "fewer\n"
-         "than its start. Evaluations are of the differentiable gain, three of them for the report.\n\n";
+         "field of view contains it and no unknown or occupied voxel lies between. Every method but the "
+         "first\n"
+         "returns the tangent's yaws if those see more; the ascent never sees fewer than its start. "
+         "Evaluations\n"
+         "are of the differentiable gain; three of them are for the report.\n\n";
   print_methods(maps, out);
   out << "\n## The paths\n\nPairs of a viewpoint and a frontier that it sees at some yaw, and the time to "
          "find "
@@ -119,13 +121,13 @@ void print_ablation(std::span<const MapTrial> maps, const PathTrial& large, std:
         methods.begin());
   };
   const auto gain = [&](std::string_view name) { return cell("%.2f", Summary(maps, find(name)).gain()); };
-  out << "\n## What follows\n\nTurning each viewpoint alone to its best bin sees " << gain("best of 24 bins")
-      << " x as much as the tangent, greedy bins chosen together\n"
-      << gain("greedy among 24 bins") << " x. The gradient alone, from the tangent, comes to "
+  out << "\n## Conclusions\n\nTurning each viewpoint by itself to its best bin sees "
+      << gain("best of 24 bins") << " x as much as the tangent; choosing the bins\ntogether, greedily, "
+      << gain("greedy among 24 bins") << " x. The gradient alone, from the tangent, reaches "
       << gain("tangent, Ipopt, SUM (paper)") << " x by SUM and " << gain("tangent, Ipopt, OR")
-      << " x by OR. After the greedy\nstart the ascent comes to "
+      << " x by OR.\nAfter the greedy start the ascent reaches "
       << gain("greedy among 24 bins, Ipopt, OR (default)")
-      << " x; 60 bins instead of 24, without any gradient, to " << gain("greedy among 60 bins") << " x.\n";
+      << " x; 60 bins instead of 24, without any gradient, " << gain("greedy among 60 bins") << " x.\n";
 }
 
 }  // namespace frontlux::bench

@@ -6,9 +6,8 @@
 
 namespace frontlux {
 
-/// What a range sensor sees of the space around it: a solid of directions, cut off at a range. Sensor frame:
-/// x forward, y left, z up; a robot turns about z only (exploration on a plane or in the air, pitch and roll
-/// 0).
+/// The space that a range sensor sees: a solid of directions, cut off at a range. Sensor frame: x forward, y
+/// left, z up. A robot turns about z only: pitch and roll are 0.
 struct FieldOfView {
   enum class Shape : std::uint8_t {
     kSpinning,  ///< all azimuths, elevations within +-vertical / 2: a lidar
@@ -24,12 +23,15 @@ struct FieldOfView {
   /// @throws std::invalid_argument naming the value that is out of bounds
   void check() const;
 
-  /// Whether a point at this offset from the sensor [m], along the world's axes, is in view at this yaw
-  /// [rad]. The sensor's own position is not.
+  /// Whether a point is in view at this yaw [rad]. The sensor's own position never is.
+  /// @param offset  from the sensor to the point [m], along the world's axes
   [[nodiscard]] bool contains(const Eigen::Vector3d& offset, double yaw) const;
 
-  /// Whether it is in view at some yaw: within range, and not too far above or below.
+  /// Whether a point is in view at some yaw: within range, and not too far above or below.
   [[nodiscard]] bool contains_at_some_yaw(const Eigen::Vector3d& offset) const;
+
+  /// Tangent of the greatest elevation that is in view.
+  [[nodiscard]] double slope() const;
 };
 
 }  // namespace frontlux

@@ -17,29 +17,31 @@
 
 namespace frontlux {
 
+class ViewRegion;
+
 namespace detail {
+class AzimuthBins;
 class RayTries;
 class TargetIndex;
-class ViewReach;
 struct Viewpoint;
 }  // namespace detail
 
 /// How the view quality of a viewpoint is estimated.
 struct ViewQualityOptions {
-  /// How the visible are found.
+  /// How the visible targets are found.
   enum class Renderer : std::uint8_t {
-    kRays,   ///< a ray to each of the targets that are drawn
-    kExact,  ///< every feasible target is looked at, for many viewpoints at once: the values of `kRays` with
-             ///< `kAll` and `Sampling::kFeasible`, many times sooner where viewpoints have neighbours.
-             ///< `samples`, `sampling`, `estimator` and `seed` mean nothing
+    kRays,   ///< by a ray to each of the targets that are drawn
+    kExact,  ///< all feasible targets, for many viewpoints at once: the values of `kRays` with `kAll` and
+             ///< `Sampling::kFeasible`, many times as fast where viewpoints have neighbours. Ignores
+             ///< `samples`, `sampling`, `estimator` and `seed`
   };
   /// What the targets are drawn from.
   enum class Sampling : std::uint8_t {
-    kFeasible,  ///< the targets that are in the field of view at some yaw; they are listed
-    kBuckets,   ///< all targets of the blocks of 8 x 8 x 8 voxels that may be in view, whose number is known
-                ///< without listing; draws that are not in view count as not visible
+    kFeasible,  ///< the targets that are in the field of view at some yaw; all of them are listed
+    kBuckets,   ///< all targets in the blocks of 8 x 8 x 8 voxels that may be in view: their number is known
+                ///< without a list. Drawn targets that are not in view count as not visible
   };
-  /// What the visible among them stand for.
+  /// How the gain is estimated from the visible among the drawn targets.
   enum class Estimator : std::uint8_t {
     kUnbiased,  ///< gain = population * hits / drawn
     kPaper,     ///< gain = hits, which saturates at `samples`; with `Sampling::kFeasible` only
@@ -48,7 +50,7 @@ struct ViewQualityOptions {
   static constexpr int kAll = std::numeric_limits<int>::max();
 
   Renderer renderer = Renderer::kRays;
-  int samples = 64;  ///< most targets drawn for a viewpoint; where there are no more, all are taken
+  int samples = 64;  ///< most targets drawn for a viewpoint; if there are no more than that, all are taken
   Sampling sampling = Sampling::kFeasible;
   Estimator estimator = Estimator::kUnbiased;
   std::uint64_t seed = 1;
@@ -67,12 +69,14 @@ struct ViewQuality {
   std::uint32_t hits = 0;        ///< of the drawn: in view at some yaw and visible
   double gain = 0.0;             ///< estimated number of visible targets, or `hits` with `Estimator::kPaper`
   /// Of `gain`: sqrt((1 - drawn / population) q (1 - q) / (drawn - 1)), times population (paper: times
-  /// drawn). 0 only if all were drawn: q = (hits + 1) / (drawn + 2), so that 0 hits in 64 draws are no
-  /// certainty.
+  /// drawn), with q = (hits + 1) / (drawn + 2). 0 only if all were drawn: 0 hits in 64 draws prove nothing.
   double standard_error = 0.0;
 
   /// `gain` for each of `hits`.
   [[nodiscard]] double gain_per_hit() const { return hits == 0 ? 0.0 : gain / hits; }
+  /// `standard_error`, if only so many of the hits counted: `hits` is replaced in the formula.
+  [[nodiscard]] double standard_error_of(std::uint64_t some_hits,
+                                         ViewQualityOptions::Estimator estimator) const;
   friend bool operator==(const ViewQuality&, const ViewQuality&) = default;
 };
 
@@ -83,22 +87,20 @@ struct AzimuthWindow {
 };
 
 /// The window with the most hits; of equals the one that starts first, counted from azimuth 0 upwards.
-/// @param bin_hits    visible targets in equal sectors of the horizon; bin b of n starts at azimuth b / n of
-/// a
-///                    turn
-/// @param opening     [rad] a window is as many whole bins as fit into it, at most all
-/// @param containing  [rad] if given, only windows with the bin of this azimuth are looked at
+/// @param bin_hits    visible targets in equal sectors of the horizon; bin b of n starts at b / n of a turn
+/// @param opening     [rad] a window has as many whole bins as fit into this angle, at most all
+/// @param containing  [rad] if given, only windows with the bin of this azimuth are considered
 /// @throws std::invalid_argument if there is no bin, if not even one fits, or if an angle is not finite
 [[nodiscard]] AzimuthWindow best_window(std::span<const std::uint32_t> bin_hits, double opening,
                                         std::optional<double> containing = std::nullopt);
 
-/// The view quality of many viewpoints (the paper's Monte-Carlo rendering), which follows a changing map.
+/// The view quality of many viewpoints (the paper's Monte-Carlo rendering), which is updated as the map
+/// changes.
 ///
-/// A viewpoint's value depends on the map, the field of view, the targets near it, the options and its own
-/// key only: not on the other viewpoints, their order, the caster or the number of threads. The random
-/// numbers are keyed by (seed, viewpoint) and by nothing that counts the steps of an exploration, so that a
-/// viewpoint around which nothing changed keeps its value; that its draws repeat does no harm, since a change
-/// of the targets shuffles them.
+/// A viewpoint's value depends only on the map, the field of view, the targets near it, the options and its
+/// own key: not on the other viewpoints, their order, the caster or the number of threads. The random numbers
+/// are keyed by seed and viewpoint alone, so that a viewpoint keeps its value as long as nothing changes
+/// around it. Its draws repeat, which does no harm: a change of the targets shuffles them.
 ///
 /// Thread safety: as a standard container.
 class ViewQualityImage {
@@ -106,23 +108,23 @@ class ViewQualityImage {
   /// An image without viewpoints.
   /// @param lattice  of the keys
   /// @throws std::invalid_argument naming the value that is out of bounds, also if the range is longer than
-  ///                 1024 voxels
+  ///                               `ViewRegion::kMaxRange` voxels
   ViewQualityImage(const Lattice& lattice, const FieldOfView& field_of_view,
                    const ViewQualityOptions& options);
 
   /// Renders every viewpoint.
-  /// @param caster      of the map. Occupied and unknown voxels block; a target itself does not, nor does the
-  ///                    voxel of the viewpoint
+  /// @param caster      of the map. Occupied and unknown voxels block, except the target's and the
+  /// viewpoint's
   /// @param viewpoints  sensor positions, in any order
-  /// @param targets     what is to be seen, in any order; repeated ones count once
+  /// @param targets     voxels to be seen, in any order; repeated ones count once
   void render(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
               std::span<const VoxelKey> targets);
 
-  /// Renders only the viewpoints that are new or that have a changed voxel, or a target that came or went,
-  /// where it could matter. The image is afterwards what `render` would have made of it.
+  /// Renders only the viewpoints that are new, and those that a changed voxel or a new or former target may
+  /// concern. The image is afterwards the same as after `render`.
   /// @param caster  of the map as it is now
   /// @param change  since the last call
-  /// @return how many viewpoints were rendered
+  /// @return number of viewpoints that were rendered
   std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                      std::span<const VoxelKey> targets, const MapChange& change);
 
@@ -130,13 +132,13 @@ class ViewQualityImage {
   [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }
   /// `values()[i]` belongs to `viewpoints()[i]`.
   [[nodiscard]] std::span<const ViewQuality> values() const { return values_; }
-  /// Visible among the drawn targets of viewpoint `i` by azimuth, as `best_window` takes them: empty without
-  /// `azimuth_bins`. Times `gain_per_hit()` they estimate the visible targets. @pre i < size()
+  /// Visible targets among the drawn ones of viewpoint `i` in each azimuth bin, for `best_window`; empty
+  /// without `azimuth_bins`. Times `gain_per_hit()` they are estimates of all visible targets. @pre i <
+  /// size()
   [[nodiscard]] std::span<const std::uint32_t> bin_hits(std::size_t i) const {
     return std::span(bin_hits_).subspan(i * bins(), bins());
   }
 
-  [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
   [[nodiscard]] const ViewQualityOptions& options() const { return options_; }
 
  private:
@@ -146,10 +148,10 @@ class ViewQualityImage {
                      std::shared_ptr<const detail::TargetIndex> targets, std::span<const std::uint32_t> kept);
   [[nodiscard]] std::size_t bins() const { return static_cast<std::size_t>(options_.azimuth_bins); }
 
-  FieldOfView field_of_view_;
   ViewQualityOptions options_;
-  std::shared_ptr<const detail::ViewReach> reach_;
-  std::shared_ptr<detail::RayTries> trees_;
+  std::shared_ptr<const ViewRegion> region_;
+  std::shared_ptr<const detail::AzimuthBins> azimuth_bins_;
+  std::shared_ptr<detail::RayTries> tries_;
   std::shared_ptr<const detail::TargetIndex> targets_;
   std::vector<VoxelKey> viewpoints_;
   std::shared_ptr<const std::vector<detail::Viewpoint>> order_;  // the viewpoints, sorted by place

@@ -1,4 +1,4 @@
-#include "view/view_reach.hpp"
+#include "view/azimuth_bins.hpp"
 
 #include <frontlux/view_quality.hpp>
 

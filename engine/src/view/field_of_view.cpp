@@ -44,8 +44,9 @@ bool FieldOfView::contains(const Eigen::Vector3d& offset, double yaw) const {
 bool FieldOfView::contains_at_some_yaw(const Eigen::Vector3d& offset) const {
   const double squared = offset.squaredNorm();
   if (!(squared > 0.0 && squared <= max_range * max_range)) return false;
-  const double angle = shape == Shape::kCone ? horizontal : vertical;
-  return std::fabs(offset.z()) <= std::tan(angle / 2) * std::hypot(offset.x(), offset.y());
+  return std::fabs(offset.z()) <= slope() * std::hypot(offset.x(), offset.y());
 }
+
+double FieldOfView::slope() const { return std::tan((shape == Shape::kCone ? horizontal : vertical) / 2); }
 
 }  // namespace frontlux

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <frontlux/ray.hpp>
+#include <frontlux/split_mix.hpp>
 
 #include <bit>
 #include <cstddef>
@@ -10,13 +11,12 @@
 
 namespace frontlux::detail {
 
-/// Random numbers that depend on a seed and a voxel and on nothing else: SplitMix64's hash of both, and of a
-/// counter.
+/// Random numbers that depend on a seed and a voxel and on nothing else.
 class VoxelRandom {
  public:
   VoxelRandom(std::uint64_t seed, const VoxelKey& voxel)
-      : state_(mix(mix(seed + kStep) ^
-                   (std::uint64_t{voxel.z} << 32U | std::uint64_t{voxel.y} << 16U | voxel.x))) {}
+      : random_(SplitMix64::mix(SplitMix64::mix(seed + SplitMix64::kStep) ^
+                                (std::uint64_t{voxel.z} << 32U | std::uint64_t{voxel.y} << 16U | voxel.x))) {}
 
   /// Uniform among 0, 1, ..., count - 1, without bias: a product that falls into the incomplete last round is
   /// drawn again. @pre count > 0
@@ -30,15 +30,9 @@ class VoxelRandom {
   }
 
  private:
-  static constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15U;
-  static std::uint64_t mix(std::uint64_t z) {
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-    return z ^ (z >> 31U);
-  }
-  std::uint32_t bits() { return static_cast<std::uint32_t>(mix(state_ += kStep) >> 32U); }
+  std::uint32_t bits() { return static_cast<std::uint32_t>(random_.bits() >> 32U); }
 
-  std::uint64_t state_;
+  SplitMix64 random_;
 };
 
 /// Draws sets of ranks, all sets of a size with equal chance. Holds memory to be used again.

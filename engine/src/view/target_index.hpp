@@ -1,9 +1,8 @@
 #pragma once
 
-#include "voxel/cell_box.hpp"
-#include "view/view_reach.hpp"
+#include "voxel/cell_code.hpp"
 
-#include <frontlux/ray.hpp>
+#include <frontlux/view_region.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -12,14 +11,14 @@
 
 namespace frontlux::detail {
 
-/// Targets by cubes of 8 voxels a side, and these by cubes of 64, so that those near a place are found
-/// without looking at the others. In the order of `cell_code`, which knows nothing of what else is a target:
-/// equal targets around a place are listed in equal order whatever happens elsewhere.
+/// Targets by cubes of 8 voxels a side, and these by cubes of 64, so that the targets near a place are found
+/// without looking at the others. They are in the order of `cell_code`, which depends on nothing else: the
+/// targets around a place keep their order whatever happens elsewhere.
 class TargetIndex {
  public:
   /// A run of targets, and the cube that holds them.
   struct Cube {
-    CellBox box;
+    KeyBox box;
     std::uint32_t begin = 0, end = 0;  ///< of targets; for cubes of 64 of cubes of 8
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
   };
@@ -36,7 +35,7 @@ class TargetIndex {
   [[nodiscard]] std::span<const Cube> cubes() const { return cubes_; }
 
   /// Lists the cubes, by number and in order, that may have a voxel in view from a voxel of a box.
-  void list_cubes(const ViewReach& reach, const CellBox& from, std::vector<std::uint32_t>& cubes) const;
+  void list_cubes(const ViewRegion& view, const KeyBox& from, std::vector<std::uint32_t>& cubes) const;
 
  private:
   std::vector<std::uint64_t> codes_;

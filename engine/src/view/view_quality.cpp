@@ -1,7 +1,5 @@
-#include "view/changed_surroundings.hpp"
+#include "view/changed_boxes.hpp"
 #include "view/exact/exact_render.hpp"
-#include "view/target_index.hpp"
-#include "view/view_reach.hpp"
 #include "view/view_render.hpp"
 
 #include <frontlux/view_quality.hpp>
@@ -10,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -18,13 +17,12 @@
 namespace frontlux {
 namespace {
 
-using detail::CellBox;
 using detail::Viewpoint;
 
 void check_count(std::size_t viewpoints) {
   if (viewpoints > std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument("view quality: " + std::to_string(viewpoints) +
-                                " viewpoints, but at most 2^32 - 1 can be told apart");
+                                " viewpoints, but at most 2^32 - 1 can be numbered");
 }
 
 std::shared_ptr<const std::vector<Viewpoint>> sorted(std::span<const VoxelKey> viewpoints) {
@@ -35,25 +33,25 @@ std::shared_ptr<const std::vector<Viewpoint>> sorted(std::span<const VoxelKey> v
 // kStale.
 constexpr std::uint32_t kStale = std::numeric_limits<std::uint32_t>::max();
 std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<const Viewpoint> before,
-                                     const detail::ViewReach& reach, std::span<const CellBox> changed) {
+                                     const ViewRegion& view, std::span<const KeyBox> changed) {
   std::vector<std::uint32_t> kept(now.size(), kStale);
   const std::vector<std::size_t> tiles = detail::tiles_of(now);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size() - 1), [&](const auto& range) {
-    std::vector<CellBox> near;
+    std::vector<KeyBox> near;
     const auto by_code = [](const Viewpoint& v, std::uint64_t code) { return v.code < code; };
     for (std::size_t t = range.begin(); t < range.end(); ++t) {
-      const std::uint64_t cube = now[tiles[t]].code >> detail::kBlockCode << detail::kBlockCode;
-      const CellBox tile = CellBox::of(detail::cell_of_code(cube), 3);
+      const KeyBox tile = detail::cube_of_code(now[tiles[t]].code);
       near.clear();
-      for (const CellBox& box : changed)
-        if (reach.may_contain(tile, box)) near.push_back(box);
-      auto old = std::lower_bound(before.begin(), before.end(), cube, by_code);
+      for (const KeyBox& box : changed)
+        if (view.may_contain_point(tile, box)) near.push_back(box);
+      auto old = std::lower_bound(before.begin(), before.end(), detail::cell_code(tile.min), by_code);
       for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) {
         while (old != before.end() && old->code < now[i].code) ++old;
         if (old == before.end() || old->code != now[i].code) continue;
-        const CellBox here = CellBox::of(detail::cell_of_code(now[i].code));
-        const bool stale = std::any_of(near.begin(), near.end(),
-                                       [&](const CellBox& box) { return reach.may_contain(here, box); });
+        const VoxelKey here = detail::cell_of_code(now[i].code);
+        const bool stale = std::any_of(near.begin(), near.end(), [&](const KeyBox& box) {
+          return view.may_contain_point({here, here}, box);
+        });
         if (!stale) kept[i] = old->index;
       }
     }
@@ -93,13 +91,22 @@ void ViewQualityOptions::check() const {
         "view quality: the paper's estimator counts hits among feasible targets; take Sampling::kFeasible");
 }
 
+double ViewQuality::standard_error_of(std::uint64_t some_hits,
+                                      ViewQualityOptions::Estimator estimator) const {
+  if (drawn == population) return 0.0;
+  const double all = population, count = drawn;
+  const double q = (static_cast<double>(some_hits) + 1.0) / (count + 2.0);
+  const double error = std::sqrt((1.0 - count / all) * q * (1.0 - q) / std::max(count - 1.0, 1.0));
+  return error * (estimator == ViewQualityOptions::Estimator::kUnbiased ? all : count);
+}
+
 ViewQualityImage::ViewQualityImage(const Lattice& lattice, const FieldOfView& field_of_view,
                                    const ViewQualityOptions& options)
-    : field_of_view_(field_of_view), options_(options) {
+    : options_(options) {
   options_.check();
-  reach_ =
-      std::make_shared<const detail::ViewReach>(field_of_view, lattice.resolution(), options.azimuth_bins);
-  trees_ = std::make_shared<detail::RayTries>();
+  region_ = std::make_shared<const ViewRegion>(field_of_view, lattice.resolution());
+  azimuth_bins_ = std::make_shared<const detail::AzimuthBins>(*region_, options.azimuth_bins);
+  tries_ = std::make_shared<detail::RayTries>();
   targets_ = std::make_shared<const detail::TargetIndex>(std::span<const VoxelKey>());
   order_ = sorted({});
 }
@@ -116,11 +123,11 @@ std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const Vo
                                      std::span<const VoxelKey> targets, const MapChange& change) {
   check_count(viewpoints.size());
   auto index = std::make_shared<const detail::TargetIndex>(targets);
-  const detail::ChangedSurroundings surroundings(change.keys, *targets_, *index,
-                                                 effective(options_).sampling);
+  const bool buckets = effective(options_).sampling == ViewQualityOptions::Sampling::kBuckets;
+  const auto boxes = detail::changed_boxes(change.keys, *targets_, *index, buckets);
   const bool same = std::equal(viewpoints.begin(), viewpoints.end(), viewpoints_.begin(), viewpoints_.end());
   auto order = same ? order_ : sorted(viewpoints);
-  const auto kept = find_kept(*order, *order_, *reach_, surroundings.boxes());
+  const auto kept = find_kept(*order, *order_, *region_, boxes);
   return remake(caster, viewpoints, std::move(order), std::move(index), kept);
 }
 
@@ -149,10 +156,10 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
   const bool exact = options.renderer == ViewQualityOptions::Renderer::kExact;
   if (const auto grid = exact ? caster.grid() : std::nullopt) {
     const auto& walk = detail::trie_walks().front();
-    stale = detail::render_exactly({*grid, *reach_, *targets, walk, *trees_, options.azimuth_bins}, stale,
+    stale = detail::render_exactly({*grid, *region_, *targets, walk, *tries_, options.azimuth_bins}, stale,
                                    values, bin_hits);
   }
-  detail::render_views({caster, *reach_, *targets, options}, stale, values, bin_hits);
+  detail::render_views({caster, *region_, *azimuth_bins_, *targets, options}, stale, values, bin_hits);
 
   viewpoints_ = std::move(keys);
   order_ = std::move(order);

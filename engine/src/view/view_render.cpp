@@ -8,7 +8,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
@@ -21,16 +20,16 @@ constexpr std::size_t kEnoughSegments = 4096;  // for a batch: 16 pieces of a ca
 
 // The targets around a tile, in order of the index, and as arrays for the test of what is in view.
 struct Surroundings {
-  CellBox tile;
+  VoxelKey corner;                        // of the tile
   std::vector<std::uint32_t> cubes;       // numbers in the index
   std::vector<std::uint32_t> cube_begin;  // of each in the arrays, and the end of the last
   std::vector<VoxelKey> keys;
-  std::vector<std::int32_t> entries;  // of the reach's tables, from the tile's corner
-  std::vector<std::int16_t> heights;  // above the tile's corner
+  std::vector<std::int32_t> entries;  // of the view's tables, from the corner
+  std::vector<std::int16_t> heights;  // above the corner
 
-  void list(const ViewReach& reach, const TargetIndex& targets, const CellBox& from) {
-    tile = from;
-    targets.list_cubes(reach, tile, cubes);
+  void list(const ViewRegion& view, const TargetIndex& targets, const KeyBox& tile) {
+    corner = tile.min;
+    targets.list_cubes(view, tile, cubes);
     cube_begin.assign(1, 0);
     for (const std::uint32_t c : cubes) cube_begin.push_back(cube_begin.back() + targets.cubes()[c].size());
     keys.resize(cube_begin.back());
@@ -40,8 +39,8 @@ struct Surroundings {
       std::copy_n(targets.keys().begin() + targets.cubes()[cubes[c]].begin, targets.cubes()[cubes[c]].size(),
                   keys.begin() + cube_begin[c]);
     for (std::size_t t = 0; t < keys.size(); ++t) {
-      entries[t] = reach.entry(keys[t].x - tile.min[0], keys[t].y - tile.min[1]);
-      heights[t] = static_cast<std::int16_t>(keys[t].z - tile.min[2]);
+      entries[t] = view.entry(keys[t].x - corner.x, keys[t].y - corner.y);
+      heights[t] = static_cast<std::int16_t>(keys[t].z - corner.z);
     }
   }
 };
@@ -51,8 +50,7 @@ class TileRenderer {
  public:
   void render(const ViewScene& scene, std::span<const Viewpoint> tile, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits) {
-    surroundings_.list(scene.reach, scene.targets,
-                       CellBox::of(cell_of_code(tile.front().code >> kBlockCode << kBlockCode), 3));
+    surroundings_.list(scene.view, scene.targets, cube_of_code(tile.front().code));
     for (const Viewpoint& viewpoint : tile) {
       draw(scene, viewpoint);
       if (segments_.size() >= kEnoughSegments) finish(scene, values, bin_hits);
@@ -74,7 +72,7 @@ class TileRenderer {
       for (std::size_t s = begin; s < end; ++s) hits += visible_[s];
       if (bins != 0) {
         const auto counts = bin_hits.subspan(drawn.index * bins, bins);
-        for (std::size_t s = begin; s < end; ++s) counts[scene.reach.bins()[entries_[s]]] += visible_[s];
+        for (std::size_t s = begin; s < end; ++s) counts[scene.azimuth_bins[entries_[s]]] += visible_[s];
       }
       value = estimate(drawn, hits, scene.options.estimator);
       begin = end;
@@ -93,13 +91,9 @@ class TileRenderer {
                               ViewQualityOptions::Estimator estimator) {
     ViewQuality value{drawn.population, drawn.count, hits, 0.0, 0.0};
     if (drawn.count == 0) return value;
-    const double population = drawn.population, count = drawn.count;
-    const double q = (hits + 1.0) / (count + 2.0);
-    const double left = 1.0 - count / population;
-    const double error = std::sqrt(left * q * (1.0 - q) / std::max(count - 1.0, 1.0));
     const bool unbiased = estimator == ViewQualityOptions::Estimator::kUnbiased;
-    value.gain = unbiased ? population * hits / count : hits;
-    value.standard_error = error * (unbiased ? population : count);
+    value.gain = unbiased ? static_cast<double>(drawn.population) * hits / drawn.count : hits;
+    value.standard_error = value.standard_error_of(hits, estimator);
     return value;
   }
 
@@ -108,7 +102,7 @@ class TileRenderer {
     const VoxelRandom random(scene.options.seed, from);
     const auto samples = static_cast<std::uint32_t>(scene.options.samples);
     const std::int32_t origin =
-        scene.reach.entry(from.x - surroundings_.tile.min[0], from.y - surroundings_.tile.min[1]);
+        scene.view.entry(from.x - surroundings_.corner.x, from.y - surroundings_.corner.y);
     const auto add = [&](std::uint32_t target) {
       segments_.push_back({from, surroundings_.keys[target]});
       if (scene.options.azimuth_bins != 0) entries_.push_back(surroundings_.entries[target] - origin);
@@ -116,7 +110,7 @@ class TileRenderer {
     const std::size_t begin = segments_.size();
     std::uint32_t population = 0, count = 0;
     if (scene.options.sampling == ViewQualityOptions::Sampling::kFeasible) {
-      population = list_in_view(scene.reach, from, origin);
+      population = list_in_view(scene.view, from, origin);
       const auto& ranks = ranks_.draw(population, samples, random);
       count = static_cast<std::uint32_t>(ranks.size());
       for (const std::uint32_t rank : ranks) add(in_view_[rank]);
@@ -128,7 +122,7 @@ class TileRenderer {
       for (const std::uint32_t rank : ranks) {
         while (rank >= bucket->rank_end) ++bucket;
         const std::uint32_t target = bucket->target_end - (bucket->rank_end - rank);
-        if (scene.reach.contains(from, surroundings_.keys[target])) add(target);
+        if (scene.view.contains(from, surroundings_.keys[target])) add(target);
       }
     }
     drawn_.push_back(
@@ -136,13 +130,13 @@ class TileRenderer {
   }
 
   // Writes every target and advances only past those in view: no branch to mispredict.
-  std::uint32_t list_in_view(const ViewReach& reach, const VoxelKey& from, std::int32_t origin) {
+  std::uint32_t list_in_view(const ViewRegion& view, const VoxelKey& from, std::int32_t origin) {
     const Surroundings& near = surroundings_;
     in_view_.resize(near.keys.size());
-    const std::int16_t* limits = reach.heights() - origin;
+    const std::int16_t* limits = view.heights() - origin;
     const std::int32_t* entries = near.entries.data();
     const std::int16_t* heights = near.heights.data();
-    const int level = from.z - near.tile.min[2];
+    const int level = from.z - near.corner.z;
     const auto size = static_cast<std::uint32_t>(near.keys.size());
     std::uint32_t* out = in_view_.data();
     for (std::uint32_t t = 0; t < size; ++t) {
@@ -157,10 +151,9 @@ class TileRenderer {
   std::uint32_t list_buckets(const ViewScene& scene, const VoxelKey& from) {
     const Surroundings& near = surroundings_;
     buckets_.clear();
-    const CellBox here = CellBox::of(from);
     std::uint32_t population = 0;
     for (std::size_t c = 0; c < near.cubes.size(); ++c) {
-      if (!scene.reach.may_contain(here, scene.targets.cubes()[near.cubes[c]].box)) continue;
+      if (!scene.view.may_contain_point({from, from}, scene.targets.cubes()[near.cubes[c]].box)) continue;
       population += near.cube_begin[c + 1] - near.cube_begin[c];
       buckets_.push_back({population, near.cube_begin[c + 1]});
     }
@@ -176,7 +169,7 @@ class TileRenderer {
   std::vector<std::uint32_t> in_view_;
   std::vector<Bucket> buckets_;
   std::vector<KeySegment> segments_;
-  std::vector<std::int32_t> entries_;  // of the reach's tables, one for each segment
+  std::vector<std::int32_t> entries_;  // of the view's tables, one for each segment
   std::vector<Drawn> drawn_;
   std::vector<std::uint8_t> visible_;
 };

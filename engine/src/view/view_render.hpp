@@ -1,9 +1,8 @@
 #pragma once
 
+#include "view/azimuth_bins.hpp"
 #include "view/target_index.hpp"
-#include "view/view_reach.hpp"
 
-#include <frontlux/ray.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/view_quality.hpp>
 
@@ -14,22 +13,23 @@
 
 namespace frontlux::detail {
 
-/// A viewpoint and where its answer goes.
+/// A viewpoint and the index of its value.
 struct Viewpoint {
   std::uint64_t code = 0;  ///< `cell_code` of its voxel
   std::uint32_t index = 0;
 };
 
-/// Sorted by code, so that neighbours in a cube of 8 voxels follow each other.
+/// Sorted by code, so that the viewpoints of a cube of 8 voxels are next to each other.
 [[nodiscard]] std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints);
 
 /// Runs of viewpoints in one cube of 8 voxels a side: where each begins, and the end of the last.
 [[nodiscard]] std::vector<std::size_t> tiles_of(std::span<const Viewpoint> viewpoints);
 
-/// What viewpoints are rendered with.
+/// All that a viewpoint's value depends on.
 struct ViewScene {
   const RayCaster& caster;
-  const ViewReach& reach;
+  const ViewRegion& view;
+  const AzimuthBins& azimuth_bins;
   const TargetIndex& targets;
   const ViewQualityOptions& options;
 };

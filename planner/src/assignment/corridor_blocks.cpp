@@ -69,13 +69,13 @@ bool CorridorBlocks::contains(const VoxelKey& key) const {
   return number != 0 && ((cubes_[number - 1].blocks[block_of(key)] >> bit_of(key)) & 1U) != 0;
 }
 
-void CorridorBlocks::cubes_near(const VoxelKey& voxel, const FeasibleRegion& region,
+void CorridorBlocks::cubes_near(const VoxelKey& voxel, const ViewRegion& view,
                                 std::vector<const Cube*>& cubes) const {
   const std::array<int, 3> center = {voxel.x, voxel.y, voxel.z};
   std::array<int, 3> first{}, last{};
   for (std::size_t a = 0; a < 3; ++a) {
-    first[a] = std::max(low_[a], (center[a] - region.reach()) >> kCubeLog2);
-    last[a] = std::min(low_[a] + size_[a] - 1, (center[a] + region.reach()) >> kCubeLog2);
+    first[a] = std::max(low_[a], (center[a] - view.reach()) >> kCubeLog2);
+    last[a] = std::min(low_[a] + size_[a] - 1, (center[a] + view.reach()) >> kCubeLog2);
   }
   std::vector<std::pair<int, const Cube*>> found;
   for (int x = first[0]; x <= last[0]; ++x)
@@ -84,7 +84,7 @@ void CorridorBlocks::cubes_near(const VoxelKey& voxel, const FeasibleRegion& reg
         const std::uint32_t number = slots_[slot(x, y, z)];
         if (number == 0) continue;
         const Cube& near = cubes_[number - 1];
-        if (!region.may_meet(voxel, cube(near.corner, kCube))) continue;
+        if (!view.may_contain_voxel({voxel, voxel}, cube(near.corner, kCube))) continue;
         int squared = 0;
         for (const int d : {near.corner.x + kCube / 2 - voxel.x, near.corner.y + kCube / 2 - voxel.y,
                             near.corner.z + kCube / 2 - voxel.z})
@@ -97,13 +97,13 @@ void CorridorBlocks::cubes_near(const VoxelKey& voxel, const FeasibleRegion& reg
   for (const auto& [squared, near] : found) cubes.push_back(near);
 }
 
-BlockCells feasible_cells(const BlockCells& cells, const VoxelKey& voxel, const FeasibleRegion& region) {
+BlockCells feasible_cells(const BlockCells& cells, const VoxelKey& voxel, const ViewRegion& view) {
   BlockCells feasible{cells.corner, 0};
   const int z = voxel.z - cells.corner.z;
   for (int i = 0; i < 16; ++i) {
     const std::uint64_t row = (cells.bits >> (4 * i)) & 0xF;
     if (row == 0) continue;
-    const int height = region.height(cells.corner.x + (i >> 2) - voxel.x, cells.corner.y + (i & 3) - voxel.y);
+    const int height = view.height(cells.corner.x + (i >> 2) - voxel.x, cells.corner.y + (i & 3) - voxel.y);
     const int low = std::max(0, z - height), high = std::min(3, z + height);
     if (height < 0 || low > high) continue;
     feasible.bits |= (row & (0xFU >> (3 - high)) & (0xFU << low)) << (4 * i);

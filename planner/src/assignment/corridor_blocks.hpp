@@ -1,7 +1,6 @@
 #pragma once
 
-#include "assignment/feasible_region.hpp"
-
+#include <frontlux/view_region.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <array>
@@ -60,8 +59,8 @@ class CorridorBlocks {
   /// Whether most cells have others above and below them.
   [[nodiscard]] bool deep() const { return deep_; }
 
-  /// Appends the cubes that the region of a voxel may meet, those nearest to it first.
-  void cubes_near(const VoxelKey& voxel, const FeasibleRegion& region, std::vector<const Cube*>& cubes) const;
+  /// Appends the cubes with cells from which a voxel may be in view, those nearest to it first.
+  void cubes_near(const VoxelKey& voxel, const ViewRegion& view, std::vector<const Cube*>& cubes) const;
 
  private:
   [[nodiscard]] std::size_t slot(int x, int y, int z) const;
@@ -75,6 +74,6 @@ class CorridorBlocks {
 
 /// Those of a block's cells from which a voxel may be in view.
 [[nodiscard]] BlockCells feasible_cells(const BlockCells& cells, const VoxelKey& voxel,
-                                        const FeasibleRegion& region);
+                                        const ViewRegion& view);
 
 }  // namespace frontlux::planner::detail

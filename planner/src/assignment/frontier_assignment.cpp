@@ -1,7 +1,7 @@
-#include "assignment/visibility_flood.hpp"
 #include "assignment/corridor_blocks.hpp"
-#include "assignment/feasible_region.hpp"
 #include "assignment/occlusion.hpp"
+#include "assignment/view_offsets.hpp"
+#include "assignment/visibility_flood.hpp"
 
 #include <frontlux/planner/frontier_assignment.hpp>
 
@@ -18,11 +18,10 @@
 namespace frontlux::planner {
 namespace {
 
-using detail::VisibilityFlood;
 using detail::BlockCells;
 using detail::CorridorBlocks;
-using detail::FeasibleRegion;
 using detail::Occlusion;
+using detail::VisibilityFlood;
 
 constexpr std::size_t kPiece = 256;             // frontiers that are decided together, on one thread
 constexpr std::size_t kSome = 48, kMany = 512;  // rays for one frontier at a time
@@ -35,7 +34,7 @@ struct Search {
   std::span<const VoxelKey> frontiers;
   std::span<const FrontierSight> tried_first;
   std::span<const VoxelKey> unseen;
-  FeasibleRegion region;
+  ViewRegion view;
   CorridorBlocks blocks;
   std::optional<VisibilityFlood> approach;
   Occlusion shadow;  // without `approach`
@@ -49,8 +48,8 @@ class Piece {
   Piece(const Search& search, std::size_t begin, std::size_t end)
       : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
     for (std::size_t i = begin; i < end; ++i)
-      if (search.blocks.may_be_near(search.frontiers[i], search.region.reach(),
-                                    search.region.greatest_height()) &&
+      if (search.blocks.may_be_near(search.frontiers[i], search.view.reach(),
+                                    search.view.greatest_height()) &&
           !std::binary_search(search.unseen.begin(), search.unseen.end(), search.frontiers[i]))
         open_.push_back(static_cast<std::uint32_t>(i - begin));
   }
@@ -111,7 +110,7 @@ class Piece {
           [](const FrontierSight& before, const VoxelKey& key) { return before.frontier < key; });
       if (sight == search_.tried_first.end() || sight->frontier != f) continue;
       const VoxelKey& cell = sight->cell;
-      if (search_.blocks.contains(cell) && search_.region.contains(f.x - cell.x, f.y - cell.y, f.z - cell.z))
+      if (search_.blocks.contains(cell) && search_.view.contains(f.x - cell.x, f.y - cell.y, f.z - cell.z))
         add(i, cell);
     }
     cast();
@@ -138,7 +137,7 @@ class Piece {
       std::optional<VoxelKey> last;
       const auto ask = [&](std::size_t neighbour) {
         const auto& cell = seen_from_[neighbour];
-        if (!cell || cell == last || !search_.region.contains(f.x - cell->x, f.y - cell->y, f.z - cell->z))
+        if (!cell || cell == last || !search_.view.contains(f.x - cell->x, f.y - cell->y, f.z - cell->z))
           return false;
         last = cell;
         add(i, *cell);
@@ -183,8 +182,7 @@ class Piece {
 
   // Where cells are few, or their region is too high for columns of bits.
   void decide_by_blocks() {
-    for (const std::uint32_t i : open_)
-      search_.blocks.cubes_near(frontier(i), search_.region, left_[i].cubes);
+    for (const std::uint32_t i : open_) search_.blocks.cubes_near(frontier(i), search_.view, left_[i].cubes);
     for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
       cast();
       ask_neighbours();
@@ -213,12 +211,13 @@ class Piece {
     if (search_.shadow.hides(f, frontlux::cube(cube.corner, CorridorBlocks::kCube))) return;
     for (std::uint64_t filled = cube.filled; filled != 0; filled &= filled - 1) {
       const BlockCells block = cube.block(std::countr_zero(filled));
-      if (!search_.region.may_meet(f, frontlux::cube(block.corner, CorridorBlocks::kBlock))) continue;
+      if (!search_.view.may_contain_voxel({f, f}, frontlux::cube(block.corner, CorridorBlocks::kBlock)))
+        continue;
       BlockCells cells = block;
       int bit = middle_bit(cells.bits);
       const VoxelKey middle = cells.key(bit);
-      if (!search_.region.contains(f.x - middle.x, f.y - middle.y, f.z - middle.z)) {
-        cells = detail::feasible_cells(block, f, search_.region);
+      if (!search_.view.contains(f.x - middle.x, f.y - middle.y, f.z - middle.z)) {
+        cells = detail::feasible_cells(block, f, search_.view);
         if (cells.bits == 0) continue;
         bit = middle_bit(cells.bits);
       }
@@ -236,7 +235,7 @@ class Piece {
         any = true;
         const BlockCells block = left.blocks[left.next_block++];
         if (search_.shadow.hides(frontier(i), frontlux::cube(block.corner, CorridorBlocks::kBlock))) continue;
-        BlockCells cells = detail::feasible_cells(block, frontier(i), search_.region);
+        BlockCells cells = detail::feasible_cells(block, frontier(i), search_.view);
         for (; cells.bits != 0; cells.bits &= cells.bits - 1, ++n)
           add(i, cells.key(std::countr_zero(cells.bits)));
       }
@@ -279,20 +278,20 @@ AssignedFrontiers find_visible_frontiers(const RayCaster& caster, const VoxelGri
                                      std::span<const VoxelKey> frontiers, const FrontierAgent& agent) {
   if (frontiers.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument(std::to_string(frontiers.size()) + " frontiers are more than 32 bits count");
-  FeasibleRegion region(agent.view, grid.resolution());
+  ViewRegion view(agent.view, grid.resolution());
   if (frontiers.empty() || agent.corridor.empty()) return {};
-  const KeyBox box = box_around(frontiers, region.reach());
-  auto nearby = region.offsets(kNearby);
-  auto spread = region.spread_offsets(kSpread);
+  const KeyBox box = box_around(frontiers, view.reach());
+  auto nearby = detail::nearby_offsets(view, kNearby);
+  auto spread = detail::spread_offsets(view, kSpread);
   CorridorBlocks blocks(agent.corridor);
-  auto approach =
-      blocks.deep() ? VisibilityFlood::make(grid, agent.corridor, region, box_around(frontiers, 0)) : std::nullopt;
+  auto approach = blocks.deep() ? VisibilityFlood::make(grid, agent.corridor, view, box_around(frontiers, 0))
+                                : std::nullopt;
   Occlusion shadow = approach ? Occlusion() : Occlusion(grid, box);
   const Search search{caster,
                       frontiers,
                       agent.tried_first,
                       agent.unseen,
-                      std::move(region),
+                      std::move(view),
                       std::move(blocks),
                       std::move(approach),
                       std::move(shadow),

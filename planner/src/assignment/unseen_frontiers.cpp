@@ -71,7 +71,7 @@ class Surroundings {
 }  // namespace
 
 void UnseenFrontiers::update(const MapChange& change, std::span<const VoxelKey> corridor,
-                             const FeasibleRegion& region) {
+                             const ViewRegion& view) {
   std::vector<VoxelKey> changed;
   if (!keys_.empty()) {
     std::set_difference(corridor.begin(), corridor.end(), corridor_.begin(), corridor_.end(),
@@ -89,7 +89,7 @@ void UnseenFrontiers::update(const MapChange& change, std::span<const VoxelKey> 
     if (const Cube cube = cube_of(key); cubes.empty() || cubes.back() != cube) cubes.push_back(cube);
   std::sort(cubes.begin(), cubes.end());
   cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
-  const int across = (region.reach() >> kLog2Cube) + 1, up = (region.greatest_height() >> kLog2Cube) + 1;
+  const int across = (view.reach() >> kLog2Cube) + 1, up = (view.greatest_height() >> kLog2Cube) + 1;
   const auto around = Surroundings::make(cubes, {across, across, up});
   std::erase_if(keys_, [&](const VoxelKey& key) { return !around || around->contain(cube_of(key)); });
 }

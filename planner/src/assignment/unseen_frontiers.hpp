@@ -1,8 +1,7 @@
 #pragma once
 
-#include "assignment/feasible_region.hpp"
-
 #include <frontlux/map_change.hpp>
+#include <frontlux/view_region.hpp>
 
 #include <optional>
 #include <span>
@@ -19,7 +18,7 @@ class UnseenFrontiers {
   /// Forgets those near what has changed.
   /// @param change    since the last call
   /// @param corridor  cells that the robot can go to now, sorted
-  void update(const MapChange& change, std::span<const VoxelKey> corridor, const FeasibleRegion& region);
+  void update(const MapChange& change, std::span<const VoxelKey> corridor, const ViewRegion& view);
 
   /// Forgets all, the corridor too: whatever cells there are at the next call are new ones.
   void forget() {

@@ -27,14 +27,15 @@ double squared(double a) { return a * a; }
 
 }  // namespace
 
-std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid, std::span<const VoxelKey> corridor,
-                                       const FeasibleRegion& region, const KeyBox& targets) {
-  if (region.greatest_height() > kMaxHeight) return std::nullopt;
+std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid,
+                                                     std::span<const VoxelKey> corridor,
+                                                     const ViewRegion& view, const KeyBox& targets) {
+  if (view.greatest_height() > kMaxHeight) return std::nullopt;
   KeyBox cells{corridor[0], corridor[0]};
   for (const VoxelKey& key : corridor) cells = {least(cells.min, key), greatest(cells.max, key)};
   const KeyBox box{least(cells.min, targets.min), greatest(cells.max, targets.max)};
   if (VoxelColumns::bytes(box) > kMaxBytes) return std::nullopt;
-  std::optional<VisibilityFlood> approach = VisibilityFlood(box, cells, region);
+  std::optional<VisibilityFlood> approach = VisibilityFlood(box, cells, view);
   approach->add_walls(grid);
   for (const VoxelKey& key : corridor) {
     approach->up_.add(VoxelColumns::Kind::kCell, key);
@@ -45,19 +46,18 @@ std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid, std:
 
 // A ray to an offset in the region rises no more than the region's slope allows, and crosses only voxels
 // that it touches.
-VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const FeasibleRegion& region)
-    : up_(box, false), down_(box, true), corridor_(corridor), reach_(region.reach()) {
+VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& view)
+    : up_(box, false), down_(box, true), corridor_(corridor), reach_(view.reach()) {
   constexpr double kWidth = std::numbers::pi / 2 / kSectors;
   for (int x = 0; x <= reach_; ++x)
     for (int y = 0; y <= reach_; ++y) {
       const double range = squared(std::max(x - 0.5, 0.0)) + squared(std::max(y - 0.5, 0.0));
-      const double rise = 0.5 + region.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
+      const double rise = 0.5 + view.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
       const std::uint64_t crossed =
-          range <= region.squared_range()
-              ? up_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())))
+          range <= view.squared_range()
+              ? up_to(static_cast<int>(std::min(rise, 1.0 * view.greatest_height())))
               : 0;
-      std::uint64_t cells = up_to(region.height(x, y));
-      if (x == 0 && y == 0) cells &= ~std::uint64_t{1};  // the target itself
+      const std::uint64_t cells = up_to(view.height(x, y));
       const double azimuth = std::atan2(y, x), low = std::atan2(y - 0.5, x + 0.5) - kRounding,
                    high = std::atan2(y + 0.5, x - 0.5) + kRounding;
       for (std::size_t sector = 0; sector < kSectors; ++sector) {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "assignment/feasible_region.hpp"
 #include "assignment/voxel_columns.hpp"
 
+#include <frontlux/view_region.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <array>
@@ -25,8 +25,9 @@ class VisibilityFlood {
   /// Nothing if the region is higher than a word has bits, or the tables would be larger than they are worth.
   /// @param targets  a box around all of them
   /// @pre there are cells
-  [[nodiscard]] static std::optional<VisibilityFlood> make(const VoxelGrid& grid, std::span<const VoxelKey> corridor,
-                                                    const FeasibleRegion& region, const KeyBox& targets);
+  [[nodiscard]] static std::optional<VisibilityFlood> make(const VoxelGrid& grid,
+                                                           std::span<const VoxelKey> corridor,
+                                                           const ViewRegion& view, const KeyBox& targets);
 
   /// Of a row of columns the heights that are connected to the target; one for each thread.
   using Row = std::vector<std::uint64_t>;
@@ -35,7 +36,7 @@ class VisibilityFlood {
   void cells(const VoxelKey& target, Row& row, std::vector<VoxelKey>& cells) const;
 
  private:
-  VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const FeasibleRegion& region);
+  VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& view);
   void add_walls(const VoxelGrid& grid);
   void cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector, Row& row,
              std::vector<VoxelKey>& cells) const;

@@ -1,7 +1,6 @@
 #include "goal/cluster_goal.hpp"
 
 #include "assignment/corridor_blocks.hpp"
-#include "assignment/feasible_region.hpp"
 #include "goal/rendered_goal.hpp"
 
 #include <algorithm>
@@ -96,7 +95,7 @@ class Watchers {
   }
 
   const GoalQuery& query_;
-  FeasibleRegion region_;
+  ViewRegion region_;
   CorridorBlocks blocks_;
   std::vector<const CorridorBlocks::Cube*> cubes_;
   std::vector<KeySegment> segments_;

@@ -72,7 +72,7 @@ void GoalSelection::State::update(const MapChange& change, std::span<const Pose>
     member.cell = *cell;
     member.corridor.update(change, member.cell);
     member.unseen.update(change, member.corridor.cells(),
-                         detail::FeasibleRegion(team[r].robot.view, lattice.resolution()));
+                         ViewRegion(team[r].robot.view, lattice.resolution()));
   }
 }
 

@@ -1,8 +1,8 @@
 #include "goal/possible_goals.hpp"
 
-#include "assignment/corridor_blocks.hpp"
-#include "assignment/feasible_region.hpp"
 #include "goal/rendered_goal.hpp"
+
+#include <frontlux/view_region.hpp>
 
 #include <tbb/parallel_for.h>
 
@@ -74,7 +74,7 @@ class CubeView {
     for (; target != targets.end(); ++target) {
       const int x = number(target->corner.x, from.corner.x), y = number(target->corner.y, from.corner.y);
       if (x > reach_) break;
-      if (std::abs(y) > reach_ || !region_.may_meet(box, cube(target->corner, kEdge))) continue;
+      if (std::abs(y) > reach_ || !region_.may_contain_voxel(box, cube(target->corner, kEdge))) continue;
       const Sectors& showing =
           sectors_[static_cast<std::size_t>(x + reach_) * static_cast<std::size_t>(2 * reach_ + 1) +
                    static_cast<std::size_t>(y + reach_)];
@@ -118,7 +118,7 @@ class CubeView {
     return {static_cast<std::size_t>(first - turns * kSectors), static_cast<std::size_t>(last - first + 1)};
   }
 
-  FeasibleRegion region_;
+  ViewRegion region_;
   int reach_;  // [cubes]
   double opening_;
   std::vector<Sectors> sectors_;  // by offset along x and y

@@ -25,15 +25,6 @@ bool more_promising(const GoalQuery& query, const Candidate& a, const Candidate&
   return a.rated.cell < b.rated.cell;
 }
 
-// As ViewQuality tells it for all hits.
-double standard_error(const ViewQuality& value, std::uint64_t hits, bool unbiased) {
-  if (value.drawn == value.population) return 0.0;
-  const double population = value.population, drawn = value.drawn;
-  const double q = (static_cast<double>(hits) + 1.0) / (drawn + 2.0);
-  const double error = std::sqrt((1.0 - drawn / population) * q * (1.0 - q) / std::max(drawn - 1.0, 1.0));
-  return error * (unbiased ? population : drawn);
-}
-
 std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQualityImage& image,
                                        const VoxelKey* containing) {
   std::vector<Candidate> candidates(image.size());
@@ -73,7 +64,6 @@ bool better(const GoalQuery& query, const RenderedCell& a, const RenderedCell& b
 RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
                   const VoxelKey* containing) {
   const ViewQuality& value = image.values()[index];
-  const bool unbiased = image.options().estimator == ViewQualityOptions::Estimator::kUnbiased;
   RenderedCell rated;
   rated.cell = image.viewpoints()[index];
   rated.distance = query.distance(rated.cell);
@@ -87,7 +77,7 @@ RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::si
   }
   rated.hits = static_cast<std::uint32_t>(hits);
   rated.gain = static_cast<double>(hits) * value.gain_per_hit();
-  rated.standard_error = standard_error(value, hits, unbiased);
+  rated.standard_error = value.standard_error_of(hits, image.options().estimator);
   rated.quality = query.quality(rated.distance, rated.gain);
   return rated;
 }

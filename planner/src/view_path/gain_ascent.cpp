@@ -19,34 +19,26 @@ constexpr double kFirstStep = 0.1;  // [rad] largest turn of a stage's first ste
 constexpr double kFlat = 1e-9;    // gradient per unit of gain under which a path counts as stationary [1/rad]
 constexpr double kMargin = 1e-7;  // [rad] kept from the limits, which Ipopt meets to its own tolerance
 
-// What all stages share: the path, what is spent, and the best that was met.
+// What is common to all stages: the gain, the number of evaluations, and the best yaws so far.
 class Climb {
  public:
-  Climb(const InformationGain& gain, std::span<const Pose> viewpoints, std::span<const double> start,
-        const YawLimits& limits, const PathOptimizerOptions& options)
+  Climb(const InformationGain& gain, std::span<const double> start, const YawLimits& limits)
       : gain_(gain),
-        poses_(viewpoints.begin(), viewpoints.end()),
         limits_(limits),
-        automatic_(options.differentiation == Differentiation::kAutomatic),
         best_(start.begin(), start.end()),
         shown_(best_),
         most_(gain.distinct(start)) {}
 
   [[nodiscard]] double evaluate(std::span<const double> yaws, double sharpness, std::span<double> gradient) {
     ++evaluations_;
-    // Judged is what would be returned, to the last bit: whole turns taken out, the ends as they were given.
+    // What would be returned, to the last bit: without whole turns, the ends as they were given.
     for (std::size_t i = 1; i + 1 < yaws.size(); ++i) shown_[i] = wrapped(yaws[i]);
     const std::uint64_t distinct = gain_.distinct(shown_);
     if (distinct >= most_ && limits_.allow(shown_)) {
       most_ = distinct;
       best_ = shown_;
     }
-    if (!automatic_) return gain_.value(shown_, sharpness, gradient);
-    std::vector<PoseGradient> all(poses_.size());
-    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i].yaw = shown_[i];
-    const double value = gain_.automatic_value_at(poses_, sharpness, all);
-    for (std::size_t i = 0; i < all.size(); ++i) gradient[i] = all[i].yaw;
-    return value;
+    return gain_.value(shown_, sharpness, gradient);
   }
 
   [[nodiscard]] const YawLimits& limits() const { return limits_; }
@@ -55,16 +47,13 @@ class Climb {
 
  private:
   const InformationGain& gain_;
-  std::vector<Pose> poses_;
   const YawLimits& limits_;
-  bool automatic_;
   std::vector<double> best_, shown_;  // [rad] inner ones in [-pi, pi]
   std::uint64_t most_;
   int evaluations_ = 0;
 };
 
-// One stage, as Ipopt sees it: x are the yaws between the ends, the objective is the gain with its sign
-// turned.
+// One stage, as Ipopt sees it: x are the yaws between the ends, the objective is minus the gain.
 class Stage : public Ipopt::TNLP {
  public:
   Stage(Climb& climb, std::vector<double> start, double sharpness, int max_evaluations)
@@ -73,7 +62,7 @@ class Stage : public Ipopt::TNLP {
         gradient_(yaws_.size()),
         sharpness_(sharpness),
         last_evaluation_(climb.evaluations() + max_evaluations) {
-    // From here on yaws are as the robot turns, without jumps by a whole turn.
+    // From here on yaws are continuous along the path, without jumps by a whole turn.
     for (std::size_t i = 1; i < yaws_.size(); ++i) yaws_[i] = yaws_[i - 1] + wrapped(yaws_[i] - yaws_[i - 1]);
     gain_ = climb_.evaluate(yaws_, sharpness_, gradient_);
     double steepest = 0.0;
@@ -171,7 +160,8 @@ class Stage : public Ipopt::TNLP {
     return viewpoint > 0 && viewpoint + 1 < yaws_.size();
   }
 
-  // Ipopt asks for value and slope apart, and sometimes twice: the point decides, not its word that x is new.
+  // Ipopt calls for value and gradient separately, and sometimes twice. Its flag for a new x is not reliable,
+  // so the points are compared.
   bool move_to(Index n, const Number* x) {
     if (std::equal(x, x + n, yaws_.begin() + 1)) return true;
     if (climb_.evaluations() >= last_evaluation_) {
@@ -229,21 +219,20 @@ PathEnd run(const Ipopt::SmartPtr<Stage>& stage, int max_iterations, bool limite
 
 }  // namespace
 
-Ascent ascend(const InformationGain& gain, std::span<const Pose> viewpoints, std::span<const double> start,
-              const YawLimits& limits, const PathOptimizerOptions& options, int max_evaluations) {
+Ascent ascend(const InformationGain& gain, std::span<const double> start, const YawLimits& limits,
+              std::span<const double> sharpness, int max_evaluations) {
   // Ipopt 3.11 numbers the states of its vectors by a static counter without a lock.
   static std::mutex one_at_a_time;
   const std::scoped_lock lock(one_at_a_time);
 
-  Climb climb(gain, viewpoints, start, limits, options);
+  Climb climb(gain, start, limits);
   Ascent ascent;
-  const std::size_t stages = options.sharpness.size();
-  for (std::size_t s = 0; s < stages; ++s) {
-    const int share = (max_evaluations - climb.evaluations()) / static_cast<int>(stages - s);
+  for (std::size_t s = 0; s < sharpness.size(); ++s) {
+    const int evaluations = (max_evaluations - climb.evaluations()) / static_cast<int>(sharpness.size() - s);
     ascent.end = PathEnd::kEvaluationLimit;
-    if (share < 1) continue;
-    const Ipopt::SmartPtr<Stage> stage = new Stage(climb, climb.best(), options.sharpness[s], share);
-    ascent.end = run(stage, share, limits.limited());
+    if (evaluations < 1) continue;
+    const Ipopt::SmartPtr<Stage> stage = new Stage(climb, climb.best(), sharpness[s], evaluations);
+    ascent.end = run(stage, evaluations, limits.limited());
   }
   ascent.yaws = climb.best();
   ascent.evaluations = climb.evaluations();

@@ -12,19 +12,17 @@ namespace frontlux::planner {
 
 /// Where an ascent ended.
 struct Ascent {
-  std::vector<double>
-      yaws;  ///< [rad] of those met, the ones with most distinct frontiers; the later of equals
+  std::vector<double> yaws;  ///< [rad] those with most distinct frontiers in view; of equals the last
   int evaluations = 0;
   PathEnd end = PathEnd::kConverged;
 };
 
 /// Climbs along the gain's gradient by the yaws between the first and the last, with Ipopt.
-/// @param viewpoints  for their positions, by which the gain is differentiated automatically
-/// @param start  one yaw for each viewpoint [rad], within the limits
-/// @param max_evaluations  of the gain; a stage cut short leaves the rest to the next
+/// @param start            one yaw for each viewpoint [rad], within the limits
+/// @param sharpness        of each stage, one after the other
+/// @param max_evaluations  of the gain; what a stage does not use is left to the next
 /// @pre three viewpoints or more
-[[nodiscard]] Ascent ascend(const InformationGain& gain, std::span<const Pose> viewpoints,
-                            std::span<const double> start, const YawLimits& limits,
-                            const PathOptimizerOptions& options, int max_evaluations);
+[[nodiscard]] Ascent ascend(const InformationGain& gain, std::span<const double> start,
+                            const YawLimits& limits, std::span<const double> sharpness, int max_evaluations);
 
 }  // namespace frontlux::planner

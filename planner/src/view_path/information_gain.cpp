@@ -134,7 +134,7 @@ void InformationGain::check_yaws(std::span<const double> yaws) const {
 // One number for each pair, in the order of the viewpoints.
 struct InformationGain::Memberships {
   Eigen::ArrayXd value;
-  Eigen::ArrayXd slope;  // by the yaw of the pair's viewpoint [1/rad]; empty if not asked for
+  Eigen::ArrayXd slope;  // by the yaw of the pair's viewpoint [1/rad]; empty if not wanted
 };
 
 InformationGain::Memberships InformationGain::memberships(std::span<const double> yaws, double sharpness,
@@ -155,10 +155,6 @@ InformationGain::Memberships InformationGain::memberships(std::span<const double
     }
   }
   return m;
-}
-
-double InformationGain::value(std::span<const double> yaws, double sharpness) const {
-  return value(yaws, sharpness, {});
 }
 
 double InformationGain::value(std::span<const double> yaws, double sharpness,

@@ -62,7 +62,7 @@ PathOptimizerOptions paper_path_options() {
   PathOptimizerOptions options;
   options.gain.mode = GainMode::kSum;
   options.start = YawStart::kTangent;
-  options.max_evaluations = 60;  // from the tangent it is further than from the greedy start
+  options.max_evaluations = 60;  // the tangent is farther from a maximum than the greedy start
   return options;
 }
 
@@ -124,7 +124,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   else if (nothing_to_climb)
     path.end = *nothing_to_climb;
   else {
-    auto ascent = ascend(gain, viewpoints, path.yaws, limits, options, options.max_evaluations - kReports);
+    auto ascent = ascend(gain, path.yaws, limits, options.sharpness, options.max_evaluations - kReports);
     path.evaluations += ascent.evaluations;
     path.end = ascent.end;
     path.yaws = std::move(ascent.yaws);

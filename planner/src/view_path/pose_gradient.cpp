@@ -1,11 +1,7 @@
-// The gain of a path whose viewpoints may move: by hand in closed form, and by automatic differentiation.
-// Both work pair by pair; `information_gain.cpp` has the fast way for yaws alone.
-
-#include "view_path/fuzzy_view.hpp"
+// The gain of a path whose viewpoints may move, in closed form and pair by pair. `information_gain.cpp` is
+// faster, and for yaws alone.
 
 #include <frontlux/planner/information_gain.hpp>
-
-#include <unsupported/Eigen/AutoDiff>
 
 #include <array>
 #include <cmath>
@@ -14,8 +10,6 @@
 
 namespace frontlux::planner {
 namespace {
-
-using Dual = Eigen::AutoDiffScalar<Eigen::Vector4d>;  // by x, y, z and yaw of one viewpoint
 
 struct Membership {
   double value = 0.0;
@@ -94,35 +88,6 @@ Membership closed_form(const Pose& pose, const Eigen::Vector3d& point, const Fie
   return m;
 }
 
-PoseOf<Dual> constant(const Pose& pose) {
-  return {Dual(pose.position.x()), Dual(pose.position.y()), Dual(pose.position.z()), Dual(pose.yaw)};
-}
-
-PoseOf<Dual> variable(const Pose& pose) {
-  return {Dual(pose.position.x(), 4, 0), Dual(pose.position.y(), 4, 1), Dual(pose.position.z(), 4, 2),
-          Dual(pose.yaw, 4, 3)};
-}
-
-// The gain as it is written down, frontier by frontier.
-Dual plain_gain(std::span<const PoseOf<Dual>> poses, std::span<const Eigen::Vector3d> frontiers,
-                const VisiblePairs& pairs, const FieldOfView& view, const GainOptions& options,
-                double sharpness) {
-  Dual gain(0.0);
-  for (std::size_t j = 0; j < frontiers.size(); ++j) {
-    Dual sum(0.0), missed(1.0);
-    for (const std::uint32_t i : pairs.viewpoints_of(j)) {
-      const auto& pose = poses[i];
-      const bool apart = Eigen::Vector3d(pose.x.value(), pose.y.value(), pose.z.value()) != frontiers[j];
-      if (!apart) continue;
-      const Dual m = membership(pose, frontiers[j], view, sharpness, options.range_sharpness);
-      sum = Dual(sum + m);
-      missed = Dual(missed * Dual(1.0 - options.detection * m));
-    }
-    gain = options.mode == GainMode::kSum ? Dual(gain + sum) : Dual(gain + (1.0 - missed));
-  }
-  return gain;
-}
-
 }  // namespace
 
 void InformationGain::check_poses(std::span<const Pose> poses, std::size_t gradients) const {
@@ -160,29 +125,6 @@ double InformationGain::value_at(std::span<const Pose> poses, double sharpness,
   if (!counted_once) return sum;
   double gain = 0.0;
   for (const double all : missed) gain += 1.0 - all;
-  return gain;
-}
-
-double InformationGain::automatic_value_at(std::span<const Pose> poses, double sharpness,
-                                           std::span<PoseGradient> gradient) const {
-  check_poses(poses, gradient.size());
-  check_sharpness(sharpness);
-  std::vector<VisiblePair> list;
-  list.reserve(seen_.size());
-  for (std::size_t i = 0; i < viewpoints(); ++i)
-    for (const std::uint32_t j : frontiers_of(i)) list.push_back({static_cast<std::uint32_t>(i), j});
-  const VisiblePairs pairs(viewpoints(), frontiers_.size(), list);
-  std::vector<PoseOf<Dual>> numbers;
-  for (const Pose& pose : poses) numbers.push_back(constant(pose));
-  double gain = 0.0;
-  for (std::size_t i = 0; i < viewpoints(); ++i) {  // one viewpoint after the other is the variable
-    const PoseOf<Dual> fixed = numbers[i];
-    numbers[i] = variable(poses[i]);
-    const Dual all = plain_gain(numbers, frontiers_, pairs, view_, options_, sharpness);
-    numbers[i] = fixed;
-    gain = all.value();
-    gradient[i] = {all.derivatives().head<3>(), all.derivatives()[3]};
-  }
   return gain;
 }
 

@@ -13,7 +13,7 @@
 namespace frontlux::planner {
 namespace {
 
-constexpr double kFlat = 1e-9;      // gradient per unit of gain under which nothing pulls [1/m]
+constexpr double kFlat = 1e-9;      // gradient per unit of gain under which a path counts as stationary [1/m]
 constexpr double kRounding = 1e-9;  // of the spacing, as the path planner keeps it
 
 void check_count(const char* name, int value) {
@@ -35,7 +35,7 @@ std::vector<double> yaws_of(std::span<const Pose> viewpoints) {
   return yaws;
 }
 
-// What a move could bring into view: frozen pairs have to hold it, or nothing would pull towards it.
+// With all that a move could bring into view: only frontiers among the fixed pairs attract a viewpoint.
 FieldOfView widened(FieldOfView view, double shift) {
   constexpr double kWidest = 3.1;  // [rad], since the opening has to stay below pi
   double& opening = view.shape == FieldOfView::Shape::kCone ? view.horizontal : view.vertical;
@@ -45,14 +45,14 @@ FieldOfView widened(FieldOfView view, double shift) {
   return view;
 }
 
-class Ways {
+class Moves {
  public:
-  Ways(std::span<const Pose> origin, const TravelCorridor& corridor, const Lattice& lattice, Motion motion,
-       const PositionOptions& options)
+  Moves(std::span<const Pose> origin, const TravelCorridor& corridor, const Lattice& lattice, Motion motion,
+        const PositionOptions& options)
       : origin_(origin), corridor_(corridor), lattice_(lattice), motion_(motion), options_(options) {}
 
   // The path after a step of each viewpoint between the ends, one after the other, as far as its neighbours
-  // allow: every path on the way is admissible, and so is the last.
+  // allow: the path is admissible after every step.
   [[nodiscard]] std::vector<Pose> moved(std::vector<Pose> path, std::span<const PoseGradient> gradient,
                                         double scale) const {
     constexpr int kHalvings = 4;
@@ -91,8 +91,8 @@ class Ways {
   const PositionOptions& options_;
 };
 
-// Along the gradient while it pays; a step that does not is tried again at half its length.
-std::vector<Pose> climbed(const InformationGain& gain, std::vector<Pose> path, const Ways& ways,
+// Along the gradient; a step that does not raise the gain is tried again at half its length.
+std::vector<Pose> climbed(const InformationGain& gain, std::vector<Pose> path, const Moves& moves,
                           const PositionOptions& options, bool plane) {
   std::vector<PoseGradient> gradient(path.size()), next(path.size());
   double value = gain.value_at(path, options.sharpness, gradient);
@@ -104,7 +104,7 @@ std::vector<Pose> climbed(const InformationGain& gain, std::vector<Pose> path, c
       steepest = std::max(steepest, plane ? slope.head<2>().norm() : slope.norm());
     }
     if (!(steepest > kFlat * value)) break;
-    std::vector<Pose> trial = ways.moved(path, gradient, length / steepest);
+    std::vector<Pose> trial = moves.moved(path, gradient, length / steepest);
     const double reached = gain.value_at(trial, options.sharpness, next);
     if (!(reached > value)) {
       length /= 2.0;
@@ -143,7 +143,7 @@ RefinedPath refine_positions(std::span<const Pose> viewpoints, std::span<const V
   const auto targets = centers(grid.lattice(), frontiers);
   const FieldOfView wide = widened(robot.view, options.max_shift);
   const bool plane = robot.travel.motion == Motion::kPlane;
-  const Ways ways(viewpoints, corridor, grid.lattice(), robot.travel.motion, options);
+  const Moves moves(viewpoints, corridor, grid.lattice(), robot.travel.motion, options);
 
   RefinedPath refined{{viewpoints.begin(), viewpoints.end()}, {}, {}, 0, 0};
   const InformationGain first(viewpoints, targets,
@@ -157,7 +157,7 @@ RefinedPath refine_positions(std::span<const Pose> viewpoints, std::span<const V
     const InformationGain gain(refined.viewpoints, targets,
                                visible_pairs(counting, grid, refined.viewpoints, frontiers, wide), robot.view,
                                options.optimizer.gain);
-    std::vector<Pose> path = climbed(gain, refined.viewpoints, ways, options, plane);
+    std::vector<Pose> path = climbed(gain, refined.viewpoints, moves, options, plane);
     if (same_places(path, refined.viewpoints)) break;
 
     const auto turned =

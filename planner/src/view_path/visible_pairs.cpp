@@ -9,71 +9,35 @@
 namespace frontlux::planner {
 namespace {
 
-std::uint32_t place(std::size_t i) { return static_cast<std::uint32_t>(i); }
-
 void check_countable(const char* what, std::size_t count) {
   if (count > std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument("visible pairs: " + std::to_string(count) + " " + what +
                                 ", more than 2^32 - 1");
 }
 
-// FieldOfView::contains_at_some_yaw, which calls tan and hypot, asked only where rounding could matter.
-class Reach {
- public:
-  explicit Reach(const FieldOfView& view) : view_(view), squared_range_(view.max_range * view.max_range) {
-    const bool cone = view.shape == FieldOfView::Shape::kCone;
-    const double slope = std::tan((cone ? view.horizontal : view.vertical) / 2);
-    squared_slope_ = slope * slope;
-  }
-
-  [[nodiscard]] bool holds(const Eigen::Vector3d& offset) const {
-    constexpr double kRounding = 1e-12;
-    if (!(offset.squaredNorm() <= squared_range_)) return false;
-    const double rise = offset.z() * offset.z();
-    const double limit = squared_slope_ * (offset.x() * offset.x() + offset.y() * offset.y());
-    if (rise > limit * (1.0 + kRounding)) return false;
-    return rise < limit * (1.0 - kRounding) || view_.contains_at_some_yaw(offset);
-  }
-
- private:
-  const FieldOfView& view_;
-  double squared_range_, squared_slope_ = 0.0;
-};
-
 }  // namespace
 
-VisiblePairs::VisiblePairs(std::size_t viewpoints, std::size_t frontiers,
-                           std::span<const VisiblePair> pairs) {
+VisiblePairs::VisiblePairs(std::size_t viewpoints, std::size_t frontiers, std::span<const VisiblePair> pairs)
+    : frontiers_(frontiers), first_(viewpoints + 1, 0), seen_(pairs.size()) {
   check_countable("viewpoints", viewpoints);
   check_countable("frontiers", frontiers);
-  by_viewpoint_.first.assign(viewpoints + 1, 0);
-  by_frontier_.first.assign(frontiers + 1, 0);
   for (const auto& [viewpoint, frontier] : pairs) {
     if (viewpoint >= viewpoints || frontier >= frontiers)
       throw std::invalid_argument("visible pairs: there is no pair of viewpoint " +
                                   std::to_string(viewpoint) + " of " + std::to_string(viewpoints) +
                                   " and frontier " + std::to_string(frontier) + " of " +
                                   std::to_string(frontiers));
-    ++by_viewpoint_.first[viewpoint + 1];
-    ++by_frontier_.first[frontier + 1];
+    ++first_[viewpoint + 1];
   }
-  for (Index* index : {&by_viewpoint_, &by_frontier_}) {
-    for (std::size_t i = 1; i < index->first.size(); ++i) index->first[i] += index->first[i - 1];
-    index->other.resize(pairs.size());
-  }
-  // Rows of viewpoints filled by one pass over the pairs, then those of frontiers by viewpoint: ascending.
-  auto next = by_viewpoint_.first;
-  for (const auto& [viewpoint, frontier] : pairs) by_viewpoint_.other[next[viewpoint]++] = frontier;
-  next = by_frontier_.first;
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  auto next = first_;
+  for (const auto& [viewpoint, frontier] : pairs) seen_[next[viewpoint]++] = frontier;
   for (std::size_t i = 0; i < viewpoints; ++i) {
-    const auto row =
-        std::span(by_viewpoint_.other)
-            .subspan(by_viewpoint_.first[i], by_viewpoint_.first[i + 1] - by_viewpoint_.first[i]);
-    if (!std::is_sorted(row.begin(), row.end())) std::sort(row.begin(), row.end());
+    const auto row = std::span(seen_).subspan(first_[i], first_[i + 1] - first_[i]);
+    std::sort(row.begin(), row.end());
     if (const auto twice = std::adjacent_find(row.begin(), row.end()); twice != row.end())
       throw std::invalid_argument("visible pairs: viewpoint " + std::to_string(i) + " sees frontier " +
                                   std::to_string(*twice) + " twice");
-    for (const std::uint32_t j : row) by_frontier_.other[next[j]++] = place(i);
   }
 }
 
@@ -84,15 +48,23 @@ VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid, std::
   check_countable("frontiers", frontiers.size());
   view.check();
   const auto targets = centers(grid.lattice(), frontiers);
-  const Reach reach(view);
+  // FieldOfView::contains_at_some_yaw, which calls tan and hypot: called only where rounding could matter.
+  const double squared_range = view.max_range * view.max_range, squared_slope = view.slope() * view.slope();
+  const auto in_view = [&](const Eigen::Vector3d& offset) {
+    constexpr double kRounding = 1e-12;
+    if (!(offset.squaredNorm() <= squared_range)) return false;
+    const double rise = offset.z() * offset.z();
+    const double limit = squared_slope * (offset.x() * offset.x() + offset.y() * offset.y());
+    if (rise > limit * (1.0 + kRounding)) return false;
+    return rise < limit * (1.0 - kRounding) || view.contains_at_some_yaw(offset);
+  };
   std::vector<VisiblePair> pairs;
   std::vector<Segment> segments;
   for (std::size_t i = 0; i < viewpoints.size(); ++i) {
     const Eigen::Vector3d from = viewpoints[i].position;
     for (std::size_t j = 0; j < targets.size(); ++j) {
-      const Eigen::Vector3d offset = targets[j] - from;
-      if (!reach.holds(offset)) continue;
-      pairs.push_back({place(i), place(j)});
+      if (!in_view(targets[j] - from)) continue;
+      pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
       segments.push_back({from.cast<float>(), targets[j].cast<float>()});
     }
   }
@@ -108,8 +80,7 @@ VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid, std::
 std::vector<Eigen::Vector3d> centers(const Lattice& lattice, std::span<const VoxelKey> keys) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(keys.size());
-  for (const VoxelKey& key : keys)
-    points.emplace_back(lattice.center(key.x), lattice.center(key.y), lattice.center(key.z));
+  for (const VoxelKey& key : keys) points.push_back(lattice.exact_center(key));
   return points;
 }
 

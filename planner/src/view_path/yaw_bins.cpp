@@ -53,7 +53,7 @@ std::vector<double> YawBins::most_distinct() const {
   return yaws_of(choice);
 }
 
-// Views add up, so that the best sequence under limits between neighbours is found from one to the next.
+// Views add up, so the best sequence under limits between neighbours is found by dynamic programming.
 YawBins::Choice YawBins::best_sequence() const {
   const std::vector<std::uint32_t> none(gain_.frontiers(), 0);
   Choice choice(yaws_.size(), 0);
@@ -82,8 +82,8 @@ YawBins::Choice YawBins::best_sequence() const {
   return choice;
 }
 
-// Again and again the viewpoint and yaw that add most. What one can add only falls as others are chosen, so
-// that a viewpoint is counted anew only when its old count is the highest.
+// Chooses the viewpoint and yaw that add most, again and again. The number that one can add only falls as
+// others are chosen, so a viewpoint is counted anew only when its old count is the highest.
 YawBins::Choice YawBins::greedy_choice(std::vector<std::uint32_t>& covered) const {
   struct Offer {
     std::uint32_t views;
@@ -137,7 +137,7 @@ void YawBins::sweep(Choice& choice, std::vector<std::uint32_t>& covered) const {
   }
 }
 
-// How many frontiers that nobody covers are in view at each yaw.
+// How many frontiers that no viewpoint covers are in view at each yaw.
 std::vector<std::uint32_t> YawBins::new_views(std::size_t viewpoint,
                                               std::span<const std::uint32_t> covered) const {
   std::vector<std::uint32_t> views(yaws_[viewpoint].size(), 0);

@@ -10,20 +10,22 @@
 
 namespace frontlux::planner {
 
-/// A few yaws for each viewpoint of a path, what is truly in view at each of them, and choices among them.
+/// A few yaws for each viewpoint of a path, the frontiers truly in view at each of them, and choices among
+/// them.
 class YawBins {
  public:
   static constexpr int kMaxBins = 63;  // a bit each, and one for the even turn
 
-  /// The first and last viewpoint have one yaw, theirs; the others `bins` around the circle and, if turning
-  /// is limited, that of the even turn.
+  /// The first and the last viewpoint have their one yaw. The others have `bins` around the circle and, if
+  /// turning is limited, that of the even turn.
   YawBins(const InformationGain& gain, int bins, double first_yaw, double last_yaw, const YawLimits& limits);
 
-  /// The yaws with most views within the limits, a frontier counting for each viewpoint that has it in view.
+  /// The yaws with most views within the limits. A frontier counts once for each viewpoint that has it in
+  /// view.
   [[nodiscard]] std::vector<double> most_views() const;
 
-  /// Yaws with many distinct frontiers in view, within the limits: greedy, then viewpoint by viewpoint until
-  /// none can be turned to see more.
+  /// Yaws with many distinct frontiers in view, within the limits: chosen greedily, then improved viewpoint
+  /// by viewpoint until no single turn adds a frontier.
   [[nodiscard]] std::vector<double> most_distinct() const;
 
  private:

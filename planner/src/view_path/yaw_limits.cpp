@@ -32,13 +32,13 @@ bool YawLimits::allow(std::span<const double> yaws) const {
 }
 
 std::vector<double> YawLimits::even_turn(double first, double last) const {
-  const auto share = [](double step) { return std::min(step, std::numbers::pi); };
+  const auto most = [](double step) { return std::min(step, std::numbers::pi); };
   const double turn = wrapped(last - first);
   double all = 0.0, passed = 0.0;
-  for (const double step : steps_) all += share(step);
+  for (const double step : steps_) all += most(step);
   std::vector<double> yaws{first};
   for (const double step : steps_) {
-    passed += share(step);
+    passed += most(step);
     yaws.push_back(all > 0.0 ? first + turn * (passed / all) : last);
   }
   yaws.back() = last;

@@ -10,7 +10,7 @@ namespace frontlux::planner {
 /// The same direction in [-pi, pi] [rad].
 [[nodiscard]] double wrapped(double yaw);
 
-/// How far a robot may turn from each viewpoint to the next [rad]. Infinite: as far as it likes.
+/// How far a robot may turn from each viewpoint to the next [rad]; infinite: no limit.
 class YawLimits {
  public:
   static constexpr double kTolerance = 1e-9;  ///< [rad]
@@ -27,8 +27,8 @@ class YawLimits {
   [[nodiscard]] bool allows(std::size_t i, double yaw, double next) const;
   [[nodiscard]] bool allow(std::span<const double> yaws) const;
 
-  /// Turns from the first yaw to the last the short way, using the same share of each limit: allowed if
-  /// anything is.
+  /// Turns from the first yaw to the last by the smaller angle, by the same fraction of each limit. It keeps
+  /// the limits if any yaws do.
   [[nodiscard]] std::vector<double> even_turn(double first, double last) const;
 
  private:

@@ -1,6 +1,7 @@
-// The sliding window against summing up each window anew.
+// The sliding window against summing up each window anew; the bins.
 
 #include "support/random.hpp"
+#include "view/azimuth_bins.hpp"
 
 #include <frontlux/view_quality.hpp>
 
@@ -83,6 +84,23 @@ TEST(BestWindow, RefusesWhatHasNoAnswer) {
   EXPECT_THROW((void)best_window(bins, std::nan("")), std::invalid_argument);
   EXPECT_THROW((void)best_window(bins, std::numeric_limits<double>::infinity()), std::invalid_argument);
   EXPECT_THROW((void)best_window(bins, 1.0, std::nan("")), std::invalid_argument);
+}
+
+TEST(AzimuthBins, CountFromAzimuthZeroUpwards) {
+  EXPECT_EQ(detail::azimuth_bin(0.0, 36), 0);
+  EXPECT_EQ(detail::azimuth_bin(9.999 * kDegree, 36), 0);
+  EXPECT_EQ(detail::azimuth_bin(10.001 * kDegree, 36), 1);
+  EXPECT_EQ(detail::azimuth_bin(-0.001 * kDegree, 36), 35);
+  EXPECT_EQ(detail::azimuth_bin(-1e-300, 36), 35);
+  EXPECT_EQ(detail::azimuth_bin(std::numbers::pi, 36), 18);
+  EXPECT_EQ(detail::azimuth_bin(-std::numbers::pi, 36), 18);
+  EXPECT_EQ(detail::azimuth_bin(745 * kDegree, 36), 2);
+  EXPECT_EQ(detail::azimuth_bin(1.0, 1), 0);
+  const ViewRegion region({FieldOfView::Shape::kSpinning, 0.0, 1.0, 9.5}, 1.0);
+  const detail::AzimuthBins bins(region, 36);
+  for (int dx = -9; dx <= 9; ++dx)
+    for (int dy = -9; dy <= 9; ++dy)
+      ASSERT_EQ(bins[region.entry(dx, dy)], detail::azimuth_bin(std::atan2(dy, dx), 36));
 }
 
 }  // namespace

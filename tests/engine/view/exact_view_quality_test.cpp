@@ -1,6 +1,5 @@
-// The exact renderer against brute force: every target asked one by one, with the field of view's own test
-// and the walk over the grid. Then against itself: on every instruction set, on other threads, kept and from
-// scratch.
+// The exact renderer against brute force: target by target, with the field of view's own test and the walk
+// over the grid. Then against itself: on every instruction set, on other threads, kept and from scratch.
 
 #include "support/changed_keys.hpp"
 #include "support/random.hpp"
@@ -28,8 +27,6 @@ using Shape = FieldOfView::Shape;
 
 constexpr double kDegree = std::numbers::pi / 180, kResolution = 0.25;
 
-std::uint16_t key(int k) { return static_cast<std::uint16_t>(k); }
-
 struct Case {
   std::string name;
   VoxelGrid grid{kResolution};
@@ -55,7 +52,7 @@ Case random_case(std::uint64_t seed) {
     const int places[] = {0, Lattice::kKeysPerAxis - size[a], 32768 - size[a] / 2, 40000 + random.below(64)};
     low[a] = places[random.below(4)];
   }
-  const int share = 1 + random.below(12);  // of free voxels 1 - 1 / share
+  const int blocked_one_in = 1 + random.below(12);
   const int stride[] = {1, 2, 3, 4, 8};
   const int sx = stride[random.below(5)], sy = stride[random.below(5)], sz = stride[random.below(3)];
   const int one_in = 1 + random.below(6), targets_one_in = 1 + random.below(20);
@@ -63,10 +60,10 @@ Case random_case(std::uint64_t seed) {
   for (int x = 0; x < size[0]; ++x)
     for (int y = 0; y < size[1]; ++y)
       for (int z = 0; z < size[2]; ++z) {
-        const VoxelKey k{key(low[0] + x), key(low[1] + y), key(low[2] + z)};
-        const Occupancy state = !random.one_in(share) ? Occupancy::kFree
-                                : random.one_in(2)    ? Occupancy::kOccupied
-                                                      : Occupancy::kUnknown;
+        const VoxelKey k = make_key(low[0] + x, low[1] + y, low[2] + z);
+        const Occupancy state = !random.one_in(blocked_one_in) ? Occupancy::kFree
+                                : random.one_in(2)             ? Occupancy::kOccupied
+                                                               : Occupancy::kUnknown;
         some.grid.set(k, state);
         if (x % sx == 0 && y % sy == 0 && z % sz == 0 && random.one_in(one_in)) some.viewpoints.push_back(k);
         if ((any_target || state == Occupancy::kUnknown) && random.one_in(targets_one_in))
@@ -117,13 +114,13 @@ Truth brute_force(const Case& some, int bins) {
 
 // By walks alone, however few the viewpoints.
 Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
-  const detail::ViewReach reach(some.view, kResolution, bins);
+  const ViewRegion view(some.view, kResolution);
   const detail::TargetIndex targets(some.targets);
-  detail::RayTries trees;
+  detail::RayTries tries;
   Truth mine;
   mine.values.resize(some.viewpoints.size());
   mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
-  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, bins, {1, 1}},
+  const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, bins, {1, 1}},
                                            detail::sort_viewpoints(some.viewpoints), mine.values, mine.bins);
   EXPECT_EQ(left.size(), 0U);
   return mine;
@@ -132,6 +129,7 @@ Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
 ViewQualityOptions exact(int bins) { return {.renderer = Renderer::kExact, .azimuth_bins = bins}; }
 
 void expect_equal(const Truth& mine, const Truth& truth) {
+  ASSERT_EQ(mine.values.size(), truth.values.size());
   for (std::size_t i = 0; i < truth.values.size(); ++i)
     ASSERT_EQ(mine.values[i], truth.values[i])
         << i << ": " << mine.values[i].hits << " of " << mine.values[i].population << ", not "
@@ -139,23 +137,18 @@ void expect_equal(const Truth& mine, const Truth& truth) {
   ASSERT_EQ(mine.bins, truth.bins);
 }
 
-void expect_equal(const ViewQualityImage& image, const Truth& truth) {
-  ASSERT_EQ(image.size(), truth.values.size());
-  const auto bins = static_cast<std::size_t>(image.options().azimuth_bins);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    ASSERT_EQ(image.values()[i], truth.values[i])
-        << i << ": " << image.values()[i].hits << " of " << image.values()[i].population << ", not "
-        << truth.values[i].hits << " of " << truth.values[i].population;
-    ASSERT_TRUE(std::ranges::equal(image.bin_hits(i), std::span(truth.bins).subspan(i * bins, bins))) << i;
-  }
+Truth truth_of(const ViewQualityImage& image) {
+  Truth truth{{image.values().begin(), image.values().end()}, {}};
+  for (std::size_t i = 0; i < image.size(); ++i)
+    truth.bins.insert(truth.bins.end(), image.bin_hits(i).begin(), image.bin_hits(i).end());
+  return truth;
 }
+
+void expect_equal(const ViewQualityImage& image, const Truth& truth) { expect_equal(truth_of(image), truth); }
 
 void expect_equal(const ViewQualityImage& a, const ViewQualityImage& b) {
   ASSERT_TRUE(std::ranges::equal(a.viewpoints(), b.viewpoints()));
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_EQ(a.values()[i], b.values()[i]) << i;
-    ASSERT_TRUE(std::ranges::equal(a.bin_hits(i), b.bin_hits(i))) << i;
-  }
+  expect_equal(truth_of(a), truth_of(b));
 }
 
 TEST(ExactViewQuality, IsBruteForcesOnRandomMaps) {
@@ -227,8 +220,8 @@ TEST(ExactViewQuality, SeesFromCornerToCornerOfTheKeyRange) {
   for (const int x : {0, 65535})
     for (const int y : {0, 65535})
       for (const int z : {0, 65535}) {
-        corners.push_back({key(x), key(y), key(z)});
-        neighbours.push_back({key(x == 0 ? 4 : 65531), key(y == 0 ? 3 : 65532), key(z)});
+        corners.push_back(make_key(x, y, z));
+        neighbours.push_back(make_key(x == 0 ? 4 : 65531, y == 0 ? 3 : 65532, z));
       }
   Case some{"corners", grid, {Shape::kSpinning, 0, 80 * kDegree, 6 * kResolution}, corners, neighbours};
   const auto caster = make_grid_ray_caster(grid);
@@ -274,7 +267,7 @@ Case hall(std::uint64_t seed, int stride) {
   for (int x = 0; x < 96; ++x)
     for (int y = 0; y < 80; ++y)
       for (int z = 0; z < 10; ++z) {
-        const VoxelKey k{key(32700 + x), key(32740 + y), key(32768 + z)};
+        const VoxelKey k = make_key(32700 + x, 32740 + y, 32768 + z);
         const bool pillar = (x / 3 + 5 * (y / 4)) % 11 == 0;
         const bool unseen = !pillar && random.one_in(20);
         some.grid.set(k, pillar ? Occupancy::kOccupied : unseen ? Occupancy::kUnknown : Occupancy::kFree);
@@ -286,38 +279,38 @@ Case hall(std::uint64_t seed, int stride) {
 }
 
 // Edits of a map: voxels of all states, targets that come and go, viewpoints likewise.
-TEST(ExactViewQuality, FollowsChangesAsIfRenderedAnew) {
+TEST(ExactViewQuality, AfterUpdatesEqualsRenderingAgain) {
   for (const int bins : {0, 36}) {
     Case some = hall(3, bins == 0 ? 1 : 2);
     ASSERT_GT(some.viewpoints.size(), 4000U);
     Random random(5);
     const auto caster = make_embree_ray_caster(some.grid);
-    ViewQualityImage followed(some.grid.lattice(), some.view, exact(bins));
-    followed.render(*caster, some.viewpoints, some.targets);
+    ViewQualityImage updated(some.grid.lattice(), some.view, exact(bins));
+    updated.render(*caster, some.viewpoints, some.targets);
     std::size_t rendered = 0, all = 0;
     for (int step = 0; step < 16; ++step) {
       const VoxelGrid before = some.grid;
       const auto near =
           some.viewpoints[static_cast<std::size_t>(random.below(static_cast<int>(some.viewpoints.size())))];
       for (int i = random.below(40); i > 0; --i) {
-        const auto off = [&](std::uint16_t k) { return key(k + random.below(7) - 3); };
-        const VoxelKey k{off(near.x), off(near.y), off(near.z)};
+        const auto off = [&] { return random.below(7) - 3; };
+        const VoxelKey k = *offset_key(near, off(), off(), off());
         some.grid.set(k, static_cast<Occupancy>(random.below(3)));
         if (random.one_in(2)) some.targets.push_back(k);
       }
       if (random.one_in(3)) some.targets.erase(some.targets.begin() + random.below(9));
       if (random.one_in(3)) some.viewpoints.erase(some.viewpoints.begin() + random.below(9));
-      if (random.one_in(3)) some.viewpoints.push_back({key(near.x ^ 1), near.y, near.z});
+      if (random.one_in(3)) some.viewpoints.push_back(make_key(near.x ^ 1, near.y, near.z));
       const std::vector<VoxelKey> changed = test::changed_keys(before, some.grid);
       caster->update(some.grid);
-      rendered += followed.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
+      rendered += updated.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
       all += some.viewpoints.size();
       const auto render = [&](const ViewQualityOptions& options) {
         return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
                                    options);
       };
-      expect_equal(followed, render(exact(bins)));
-      expect_equal(followed, render({.samples = ViewQualityOptions::kAll, .azimuth_bins = bins}));
+      expect_equal(updated, render(exact(bins)));
+      expect_equal(updated, render({.samples = ViewQualityOptions::kAll, .azimuth_bins = bins}));
       if (HasFatalFailure()) return;
     }
     EXPECT_GT(rendered, 0U);
@@ -340,29 +333,28 @@ TEST(ExactViewQuality, DoesNotDependOnThreads) {
   }
 }
 
-// Of viewpoints without neighbours, and of few, nothing is walked for.
-TEST(ExactViewQuality, LeavesToRaysWhatTheyDoSooner) {
+TEST(ExactViewQuality, LeavesFewOrLoneViewpointsToRays) {
   Case some = hall(5, 2);
   const VoxelKey alone{32700, 32740, 40000};
   some.viewpoints.push_back(alone);
-  const detail::ViewReach reach(some.view, kResolution, 0);
+  const ViewRegion view(some.view, kResolution);
   const detail::TargetIndex targets(some.targets);
-  detail::RayTries trees;
+  detail::RayTries tries;
   const auto& walk = detail::trie_walks().front();
   std::vector<ViewQuality> values(some.viewpoints.size());
   const auto all = detail::sort_viewpoints(some.viewpoints);
   const auto few = std::span(all).first(1000);
-  EXPECT_EQ(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+  EXPECT_EQ(detail::render_exactly({some.grid, view, targets, walk, tries, 0}, few, values, {}).size(),
             1000U);
-  const auto left = detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, all, values, {});
+  const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, 0}, all, values, {});
   ASSERT_EQ(left.size(), 1U);
   EXPECT_EQ(detail::cell_of_code(left.front().code), alone);
-  // Now that there is a tree, few are enough.
-  EXPECT_LT(detail::render_exactly({some.grid, reach, targets, walk, trees, 0}, few, values, {}).size(),
+  // Now that there is a trie, few are enough.
+  EXPECT_LT(detail::render_exactly({some.grid, view, targets, walk, tries, 0}, few, values, {}).size(),
             1000U);
 }
 
-TEST(ExactViewQuality, FallsBackOnRaysWherePathsAreTooMany) {
+TEST(ExactViewQuality, FallsBackOnRaysWhereTheTrieWouldBeTooLarge) {
   VoxelGrid grid(kResolution);
   grid.fill({{32768, 32768, 32768}, 6}, Occupancy::kFree);
   const std::vector<VoxelKey> viewpoints{{32770, 32770, 32770}, {32772, 32770, 32770}};

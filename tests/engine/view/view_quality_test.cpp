@@ -1,5 +1,5 @@
-// The renderer against brute force: every target asked one by one with the field of view's own test and the
-// grid caster. What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
+// The renderer against brute force: target by target, with the field of view's own test and the grid caster.
+// What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
 
 #include "support/changed_keys.hpp"
 #include "support/random.hpp"
@@ -28,8 +28,6 @@ constexpr Sampling kSamplings[] = {Sampling::kFeasible, Sampling::kBuckets};
 FieldOfView lidar() { return {FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0}; }
 FieldOfView camera() { return {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 4.0}; }
 
-std::uint16_t key(int k) { return static_cast<std::uint16_t>(k); }
-
 // A hall with pillars, in which some voxels were never seen.
 struct Hall {
   static constexpr int kLength = 48, kHeight = 14;
@@ -39,28 +37,25 @@ struct Hall {
 
   explicit Hall(std::uint64_t seed, int low_key = 32750) : low(low_key) {
     Random random(seed);
-    for_each_voxel(
-        [&](const VoxelKey& k) { grid.set(k, random.one_in(24) ? Occupancy::kUnknown : Occupancy::kFree); });
+    for_each_key(box(), [&](const VoxelKey& k) {
+      grid.set(k, random.one_in(24) ? Occupancy::kUnknown : Occupancy::kFree);
+    });
     for (int i = 0; i < 14; ++i) {
       const int x = random.below(kLength), y = random.below(kLength);
-      for (int z = 0; z < kHeight; ++z)
-        grid.set({key(low + x), key(low + y), key(low + z)}, Occupancy::kOccupied);
+      for (int z = 0; z < kHeight; ++z) grid.set(make_key(low + x, low + y, low + z), Occupancy::kOccupied);
     }
     observe();
   }
 
-  template <class Visit>
-  void for_each_voxel(const Visit& visit) const {
-    for (int x = 0; x < kLength; ++x)
-      for (int y = 0; y < kLength; ++y)
-        for (int z = 0; z < kHeight; ++z) visit(VoxelKey{key(low + x), key(low + y), key(low + z)});
+  [[nodiscard]] KeyBox box() const {
+    return {make_key(low, low, low), make_key(low + kLength - 1, low + kLength - 1, low + kHeight - 1)};
   }
 
   // Unknown voxels are targets, and some of the free ones viewpoints.
   void observe() {
     targets.clear();
     viewpoints.clear();
-    for_each_voxel([&](const VoxelKey& k) {
+    for_each_key(box(), [&](const VoxelKey& k) {
       const Occupancy state = grid.at(k);
       if (state == Occupancy::kUnknown) targets.push_back(k);
       if (state == Occupancy::kFree && (k.x + 2 * k.y + 5 * k.z) % 41 == 0) viewpoints.push_back(k);
@@ -68,7 +63,7 @@ struct Hall {
   }
 
   [[nodiscard]] VoxelKey middle() const {
-    return {key(low + kLength / 2), key(low + kLength / 2), key(low + kHeight / 2)};
+    return make_key(low + kLength / 2, low + kLength / 2, low + kHeight / 2);
   }
 };
 
@@ -192,9 +187,9 @@ TEST(ViewQuality, PaperEstimatorCountsHits) {
   EXPECT_TRUE(differs);
 }
 
-// The errors of many seeds, each with the standard error that was told with it.
+// The errors of many seeds, each with the standard error of its estimate.
 struct Errors {
-  std::vector<double> errors, told;
+  std::vector<double> errors, predicted;
   [[nodiscard]] double mean() const {
     return std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   }
@@ -213,7 +208,7 @@ Errors errors_of(const RayCaster& caster, const Hall& hall, const VoxelKey& view
         .samples = samples, .sampling = sampling, .seed = static_cast<std::uint64_t>(seed)};
     const auto image = render(caster, hall, {&viewpoint, 1}, lidar(), options);
     result.errors.push_back(image.values()[0].gain - truth);
-    result.told.push_back(image.values()[0].standard_error);
+    result.predicted.push_back(image.values()[0].standard_error);
   }
   return result;
 }
@@ -224,17 +219,17 @@ TEST(ViewQuality, UnbiasedEstimatorIsUnbiasedAndItsErrorIsHonest) {
   const VoxelKey m = hall.middle();
   for (const Sampling sampling : kSamplings)
     for (const int shift : {-9, 0, 7}) {
-      const VoxelKey viewpoint{key(m.x + shift), key(m.y - shift / 2), m.z};
+      const VoxelKey viewpoint = make_key(m.x + shift, m.y - shift / 2, m.z);
       ASSERT_GT(look_at_all(*caster, hall, viewpoint, lidar()).in_view, 300U);
       const Errors e = errors_of(*caster, hall, viewpoint, sampling, 64, 1000);
       const double spread = e.root_mean_square(e.errors);
       EXPECT_GT(spread, 1.0);
       EXPECT_LT(std::fabs(e.mean()), 3 * spread / std::sqrt(1000.0)) << e.mean() << " of " << spread;
-      EXPECT_NEAR(e.root_mean_square(e.told) / spread, 1.0, 0.15);
+      EXPECT_NEAR(e.root_mean_square(e.predicted) / spread, 1.0, 0.15);
       const auto covered = [&](double deviations) {
         std::size_t count = 0;
         for (std::size_t i = 0; i < e.errors.size(); ++i)
-          count += std::fabs(e.errors[i]) <= deviations * e.told[i] ? 1 : 0;
+          count += std::fabs(e.errors[i]) <= deviations * e.predicted[i] ? 1 : 0;
         return static_cast<double>(count) / static_cast<double>(e.errors.size());
       };
       EXPECT_NEAR(covered(1.0), 0.683, 0.08);
@@ -345,15 +340,15 @@ TEST(ViewQuality, NamesTheValueThatIsWrong) {
   FieldOfView view = lidar();
   view.max_range = -1;
   has(with(view, {}), "max_range is -1");
-  view.max_range = 400;
-  has(with(view, {}), "max_range is 400");
+  view.max_range = 4000;
+  has(with(view, {}), "max_range is 4000");
   view.max_range = 1e300;
   has(with(view, {}), "out of the numbers' range");
   has(complaint([&] { const ViewQualityImage image(Lattice(1e-200), lidar(), {}); }), "resolution");
   EXPECT_EQ(with(lidar(), {}), "no complaint");
 }
 
-// Edits of all kinds, told by the voxels that changed or also by some that did not; each time the image has
+// Edits of all kinds, reported as the voxels that changed or also some that did not; each time the image has
 // to be what rendering makes.
 TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
   for (const Sampling sampling : kSamplings)
@@ -372,9 +367,9 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
         const int edits = random.one_in(5) ? 0 : 1 + random.below(6);
         for (int e = 0; e < edits; ++e) {
           const auto near = [&](int i) {
-            return key(hall.low + std::clamp(i + random.below(5) - 2, 0, Hall::kLength - 1));
+            return hall.low + std::clamp(i + random.below(5) - 2, 0, Hall::kLength - 1);
           };
-          const VoxelKey k{near(x), near(y), key(hall.low + random.below(Hall::kHeight))};
+          const VoxelKey k = make_key(near(x), near(y), hall.low + random.below(Hall::kHeight));
           hall.grid.set(k, static_cast<Occupancy>(random.below(3)));
           changed.push_back(k);
         }

@@ -18,7 +18,6 @@
 namespace frontlux::planner {
 namespace {
 
-using detail::FeasibleRegion;
 using detail::UnseenFrontiers;
 using test::Random;
 
@@ -99,7 +98,7 @@ TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
     const FieldOfView view = seed % 2 == 0
                                  ? FieldOfView{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}
                                  : FieldOfView{FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 4.0};
-    const FeasibleRegion region(view, kResolution);
+    const ViewRegion region(view, kResolution);
     UnseenFrontiers unseen;
     for (int step = 0; step < 25; ++step) {
       const auto changed = scene.change();
@@ -125,7 +124,7 @@ TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
 // What was tried while there was no corridor says nothing once there is one again, though it is that of
 // before.
 TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
-  const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
+  const ViewRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
   const std::vector<VoxelKey> cell = {{30000, 30000, 30000}};
   const VoxelKey near{30003, 30000, 30000}, far{40000, 30000, 30000};
   const VoxelGrid grid(kResolution);
@@ -139,7 +138,7 @@ TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
 
 // Over the whole key range there are too many cubes to note changes in.
 TEST(UnseenFrontiers, AreForgottenByChangesAllOverTheKeyRange) {
-  const FeasibleRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
+  const ViewRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
   const VoxelKey frontier{30000, 30000, 30000};
   const std::vector<VoxelKey> corner = {{0, 0, 0}}, corners = {{0, 0, 0}, {65535, 65535, 65535}};
   VoxelGrid occupied(kResolution);

@@ -2,6 +2,7 @@
 
 #include "assignment/visibility_flood.hpp"
 
+#include "assignment/view_offsets.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/ray_caster.hpp>
@@ -71,7 +72,7 @@ TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
     const Scene scene = random_scene(seed);
     const auto caster = make_grid_ray_caster(scene.grid);
     for (const FieldOfView& view : views()) {
-      const FeasibleRegion region(view, scene.grid.resolution());
+      const ViewRegion region(view, scene.grid.resolution());
       const auto approach = VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets));
       ASSERT_TRUE(approach);
       VisibilityFlood::Row row;
@@ -112,7 +113,7 @@ TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
       grid.set({110, y, z}, Occupancy::kOccupied);
       for (std::uint16_t x = 111; x < 120; ++x) cells.push_back({x, y, z});
     }
-  const FeasibleRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0}, 0.5);
+  const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0}, 0.5);
   const VoxelKey target{108, 110, 110};
   const auto found_from = [&] {
     const auto approach = VisibilityFlood::make(grid, cells, region, {target, target});
@@ -129,15 +130,15 @@ TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
 
 TEST(VisibilityFlood, LeavesRegionsThatAreTooHighToOthers) {
   const Scene scene = random_scene(1);
-  const FeasibleRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 90 * kDegree, 50.0}, 0.5);
+  const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 90 * kDegree, 50.0}, 0.5);
   ASSERT_GT(region.greatest_height(), 63);
   EXPECT_FALSE(VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets)));
 }
 
-TEST(FeasibleRegion, SpreadsOffsetsOverAllOfIt) {
+TEST(ViewOffsets, AreSpreadOverAllOfTheView) {
   for (const FieldOfView& view : views()) {
-    const FeasibleRegion region(view, 0.5);
-    const auto offsets = region.spread_offsets(64);
+    const ViewRegion region(view, 0.5);
+    const auto offsets = spread_offsets(region, 64);
     ASSERT_EQ(offsets.size(), 64U);
     std::array<int, 8> in_octant{};
     for (const auto& [x, y, z] : offsets) {

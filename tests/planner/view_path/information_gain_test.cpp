@@ -1,5 +1,5 @@
+#include "support/plain_gain.hpp"
 #include "support/random.hpp"
-#include "support/random_view.hpp"
 
 #include <frontlux/planner/information_gain.hpp>
 
@@ -27,47 +27,6 @@ FieldOfView random_view(Random& random) {
           random.uniform(0.3, 2.6), random.uniform(3.0, 12.0)};
 }
 
-// The membership as exploration.md prints it for the camera, in long double and one logistic at a time.
-long double membership_by_hand(const Pose& pose, const Eigen::Vector3d& point, const FieldOfView& view,
-                               long double k, long double kr) {
-  const Eigen::Matrix<long double, 3, 1> d = (point - pose.position).cast<long double>();
-  const long double r = d.norm();
-  const long double t = pose.yaw;
-  const long double phi = (d.x() * std::cos(t) + d.y() * std::sin(t)) / r;
-  const long double lam = (d.y() * std::cos(t) - d.x() * std::sin(t)) / r;
-  const auto sigma = [](long double x) { return 1.0L / (1.0L + std::exp(-x)); };
-  const auto planes = [&](long double angle, long double along, long double across) {
-    const long double a = std::sin(angle / 2) * along, b = std::cos(angle / 2) * across;
-    return sigma(k * (a - b)) * sigma(k * (a + b));
-  };
-  const long double faded = sigma(kr * (view.max_range - r));
-  switch (view.shape) {
-    case FieldOfView::Shape::kSpinning:
-      return faded * planes(view.vertical, std::hypot(d.x(), d.y()) / r, d.z() / r);
-    case FieldOfView::Shape::kPyramid:
-      return faded * planes(view.horizontal, phi, lam) * planes(view.vertical, phi, d.z() / r);
-    case FieldOfView::Shape::kCone:
-      return faded * sigma(k * (phi - std::cos(static_cast<long double>(view.horizontal) / 2)));
-  }
-  return 0;
-}
-
-double gain_by_hand(const Scene& scene, const std::vector<Pose>& poses, const GainOptions& options,
-                    double k) {
-  long double sum = 0;
-  std::vector<long double> missed(scene.frontiers.size(), 1.0L);
-  for (const auto& [i, j] : scene.list) {
-    const long double m =
-        membership_by_hand(poses[i], scene.frontiers[j], scene.view, k, options.range_sharpness);
-    sum += m;
-    missed[j] *= 1.0L - options.detection * m;
-  }
-  if (options.mode == GainMode::kSum) return static_cast<double>(sum);
-  long double gain = 0;
-  for (const long double all : missed) gain += 1.0L - all;
-  return static_cast<double>(gain);
-}
-
 // Fourth order: what is left is far below 1e-6 of the slope.
 double central_difference(const std::function<double(double)>& f, double h) {
   return (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12.0 * h);
@@ -90,19 +49,18 @@ TEST(InformationGain, ThreeGradientsAgree) {
     const InformationGain gain = scene.gain(options);
     const std::size_t n = scene.path.size();
     std::vector<double> yaw_gradient(n);
-    std::vector<PoseGradient> closed(n), automatic(n);
+    std::vector<PoseGradient> closed(n);
     const double value = gain.value(scene.yaws(), k, yaw_gradient);
     // Each 1 - product rounds to 1e-16 however small the gain.
     const double rounding = 1e-11 * value + 1e-14;
-    EXPECT_NEAR(value, gain_by_hand(scene, scene.path, options, k), rounding);
+    EXPECT_NEAR(value, test::plain_gain(scene, scene.path, options, k), rounding);
     EXPECT_NEAR(gain.value(scene.yaws(), k), value, rounding);
     EXPECT_NEAR(gain.value_at(scene.path, k, closed), value, rounding);
-    EXPECT_NEAR(gain.automatic_value_at(scene.path, k, automatic), value, rounding);
+    const auto automatic = test::automatic_gradient(scene, options, k);
 
     double largest =
         std::max(1e-9, 1e-4 * value);  // below that a derivative is lost in the rounding of differences
-    for (const PoseGradient& g : automatic)
-      largest = std::max({largest, std::fabs(g.yaw), g.position.cwiseAbs().maxCoeff()});
+    for (const Eigen::Vector4d& g : automatic) largest = std::max(largest, g.cwiseAbs().maxCoeff());
     for (std::size_t i = 0; i < n; ++i) {
       const auto moved = [&](int axis) {
         return [&, axis](double by) {
@@ -111,14 +69,14 @@ TEST(InformationGain, ThreeGradientsAgree) {
             poses[i].yaw += by;
           else
             poses[i].position[axis] += by;
-          return gain_by_hand(scene, poses, options, k);
+          return test::plain_gain(scene, poses, options, k);
         };
       };
-      EXPECT_NEAR(yaw_gradient[i], automatic[i].yaw, 1e-9 * largest) << trial;
-      EXPECT_NEAR(closed[i].yaw, automatic[i].yaw, 1e-9 * largest) << trial;
+      EXPECT_NEAR(yaw_gradient[i], automatic[i][3], 1e-9 * largest) << trial;
+      EXPECT_NEAR(closed[i].yaw, automatic[i][3], 1e-9 * largest) << trial;
       EXPECT_NEAR(closed[i].yaw, central_difference(moved(3), 5e-3 / k), 1e-6 * largest) << trial;
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_NEAR(closed[i].position[axis], automatic[i].position[axis], 1e-9 * largest) << trial;
+        EXPECT_NEAR(closed[i].position[axis], automatic[i][axis], 1e-9 * largest) << trial;
         double nearest = 1.0;
         for (const Eigen::Vector3d& f : scene.frontiers)
           nearest = std::min(nearest, (f - scene.path[i].position).norm());
@@ -164,8 +122,9 @@ TEST(InformationGain, SharpMembershipsTendToTheHardCount) {
   std::vector<VisiblePair> clear;
   for (const VisiblePair& pair : scene.list) {
     const auto& pose = scene.path[pair.viewpoint];
-    const double m = static_cast<double>(
-        membership_by_hand(pose, scene.frontiers[pair.frontier], scene.view, 300.0L, 300.0L));
+    const auto& at = pose.position;
+    const auto m = static_cast<double>(test::membership<long double>(
+        {at.x(), at.y(), at.z(), pose.yaw}, scene.frontiers[pair.frontier], scene.view, 300.0, 300.0));
     if (m < 1e-15 || m > 1.0 - 1e-15) clear.push_back(pair);
   }
   scene.list = clear;
@@ -185,7 +144,7 @@ TEST(InformationGain, HundredsOfViewpointsOfOneFrontierDoNotUnderflow) {
   for (const double k : {1e-3, 8.0, 40.0, 100.0}) {
     const InformationGain gain = scene.gain();
     std::vector<double> gradient(500);
-    EXPECT_NEAR(gain.value(scene.yaws(), k, gradient), gain_by_hand(scene, scene.path, {}, k), 1e-10);
+    EXPECT_NEAR(gain.value(scene.yaws(), k, gradient), test::plain_gain(scene, scene.path, {}, k), 1e-10);
     for (const double slope : gradient) EXPECT_TRUE(std::isfinite(slope));
   }
 }
@@ -208,7 +167,6 @@ TEST(InformationGain, AFrontierAtTheSensorIsNotSeen) {
   std::vector<PoseGradient> gradient(1);
   EXPECT_EQ(scene.gain().value(scene.yaws(), 20.0), 0.0);
   EXPECT_EQ(scene.gain().value_at(scene.path, 20.0, gradient), 0.0);
-  EXPECT_EQ(scene.gain().automatic_value_at(scene.path, 20.0, gradient), 0.0);
   EXPECT_EQ(scene.gain().distinct(scene.yaws()), 0U);
 }
 

@@ -68,7 +68,7 @@ TEST(PathOptimizer, NeverSeesFewerThanItsStartOrTheTangent) {
     greedy += best.start.distinct;
     ascended += best.result.distinct;
   }
-  EXPECT_GT(2 * greedy, 3 * tangent);  // the promise of half as much again
+  EXPECT_GT(2 * greedy, 3 * tangent);  // half as much again
   EXPECT_GT(ascended, greedy);
 }
 
@@ -80,93 +80,16 @@ TEST(PathOptimizer, TheGradientTurnsAViewpointTowardsWhatItMisses) {
                               5.0 * Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0));
     scene.list.push_back({1, j});
   }
-  for (const Differentiation way : {Differentiation::kClosedForm, Differentiation::kAutomatic}) {
-    PathOptimizerOptions options = paper_path_options();
-    options.differentiation = way;
-    const OptimizedPath path = optimize(scene, options);
-    EXPECT_EQ(path.tangent.distinct, 0U);
-    EXPECT_EQ(path.result.distinct, 20U);
-    // The best is in the middle of them, by symmetry.
-    options.max_evaluations = 400;
-    options.sharpness = {8.0};
-    const OptimizedPath settled = optimize(scene, options);
-    EXPECT_TRUE(settled.converged()) << describe(settled.end);
-    EXPECT_NEAR(settled.yaws[1], 1.19, 1e-2);
-  }
-}
-
-TEST(PathOptimizer, BothDifferentiationsClimbAlike) {
-  Random random(2);
-  for (int trial = 0; trial < 5; ++trial) {
-    const Scene scene = test::random_scene(random, 6, 150, 0.6);
-    PathOptimizerOptions options;
-    const OptimizedPath closed = optimize(scene, options);
-    options.differentiation = Differentiation::kAutomatic;
-    const OptimizedPath automatic = optimize(scene, options);
-    EXPECT_EQ(closed.start.distinct, automatic.start.distinct);
-    EXPECT_NEAR(closed.result.fuzzy, automatic.result.fuzzy, 1e-2 * closed.result.fuzzy);
-  }
-}
-
-// Every choice of bins for the inner viewpoints, within a limit.
-std::uint64_t most_views_by_hand(const Scene& scene, int bins, double limit, bool count_once) {
-  const std::size_t inner = scene.path.size() - 2;
-  std::size_t choices = 1;
-  for (std::size_t i = 0; i < inner; ++i) choices *= static_cast<std::size_t>(bins);
-  std::uint64_t most = 0;
-  for (std::size_t choice = 0; choice < choices; ++choice) {
-    auto yaws = scene.yaws();
-    std::size_t rest = choice;
-    for (std::size_t i = 1; i <= inner; ++i, rest /= static_cast<std::size_t>(bins))
-      yaws[i] = 2.0 * kPi * static_cast<double>(rest % static_cast<std::size_t>(bins)) / bins;
-    bool allowed = true;
-    for (std::size_t i = 0; i + 1 < yaws.size(); ++i)
-      allowed = allowed && angle_between(yaws[i], yaws[i + 1]) <= limit + 1e-9;
-    if (!allowed) continue;
-    std::uint64_t views = count_once ? test::distinct_by_hand(scene, yaws) : 0;
-    for (const auto& [i, j] : scene.list)
-      if (!count_once && scene.view.contains(scene.frontiers[j] - scene.path[i].position, yaws[i])) ++views;
-    most = std::max(most, views);
-  }
-  return most;
-}
-
-std::uint64_t views_of(const Scene& scene, const std::vector<double>& yaws) {
-  std::uint64_t views = 0;
-  for (const auto& [i, j] : scene.list)
-    views += scene.view.contains(scene.frontiers[j] - scene.path[i].position, yaws[i]) ? 1U : 0U;
-  return views;
-}
-
-TEST(PathOptimizer, BestBinsAreTheBestOfAllAndGreedyIsNear) {
-  Random random(3);
-  for (int trial = 0; trial < 40; ++trial) {
-    const Scene scene = test::random_scene(random, 5, 60, 0.5);
-    PathOptimizerOptions options;
-    options.ascend = false;
-    options.yaw_bins = 7;
-    options.start = YawStart::kBestBins;
-    const bool limited = trial % 2 == 1;
-    // Limits that bins of 51 degrees can keep; the even turn is one choice more, hence at least.
-    if (limited) options.max_yaw_step = 1.0 + 0.5 * (trial % 3);
-    const double limit = limited ? options.max_yaw_step : 10.0;
-    const OptimizedPath sum = optimize(scene, options);
-    if (sum.end != PathEnd::kLimitsUnreachable && sum.start.distinct >= sum.tangent.distinct) {
-      const auto most = most_views_by_hand(scene, 7, limit, false);
-      EXPECT_GE(views_of(scene, sum.yaws), most);
-      if (!limited) {
-        EXPECT_EQ(views_of(scene, sum.yaws), most);
-      }
-    }
-    options.start = YawStart::kGreedy;
-    const OptimizedPath greedy = optimize(scene, options);
-    if (!limited) {
-      const auto most = most_views_by_hand(scene, 7, limit, true);
-      EXPECT_LE(greedy.start.distinct, most);
-      // What is known of greedy choices: at least half; with the sweeps it comes much nearer.
-      EXPECT_GE(static_cast<double>(greedy.start.distinct), 0.85 * static_cast<double>(most));
-    }
-  }
+  PathOptimizerOptions options = paper_path_options();
+  const OptimizedPath path = optimize(scene, options);
+  EXPECT_EQ(path.tangent.distinct, 0U);
+  EXPECT_EQ(path.result.distinct, 20U);
+  // The best is in the middle of them, by symmetry.
+  options.max_evaluations = 400;
+  options.sharpness = {8.0};
+  const OptimizedPath settled = optimize(scene, options);
+  EXPECT_EQ(settled.end, PathEnd::kConverged) << describe(settled.end);
+  EXPECT_NEAR(settled.yaws[1], 1.19, 1e-2);
 }
 
 TEST(PathOptimizer, KeepsTheLimitsOnTurning) {
@@ -175,7 +98,7 @@ TEST(PathOptimizer, KeepsTheLimitsOnTurning) {
   for (int trial = 0; trial < 60; ++trial) {
     Scene scene = test::random_scene(random, 3 + random.below(8), 150, 0.5);
     if (trial % 4 == 0) scene.path.back().yaw = random.uniform(-9.0, 9.0);
-    if (trial % 5 == 0) scene.path[1].position = scene.path[0].position;  // no way, no turn by rate
+    if (trial % 5 == 0) scene.path[1].position = scene.path[0].position;  // no length, no turn by rate
     PathOptimizerOptions options;
     options.start = trial % 3 == 0 ? YawStart::kTangent : YawStart::kGreedy;
     if (trial % 2 == 0) options.max_yaw_step = random.uniform(0.1, 1.5);
@@ -229,7 +152,6 @@ TEST(PathOptimizer, WhatCannotBeTurnedHasAReason) {
   PathOptimizerOptions plain;
   plain.ascend = false;
   EXPECT_EQ(optimize(scene, plain).end, PathEnd::kAscentOff);
-  EXPECT_FALSE(optimize(scene, plain).converged());
 
   PathOptimizerOptions short_of;
   short_of.max_evaluations = 4;

@@ -6,9 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -20,8 +18,7 @@ namespace {
 constexpr double kResolution = 0.3;
 
 VoxelKey key(int x, int y, int z) {
-  const auto along = [](int i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
-  return {along(x), along(y), along(z)};
+  return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
 }
 
 // A hall of 40 x 40 x 12 voxels over a floor.
@@ -30,31 +27,19 @@ struct Hall {
   KeyBox bounds{key(0, 0, -1), key(39, 39, 11)};
 
   Hall() {
-    fill({0, 0, -1}, {39, 39, -1}, Occupancy::kOccupied);
-    fill({0, 0, 0}, {39, 39, 11}, Occupancy::kFree);
+    fill({key(0, 0, -1), key(39, 39, -1)}, Occupancy::kOccupied);
+    fill({key(0, 0, 0), key(39, 39, 11)}, Occupancy::kFree);
   }
-  void fill(const std::array<int, 3>& low, const std::array<int, 3>& high, Occupancy state) {
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = low[2]; z <= high[2]; ++z) grid.set(key(x, y, z), state);
+  void fill(const KeyBox& box, Occupancy state) {
+    for_each_key(box, [&](const VoxelKey& k) { grid.set(k, state); });
   }
   [[nodiscard]] TravelCorridor corridor(const Robot& robot, const Pose& at) const {
     TravelCorridor made(robot.travel, grid.lattice(), bounds);
-    made.update({grid}, voxel_at(at.position));
+    made.update({grid}, *grid.lattice().key(at.position));
     return made;
   }
-  [[nodiscard]] VoxelKey voxel_at(const Eigen::Vector3d& at) const {
-    const Lattice& lattice = grid.lattice();
-    return {*lattice.key(at.x()), *lattice.key(at.y()), *lattice.key(at.z())};
-  }
-  [[nodiscard]] bool box_is_free(const VoxelKey& at, int half, int below, int above) const {
-    for (int x = at.x - half; x <= at.x + half; ++x)
-      for (int y = at.y - half; y <= at.y + half; ++y)
-        for (int z = at.z - below; z <= at.z + above; ++z)
-          if (grid.at(key(x - Lattice::kOrigin, y - Lattice::kOrigin, z - Lattice::kOrigin)) !=
-              Occupancy::kFree)
-            return false;
-    return true;
+  [[nodiscard]] bool is_free(const KeyBox& box) const {
+    return all_of(box, [&](const VoxelKey& k) { return grid.at(k) == Occupancy::kFree; });
   }
 };
 
@@ -63,9 +48,9 @@ Hall random_hall(test::Random& random) {
   Hall hall;
   for (int i = 0; i < 14; ++i) {
     const int x = random.below(37), y = random.below(37), z = i % 3 == 0 ? 0 : random.below(8);
-    hall.fill({x, y, z}, {x + random.below(3), y + random.below(3), z + 3},
+    hall.fill({key(x, y, z), key(x + random.below(3), y + random.below(3), z + 3)},
               random.one_in(3) ? Occupancy::kOccupied : Occupancy::kUnknown);
-    if (random.one_in(2)) hall.fill({x, y, 0}, {x, y, 11}, Occupancy::kOccupied);
+    if (random.one_in(2)) hall.fill({key(x, y, 0), key(x, y, 11)}, Occupancy::kOccupied);
   }
   return hall;
 }
@@ -76,8 +61,7 @@ std::uint64_t seen_by_hand(const VoxelGrid& grid, std::span<const Pose> path,
   const auto caster = make_grid_ray_caster(grid);
   std::uint64_t count = 0;
   for (const VoxelKey& frontier : frontiers) {
-    const auto at = [](int k) { return (k - Lattice::kOrigin + 0.5) * kResolution; };
-    const Eigen::Vector3d center(at(frontier.x), at(frontier.y), at(frontier.z));
+    const Eigen::Vector3d center = grid.lattice().exact_center(frontier);
     bool seen = false;
     for (const Pose& pose : path) {
       if (seen || !view.contains(center - pose.position, pose.yaw)) continue;
@@ -115,12 +99,14 @@ void expect_sound(const Hall& hall, std::span<const Pose> given, const RefinedPa
       EXPECT_EQ(path[i].position.z(), given[i].position.z());
     }
     if (i == 0) continue;
-    const Eigen::Vector3d from = path[i - 1].position, way = path[i].position - from;
-    EXPECT_LE(way.norm(), 1.2 * (1 + 1e-8));
-    const int steps = 1 + static_cast<int>(way.norm() / (kResolution / 10));
+    const Eigen::Vector3d from = path[i - 1].position, segment = path[i].position - from;
+    EXPECT_LE(segment.norm(), 1.2 * (1 + 1e-8));
+    const int steps = 1 + static_cast<int>(segment.norm() / (kResolution / 10));
     for (int k = 0; k <= steps; ++k) {
-      const VoxelKey at = hall.voxel_at(from + way * (static_cast<double>(k) / steps));
-      ASSERT_TRUE(plane ? hall.box_is_free(at, 2, 2, 0) : hall.box_is_free(at, 1, 1, 1)) << i;
+      const VoxelKey at =
+          *hall.grid.lattice().key(Eigen::Vector3d(from + segment * (static_cast<double>(k) / steps)));
+      const KeyBox body = grown({at, at}, plane ? 2 : 1);
+      ASSERT_TRUE(hall.is_free(plane ? KeyBox{body.min, {body.max.x, body.max.y, at.z}} : body)) << i;
     }
   }
 }
@@ -167,9 +153,6 @@ TEST(PositionRefinement, NeverSeesFewerAndStaysFree) {
     EXPECT_GE(paths, 12);
     EXPECT_GT(moved, 3);
     EXPECT_GT(after, before);
-    std::printf("%s: %d of %d paths moved, %llu frontiers in view before, %llu after\n", robot.name.c_str(),
-                moved, paths, static_cast<unsigned long long>(before),
-                static_cast<unsigned long long>(after));
   }
 }
 
@@ -207,7 +190,7 @@ TEST(PositionRefinement, StepsTowardsWhatIsOutOfRange) {
   EXPECT_LE((short_of.viewpoints[1].position - scene.path[1].position).norm(), 0.2 * (1 + 1e-9));
 
   PositionOptions taut;
-  taut.spacing = 1.0;  // as long as the ways already are
+  taut.spacing = 1.0;  // as long as the segments already are
   EXPECT_EQ(scene.refine(taut).outer_iterations, 0);
   EXPECT_TRUE(same(scene.refine(taut).viewpoints, scene.path));
 }
@@ -215,7 +198,7 @@ TEST(PositionRefinement, StepsTowardsWhatIsOutOfRange) {
 TEST(PositionRefinement, AWallHoldsItBack) {
   OutOfRange scene;
   // The box around the path just fits beside it.
-  scene.hall.fill({0, 8, 0}, {39, 8, 11}, Occupancy::kOccupied);
+  scene.hall.fill({key(0, 8, 0), key(39, 8, 11)}, Occupancy::kOccupied);
   scene.hall.grid.set(key(10, 8, 5), Occupancy::kFree);  // a hole to look through
   const auto refined = scene.refine();
   expect_sound(scene.hall, scene.path, refined, scene.frontiers, scene.robot);

@@ -29,19 +29,15 @@ TEST(VisiblePairs, AgreeWithOneRayAtATime) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     // Every third voxel free would block nearly all: clear most of it.
     VoxelGrid grid(0.3);
-    for (int x = 0; x < 24; ++x)
-      for (int y = 0; y < 24; ++y)
-        for (int z = 0; z < 12; ++z)
-          grid.set({static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
-                    static_cast<std::uint16_t>(32768 + z)},
-                   random.one_in(30)   ? Occupancy::kOccupied
-                   : random.one_in(30) ? Occupancy::kUnknown
-                                       : Occupancy::kFree);
+    for_each_key({{32768, 32768, 32768}, {32791, 32791, 32779}}, [&](const VoxelKey& key) {
+      grid.set(key, random.one_in(30)   ? Occupancy::kOccupied
+                    : random.one_in(30) ? Occupancy::kUnknown
+                                        : Occupancy::kFree);
+    });
     std::vector<VoxelKey> frontiers;
     for (int j = 0; j < 200; ++j)
-      frontiers.push_back({static_cast<std::uint16_t>(32768 + random.below(24)),
-                           static_cast<std::uint16_t>(32768 + random.below(24)),
-                           static_cast<std::uint16_t>(32768 + random.below(12))});
+      frontiers.push_back(
+          make_key(32768 + random.below(24), 32768 + random.below(24), 32768 + random.below(12)));
     std::sort(frontiers.begin(), frontiers.end());
     frontiers.erase(std::unique(frontiers.begin(), frontiers.end()), frontiers.end());
     std::vector<Pose> path;
@@ -53,9 +49,7 @@ TEST(VisiblePairs, AgreeWithOneRayAtATime) {
     std::vector<VisiblePair> expected;
     for (std::uint32_t i = 0; i < path.size(); ++i)
       for (std::uint32_t j = 0; j < frontiers.size(); ++j) {
-        const Eigen::Vector3d center((frontiers[j].x - 32768 + 0.5) * 0.3,
-                                     (frontiers[j].y - 32768 + 0.5) * 0.3,
-                                     (frontiers[j].z - 32768 + 0.5) * 0.3);
+        const Eigen::Vector3d center = grid.lattice().exact_center(frontiers[j]);
         if (!view.contains_at_some_yaw(center - path[i].position)) continue;
         const Segment segment{path[i].position.cast<float>(), center.cast<float>()};
         std::uint8_t visible = 0;
@@ -72,7 +66,7 @@ TEST(VisiblePairs, AgreeWithOneRayAtATime) {
 }
 
 TEST(VisiblePairs, UnknownAndOccupiedBlockButNotTheTarget) {
-  const auto key = [](int x) { return VoxelKey{static_cast<std::uint16_t>(32768 + x), 32768, 32768}; };
+  const auto key = [](int x) { return make_key(32768 + x, 32768, 32768); };
   VoxelGrid grid(1.0);
   for (int x = 0; x < 6; ++x) grid.set(key(x), Occupancy::kFree);
   const std::vector<Pose> path{{{0.5, 0.5, 0.5}, 3.0}};
@@ -85,7 +79,7 @@ TEST(VisiblePairs, UnknownAndOccupiedBlockButNotTheTarget) {
   EXPECT_EQ(seen(), (std::vector<VisiblePair>{}));
 }
 
-TEST(VisiblePairs, BothIndicesHoldTheSamePairs) {
+TEST(VisiblePairs, AreSortedByViewpointAndFrontier) {
   Random random(2);
   auto scene = test::random_scene(random, 7, 50, 0.3);
   std::reverse(scene.list.begin(), scene.list.end());
@@ -93,13 +87,7 @@ TEST(VisiblePairs, BothIndicesHoldTheSamePairs) {
   std::sort(scene.list.begin(), scene.list.end());
   EXPECT_EQ(listed(pairs), scene.list);
   EXPECT_EQ(pairs.size(), scene.list.size());
-  std::vector<VisiblePair> by_frontier;
-  for (std::uint32_t j = 0; j < pairs.frontiers(); ++j) {
-    EXPECT_TRUE(std::is_sorted(pairs.viewpoints_of(j).begin(), pairs.viewpoints_of(j).end()));
-    for (const std::uint32_t i : pairs.viewpoints_of(j)) by_frontier.push_back({i, j});
-  }
-  std::sort(by_frontier.begin(), by_frontier.end());
-  EXPECT_EQ(by_frontier, scene.list);
+  EXPECT_EQ(pairs.frontiers(), 50U);
 }
 
 TEST(VisiblePairs, RefusesWhatCannotBe) {

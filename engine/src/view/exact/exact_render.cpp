@@ -16,7 +16,7 @@
 namespace frontlux::detail {
 namespace {
 
-constexpr int kSectors = 16;  // where bins of azimuth are not asked for
+constexpr int kSectors = 16;  // if there are no azimuth bins
 
 // A viewpoint in order of tiles: by column of tiles, then by height, then by place in the tile.
 struct Placed {
@@ -79,24 +79,23 @@ std::vector<std::size_t> runs(std::span<const Placed> placed, const Key& key) {
 // What a task needs for its columns of tiles.
 class ColumnRenderer {
  public:
-  ColumnRenderer(const ExactScene& scene, const Tiling& tiling, const RayTrie& tree)
+  ColumnRenderer(const ExactScene& scene, const Tiling& tiling, const RayTrie& trie)
       : scene_(scene),
         tiling_(tiling),
-        tree_(tree),
-        reached_(tree.depth() + 1),
-        groups_(tree.groups().size()) {
+        trie_(trie),
+        reached_(trie.depth() + 1),
+        groups_(trie.groups().size()) {
     groups_.front().words.fill(~std::uint64_t{0});
   }
 
   void render(std::span<const Placed> column, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits) {
-    CellBox places{tiling_.first_place(column.front()), tiling_.first_place(column.back())};
-    places.max[0] += (ViewTile::kColumns - 1) * tiling_.stride[0];
-    places.max[1] += (ViewTile::kRows - 1) * tiling_.stride[1];
-    targets_.aim(tree_.layout(), places);
-    const bool any = targets_.fill_targets(scene_.targets, scene_.reach, scene_.walk);
+    const std::array<int, 3> first = tiling_.first_place(column.front());
+    const int top = tiling_.first_place(column.back())[2];
+    targets_.aim(trie_.layout(), first, top);
+    const bool any = targets_.fill_targets(scene_.targets, scene_.view, scene_.walk);
     if (any) {
-      free_.aim(tree_.layout(), places);
+      free_.aim(trie_.layout(), first, top);
       free_.fill_free(scene_.grid, scene_.walk);
     }
     const std::vector<std::size_t> tiles = runs(column, [](const Placed& p) { return p.order; });
@@ -120,11 +119,11 @@ class ColumnRenderer {
     const std::byte* const targets = targets_.level(z);
     const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
     if (bins != 0) totals_.assign(tile.size(), 0);
-    for (const RayTrie::Sector& sector : tree_.sectors()) {
+    for (const RayTrie::Sector& sector : trie_.sectors()) {
       TileBits concerned{};
-      scene_.walk.gather(tree_, sector, targets, viewpoints, in_view_, groups_, concerned);
+      scene_.walk.gather(trie_, sector, targets, viewpoints, in_view_, groups_, concerned);
       if (!concerned.any()) continue;
-      scene_.walk.count(tree_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
+      scene_.walk.count(trie_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
       if (bins == 0) continue;
       for (std::size_t i = 0; i < tile.size(); ++i) {
         const std::uint32_t seen = seen_.at(tile[i].place);
@@ -146,7 +145,7 @@ class ColumnRenderer {
 
   const ExactScene& scene_;
   const Tiling& tiling_;
-  const RayTrie& tree_;
+  const RayTrie& trie_;
   ViewWindow free_, targets_;
   TileCounts in_view_, seen_;
   std::vector<TileBits> reached_, groups_;
@@ -155,17 +154,17 @@ class ColumnRenderer {
 
 }  // namespace
 
-std::shared_ptr<const RayTrie> RayTries::get(const ViewReach& reach, int azimuth_bins, int stride_x,
-                                               int stride_y) {
+std::shared_ptr<const RayTrie> RayTries::get(const ViewRegion& view, int azimuth_bins, int stride_x,
+                                             int stride_y) {
   const std::lock_guard lock(mutex_);
   for (const Known& known : known_)
-    if (known.stride_x == stride_x && known.stride_y == stride_y) return known.tree;
-  std::optional<RayTrie> tree;
+    if (known.stride_x == stride_x && known.stride_y == stride_y) return known.trie;
+  std::optional<RayTrie> trie;
   // Without isolation this thread could meet its own lock in a task it takes up while it waits.
   tbb::this_task_arena::isolate(
-      [&] { tree = RayTrie::make(reach, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
-  known_.push_back({stride_x, stride_y, tree ? std::make_shared<const RayTrie>(std::move(*tree)) : nullptr});
-  return known_.back().tree;
+      [&] { trie = RayTrie::make(view, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
+  known_.push_back({stride_x, stride_y, trie ? std::make_shared<const RayTrie>(std::move(*trie)) : nullptr});
+  return known_.back().trie;
 }
 
 bool RayTries::knows(int stride_x, int stride_y) const {
@@ -195,12 +194,12 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
     if (tiles[t + 1] - tiles[t] >= scene.thresholds.tile)
       for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) dense.push_back(placed[i]);
   const bool worth =
-      !dense.empty() && (dense.size() >= scene.thresholds.tree || scene.trees.knows(stride_x, stride_y));
-  const auto tree = worth ? scene.trees.get(scene.reach, scene.azimuth_bins, stride_x, stride_y) : nullptr;
-  if (tree) {
+      !dense.empty() && (dense.size() >= scene.thresholds.trie || scene.tries.knows(stride_x, stride_y));
+  const auto trie = worth ? scene.tries.get(scene.view, scene.azimuth_bins, stride_x, stride_y) : nullptr;
+  if (trie) {
     const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {
-      ColumnRenderer renderer(scene, tiling, *tree);
+      ColumnRenderer renderer(scene, tiling, *trie);
       for (std::size_t c = range.begin(); c < range.end(); ++c)
         renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
     });

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "view/exact/ray_trie.hpp"
-#include "view/target_index.hpp"
 #include "view/exact/trie_walk.hpp"
-#include "view/view_reach.hpp"
+#include "view/target_index.hpp"
 #include "view/view_render.hpp"
 
 #include <frontlux/view_quality.hpp>
@@ -17,47 +16,48 @@
 
 namespace frontlux::detail {
 
-/// The trees of a field of view, by the strides of viewpoints, made when they are first asked for.
-/// Thread safety: full.
+/// The tries of a field of view, by the strides of viewpoints. Each is made when it is needed for the first
+/// time. Thread safety: full.
 class RayTries {
  public:
-  /// Null if the paths are too many for a tree.
-  [[nodiscard]] std::shared_ptr<const RayTrie> get(const ViewReach& reach, int azimuth_bins, int stride_x,
-                                                    int stride_y);
+  /// Null if the rays are too many for a trie.
+  [[nodiscard]] std::shared_ptr<const RayTrie> get(const ViewRegion& view, int azimuth_bins, int stride_x,
+                                                   int stride_y);
   [[nodiscard]] bool knows(int stride_x, int stride_y) const;
 
  private:
   struct Known {
     int stride_x, stride_y;
-    std::shared_ptr<const RayTrie> tree;
+    std::shared_ptr<const RayTrie> trie;
   };
   mutable std::mutex mutex_;
   std::vector<Known> known_;
 };
 
-/// From how many viewpoints on walks over a tree are sooner done than rays.
+/// From how many viewpoints on a walk over a trie takes less time than rays.
 struct WalkThresholds {
   std::size_t tile = 24;    ///< in a tile
-  std::size_t tree = 2000;  ///< in all such tiles, to repay the making of the tree
+  std::size_t trie = 2000;  ///< in all such tiles, if the trie is still to be made
 };
 
-/// What viewpoints are rendered with, exactly.
+/// All that a viewpoint's exact value depends on.
 struct ExactScene {
   const VoxelGrid& grid;
-  const ViewReach& reach;
+  const ViewRegion& view;
   const TargetIndex& targets;
   const TrieWalk& walk;
-  RayTries& trees;
+  RayTries& tries;
   int azimuth_bins;
   WalkThresholds thresholds = {};
 };
 
-/// Counts all targets in view and visible by walks over the tree of paths, over the current task arena, for
-/// those of the viewpoints for which that is worth while.
+/// Counts all targets in view and visible by walks over the trie of rays, for the viewpoints for which that
+/// takes less time than rays. Runs in the current task arena.
 /// @param viewpoints  sorted
 /// @param values      written at `index` of each viewpoint
 /// @param bin_hits    likewise, `azimuth_bins` to a viewpoint
-/// @return the others, for which nothing is written, sorted; all if the paths are too many for a tree
+/// @return the other viewpoints, sorted, for which nothing is written: all if the rays are too many for a
+/// trie
 [[nodiscard]] std::vector<Viewpoint> render_exactly(const ExactScene& scene,
                                                     std::span<const Viewpoint> viewpoints,
                                                     std::span<ViewQuality> values,

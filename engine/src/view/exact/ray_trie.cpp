@@ -1,5 +1,6 @@
 #include "view/exact/ray_trie.hpp"
 
+#include "view/azimuth_bins.hpp"
 #include "walk/walk.hpp"
 
 #include <tbb/parallel_for.h>
@@ -12,18 +13,18 @@
 namespace frontlux::detail {
 namespace {
 
-constexpr std::size_t kMaxSteps = std::size_t{1} << 27U;   // of all paths, before any are shared
+constexpr std::size_t kMaxSteps = std::size_t{1} << 27U;   // of all rays, before any are shared
 constexpr std::size_t kMaxWindow = std::size_t{1} << 28U;  // [bytes]
 constexpr std::size_t kGroupTargets = 24;                  // at most, in a group
-constexpr std::uint32_t kForkNodes = 4;                    // at least, behind a node that is looked at
+constexpr std::uint32_t kForkNodes = 4;                    // at least, behind a node with `is_fork`
 
 using Cell = std::array<int, 3>;
 
-// A path on its way to an offset.
+// A ray to an offset, and the voxel that it has come to.
 class Line {
  public:
   explicit Line(const Cell& offset)
-      : crossings_(crossings_of(key({0, 0, 0}), key(offset))),
+      : crossings_(crossings_of(kCenter, *offset_key(kCenter, offset[0], offset[1], offset[2]))),
         steps_left_(std::abs(offset[0]) + std::abs(offset[1]) + std::abs(offset[2])),
         offset_(offset) {
     look_ahead();
@@ -44,12 +45,7 @@ class Line {
   }
 
  private:
-  static VoxelKey key(const Cell& offset) {
-    const auto along = [&](std::size_t a) {
-      return static_cast<std::uint16_t>(Lattice::kOrigin + offset[a]);
-    };
-    return {along(0), along(1), along(2)};
-  }
+  static constexpr VoxelKey kCenter = make_key(Lattice::kOrigin, Lattice::kOrigin, Lattice::kOrigin);
   // Ties go to z before y before x (rule 5).
   void look_ahead() {
     const auto& t = crossings_.t_max;
@@ -65,37 +61,34 @@ class Line {
 };
 
 template <class Visit>
-void for_each_offset(const ViewReach& reach, const Visit& visit) {
-  const int radius = reach.table_radius();
-  for (int dx = -radius; dx <= radius; ++dx)
-    for (int dy = -radius; dy <= radius; ++dy) {
-      const int height = reach.heights()[reach.entry(dx, dy)];
-      if (height >= 0) visit(dx, dy, height);
-    }
+void for_each_column(const ViewRegion& view, const Visit& visit) {
+  for (int dx = -view.reach(); dx <= view.reach(); ++dx)
+    for (int dy = -view.reach(); dy <= view.reach(); ++dy)
+      if (const int height = view.height(dx, dy); height >= 0) visit(dx, dy, height);
 }
 
 }  // namespace
 
-// Makes the tree of one sector.
+// Makes the trie of one sector.
 class RayTrieBuilder {
  public:
-  RayTrieBuilder(RayTrie& tree, std::vector<Line>& lines) : tree_(tree), lines_(lines) {}
+  RayTrieBuilder(RayTrie& trie, std::vector<Line>& lines) : trie_(trie), lines_(lines) {}
 
   void build(int bin) {
-    tree_.groups_.resize(2);  // 0 is no group, 1 has the targets that belong to no other
+    trie_.groups_.resize(2);  // 0 is no group, 1 has the targets that belong to no other
     std::vector<std::uint32_t> all(lines_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
-    // What is next to the viewpoint is seen whatever is free.
+    // Targets next to the viewpoint are seen in any map.
     const auto far =
         std::partition(all.begin(), all.end(), [&](std::uint32_t l) { return lines_[l].steps_left() == 1; });
     for (auto l = all.begin(); l != far; ++l) loose_.push_back(place(lines_[*l].offset()));
     const auto adjacent = static_cast<std::uint32_t>(loose_.size());
     fork({far, all.end()}, {}, {}, 0);
 
-    tree_.groups_[1].begin = count(tree_.targets_);
-    tree_.targets_.insert(tree_.targets_.end(), loose_.begin(), loose_.end());
-    tree_.groups_[1].end = count(tree_.targets_);
-    tree_.sectors_.push_back({bin, 0, count(tree_.nodes_), 1, count(tree_.groups_), adjacent});
+    trie_.groups_[1].begin = count(trie_.targets_);
+    trie_.targets_.insert(trie_.targets_.end(), loose_.begin(), loose_.end());
+    trie_.groups_[1].end = count(trie_.targets_);
+    trie_.sectors_.push_back({bin, 0, count(trie_.nodes_), 1, count(trie_.groups_), adjacent});
   }
 
  private:
@@ -106,7 +99,7 @@ class RayTrieBuilder {
   static std::uint32_t count(const std::vector<T>& list) {
     return static_cast<std::uint32_t>(list.size());
   }
-  [[nodiscard]] std::int32_t place(const Cell& at) const { return tree_.layout_.offset(at[0], at[1], at[2]); }
+  [[nodiscard]] std::int32_t place(const Cell& at) const { return trie_.layout_.offset(at[0], at[1], at[2]); }
 
   // Nodes for a piece, which is not empty. Returns the depth behind them.
   std::uint16_t add(const Piece& piece, std::optional<std::int32_t> target, std::uint16_t depth,
@@ -120,9 +113,9 @@ class RayTrieBuilder {
       node.is_target = last && target ? 1 : 0;
       node.group = std::exchange(pending_group_, 0);
       node.depth = depth++;
-      added.push_back(count(tree_.nodes_));
-      tree_.nodes_.push_back(node);
-      tree_.depth_ = std::max<std::size_t>(tree_.depth_, depth);
+      added.push_back(count(trie_.nodes_));
+      trie_.nodes_.push_back(node);
+      trie_.depth_ = std::max<std::size_t>(trie_.depth_, depth);
     }
     return depth;
   }
@@ -131,8 +124,8 @@ class RayTrieBuilder {
       loose_.push_back(target);
       return;
     }
-    tree_.targets_.push_back(target);
-    tree_.groups_[group_].end = count(tree_.targets_);
+    trie_.targets_.push_back(target);
+    trie_.groups_[group_].end = count(trie_.targets_);
   }
 
   // Lines that part at a voxel, perhaps.
@@ -142,17 +135,17 @@ class RayTrieBuilder {
       const auto begin = rest;
       rest = std::partition(rest, lines.end(),
                             [&](std::uint32_t l) { return lines_[l].direction() == direction; });
-      if (rest != begin) follow({begin, rest}, at, piece, depth);
+      if (rest != begin) add_branch({begin, rest}, at, piece, depth);
     }
   }
 
   // Lines that take the same step next.
-  void follow(Lines lines, Cell at, Piece piece, std::uint16_t depth) {
+  void add_branch(Lines lines, Cell at, Piece piece, std::uint16_t depth) {
     std::vector<std::uint32_t> nodes;
     const bool opens_group = group_ == 0 && lines.size() <= kGroupTargets;
     if (opens_group) {
-      group_ = pending_group_ = count(tree_.groups_);
-      tree_.groups_.push_back({count(tree_.targets_), count(tree_.targets_)});
+      group_ = pending_group_ = count(trie_.groups_);
+      trie_.groups_.push_back({count(trie_.targets_), count(trie_.targets_)});
     }
     while (!lines.empty()) {
       const Cell before = at;
@@ -177,15 +170,15 @@ class RayTrieBuilder {
       fork(lines, at, {}, depth);
       break;
     }
-    const std::uint32_t end = count(tree_.nodes_);
+    const std::uint32_t end = count(trie_.nodes_);
     for (const std::uint32_t n : nodes) {
-      tree_.nodes_[n].end = end;
-      tree_.nodes_[n].is_fork = end - n > kForkNodes ? 1 : 0;
+      trie_.nodes_[n].end = end;
+      trie_.nodes_[n].is_fork = end - n > kForkNodes ? 1 : 0;
     }
     if (opens_group) group_ = 0;
   }
 
-  RayTrie& tree_;
+  RayTrie& trie_;
   std::vector<Line>& lines_;
   std::vector<std::int32_t> loose_;
   std::uint32_t group_ = 0, pending_group_ = 0;
@@ -209,12 +202,12 @@ void RayTrie::append(const RayTrie& sector) {
   depth_ = std::max(depth_, sector.depth_);
 }
 
-std::optional<RayTrie> RayTrie::make(const ViewReach& reach, int azimuth_bins, int stride_x, int stride_y) {
+std::optional<RayTrie> RayTrie::make(const ViewRegion& view, int azimuth_bins, int stride_x, int stride_y) {
   WindowLayout layout;
   layout.stride_x = stride_x;
   layout.stride_y = stride_y;
   std::size_t steps = 0;
-  for_each_offset(reach, [&](int dx, int dy, int height) {
+  for_each_column(view, [&](int dx, int dy, int height) {
     layout.reach_x = std::max(layout.reach_x, std::abs(dx));
     layout.reach_y = std::max(layout.reach_y, std::abs(dy));
     layout.reach_z = std::max(layout.reach_z, height);
@@ -224,7 +217,7 @@ std::optional<RayTrie> RayTrie::make(const ViewReach& reach, int azimuth_bins, i
   if (steps > kMaxSteps || levels * layout.level_bytes() > kMaxWindow) return std::nullopt;
 
   std::vector<std::vector<Line>> lines(static_cast<std::size_t>(azimuth_bins));
-  for_each_offset(reach, [&](int dx, int dy, int height) {
+  for_each_column(view, [&](int dx, int dy, int height) {
     auto& sector = lines[static_cast<std::size_t>(azimuth_bin(std::atan2(dy, dx), azimuth_bins))];
     for (int dz = -height; dz <= height; ++dz) sector.emplace_back(Cell{dx, dy, dz});
   });
@@ -234,11 +227,11 @@ std::optional<RayTrie> RayTrie::make(const ViewReach& reach, int azimuth_bins, i
     sectors[bin].layout_ = layout;
     RayTrieBuilder(sectors[bin], lines[bin]).build(static_cast<int>(bin));
   });
-  RayTrie tree;
-  tree.layout_ = layout;
-  tree.groups_.emplace_back();
-  for (const RayTrie& sector : sectors) tree.append(sector);
-  return tree;
+  RayTrie trie;
+  trie.layout_ = layout;
+  trie.groups_.emplace_back();
+  for (const RayTrie& sector : sectors) trie.append(sector);
+  return trie;
 }
 
 }  // namespace frontlux::detail

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "view/view_reach.hpp"
 #include "view/exact/window_layout.hpp"
+
+#include <frontlux/view_region.hpp>
 
 #include <array>
 #include <cstddef>
@@ -12,41 +13,45 @@
 
 namespace frontlux::detail {
 
-/// All paths that `RayCaster::visible` follows from a voxel to the offsets in view, as a tree: paths that
-/// begin alike share what they have in common. The path to an offset is the same from everywhere, so one walk
-/// over the tree answers for any number of viewpoints (trie_walk.hpp).
+/// The rays from a voxel to all offsets in view, each as the voxels that `RayCaster::visible` crosses, as a
+/// prefix trie: rays that begin with the same voxels share nodes. The ray to an offset is the same from
+/// everywhere, so one walk over the trie answers for any number of viewpoints (trie_walk.hpp).
 ///
-/// One tree for each sector of the horizon, since what counts is counted by sector. Nodes are listed depth
-/// first, so that to leave out what lies behind one is to go on at a later one. Places are those of a layout.
+/// The horizon is divided into sectors, with one trie for each, since visible targets are counted by sector.
+/// Nodes are listed depth first: a walk that leaves out what lies behind a node goes on at a later node.
+/// Places are those of a layout.
 class RayTrie {
  public:
-  /// A piece of path without a fork, and perhaps an offset in view that it leads to.
+  /// A piece of a ray without a fork, and perhaps an offset in view at its end.
   struct Node {
     static constexpr std::size_t kSteps = 4;
-    std::array<std::int32_t, kSteps> steps;  ///< voxels that have to be free; the last fills up
-    std::int32_t target;                     ///< place of the offset it leads to; any if `is_target` is 0
-    std::uint32_t end;                       ///< first node that is not behind this one
-    std::uint32_t group;                     ///< whose root this is; 0: none's
-    std::uint16_t depth;                     ///< nodes before it
+    std::array<std::int32_t, kSteps>
+        steps;            ///< places that have to be free; the last one is repeated if they are fewer
+    std::int32_t target;  ///< place of the offset at its end; any place if `is_target` is 0
+    std::uint32_t end;    ///< first node that is not behind this one
+    std::uint32_t group;  ///< the group that begins with this node; 0: none
+    std::uint16_t depth;  ///< nodes before it
     std::uint8_t is_target;
-    std::uint8_t is_fork;  ///< enough lies behind it to be worth a look before
+    std::uint8_t is_fork;  ///< so many nodes lie behind it that a walk checks whether it can leave them out
   };
   static_assert(sizeof(Node) == 32);
 
-  /// Targets in one part of the tree, which need not be walked if none of them is there.
+  /// Targets in one part of the trie, which need not be walked if none of them is there.
   struct Group {
     std::uint32_t begin = 0, end = 0;  ///< of `targets()`
   };
   struct Sector {
-    int bin = 0;                                     ///< of azimuth
-    std::uint32_t nodes_begin = 0, nodes_end = 0;    ///< the tree
-    std::uint32_t groups_begin = 0, groups_end = 0;  ///< of the first are targets that belong to no other
-    std::uint32_t adjacent = 0;  ///< of these the first so many, which no path leads to: nothing lies between
+    int bin = 0;                                   ///< of azimuth
+    std::uint32_t nodes_begin = 0, nodes_end = 0;  ///< the trie
+    std::uint32_t groups_begin = 0,
+                  groups_end = 0;  ///< the first group has the targets that belong to no other
+    std::uint32_t adjacent =
+        0;  ///< number of its first targets that are next to the viewpoint: they have no node
   };
 
-  /// The paths of a field of view; nothing if they are too many for a tree.
+  /// The trie of a field of view; nothing if the rays are too many.
   /// @param azimuth_bins  sectors, at least 1
-  static std::optional<RayTrie> make(const ViewReach& reach, int azimuth_bins, int stride_x, int stride_y);
+  static std::optional<RayTrie> make(const ViewRegion& view, int azimuth_bins, int stride_x, int stride_y);
 
   [[nodiscard]] const WindowLayout& layout() const { return layout_; }
   [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
@@ -54,7 +59,7 @@ class RayTrie {
   /// Places of all offsets in view, once each.
   [[nodiscard]] std::span<const std::int32_t> targets() const { return targets_; }
   [[nodiscard]] std::span<const Sector> sectors() const { return sectors_; }
-  /// Nodes on the longest way from the root.
+  /// Nodes of the longest ray.
   [[nodiscard]] std::size_t depth() const { return depth_; }
 
  private:

@@ -53,23 +53,23 @@ struct SpreadFrom {
 };
 
 /// The walk of one instruction set. `free` and `targets` point to the lowest places in reach of a tile, in
-/// windows of the tree's layout.
+/// windows of the trie's layout.
 struct TrieWalk {
   const char* instructions;
 
-  /// Adds to `counts` how many targets of a sector the viewpoints have around them, seen or not. Which of
-  /// them have any goes to `groups`, for each group, and to `any`.
-  void (*gather)(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* targets,
+  /// Adds to `counts` how many targets of a sector each viewpoint has in view, visible or not. The viewpoints
+  /// that have any go to `groups`, for each group, and to `any`.
+  void (*gather)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
                  const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any);
 
-  /// Adds to `counts` how many targets of a sector the viewpoints see. What lies in a group of the tree is
-  /// looked for only by the viewpoints in `groups`.
+  /// Adds to `counts` how many targets of a sector each viewpoint sees. The targets of a group are visited
+  /// only for the viewpoints in `groups`.
   /// @param reached  room for a set of viewpoints at each depth, and one more
-  void (*count)(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* free,
+  void (*count)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
                 const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
                 std::span<TileBits> reached, TileCounts& counts);
 
-  /// For each column from a bit on writes the 16 bits from there on, for each row.
+  /// For each column from `first_bit` on, and for each row, writes the 16 bits that begin at the column.
   void (*spread)(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,
                  std::uint16_t* out);
 };

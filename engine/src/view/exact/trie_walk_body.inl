@@ -52,11 +52,11 @@ class Adder {
   Adder(const Adder&) = delete;
   Adder& operator=(const Adder&) = delete;
 
-  // Takes no branch on whether there is something to add.
+  // Without a branch on whether there is something to add.
   [[gnu::always_inline]] void add(const Bits& bits, bool something) {
     store(&waiting_[size_], bits);
     std::size_t one = something ? 1 : 0;
-    __asm__("" : "+r"(one));  // else the compiler makes a branch of it, which nobody can foretell
+    __asm__("" : "+r"(one));  // else the compiler makes a branch of it, which is hard to predict
     size_ += one;
     if (size_ == kSize) [[unlikely]] {
       flush(counts_, waiting_, size_);
@@ -101,17 +101,17 @@ class Adder {
   Waiting& waiting_;
 };
 
-void gather(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* targets,
+void gather(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
             const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any) {
   const Bits here = load(&viewpoints);
   Bits all = here ^ here;
   Adder::Waiting waiting;
   Adder adder(counts, waiting);
   for (std::uint32_t g = sector.groups_begin; g < sector.groups_end; ++g) {
-    const RayTrie::Group& group = tree.groups()[g];
+    const RayTrie::Group& group = trie.groups()[g];
     Bits found = here ^ here;
     for (std::uint32_t t = group.begin; t < group.end; ++t) {
-      const Bits there = here & load(targets + tree.targets()[t]);
+      const Bits there = here & load(targets + trie.targets()[t]);
       found |= there;
       adder.add(there, any_of(there));
     }
@@ -121,19 +121,19 @@ void gather(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte*
   store(&any, all);
 }
 
-void count(const RayTrie& tree, const RayTrie::Sector& sector, const std::byte* free,
+void count(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
            const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
            std::span<TileBits> reached, TileCounts& counts) {
   Adder::Waiting waiting;
   Adder adder(counts, waiting);
   const Bits here = load(&viewpoints);
-  const auto first = tree.groups()[sector.groups_begin].begin;
-  for (const std::int32_t place : tree.targets().subspan(first, sector.adjacent)) {
+  const auto first = trie.groups()[sector.groups_begin].begin;
+  for (const std::int32_t place : trie.targets().subspan(first, sector.adjacent)) {
     const Bits seen = here & load(targets + place);
     adder.add(seen, any_of(seen));
   }
   store(&reached[0], here);
-  const RayTrie::Node* const nodes = tree.nodes().data();
+  const RayTrie::Node* const nodes = trie.nodes().data();
   TileBits* const at_depth = reached.data();
   for (std::uint32_t n = sector.nodes_begin; n < sector.nodes_end;) {
     const RayTrie::Node& node = nodes[n];

@@ -24,17 +24,18 @@ std::size_t size(int number) { return static_cast<std::size_t>(number); }
 
 }  // namespace
 
-void ViewWindow::aim(const WindowLayout& layout, const CellBox& places) {
+void ViewWindow::aim(const WindowLayout& layout, const std::array<int, 3>& first_place, int top) {
   layout_ = layout;
-  places_ = places;
   const std::array<int, 3> reach{layout.reach_x, layout.reach_y, layout.reach_z};
+  const std::array<int, 3> last_place{first_place[0] + (ViewTile::kColumns - 1) * layout.stride_x,
+                                      first_place[1] + (ViewTile::kRows - 1) * layout.stride_y, top};
   const std::array<int, 3> unit{kBrick * layout.stride_x, kBrick * layout.stride_y, 1};
   for (std::size_t a = 0; a < 3; ++a) {
-    const int low = places.min[a] - reach[a];
-    corner_[a] = low - ((low % unit[a]) + unit[a]) % unit[a];
+    low_[a] = first_place[a] - reach[a];
+    high_[a] = last_place[a] + reach[a];
+    corner_[a] = low_[a] - ((low_[a] % unit[a]) + unit[a]) % unit[a];
   }
-  const int across = places.max[0] + reach[0] - corner_[0] + 1;
-  const int along = places.max[1] + reach[1] - corner_[1] + 1;
+  const int across = high_[0] - corner_[0] + 1, along = high_[1] - corner_[1] + 1;
   bytes_across_ = size((across - 1) / unit[0] + 1) + 3;  // what `spread` may look at beyond
   run_ = size((along - 1) / unit[1] + 1) * kBrick;
 }
@@ -60,8 +61,7 @@ void ViewWindow::spread_level(std::size_t level, const TrieWalk& walk) {
     return;
   }
   const int sx = layout_.stride_x, sy = layout_.stride_y;
-  const int x = places_.min[0] - layout_.reach_x - corner_[0];
-  const int y = places_.min[1] - layout_.reach_y - corner_[1];
+  const int x = low_[0] - corner_[0], y = low_[1] - corner_[1];
   for (int column = 0; column < std::min(sx, layout_.columns()); ++column)
     for (int row = 0; row < sy; ++row) {
       const Bit first = bit({(x + column) % sx, y + row, static_cast<int>(level)});
@@ -74,23 +74,20 @@ void ViewWindow::spread_level(std::size_t level, const TrieWalk& walk) {
 void ViewWindow::fill_free(const VoxelGrid& grid, const TrieWalk& walk) {
   clear_packed();
   const int sx = layout_.stride_x, sy = layout_.stride_y;
-  const int low = places_.min[2] - layout_.reach_z, high = places_.max[2] + layout_.reach_z;
   const auto aligned = [](int k) { return std::max(k, 0) / kBrick * kBrick; };
   const auto limit = [](int k) { return std::min(k, Lattice::kKeysPerAxis - 1); };
-  const int end_x = limit(places_.max[0] + layout_.reach_x), end_y = limit(places_.max[1] + layout_.reach_y);
-  for (int bz = aligned(low); bz <= limit(high); bz += kBrick)
-    for (int by = aligned(corner_[1]); by <= end_y; by += kBrick)
-      for (int bx = aligned(corner_[0]); bx <= end_x; bx += kBrick) {
-        const Brick& brick = grid.brick(
-            {static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), static_cast<std::uint16_t>(bz)});
-        for (int z = std::max(bz, low); z < std::min(bz + kBrick, high + 1); ++z) {
+  for (int bz = aligned(low_[2]); bz <= limit(high_[2]); bz += kBrick)
+    for (int by = aligned(corner_[1]); by <= limit(high_[1]); by += kBrick)
+      for (int bx = aligned(corner_[0]); bx <= limit(high_[0]); bx += kBrick) {
+        const Brick& brick = grid.brick(make_key(bx, by, bz));
+        for (int z = std::max(bz, low_[2]); z < std::min(bz + kBrick, high_[2] + 1); ++z) {
           const std::uint64_t free = brick.free[size(z - bz)];
           if (free == 0) continue;
-          present_[size(z - low)] = 1;
+          present_[size(z - low_[2])] = 1;
           for (int column = 0; column < sx; ++column) {
             const std::uint64_t bits = every_bit(free, sx, column);
             for (int row = 0; row < sy; ++row) {
-              const Bit first = bit({bx - corner_[0] + column, by - corner_[1] + row, z - low});
+              const Bit first = bit({bx - corner_[0] + column, by - corner_[1] + row, z - low_[2]});
               std::uint8_t* const out = packed_.data() + first.byte;
               for (int k = 0; k < kBrick / sy; ++k)
                 out[k] =
@@ -102,24 +99,26 @@ void ViewWindow::fill_free(const VoxelGrid& grid, const TrieWalk& walk) {
   for (std::size_t level = 0; level < levels(); ++level) spread_level(level, walk);
 }
 
-bool ViewWindow::fill_targets(const TargetIndex& targets, const ViewReach& reach, const TrieWalk& walk) {
-  targets.list_cubes(reach, places_, cubes_);
+bool ViewWindow::fill_targets(const TargetIndex& targets, const ViewRegion& view, const TrieWalk& walk) {
+  const auto last = [](int high, int reach) { return std::min(high - reach, Lattice::kKeysPerAxis - 1); };
+  targets.list_cubes(
+      view,
+      {make_key(low_[0] + layout_.reach_x, low_[1] + layout_.reach_y, low_[2] + layout_.reach_z),
+       make_key(last(high_[0], layout_.reach_x), last(high_[1], layout_.reach_y),
+                last(high_[2], layout_.reach_z))},
+      cubes_);
   if (cubes_.empty()) return false;
   clear_packed();
-  const CellBox around{
-      {places_.min[0] - layout_.reach_x, places_.min[1] - layout_.reach_y, places_.min[2] - layout_.reach_z},
-      {places_.max[0] + layout_.reach_x, places_.max[1] + layout_.reach_y, places_.max[2] + layout_.reach_z}};
   for (const std::uint32_t c : cubes_) {
     const TargetIndex::Cube& cube = targets.cubes()[c];
     for (const VoxelKey& key : targets.keys().subspan(cube.begin, cube.size())) {
       const std::array<int, 3> voxel{key.x, key.y, key.z};
       bool inside = true;
-      for (std::size_t a = 0; a < 3; ++a)
-        inside = inside && around.min[a] <= voxel[a] && voxel[a] <= around.max[a];
+      for (std::size_t a = 0; a < 3; ++a) inside = inside && low_[a] <= voxel[a] && voxel[a] <= high_[a];
       if (!inside) continue;
-      const Bit place = bit({voxel[0] - corner_[0], voxel[1] - corner_[1], voxel[2] - around.min[2]});
+      const Bit place = bit({voxel[0] - corner_[0], voxel[1] - corner_[1], voxel[2] - low_[2]});
       packed_[place.byte] = static_cast<std::uint8_t>(packed_[place.byte] | 1U << place.shift);
-      present_[size(voxel[2] - around.min[2])] = 1;
+      present_[size(voxel[2] - low_[2])] = 1;
     }
   }
   for (std::size_t level = 0; level < levels(); ++level) spread_level(level, walk);

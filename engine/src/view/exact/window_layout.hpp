@@ -13,8 +13,8 @@ struct ViewTile {
   static constexpr int kMaxStride = 4;
 };
 
-/// How the surroundings of tiles lie in memory (`ViewWindow`), so that what all 512 places find at one offset
-/// is `ViewTile::kBytes` in a row. The place in memory is linear in the offset's x and z; along y voxels that
+/// The layout in memory of what lies around tiles (`ViewWindow`): what all 512 places find at one offset is
+/// `ViewTile::kBytes` in a row. The place in memory is linear in the offset's x and z. Along y, voxels that
 /// are a stride apart are neighbours.
 struct WindowLayout {
   int reach_x = 0, reach_y = 0, reach_z = 0;  ///< [voxels] largest offsets along each axis

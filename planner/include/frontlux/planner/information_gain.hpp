@@ -13,7 +13,7 @@
 
 namespace frontlux::planner {
 
-/// What a frontier counts that several viewpoints of a path see.
+/// What a frontier counts if several viewpoints of a path see it.
 enum class GainMode : std::uint8_t {
   kOr,   ///< once: the probability that at least one of them detects it
   kSum,  ///< once for each of them, as printed in the paper
@@ -28,22 +28,22 @@ struct GainOptions {
   void check() const;
 };
 
-/// What one viewpoint's gradient says.
+/// The gradient of the gain by one viewpoint.
 struct PoseGradient {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [1/m]
   double yaw = 0.0;                                    ///< [1/rad]
 };
 
-/// The information gain of a path: how many frontiers its viewpoints see, as a number that is differentiable
-/// in the viewpoints' yaws.
+/// The information gain of a path: how many frontiers its viewpoints see, as a differentiable function of the
+/// viewpoints' yaws.
 ///
-/// Viewpoint i sees frontier j with membership m_ij in [0, 1]: a product of logistic functions of the
-/// distances to the planes that bound the view and to its range, times visibility. `sharpness` says how steep
-/// they are: as it grows, m_ij tends to 1 in view and 0 out of it. What the product stands for, the number of
-/// distinct frontiers truly in view, is `distinct`.
+/// Viewpoint i sees frontier j with membership m_ij in [0, 1]: visibility times a product of logistic
+/// functions of the distances to the planes that bound the view, and to its range. `sharpness` is their
+/// steepness: as it grows, m_ij tends to 1 in view and to 0 out of view. `distinct` is the number of distinct
+/// frontiers that are truly in view.
 ///
-/// Yaws are in [rad], one for each viewpoint, the first and last included; any number of turns is the same.
-/// Of a spinning sensor they have no effect.
+/// Yaws are in [rad], one for each viewpoint, the first and the last included. Whole turns make no
+/// difference. For a spinning sensor yaws have no effect.
 ///
 /// Sharpness is in (0, 100]. Wrong sizes, values that are not finite and other sharpnesses throw
 /// std::invalid_argument. Thread safety: const members may run at the same time.
@@ -53,35 +53,28 @@ class InformationGain {
 
   /// @param viewpoints  where the sensor is; their yaws are not used
   /// @param frontiers   centres [m]
-  /// @param pairs       who sees whom, between these viewpoints and these frontiers
+  /// @param pairs       which of these viewpoints sees which of these frontiers
   InformationGain(std::span<const Pose> viewpoints, std::span<const Eigen::Vector3d> frontiers,
                   const VisiblePairs& pairs, const FieldOfView& view, const GainOptions& options = {});
 
   [[nodiscard]] std::size_t viewpoints() const { return positions_.size(); }
-  [[nodiscard]] std::size_t pairs() const { return seen_.size(); }
 
   /// The differentiable gain.
-  [[nodiscard]] double value(std::span<const double> yaws, double sharpness) const;
+  /// @param gradient  by the yaws [1/rad], in closed form; not written if empty
+  double value(std::span<const double> yaws, double sharpness, std::span<double> gradient = {}) const;
 
-  /// The same with its gradient by the yaws [1/rad], in closed form.
-  double value(std::span<const double> yaws, double sharpness, std::span<double> gradient) const;
-
-  /// The same from other positions, with its gradient by position and yaw, in closed form. Who sees whom
-  /// stays as it was: true for small moves only.
+  /// The same from other positions, with its gradient by position and yaw, in closed form. The visible pairs
+  /// stay as they were, which is right for small moves only.
   double value_at(std::span<const Pose> poses, double sharpness, std::span<PoseGradient> gradient) const;
 
-  /// The same by automatic differentiation of the plain formula. Slower by the number of viewpoints.
-  double automatic_value_at(std::span<const Pose> poses, double sharpness,
-                            std::span<PoseGradient> gradient) const;
-
-  /// The hard gain: how many distinct frontiers are in view (`FieldOfView::contains`) of a viewpoint that
+  /// The hard gain: the number of distinct frontiers in view (`FieldOfView::contains`) from a viewpoint that
   /// sees them.
   [[nodiscard]] std::uint64_t distinct(std::span<const double> yaws) const;
 
   /// Frontiers that a viewpoint sees at some yaw, ascending: `VisiblePairs::frontiers_of`.
   [[nodiscard]] std::span<const std::uint32_t> frontiers_of(std::size_t viewpoint) const;
 
-  /// For each of `frontiers_of(viewpoint)`, 1 if it is in view at this yaw, else 0.
+  /// For each of `frontiers_of(viewpoint)`: 1 if it is in view at this yaw, else 0.
   void in_view(std::size_t viewpoint, double yaw, std::span<std::uint8_t> in_view) const;
 
   [[nodiscard]] const FieldOfView& view() const { return view_; }

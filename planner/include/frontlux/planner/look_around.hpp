@@ -7,8 +7,8 @@
 
 namespace frontlux::planner {
 
-/// A sensor's looks from one place that together see all azimuths: one, if it spins, else as many as its
-/// opening angle needs, evenly turned, the first as given.
+/// Poses of a sensor at one place that together see all azimuths: one if it spins, else as many as its
+/// opening angle needs, evenly turned. The first is the given one.
 /// @throws std::invalid_argument naming the value of the field of view that is out of bounds
 [[nodiscard]] std::vector<Pose> look_around(const FieldOfView& view, const Pose& sensor_pose);
 

@@ -15,22 +15,18 @@ namespace frontlux::planner {
 
 /// Where the ascent along the gradient starts.
 enum class YawStart : std::uint8_t {
-  kGreedy,    ///< a bin for each viewpoint, chosen so that together they see most distinct frontiers
-  kBestBins,  ///< the bin in which each viewpoint alone sees most: best for `GainMode::kSum`
+  kGreedy,    ///< a bin for each viewpoint, chosen greedily so that together they see many distinct frontiers
+  kBestBins,  ///< for each viewpoint the bin in which it sees most by itself: best for `GainMode::kSum`
   kTangent,   ///< along the path
 };
-
-/// Who computes the gradient.
-enum class Differentiation : std::uint8_t { kClosedForm, kAutomatic };
 
 struct PathOptimizerOptions {
   GainOptions gain;
   YawStart start = YawStart::kGreedy;
   int yaw_bins = 24;   ///< 1 to 63, around the full circle
-  bool ascend = true;  ///< along the gradient, with Ipopt; else the start is all
+  bool ascend = true;  ///< along the gradient, with Ipopt; if false, the start is the result
   std::vector<double> sharpness = {8.0, 20.0, 40.0};  ///< one ascent after the other; not empty
-  int max_evaluations = 30;  ///< of the differentiable gain, in all; at least 4. More help from poorer starts
-  Differentiation differentiation = Differentiation::kClosedForm;
+  int max_evaluations = 30;  ///< of the differentiable gain, in all; at least 4. Poorer starts need more
   double max_yaw_step = std::numeric_limits<double>::infinity();  ///< [rad] from one viewpoint to the next
   double max_yaw_rate = std::numeric_limits<double>::infinity();  ///< [rad/m] along the path
 
@@ -38,8 +34,8 @@ struct PathOptimizerOptions {
   void check() const;
 };
 
-/// As printed in the paper: the sum of all views, from the path's tangent. The result is still never worse,
-/// in distinct frontiers, than the tangent.
+/// As printed in the paper: the sum of all views, from the path's tangent. The result still never has fewer
+/// distinct frontiers in view than the tangent.
 [[nodiscard]] PathOptimizerOptions paper_path_options();
 
 /// A path's gain: the differentiable one at the last sharpness, and the number of distinct frontiers in view.
@@ -51,9 +47,9 @@ struct PathGain {
 /// Why the optimisation ended.
 enum class PathEnd : std::uint8_t {
   kConverged,
-  kEvaluationLimit,   ///< the last ascent was cut short; the yaws are good all the same
-  kSolverStopped,     ///< Ipopt could not go on; the yaws are the best it met, or the start's
-  kAscentOff,         ///< not asked for
+  kEvaluationLimit,   ///< the last ascent was cut short; the yaws are the best so far
+  kSolverStopped,     ///< Ipopt could not go on; the yaws are the best so far
+  kAscentOff,         ///< `PathOptimizerOptions::ascend` is false
   kNothingToTurn,     ///< fewer than three viewpoints: the first and the last are fixed
   kNothingVisible,    ///< no viewpoint between the ends sees a frontier at any yaw
   kYawHasNoEffect,    ///< a spinning sensor
@@ -65,20 +61,19 @@ enum class PathEnd : std::uint8_t {
 
 struct OptimizedPath {
   std::vector<double> yaws;  ///< [rad] in [-pi, pi], one for each viewpoint; first and last as they were
-  PathGain tangent;          ///< before: each viewpoint looks to the next
+  PathGain tangent;          ///< before the optimisation: each viewpoint looks to the next
   PathGain start;            ///< where the ascent began
   PathGain result;
   int evaluations = 0;  ///< of the differentiable gain
   PathEnd end = PathEnd::kConverged;
-  [[nodiscard]] bool converged() const { return end == PathEnd::kConverged; }
 };
 
-/// Turns the viewpoints between the first and the last so that the path sees more frontiers. The yaws in
-/// `viewpoints` matter at both ends only.
+/// Turns the viewpoints between the first and the last so that the path sees more frontiers. Of the yaws in
+/// `viewpoints`, only the first and the last are used.
 ///
-/// Of all yaws met (tangent, start, and every step of the ascent) those with most distinct frontiers in view
-/// are returned: never fewer than at the start, nor, where it keeps the limits, along the tangent.
-/// Deterministic. Limits on yaw hold to 1e-9 rad.
+/// Returns the yaws with most distinct frontiers in view among the tangent, the start and every step of the
+/// ascent. These are never fewer than at the start, and never fewer than along the tangent if it keeps the
+/// limits. Deterministic. Limits on yaw hold to 1e-9 rad.
 ///
 /// May be called from several threads; their ascents wait for each other, since Ipopt keeps global counters.
 /// @param frontiers  centres [m]
@@ -88,8 +83,8 @@ struct OptimizedPath {
                                           const VisiblePairs& pairs, const FieldOfView& view,
                                           const PathOptimizerOptions& options = {});
 
-/// Yaws along a path: each viewpoint between the ends looks to the next; one exactly below or above the next
-/// looks as the one before it [rad]. First and last keep theirs.
+/// Yaws along a path [rad]: each viewpoint between the ends looks to the next. A viewpoint straight below or
+/// above the next one has the yaw of the one before it. The first and the last keep their yaws.
 [[nodiscard]] std::vector<double> tangent_yaws(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

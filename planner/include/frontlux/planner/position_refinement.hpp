@@ -14,11 +14,11 @@
 namespace frontlux::planner {
 
 struct PositionOptions {
-  int outer_iterations = 3;  ///< 1 to 1000; each with who sees whom anew
-  int steps = 8;           ///< 1 to 1000 in each iteration: points at which the differentiable gain is tried
-  double max_shift = 0.6;  ///< [m] of a viewpoint from where it was given
-  double spacing = 1.2;    ///< [m] greatest distance of a viewpoint that moves from those beside it
-  double sharpness = 8.0;  ///< of the differentiable gain that the positions climb
+  int outer_iterations = 3;  ///< 1 to 1000; each finds the visible pairs anew
+  int steps = 8;             ///< 1 to 1000 in each iteration: evaluations of the differentiable gain
+  double max_shift = 0.6;    ///< [m] of a viewpoint from its given position
+  double spacing = 1.2;      ///< [m] greatest distance between a viewpoint that moves and its neighbours
+  double sharpness = 8.0;    ///< of the differentiable gain by which positions move
   PathOptimizerOptions optimizer;  ///< of the yaws, once the viewpoints have moved
 
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -27,28 +27,28 @@ struct PositionOptions {
 
 /// A path whose viewpoints have moved.
 struct RefinedPath {
-  std::vector<Pose> viewpoints;  ///< as many as were given, the first and the last to the last bit
-  PathGain before, after;        ///< each with who sees whom from its own positions
-  int outer_iterations = 0;      ///< that were kept; 0: nothing has moved or turned
+  std::vector<Pose> viewpoints;  ///< as many as were given; the first and the last are unchanged
+  PathGain before, after;        ///< each with the visible pairs of its own positions
+  int outer_iterations = 0;      ///< that were kept; 0: no viewpoint has moved or turned
   std::uint64_t rays = 0;        ///< cast in all
 };
 
 /// Moves the viewpoints between the first and the last, and turns them, so that the path sees more frontiers.
 ///
-/// Each outer iteration climbs along the gain's gradient by position while who sees whom is frozen, then
-/// casts rays from the new positions and turns the viewpoints by `optimize_path`. It is kept if more distinct
-/// frontiers are in view than before, or as many with a greater fuzzy gain; else the refinement ends with
-/// what it had. So the number of distinct frontiers in view, `after.distinct`, is never below
-/// `before.distinct`.
+/// Each outer iteration climbs along the gain's gradient by position, with fixed visible pairs; then it casts
+/// rays from the new positions and turns the viewpoints by `optimize_path`. It is kept if more distinct
+/// frontiers are in view than before, or as many with a greater fuzzy gain; else the refinement ends with the
+/// result before it. So `after.distinct` is never below `before.distinct`.
 ///
-/// A viewpoint moves only where the ways to both of its neighbours are free (`way_is_free`) and no longer
-/// than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
+/// A viewpoint moves only if the segments to both of its neighbours are free (`way_is_free`) and no longer
+/// than the spacing. On a plane its height stays. Segments between viewpoints that stay are not checked.
 /// Deterministic. Thread safety: as `optimize_path`.
 /// @param viewpoints  with yaws, all of which count for `before`
-/// @param grid  what the caster, the corridor and the keys of the frontiers are of
-/// @param corridor  of voxels, not of nodes
-/// @throws std::invalid_argument if a viewpoint is not finite or an option or the field of view is out of
-/// bounds
+/// @param grid        of the caster, the corridor and the keys of the frontiers
+/// @param corridor    of voxels, not of nodes
+/// @throws std::invalid_argument if a viewpoint is not finite, or a value of the options or of the field of
+/// view is
+///                               out of bounds
 [[nodiscard]] RefinedPath refine_positions(std::span<const Pose> viewpoints,
                                            std::span<const VoxelKey> frontiers, const RayCaster& caster,
                                            const VoxelGrid& grid, const TravelCorridor& corridor,

@@ -18,44 +18,35 @@ struct VisiblePair {
   friend constexpr auto operator<=>(const VisiblePair&, const VisiblePair&) = default;
 };
 
-/// Which frontiers can be seen from which viewpoints: V_ij of the information gain, as a sparse matrix with
-/// an index both ways. Yaw plays no part.
+/// Which frontiers each viewpoint sees at some yaw: V_ij of the information gain, as a sparse matrix.
 class VisiblePairs {
  public:
   VisiblePairs() = default;
 
   /// @param pairs  in any order
-  /// @throws std::invalid_argument naming a pair that is out of range or there twice
+  /// @throws std::invalid_argument naming a pair that is out of range or given twice
   VisiblePairs(std::size_t viewpoints, std::size_t frontiers, std::span<const VisiblePair> pairs);
 
-  [[nodiscard]] std::size_t viewpoints() const { return by_viewpoint_.first.size() - 1; }
-  [[nodiscard]] std::size_t frontiers() const { return by_frontier_.first.size() - 1; }
-  [[nodiscard]] std::size_t size() const { return by_viewpoint_.other.size(); }
+  [[nodiscard]] std::size_t viewpoints() const { return first_.size() - 1; }
+  [[nodiscard]] std::size_t frontiers() const { return frontiers_; }
+  [[nodiscard]] std::size_t size() const { return seen_.size(); }
 
-  /// Frontiers seen from a viewpoint, ascending.
+  /// Frontiers that a viewpoint sees, ascending.
   [[nodiscard]] std::span<const std::uint32_t> frontiers_of(std::size_t viewpoint) const {
-    return by_viewpoint_.row(viewpoint);
-  }
-  /// Viewpoints that see a frontier, ascending.
-  [[nodiscard]] std::span<const std::uint32_t> viewpoints_of(std::size_t frontier) const {
-    return by_frontier_.row(frontier);
+    return std::span(seen_).subspan(first_[viewpoint], first_[viewpoint + 1] - first_[viewpoint]);
   }
 
  private:
-  struct Index {
-    std::vector<std::size_t> first{0};  // of each row, and the end of the last
-    std::vector<std::uint32_t> other;
-    [[nodiscard]] std::span<const std::uint32_t> row(std::size_t i) const {
-      return std::span(other).subspan(first[i], first[i + 1] - first[i]);
-    }
-  };
-  Index by_viewpoint_, by_frontier_;
+  std::size_t frontiers_ = 0;
+  std::vector<std::size_t> first_{0};  // of each viewpoint in `seen_`, and the end of the last
+  std::vector<std::uint32_t> seen_;
 };
 
-/// The pairs that some yaw brings into view and between which nothing stands: unknown and occupied voxels
-/// block, the voxels of the viewpoint and of the frontier do not. One batch of rays for a whole path.
+/// The pairs that are in view at some yaw and visible. Unknown and occupied voxels block; the voxels of the
+/// viewpoint and of the frontier do not. Casts one batch of rays for the whole path.
 /// @param grid  on whose lattice the keys lie
-/// @throws std::invalid_argument if a viewpoint is not finite or the field of view is none
+/// @throws std::invalid_argument if a viewpoint is not finite, or a value of the field of view is out of
+/// bounds
 [[nodiscard]] VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
                                          std::span<const Pose> viewpoints,
                                          std::span<const VoxelKey> frontiers, const FieldOfView& view);

@@ -1,0 +1,103 @@
+// Choices among yaw bins against every choice there is.
+
+#include "view_path/yaw_bins.hpp"
+
+#include "support/random.hpp"
+#include "support/random_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace frontlux::planner {
+namespace {
+
+using test::Scene;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::uint64_t views_of(const Scene& scene, const std::vector<double>& yaws) {
+  std::uint64_t views = 0;
+  for (const auto& [i, j] : scene.list)
+    views += scene.view.contains(scene.frontiers[j] - scene.path[i].position, yaws[i]) ? 1U : 0U;
+  return views;
+}
+
+// The best of all choices within the limits.
+struct Best {
+  std::uint64_t views = 0, distinct = 0;
+  std::size_t choices = 0;
+
+  Best(const Scene& scene, std::size_t bins, const YawLimits& limits) {
+    choose(scene, bins, limits, scene.yaws(), 1);
+  }
+
+ private:
+  void choose(const Scene& scene, std::size_t bins, const YawLimits& limits, std::vector<double> yaws,
+              std::size_t i) {
+    if (i + 1 < yaws.size()) {
+      std::vector<double> some;
+      for (std::size_t b = 0; b < bins; ++b)
+        some.push_back(2.0 * std::numbers::pi * static_cast<double>(b) / static_cast<double>(bins));
+      if (limits.limited()) some.push_back(limits.even_turn(yaws.front(), yaws.back())[i]);
+      for (const double yaw : some) {
+        yaws[i] = yaw;
+        choose(scene, bins, limits, yaws, i + 1);
+      }
+    } else if (limits.allow(yaws)) {
+      ++choices;
+      views = std::max(views, views_of(scene, yaws));
+      distinct = std::max(distinct, test::distinct_by_hand(scene, yaws));
+    }
+  }
+};
+
+TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
+  test::Random random(3);
+  std::uint64_t distinct = 0, most_distinct = 0;
+  int limited_trials = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Scene scene = test::random_scene(random, 1 + random.below(5), 60, 0.5);
+    const std::size_t bins = 1 + static_cast<std::size_t>(random.below(7));
+    const YawLimits limits(scene.path, trial % 2 == 0 ? kInfinity : random.uniform(0.3, 2.0), kInfinity);
+    const Best best(scene, bins, limits);
+    if (best.choices == 0) continue;  // not even the even turn keeps the limits
+    limited_trials += limits.limited() ? 1 : 0;
+    const InformationGain gain = scene.gain();
+    const double first = scene.path.front().yaw, last = scene.path.back().yaw;
+    const YawBins yaw_bins(gain, static_cast<int>(bins), first, last, limits);
+    const auto views = yaw_bins.most_views(), seen = yaw_bins.most_distinct();
+    for (const auto& yaws : {views, seen}) {
+      ASSERT_EQ(yaws.size(), scene.path.size());
+      EXPECT_EQ(yaws.front(), first);
+      EXPECT_EQ(yaws.back(), yaws.size() == 1 ? first : last);
+      EXPECT_TRUE(limits.allow(yaws));
+    }
+    EXPECT_EQ(views_of(scene, views), best.views);
+    const std::uint64_t reached = test::distinct_by_hand(scene, seen);
+    EXPECT_LE(reached, best.distinct);
+    // What is known of greedy choices without limits: at least half; with the sweeps it comes much nearer.
+    if (!limits.limited()) EXPECT_GE(static_cast<double>(reached), 0.85 * static_cast<double>(best.distinct));
+    distinct += reached;
+    most_distinct += best.distinct;
+  }
+  EXPECT_GT(limited_trials, 15);
+  EXPECT_GE(static_cast<double>(distinct), 0.97 * static_cast<double>(most_distinct));
+}
+
+TEST(YawBins, OfEqualYawsTheFirstIsChosen) {
+  Scene scene{std::vector<Pose>(4), {}, {}, test::camera()};
+  scene.path.front().yaw = 1.0, scene.path.back().yaw = 2.0;
+  const InformationGain gain = scene.gain();
+  const YawLimits none(scene.path, kInfinity, kInfinity);
+  const YawBins bins(gain, YawBins::kMaxBins, 1.0, 2.0, none);
+  EXPECT_EQ(bins.most_views(), (std::vector{1.0, 0.0, 0.0, 2.0}));
+  EXPECT_EQ(bins.most_distinct(), (std::vector{1.0, 0.0, 0.0, 2.0}));
+}
+
+}  // namespace
+}  // namespace frontlux::planner
