@@ -40,7 +40,7 @@ void expect_coverage(std::string_view world, std::uint64_t seed,
   EXPECT_EQ(robots.total().physical, 0U);
   // The box of whole voxels is larger than the body; a surface seen at a grazing angle may be within it.
   EXPECT_LE(robots.total().lattice, 2U);
-  EXPECT_LE(robots.held_back(), 1U) << "ways lead where bodies do not fit";
+  EXPECT_LE(robots.held_back(), 1U) << "paths lead where bodies do not fit";
 }
 
 TEST(ExplorationCoverage, OfARoom) {
