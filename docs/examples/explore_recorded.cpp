@@ -10,11 +10,11 @@
 // all for SECONDS. What is in the folder already is taken at once: the same folder can be explored again
 // without a robot. The map comes to FOLDER/map.bt.
 
-#include <frontlux/planner/exploration.hpp>
 #include <frontlux/io/path_file.hpp>
 #include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
+#include <frontlux/planner/exploration.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -85,9 +85,7 @@ void explore(const RobotDescription& description, const std::filesystem::path& f
                            .bounds = voxels_of(lattice, {start.position - reach, start.position + reach})};
   ExplorationStart begin{start, {}};
   const KeyBox own = voxels_of(lattice, {start.position - body, start.position + body});
-  for (auto x = own.min.x; x <= own.max.x; ++x)
-    for (auto y = own.min.y; y <= own.max.y; ++y)
-      for (auto z = own.min.z; z <= own.max.z; ++z) begin.known_free.push_back({x, y, z});
+  frontlux::for_each_key(own, [&](const frontlux::VoxelKey& key) { begin.known_free.push_back(key); });
 
   ExplorationOptions options = exploration_options();
   options.team.push_back({robot, goal_options(robot)});
@@ -103,7 +101,7 @@ void explore(const RobotDescription& description, const std::filesystem::path& f
               << " m, " << step.robots[0].gained << " gained\n";
   }
   exploration.mapping().write(folder / "map.bt");
-  std::cout << "end: " << describe(*exploration.end()) << '\n';
+  std::cout << "end: " << describe(*exploration.end(), options) << '\n';
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints a line for each step of a run: read_recording.py DIR/run.frontlux. The format: docs/recording.md."""
+"""Prints a line for each step of a run: read_recording.py DIR/run.frontlux. The format: planner/src/recording/."""
 import struct
 import sys
 import zlib
@@ -23,7 +23,7 @@ class Bytes:
 
 
 def step_line(step):
-    number, frontiers, _unassigned, _dropped, _rays, _collisions = step.counts(6)
+    number, frontiers, _unassigned, _abandoned, _rays, _collisions = step.counts(6)
     step.doubles(6)  # seconds
     known = [step.counts(2) for _ in range(step.count())]
     line = f"step {number}: {frontiers} frontiers"
@@ -39,7 +39,7 @@ def step_line(step):
         changes = step.count()
         step.counts(3 * changes)  # keys
         after = [pair % 3 for pair in step.counts(changes)]
-        step.counts(3 * step.count())  # still_unknown voxels
+        step.counts(3 * step.count())  # frontiers still unknown
         step.counts(3 * step.count())  # blocked cells
         cells = step.count()
         step.counts(3 * cells), step.doubles(5 * cells), step.counts(cells)  # the image
@@ -49,8 +49,8 @@ def step_line(step):
 
 
 with open(sys.argv[1], "rb") as file:
-    if file.readline() != b"frontlux recording, format 1\n":
-        sys.exit(f"{sys.argv[1]}: not a recording of format 1")
+    if (title := file.readline()) != b"frontlux recording, format 2\n":
+        sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 2'; read it with the frontlux that wrote it")
     while len(header := file.read(16)) == 16:
         tag, packed, _plain, _checksum = struct.unpack("<4s3I", header)
         payload, checksum = file.read(packed), file.read(4)

@@ -1,9 +1,10 @@
 #include "support/command_test.hpp"
 #include "support/quiet_octomap.hpp"
+#include "support/voxel_keys.hpp"
 
+#include <frontlux/io/path_file.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
-#include <frontlux/io/path_file.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/ray_caster.hpp>
 
@@ -53,7 +54,8 @@ class PlanCommandTest : public test::CommandTest {
     MappingOptions options;
     options.resolution = 0.3;
     Mapping mapping(options);
-    mapping.mark_free(Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 6, 4)));
+    mapping.mark_free(test::keys_of(
+        voxels_of(mapping.grid().lattice(), {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 6, 3.9)})));
     const auto occupy = [&](double x, double y, double z) {
       for (int hits = 0; hits < 3; ++hits)
         mapping.insert(Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)),

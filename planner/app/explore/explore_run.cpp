@@ -3,12 +3,12 @@
 #include "bad_input.hpp"
 #include "explore/explore_setup.hpp"
 #include "explore/interrupt.hpp"
-#include "json.hpp"
 #include "explore/machine.hpp"
 #include "explore/run_files.hpp"
+#include "json.hpp"
 #include "text.hpp"
-#include <frontlux/file.hpp>
 
+#include <frontlux/file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
@@ -282,7 +282,8 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
       print_summary(run, setup, going.files(),
-                    reason ? end + ": " + std::string(planner::describe(*reason)) : end, seconds());
+                    reason ? end + ": " + planner::describe(*reason, going.exploration().options()) : end,
+                    seconds());
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -23,7 +24,7 @@ void ExplorationOptions::check() const {
       refuse(std::string(name) + " is " + std::to_string(value) + ", but has to be at least " +
              std::to_string(low));
   };
-  at_least("quiet_steps", quiet_steps, 1);
+  at_least("low_gain_steps", low_gain_steps, 1);
   at_least("max_steps", max_steps, 0);
   at_least("max_visits", max_visits, 1);
   at_least("min_cluster_size", min_cluster_size, 1);
@@ -52,8 +53,8 @@ std::string_view name_of(Phase phase) {
 
 std::string_view name_of(ExplorationEnd end) {
   switch (end) {
-    case ExplorationEnd::kQuiet:
-      return "quiet";
+    case ExplorationEnd::kLowGain:
+      return "low_gain";
     case ExplorationEnd::kNothingToDo:
       return "nothing_to_do";
     case ExplorationEnd::kStepLimit:
@@ -62,14 +63,18 @@ std::string_view name_of(ExplorationEnd end) {
   return "unknown";
 }
 
-std::string_view describe(ExplorationEnd end) {
+std::string describe(ExplorationEnd end, const ExplorationOptions& options) {
   switch (end) {
-    case ExplorationEnd::kQuiet:
-      return "several steps in a row promised next to nothing new";
+    case ExplorationEnd::kLowGain: {
+      std::ostringstream text;  // 10 without zeros behind it
+      text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
+           << " steps";
+      return text.str();
+    }
     case ExplorationEnd::kNothingToDo:
       return "no robot can see a frontier from anywhere it can go";
     case ExplorationEnd::kStepLimit:
-      return "the limit on the number of steps is reached";
+      return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
   }
   return "unknown";
 }

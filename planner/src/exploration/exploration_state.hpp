@@ -15,62 +15,52 @@
 
 namespace frontlux::planner {
 
-/// What an exploration knows between the steps, and the parts of one.
+/// What an exploration knows between the steps, and the stages of a step.
 struct Exploration::State {
   using Keys = std::vector<VoxelKey>;
-
-  // A path and who sees what along it, until the robot has gone it.
-  struct Plan {
-    Keys targets;
-    std::optional<InformationGain> gain;
-  };
+  using Gains = std::vector<std::optional<InformationGain>>;  // of each robot's path, if it has a goal
 
   ExplorationOptions options;
   Mapping mapping;
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
   detail::AbandonedFrontiers abandoned;
-  std::optional<GoalSelection> selection = {};
-  // Of robots whose corridor is one of nodes: they travel between the nodes by voxels.
-  std::vector<std::optional<TravelCorridor>> ways = {};
+  std::optional<GoalSelection> selection = {};  // from the start on
+  // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
+  std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
   Keys changed = {};                           // by the last step, sorted
-  std::uint64_t number = 0;
-  int quiet = 0;
-  bool idle = false;
+  std::uint64_t number = 0;                    // of the next step
+  int low_gain_steps = 0;                      // in a row
+  bool idle = false;                           // in the last step no robot had a goal or moved
 
   State(ExplorationOptions given, Mapping map);
 
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
-  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
-  [[nodiscard]] const TravelCorridor& way_of(std::size_t robot) const {
-    return ways[robot] ? *ways[robot] : selection->corridor(robot);
-  }
-  [[nodiscard]] std::optional<VoxelKey> cell_at(const Eigen::Vector3d& position) const {
-    const auto x = lattice().key(position.x()), y = lattice().key(position.y()),
-               z = lattice().key(position.z());
-    if (!x || !y || !z) return std::nullopt;
-    return VoxelKey{*x, *y, *z};
-  }
+  [[nodiscard]] ExplorationStep new_step() const;
 
-  // exploration.cpp
-  void select_from(std::span<const ExplorationStart> starts);
-  void close(const ExplorationStep& step);
-
-  // exploration_plan.cpp
-  TeamGoals select_goals(ExplorationStep& step);
-  void plan_way(std::size_t robot, RobotStep& planned);
-  Plan optimize(std::size_t robot, const RayCaster& counting, RobotStep& planned);
-
-  // exploration_travel.cpp
-  void go(std::size_t robot, const Plan& plan, const Drive& drive, RobotStep& step);
-  void take(const RobotStep& step, std::size_t robot);
-  void follow(const ExplorationStep& step);
+  // The stages, in their order.
+  void start_from(std::span<const ExplorationStart> starts);
+  void look_around(std::span<const ExplorationStart> starts, const Drive& drive, ExplorationStep& step);
+  void update_views(ExplorationStep& step);
+  void select_goals(ExplorationStep& step);
+  void plan_paths(ExplorationStep& step) const;
+  [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
+  void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
+  [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
+                                   ExplorationStep& step);
+  void update_frontiers(ExplorationStep& step);
+  void judge(const ExplorationStep& step);
 
  private:
-  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot) const;
+  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
+  [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
+    return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
+  }
+  [[nodiscard]] std::vector<Pose> retreat(std::size_t robot) const;
+  void remember(std::size_t robot, const RobotStep& step);
 };
 
 }  // namespace frontlux::planner

@@ -38,9 +38,9 @@ using Octants = std::array<std::uint64_t, 8>;
 [[nodiscard]] constexpr VoxelKey in_brick(unsigned number) {
   const auto along = [number](unsigned axis) {
     const unsigned n = number >> axis;
-    return static_cast<std::uint16_t>((n & 1U) | ((n >> 2) & 2U) | ((n >> 4) & 4U));
+    return (n & 1U) | ((n >> 2) & 2U) | ((n >> 4) & 4U);
   };
-  return {along(0), along(1), along(2)};
+  return make_key(along(0), along(1), along(2));
 }
 
 /// The number of a brick in octree order among all bricks of the key range: 39 bits, three for each level.
@@ -57,8 +57,7 @@ using Octants = std::array<std::uint64_t, 8>;
 
 /// Lowest voxel of the brick that holds a voxel.
 [[nodiscard]] constexpr VoxelKey brick_corner(const VoxelKey& key) {
-  const auto along = [](std::uint16_t k) { return static_cast<std::uint16_t>(k & ~7U); };
-  return {along(key.x), along(key.y), along(key.z)};
+  return make_key(key.x & ~7, key.y & ~7, key.z & ~7);
 }
 
 /// The voxels of a brick that lie in a box.

@@ -20,7 +20,7 @@ namespace frontlux::planner::detail {
   return std::sqrt(static_cast<double>(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()));
 }
 
-/// A ray that an insertion follows.
+/// A ray of an insertion.
 struct RayEnd {
   Eigen::Vector3f point;  ///< [m]
   VoxelKey key;           ///< of the voxel in which it ends
@@ -44,16 +44,16 @@ struct PathStart {
   double length;
 };
 
-/// @param way  from the origin to the end, in float as OctoMap subtracts them
+/// @param offset  from the origin to the end, in float as OctoMap subtracts them
 [[nodiscard]] inline PathStart path_start(const Lattice& lattice, const Eigen::Vector3f& origin,
-                                          const VoxelKey& start, const Eigen::Vector3f& way, float length,
+                                          const VoxelKey& start, const Eigen::Vector3f& offset, float length,
                                           const LinearPlaces& places) {
   const std::array<std::uint16_t, 3> keys = {start.x, start.y, start.z};
   PathStart path;
   path.length = static_cast<double>(length);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    const float direction = way[axis] / length;
+    const float direction = offset[axis] / length;
     const int sign = direction > 0.0F ? 1 : direction < 0.0F ? -1 : 0;
     path.step[i] = sign * places.stride[i];
     path.t_max[i] = path.t_delta[i] = std::numeric_limits<double>::max();
@@ -148,8 +148,8 @@ class PathLanes {
 /// lie in different voxels, as (1e-30, 1e-30, 0) and (-1e-30, -1e-30, 0) do; here such a ray passes its first
 /// voxel only. Otherwise rounding can carry a path past the voxel of its end by one voxel an axis at most.
 template <class Mark>
-void follow_rays(const Lattice& lattice, const Eigen::Vector3f& origin, const VoxelKey& start,
-                 std::span<const RayEnd> rays, const LinearPlaces& places, const Mark& mark) {
+void for_each_passed(const Lattice& lattice, const Eigen::Vector3f& origin, const VoxelKey& start,
+                     std::span<const RayEnd> rays, const LinearPlaces& places, const Mark& mark) {
   const std::int64_t first = places.at(start);
   PathLanes lanes(first);
   std::size_t next = 0;
@@ -158,10 +158,10 @@ void follow_rays(const Lattice& lattice, const Eigen::Vector3f& origin, const Vo
       const RayEnd& ray = rays[next++];
       if (!ray.has_key || ray.key == start) continue;
       mark(lane, first);
-      const Eigen::Vector3f way = ray.point - origin;
-      const auto length = static_cast<float>(octomap_norm(way));
+      const Eigen::Vector3f offset = ray.point - origin;
+      const auto length = static_cast<float>(octomap_norm(offset));
       if (!(length > 1e-15F)) continue;
-      lanes.load(lane, path_start(lattice, origin, start, way, length, places), first, places.at(ray.key));
+      lanes.load(lane, path_start(lattice, origin, start, offset, length, places), first, places.at(ray.key));
       return true;
     }
     return false;

@@ -11,17 +11,6 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// All voxels that rays can pass, and one more on each side for their rounding.
-WideBox box_of(const VoxelKey& start, std::span<const RayEnd> rays) {
-  VoxelKey min = start, max = start;
-  for (const RayEnd& ray : rays) {
-    if (!ray.has_key) continue;
-    min = {std::min(min.x, ray.key.x), std::min(min.y, ray.key.y), std::min(min.z, ray.key.z)};
-    max = {std::max(max.x, ray.key.x), std::max(max.y, ray.key.y), std::max(max.z, ray.key.z)};
-  }
-  return {{min.x - 1, min.y - 1, min.z - 1}, {max.x + 1, max.y + 1, max.z + 1}};
-}
-
 template <class Voxels>
 std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice, const KeyBox& bounds,
                                      const Eigen::Vector3f& origin, const VoxelKey& start,
@@ -32,7 +21,7 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
                     [&](const tbb::blocked_range<std::size_t>& piece) {
                       Voxels& voxels = passed.local();
-                      follow_rays(
+                      for_each_passed(
                           lattice, origin, start, rays.subspan(piece.begin(), piece.size()), places,
                           [&voxels](unsigned lane, std::int64_t place) { return voxels.add(place, lane); });
                     });
@@ -64,7 +53,10 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
 std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
                                         const Eigen::Vector3f& origin, std::span<const RayEnd> rays) {
   const VoxelKey start = lattice.key(origin).value();
-  if (const auto dense = DenseVoxels::make(box_of(start, rays)))
+  KeyBox box{start, start};
+  for (const RayEnd& ray : rays)
+    if (ray.has_key) box = hull(box, {ray.key, ray.key});
+  if (const auto dense = DenseVoxels::make(box))
     return update_with(*dense, lattice, bounds, origin, start, rays);
   return update_with(SparseVoxels{}, lattice, bounds, origin, start, rays);
 }

@@ -12,23 +12,21 @@
 
 namespace frontlux::planner::detail {
 
-/// A box of voxels, which may reach beyond the key range by a few voxels.
-struct WideBox {
-  std::array<std::int64_t, 3> min, max;  // both included
-};
-
-/// A set of voxels in a box, a bit for each: for boxes small enough to be cleared for every scan.
+/// A set of voxels in a box and one voxel around it, which may lie beyond the key range. A bit for each: for
+/// boxes small enough to be cleared for every scan.
 class DenseVoxels {
  public:
   static constexpr std::int64_t kMaxBits = std::int64_t{1} << 25;
 
   /// Nothing if the box is too large.
-  [[nodiscard]] static std::optional<DenseVoxels> make(const WideBox& box) {
+  [[nodiscard]] static std::optional<DenseVoxels> make(const KeyBox& box) {
+    const std::array<int, 3> min = {box.min.x - 1, box.min.y - 1, box.min.z - 1},
+                             max = {box.max.x + 1, box.max.y + 1, box.max.z + 1};
     DenseVoxels set;
     std::int64_t bits = 512;
     for (std::size_t i = 0; i < 3; ++i) {
-      set.corner_[i] = (box.min[i] >> 3) * 8;
-      set.bricks_[i] = (box.max[i] >> 3) - (box.min[i] >> 3) + 1;
+      set.corner_[i] = (min[i] >> 3) * 8;
+      set.bricks_[i] = (max[i] >> 3) - (min[i] >> 3) + 1;
       if (bits > kMaxBits / set.bricks_[i]) return std::nullopt;
       bits *= set.bricks_[i];
     }
@@ -63,8 +61,7 @@ class DenseVoxels {
       for (std::int64_t y = 0; y < bricks_[1]; ++y)
         for (std::int64_t x = 0; x < bricks_[0]; ++x)
           if (in_range(along(0, x)) && in_range(along(1, y)) && in_range(along(2, z)))
-            visit(VoxelKey{static_cast<std::uint16_t>(along(0, x)), static_cast<std::uint16_t>(along(1, y)),
-                           static_cast<std::uint16_t>(along(2, z))});
+            visit(make_key(along(0, x), along(1, y), along(2, z)));
   }
 
   [[nodiscard]] Layers brick(const VoxelKey& corner) const {
@@ -116,8 +113,7 @@ class SparseVoxels {
       };
       const auto in_range = [](std::int64_t k) { return k >= 0 && k < Lattice::kKeysPerAxis; };
       if (in_range(along(0)) && in_range(along(1)) && in_range(along(2)))
-        visit(VoxelKey{static_cast<std::uint16_t>(along(0)), static_cast<std::uint16_t>(along(1)),
-                       static_cast<std::uint16_t>(along(2))});
+        visit(make_key(along(0), along(1), along(2)));
     }
   }
 

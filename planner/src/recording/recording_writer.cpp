@@ -1,8 +1,5 @@
-#include "recording/recording_bytes.hpp"
-#include "recording/recording_head.hpp"
-#include "recording/recording_parts.hpp"
-#include "recording/recording_record.hpp"
-#include "recording/recording_step.hpp"
+#include "recording/packed_record.hpp"
+#include "recording/recording_format.hpp"
 
 #include <frontlux/planner/recording.hpp>
 
@@ -125,9 +122,7 @@ void RecordingWriter::write(const RecordedStep& step) {
 
 void RecordingWriter::write_end(const std::string& reason) {
   if (state_->ended) throw std::invalid_argument("recording: a second end");
-  detail::RecordWriter writer;
-  detail::code_end(writer, reason);
-  state_->file.append(detail::packed_record(detail::kEndTag, writer.bytes()));
+  state_->file.append(detail::packed_record(detail::kEndTag, detail::end_bytes(reason)));
   state_->ended = true;
 }
 

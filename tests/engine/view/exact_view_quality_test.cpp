@@ -1,8 +1,8 @@
 // The exact renderer against brute force: target by target, with the field of view's own test and the walk
 // over the grid. Then against itself: on every instruction set, on other threads, kept and from scratch.
 
-#include "support/changed_keys.hpp"
 #include "support/random.hpp"
+#include "support/voxel_keys.hpp"
 #include "view/exact/exact_render.hpp"
 #include "walk/walk.hpp"
 

@@ -1,8 +1,8 @@
 // The renderer against brute force: target by target, with the field of view's own test and the grid caster.
 // What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
 
-#include "support/changed_keys.hpp"
 #include "support/random.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/view_quality.hpp>
 

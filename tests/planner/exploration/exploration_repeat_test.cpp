@@ -46,8 +46,8 @@ TEST(ExplorationSteps, AreTheSameByEveryCasterAndNumberOfThreads) {
   std::string expected_map;
   std::vector<ExplorationStep> expected;
   tbb::task_arena(2).execute([&] { expected = steps_of(team, options, 8, &expected_map); });
-  using Way = std::pair<CasterKind, int>;
-  for (const auto& [caster, threads] : {Way{CasterKind::kEmbree, 1}, Way{CasterKind::kGrid, 2}}) {
+  using Setting = std::pair<CasterKind, int>;
+  for (const auto& [caster, threads] : {Setting{CasterKind::kEmbree, 1}, Setting{CasterKind::kGrid, 2}}) {
     options.caster = caster;
     std::string map;
     std::vector<ExplorationStep> steps;
@@ -109,9 +109,9 @@ TEST(ExplorationRepeat, IsTheUnbrokenRunAtEveryStep) {
 
 // Robots that something invisible keeps out of half of the room: what they could not go through has to be
 // known again as well.
-TEST(ExplorationRepeat, KnowsAgainWhereRobotsCouldNotGo) {
+TEST(ExplorationRepeat, RemembersWhereRobotsCouldNotGo) {
   const TeamInWorld team("room", 1, uav_and_ugv());
-  std::size_t refused = 0, told = 0;
+  std::size_t refused = 0, noticed = 0;
   const auto drive_in_half = [&](sim::SimulatedRobots& robots) {
     return [&](std::size_t robot, const Pose& to) -> std::optional<Scan> {
       const Eigen::Vector3d start = team.starts[robot].pose.position;
@@ -135,7 +135,7 @@ TEST(ExplorationRepeat, KnowsAgainWhereRobotsCouldNotGo) {
         steps.push_back(exploration.step(drive));
         for (std::size_t r = 0; r < 2; ++r) {
           const RobotStep& robot = steps.back().robots[r];
-          told += robot.blocked.empty() ? 0 : 1;
+          noticed += robot.blocked.empty() ? 0 : 1;
           for (const Pose& pose : robot.planned)
             EXPECT_FALSE(closed[r].contains(*cell_of(pose, exploration))) << "goes there again";
           closed[r].insert(robot.blocked.begin(), robot.blocked.end());
@@ -147,13 +147,13 @@ TEST(ExplorationRepeat, KnowsAgainWhereRobotsCouldNotGo) {
       }
     }
     if (cut == kSteps) {
-      EXPECT_EQ(told, refused);
+      EXPECT_EQ(noticed, refused);
     }
   }
-  EXPECT_GT(told, 0U);
+  EXPECT_GT(noticed, 0U);
 }
 
-TEST(ExplorationRepeat, TellsAnotherWorld) {
+TEST(ExplorationRepeat, NoticesAnotherWorld) {
   const TeamInWorld team("room", 1, uav_and_ugv());
   const auto steps = steps_of(team, team.options(), 2);
   ASSERT_EQ(steps.size(), 3U);

@@ -50,12 +50,8 @@ bool body_is_free(const VoxelGrid& grid, const TravelOptions& body, const Eigen:
   if (body.motion == Motion::kPlane) half.z() = 0.0;
   half -= Eigen::Vector3d::Constant(1e-4).cwiseMin(half);
   const Eigen::Vector3d low = at - half, high = at + half;
-  const KeyBox box{
-      {lattice.key(low.x()).value(), lattice.key(low.y()).value(), lattice.key(low.z()).value()},
-      {lattice.key(high.x()).value(), lattice.key(high.y()).value(), lattice.key(high.z()).value()}};
-  bool all = true;
-  for_each_key(box, [&](const VoxelKey& key) { all = all && grid.at(key) == Occupancy::kFree; });
-  return all;
+  return all_of(KeyBox{lattice.key(low).value(), lattice.key(high).value()},
+                [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
 }
 
 // What a run comes to.
@@ -112,7 +108,7 @@ class Watch {
       if (when.contains(r)) {
         EXPECT_TRUE(when.at(r) == map) << "robots move one after the other";
       }
-      check_way(robot, r, before, from[r], asked[r]);
+      check_path(robot, r, before, from[r], asked[r]);
       check_gains(robot, r, before, frontiers);
       // What it changed: all that differs once the next one sets out.
       auto next = when.upper_bound(r);
@@ -131,31 +127,31 @@ class Watch {
     }
   }
 
-  void check_way(const RobotStep& robot, std::size_t r, const VoxelGrid& before, const Pose& from,
-                 const std::vector<Pose>& asked) {
-    const std::vector<Pose>& way = robot.planned;
-    ASSERT_LE(robot.travelled, way.size());
+  void check_path(const RobotStep& robot, std::size_t r, const VoxelGrid& before, const Pose& from,
+                  const std::vector<Pose>& asked) {
+    const std::vector<Pose>& path = robot.planned;
+    ASSERT_LE(robot.travelled, path.size());
     ASSERT_EQ(asked.size(), robot.travelled == 0 ? 0 : robot.travelled - 1)
         << "every viewpoint is measured at";
-    for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_TRUE(same(asked[i], way[i + 1]));
+    for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_TRUE(same(asked[i], path[i + 1]));
     double length = 0.0;
     for (std::size_t i = 1; i < robot.travelled; ++i)
-      length += (way[i].position - way[i - 1].position).norm();
+      length += (path[i].position - path[i - 1].position).norm();
     EXPECT_NEAR(robot.length, length, 1e-9);
     if (robot.goal.pose) ++sums_.goals;
-    if (way.empty()) return;
-    EXPECT_TRUE(same(way.front(), from));
+    if (path.empty()) return;
+    EXPECT_TRUE(same(path.front(), from));
     if (!robot.goal.pose) {
       ++sums_.backed_off;
       return;
     }
-    EXPECT_TRUE(same(way.back(), *robot.goal.pose));
+    EXPECT_TRUE(same(path.back(), *robot.goal.pose));
     TravelOptions body = team_.robots[r].robot.travel;
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const Eigen::Vector3d a = way[i - 1].position, b = way[i].position;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Eigen::Vector3d a = path[i - 1].position, b = path[i].position;
       EXPECT_LE((b - a).norm(), 1.2 + 1e-9);
       constexpr int kParts = 30;
-      // From a place that is not free, since the map has changed around it, the way leads out of it first.
+      // From a place that is not free, since the map has changed around it, the path leads out of it first.
       for (int part = i == 1 ? kParts : 0; part <= kParts; ++part)
         EXPECT_TRUE(body_is_free(before, body, a + (b - a) * part / kParts)) << "viewpoint " << i;
     }
@@ -174,7 +170,7 @@ class Watch {
       EXPECT_TRUE(robot.still_unknown.empty());
       return;
     }
-    // Frontiers in view along the way by rays one at a time on the grid; its own are among them.
+    // Frontiers in view along the path by rays one at a time on the grid; its own are among them.
     const FieldOfView& view = team_.robots[r].robot.view;
     const Lattice& lattice = before.lattice();
     const auto caster = make_grid_ray_caster(before);
@@ -184,7 +180,7 @@ class Watch {
       std::vector<Segment> segments;
       std::vector<VoxelKey> keys;
       for (const VoxelKey& key : frontiers) {
-        const Eigen::Vector3d center(lattice.center(key.x), lattice.center(key.y), lattice.center(key.z));
+        const Eigen::Vector3d center = lattice.exact_center(key);
         if (!view.contains(center - at.position, at.yaw)) continue;
         segments.push_back({at.position.cast<float>(), center.cast<float>()});
         keys.push_back(key);
@@ -234,7 +230,7 @@ class Watch {
 
 constexpr int kToItsEnd = 1000;
 
-TEST(ExplorationSteps, HoldWhatTheyPromiseInARoom) {
+TEST(ExplorationSteps, AreAsTheySayInARoom) {
   const TeamInWorld team("room", 1, uav_and_ugv());
   const Sums sums = Watch(team, team.options()).run(kToItsEnd);
   EXPECT_GT(sums.steps, 2U);
@@ -244,7 +240,7 @@ TEST(ExplorationSteps, HoldWhatTheyPromiseInARoom) {
   EXPECT_EQ(sums.collisions, sim::Collisions());
 }
 
-TEST(ExplorationSteps, HoldWhatTheyPromiseInAStorage) {
+TEST(ExplorationSteps, AreAsTheySayInAStorage) {
   const TeamInWorld team("storage", 2, uav_and_ugv());
   const Sums sums = Watch(team, team.options()).run(5);
   EXPECT_EQ(sums.steps, 5U);
@@ -252,7 +248,7 @@ TEST(ExplorationSteps, HoldWhatTheyPromiseInAStorage) {
   EXPECT_EQ(sums.collisions, sim::Collisions());
 }
 
-TEST(ExplorationSteps, HoldWhatTheyPromiseForAnyTeam) {
+TEST(ExplorationSteps, AreAsTheySayForAnyTeam) {
   const auto sonar = io::read_robot(std::string(FRONTLUX_DATA_DIR) + "/robots/sonar.json");
   const std::vector<std::vector<RobotDescription>> teams = {
       {uav_description()},
@@ -280,7 +276,7 @@ TEST(ExplorationSteps, WithoutDistributionRobotsGoForTheSame) {
   EXPECT_EQ(sums.turned, 0U);
 }
 
-TEST(ExplorationSteps, HoldWhatTheyPromiseAsPrinted) {
+TEST(ExplorationSteps, AreAsTheySayAsPrinted) {
   const TeamInWorld team("room", 2, {ugv_description(), uav_description(Method::kPaper)});
   const Sums sums = Watch(team, team.options(Method::kPaper)).run(5);
   EXPECT_GT(sums.goals, 4U);

@@ -41,11 +41,7 @@ struct Lone {
   Lone() {
     options.team.push_back({uav(), goal_options(uav())});
     const KeyBox known = voxels_of(Lattice(0.3), {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 3, 3)});
-    for (int x = known.min.x; x <= known.max.x; ++x)
-      for (int y = known.min.y; y <= known.max.y; ++y)
-        for (int z = known.min.z; z <= known.max.z; ++z)
-          start.known_free.push_back(
-              {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)});
+    for_each_key(known, [this](const VoxelKey& key) { start.known_free.push_back(key); });
   }
 
   [[nodiscard]] Exploration begun(const Drive& drive) const {
@@ -87,30 +83,30 @@ TEST(Exploration, BeginsWithALookAllAround) {
   EXPECT_EQ(exploration.frontiers().size(), 2U * 20 * 10 + 2U * 10 * 10 + 20U * 10);
 }
 
-TEST(Exploration, EndsWhenStepsInARowPromiseTooLittle) {
-  for (const int quiet : {1, 3, 4}) {
+TEST(Exploration, EndsWhenTheGainStaysLow) {
+  for (const int steps_in_a_row : {1, 3, 4}) {
     Lone lone;
     lone.options.epsilon = 1e9;
-    lone.options.quiet_steps = quiet;
+    lone.options.low_gain_steps = steps_in_a_row;
     Exploration exploration = lone.begun(see_nothing);
     EXPECT_FALSE(exploration.end().has_value());
     const auto steps = lone.all_steps(exploration, see_nothing);
-    EXPECT_EQ(steps.size(), static_cast<std::size_t>(quiet));
-    EXPECT_EQ(exploration.end(), ExplorationEnd::kQuiet);
+    EXPECT_EQ(steps.size(), static_cast<std::size_t>(steps_in_a_row));
+    EXPECT_EQ(exploration.end(), ExplorationEnd::kLowGain);
     for (const ExplorationStep& step : steps) EXPECT_GT(step.robots[0].gain_predicted, 0U);
   }
 }
 
-TEST(Exploration, AStepThatPromisesEnoughBreaksTheRow) {
+TEST(Exploration, AStepOfEnoughGainBreaksTheRow) {
   const Lone plain;
   Exploration first = plain.begun(see_nothing);
   const auto steps = plain.all_steps(first, see_nothing);
   ASSERT_GT(steps.size(), 4U);
-  // The same run with any epsilon, up to where it ends; when that is can be told from the promises.
+  // The same run with any epsilon, up to where it ends; the expected gains say when.
   for (const double epsilon : {0.0, 3.0, 10.0, 40.0, 120.0, 300.0}) {
     Lone lone;
     lone.options.epsilon = epsilon;
-    lone.options.quiet_steps = 2;
+    lone.options.low_gain_steps = 2;
     Exploration exploration = lone.begun(see_nothing);
     const auto got = lone.all_steps(exploration, see_nothing);
     int row = 0;
@@ -119,9 +115,17 @@ TEST(Exploration, AStepThatPromisesEnoughBreaksTheRow) {
       row = static_cast<double>(got[i].robots[0].gain_predicted) >= epsilon ? 0 : row + 1;
     }
     const bool idle = !got.back().robots[0].goal.pose.has_value();
-    EXPECT_EQ(exploration.end(), idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kQuiet);
+    EXPECT_EQ(exploration.end(), idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain);
     EXPECT_TRUE(idle || row == 2);
   }
+}
+
+TEST(Exploration, SaysInWordsWhyItIsOver) {
+  const ExplorationOptions options;
+  EXPECT_EQ(describe(ExplorationEnd::kLowGain, options),
+            "expected gain stayed below 10 frontiers for 3 steps");
+  EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options), "the limit of 1000 steps is reached");
+  EXPECT_EQ(name_of(ExplorationEnd::kLowGain), "low_gain");
 }
 
 TEST(Exploration, EndsAtItsLimitOfSteps) {
@@ -149,8 +153,8 @@ TEST(Exploration, EndsWithARobotThatDoesNotGo) {
   const Lone lone;
   Exploration exploration = lone.begun(do_not_go);
   const auto steps = lone.all_steps(exploration, do_not_go);
-  EXPECT_EQ(steps.size(), 3U) << "a promise of a path that is not gone is none";
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kQuiet);
+  EXPECT_EQ(steps.size(), 3U) << "the gain of a path that is not travelled does not count";
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kLowGain);
   for (const ExplorationStep& step : steps) {
     EXPECT_GT(step.robots[0].planned.size(), 1U);
     EXPECT_EQ(step.robots[0].travelled, 1U);
@@ -160,8 +164,8 @@ TEST(Exploration, EndsWithARobotThatDoesNotGo) {
   EXPECT_TRUE(same(exploration.poses()[0], lone.start.pose));
 }
 
-// Whatever it looks at stays unknown: each frontier is given up after so many looks, and the run ends.
-TEST(Exploration, DropsFrontiersThatStayUnknown) {
+// Whatever it looks at stays unknown: each frontier is abandoned after so many looks, and the run ends.
+TEST(Exploration, AbandonsFrontiersThatStayUnknown) {
   for (const int visits : {1, 2, 3}) {
     Lone lone;
     lone.options.max_visits = visits;
@@ -176,11 +180,11 @@ TEST(Exploration, DropsFrontiersThatStayUnknown) {
       EXPECT_EQ(step.frontiers, frontiers.size());
       EXPECT_EQ(step.abandoned, static_cast<std::size_t>(abandoned));
       EXPECT_TRUE(std::ranges::is_sorted(step.robots[0].still_unknown));
-      // All that the path promised to see, less what only its first place does.
+      // All that the path was expected to see, less what only its first viewpoint does.
       EXPECT_LE(step.robots[0].still_unknown.size(), step.robots[0].gain_predicted);
       for (const VoxelKey& key : step.robots[0].still_unknown) {
         EXPECT_TRUE(std::ranges::binary_search(frontiers, key));
-        EXPECT_LT(looks[key], visits) << "goes for a frontier that it gave up";
+        EXPECT_LT(looks[key], visits) << "goes for an abandoned frontier";
         ++looks[key];
       }
       EXPECT_TRUE(step.robots[0].changed.empty());
@@ -194,8 +198,8 @@ TEST(Exploration, DropsFrontiersThatStayUnknown) {
 // and has to go back the way it came.
 TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   Lone lone;
-  lone.options.epsilon = 1e9;  // all steps are quiet but that in which it backs off
-  lone.options.quiet_steps = 2;
+  lone.options.epsilon = 1e9;  // all steps have low gain but that in which it backs off
+  lone.options.low_gain_steps = 2;
   Exploration exploration = lone.begun(see_nothing);
   const Drive find = [](std::size_t, const Pose& to) { return one_ray(to, 0.35F); };
 
@@ -208,7 +212,7 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   const ExplorationStep second = exploration.step(find);
   ASSERT_TRUE(second.robots[0].goal.pose.has_value());
   ASSERT_GE(second.robots[0].travelled, 2U);
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kQuiet);
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kLowGain);
 
   // It goes on nevertheless when asked to.
   std::vector<Pose> back;
@@ -228,14 +232,8 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   // Where it is now its box is free, and nowhere before.
   const VoxelGrid& grid = exploration.mapping().grid();
   const auto box_is_free = [&](const Pose& pose) {
-    const Lattice& lattice = grid.lattice();
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          const Eigen::Vector3d at = pose.position + 0.3 * Eigen::Vector3d(x, y, z);
-          if (grid.at(lattice.key(at.cast<float>()).value()) != Occupancy::kFree) return false;
-        }
-    return true;
+    const VoxelKey at = grid.lattice().key(pose.position).value();
+    return all_of(grown({at, at}, 1), [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
   };
   for (std::size_t i = 0; i + 1 < third.robots[0].planned.size(); ++i)
     EXPECT_FALSE(box_is_free(third.robots[0].planned[i])) << i;
@@ -243,10 +241,10 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   EXPECT_TRUE(exploration.step(see_nothing).robots[0].goal.pose.has_value()) << "and from there it goes on";
 }
 
-TEST(Exploration, BackingOffIsNoQuietStep) {
+TEST(Exploration, BackingOffIsNoStepOfLowGain) {
   Lone lone;
   lone.options.epsilon = 1e9;
-  lone.options.quiet_steps = 2;
+  lone.options.low_gain_steps = 2;
   Exploration exploration = lone.begun(see_nothing);
   exploration.step([](std::size_t, const Pose& to) { return one_ray(to, 0.35F); });
   EXPECT_FALSE(exploration.end().has_value());
@@ -255,7 +253,7 @@ TEST(Exploration, BackingOffIsNoQuietStep) {
   EXPECT_FALSE(back.robots[0].goal.pose.has_value());
   EXPECT_FALSE(exploration.end().has_value());
   exploration.step(see_nothing);
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kQuiet);
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kLowGain);
 }
 
 // An unknown voxel amid what is free is a frontier by itself.
@@ -296,7 +294,7 @@ TEST(Exploration, RefusesWrongOptions) {
   expect_refusal([](O& o) { o.epsilon = -1.0; }, "epsilon is -1");
   expect_refusal([](O& o) { o.epsilon = std::nan(""); }, "epsilon is nan");
   expect_refusal([](O& o) { o.epsilon = HUGE_VAL; }, "epsilon is inf");
-  expect_refusal([](O& o) { o.quiet_steps = 0; }, "quiet_steps is 0");
+  expect_refusal([](O& o) { o.low_gain_steps = 0; }, "low_gain_steps is 0");
   expect_refusal([](O& o) { o.max_steps = -1; }, "max_steps is -1");
   expect_refusal([](O& o) { o.max_visits = 0; }, "max_visits is 0");
   expect_refusal([](O& o) { o.min_cluster_size = 0; }, "min_cluster_size is 0");

@@ -1,4 +1,5 @@
 #include "support/random.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/mapping.hpp>
@@ -118,7 +119,8 @@ TEST(FrontierSet, FollowsAMapScanByScan) {
     FrontierSet set(mapping.grid(), bounds, adjacency);
     EXPECT_EQ(set.size(), 0U);
     for (int i = 0; i < 40; ++i) {
-      set.update(i == 3 ? mapping.mark_free(Ball{{1, 1, 0}, 1.5}) : mapping.insert(random_scan(random)));
+      set.update(i == 3 ? mapping.mark_free(test::keys_of(around(32771, 32771, 32768, 4)))
+                        : mapping.insert(random_scan(random)));
       expect_frontiers(set, mapping.grid(), bounds, adjacency, "scan " + std::to_string(i));
       if (HasFatalFailure()) return;
     }

@@ -1,7 +1,7 @@
 // Goals against plain formulas: every cell and every frontier asked one by one, distances by a flood fill.
 
 #include "planner/goal/goal_truth.hpp"
-#include "support/changed_keys.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

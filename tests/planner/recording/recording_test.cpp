@@ -1,6 +1,6 @@
 #include "planner/recording/random_recording.hpp"
-#include "recording/recording_record.hpp"
-#include "recording/recording_step.hpp"
+#include "recording/packed_record.hpp"
+#include "recording/recording_format.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/recording.hpp>
@@ -75,7 +75,7 @@ class RecordingTest : public testing::Test {
       writer.write(steps_.back());
       sizes.push_back(bytes().size());
     }
-    if (end) writer.write_end("quiet");
+    if (end) writer.write_end("low_gain");
     return sizes;
   }
 
@@ -95,7 +95,7 @@ TEST_F(RecordingTest, ReadsWhatWasWritten) {
     record(4, size, true);
     const Recording recording = read_recording(file_);
     expect_steps(recording, 4);
-    EXPECT_EQ(recording.end, "quiet");
+    EXPECT_EQ(recording.end, "low_gain");
     EXPECT_FALSE(recording.truncated);
   }
 }
@@ -116,7 +116,7 @@ TEST_F(RecordingTest, AnyNumberOfRobots) {
 
 TEST_F(RecordingTest, FirstLineSaysWhatItIs) {
   record(0, 0, false);
-  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 1\n"));
+  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 2\n"));
 }
 
 TEST_F(RecordingTest, EveryTruncationIsAPrefix) {
@@ -149,7 +149,7 @@ TEST_F(RecordingTest, EveryFlippedByteIsFound) {
       flipped[at] = static_cast<char>(flipped[at] ^ mask);
       const std::string said = complaint(flipped);
       ASSERT_NE(said, "") << "byte " << at << ", mask " << mask;
-      const bool in_title = at < std::string("frontlux recording, format 1\n").size();
+      const bool in_title = at < std::string("frontlux recording, format 2\n").size();
       ASSERT_EQ(said.find("damaged at byte ") == std::string::npos, in_title) << said;
     }
 }
@@ -263,7 +263,7 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
     s.step.robots[0].changed = {{head_.bounds.max, Occupancy::kUnknown, Occupancy::kFree},
                                 {head_.bounds.max, Occupancy::kFree, Occupancy::kOccupied}};
   });
-  refuses("still_unknown voxels are not sorted", [](RecordedStep& s) {
+  refuses("voxels still unknown are not sorted", [](RecordedStep& s) {
     s.step.robots[0].still_unknown = {{1, 0, 0}, {0, 9, 9}};
   });
   refuses("rendered cell is not finite", [&](RecordedStep& s) {
@@ -286,7 +286,7 @@ TEST_F(RecordingTest, GoesOnAfterTheLastFinishedStep) {
       EXPECT_EQ(bytes().size(), recording.bytes);
       EXPECT_EQ(read_recording(file_).end, std::nullopt);
       for (std::size_t i = recording.steps.size(); i < steps_.size(); ++i) writer.write(steps_[i]);
-      writer.write_end("quiet");
+      writer.write_end("low_gain");
     }
     EXPECT_EQ(bytes(), whole) << "the same as that of an unbroken run";
   }
@@ -368,10 +368,12 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
 TEST_F(RecordingTest, ForeignFiles) {
   expect_refused("", "is not a recording");
   expect_refused("frontl", "ends in its first line");
-  expect_refused("frontlux recording, format 1", "ends in its first line");
-  expect_refused("frontlux recording, format 1\n", "ends before the run began");
-  expect_refused("frontlux recording, format 2\nanything", "is a recording of format 2, and");
-  expect_refused("frontlux recording, format 12\n", "reads format 1;");
+  expect_refused("frontlux recording, format 2", "ends in its first line");
+  expect_refused("frontlux recording, format 2\n", "ends before the run began");
+  expect_refused("frontlux recording, format 1\nanything",
+                 "is a recording of format 1, and this program reads format 2");
+  expect_refused("frontlux recording, format 12\n",
+                 "reads format 2; read it with the frontlux that wrote it");
   expect_refused("frontlux recording, format x\n", "is not a recording");
   expect_refused("frontlux recording, format 99999999999999999999\n", "is not a recording");
   expect_refused("# Octomap OcTree file\nid OcTree\n", "is not a recording");
@@ -420,7 +422,7 @@ TEST_F(RecordingTest, PythonExampleReadsIt) {
     }
     expected << "\n";
   }
-  expected << "end: quiet\n";
+  expected << "end: low_gain\n";
   EXPECT_EQ(said, expected.str());
 }
 #endif

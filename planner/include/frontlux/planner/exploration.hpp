@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,23 +32,23 @@ struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
   CasterKind caster = CasterKind::kEmbree;
   bool distribute = true;  ///< off: every robot goes for all frontiers that it can see
-  bool optimize = true;    ///< off: robots look where they go
+  bool optimize = true;    ///< off: robots look ahead along their paths
   PathOptions path;
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
-  double epsilon = 10.0;     ///< a step whose paths promise fewer frontiers than this is a quiet one
-  int quiet_steps = 3;       ///< so many quiet steps in a row end the exploration
-  int max_steps = 1000;      ///< and so does this many steps
-  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is abandoned
+  double epsilon = 10.0;   ///< a step has low gain if its paths are expected to see fewer frontiers than this
+  int low_gain_steps = 3;  ///< this many steps of low gain in a row end the exploration
+  int max_steps = 1000;    ///< so does this number of steps
+  int max_visits = 2;      ///< a frontier that stays unknown after so many visits in view is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
 
   /// @throws std::invalid_argument naming the value that is out of bounds
   void check() const;
 };
 
-/// All but the team. By default robots take the corridor's own shortest paths, since those that a random
-/// search finds are longer; as printed, RRT's.
+/// All but the team. By default robots take the corridor's own shortest paths, since a random search finds
+/// longer ones; `kPaper` searches by RRT.
 [[nodiscard]] ExplorationOptions exploration_options(Method method = Method::kDefault);
 
 /// Where a robot begins, and what it knows to be free there without having seen it.
@@ -63,24 +64,23 @@ struct VoxelChange {
   friend constexpr auto operator<=>(const VoxelChange&, const VoxelChange&) = default;
 };
 
-/// What one robot planned, did and learnt in one step.
+/// What one robot planned, did and mapped in one step.
 struct RobotStep {
-  Goal goal;                        ///< also says why there is none
+  Goal goal;                        ///< or why there is none
   std::vector<RenderedCell> image;  ///< of a robot on a plane: the cells rendered for its goal
   PathOutcome path = PathOutcome::kNoCorridor;
   std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
-  /// Distinct frontiers of its own that the path has in view, with the robot looking where it goes and as
-  /// optimised.
+  /// Distinct frontiers of its own that the path has in view: with the robot looking ahead, and as optimised.
   std::uint64_t gain_tangent = 0, gain_predicted = 0;
-  std::size_t travelled = 0;         ///< viewpoints of `planned` that it came to, the first included
-  double length = 0.0;               ///< [m] that it travelled
-  std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans made known
-  std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
-  std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
-  std::vector<VoxelKey> still_unknown;    ///< in view of its viewpoints, and still unknown; sorted
+  std::size_t travelled = 0;            ///< viewpoints of `planned` that it reached, the first included
+  double length = 0.0;                  ///< [m] that it travelled
+  std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans mapped
+  std::vector<VoxelChange> changed;     ///< by its scans, sorted by key
+  std::vector<VoxelKey> blocked;        ///< cells that it could not go through; sorted
+  std::vector<VoxelKey> still_unknown;  ///< frontiers in view of its viewpoints that stayed unknown; sorted
 };
 
-/// What a step spends its time on. Planning is all but the last.
+/// What a step spends its time on. All but the last are planning.
 enum class Phase : std::uint8_t { kFrontiers, kCaster, kGoals, kPaths, kOptimization, kMoving };
 inline constexpr std::size_t kPhases = 6;
 /// "frontiers", "caster", "goals", "paths", "optimization", "moving"
@@ -89,8 +89,8 @@ inline constexpr std::size_t kPhases = 6;
 struct ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   std::size_t frontiers = 0;      ///< in the map when the step was planned
-  std::size_t unassigned = 0;     ///< of them, those that no robot could make anything of
-  std::size_t abandoned = 0;        ///< of them, those no longer tried, since they stay unknown when looked at
+  std::size_t unassigned = 0;     ///< of them, those that no robot can see
+  std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
   std::uint64_t rays = 0;         ///< cast to plan the step
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
@@ -100,18 +100,17 @@ struct ExplorationStep {
 
 /// Why an exploration is over.
 enum class ExplorationEnd : std::uint8_t {
-  kQuiet,        ///< the paths promised too little for some steps
+  kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps
   kNothingToDo,  ///< no robot has a goal
-  kStepLimit,
+  kStepLimit,    ///< `max_steps` are done
 };
-/// One of the words "quiet", "nothing_to_do", "step_limit".
+/// One of the words "low_gain", "nothing_to_do", "step_limit".
 [[nodiscard]] std::string_view name_of(ExplorationEnd end);
-/// In words, as a sentence.
-[[nodiscard]] std::string_view describe(ExplorationEnd end);
+/// In words: "expected gain stayed below 10 frontiers for 3 steps".
+[[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options);
 
-/// Brings a robot's sensor straight from where it is to a viewpoint, and tells what the sensor measures
-/// there; nothing if the robot could not go, and is where it was. The one thing that a real or a simulated
-/// robot has to offer.
+/// Moves a robot's sensor straight to a viewpoint and returns what it measures there; nothing if the robot
+/// could not go, and is where it was. The one function that a real or a simulated robot has to provide.
 using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& viewpoint)>;
 
 /// The paper's Alg. 1, step by step: a team of robots explores what the bounds of a map hold.
@@ -120,42 +119,41 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 ///     exploration.begin(starts, drive);
 ///     while (!exploration.end()) exploration.step(drive);
 ///
-/// Depends on the options, the starts and the scans only: not on time, not on the number of threads, not on
-/// the choice between the embree and the grid caster. Works in TBB's current arena.
-/// Thread safety: as a standard container.
+/// The result depends on the options, the starts and the scans only: not on time, not on the number of
+/// threads, not on the choice between the embree and the grid caster. Works in TBB's current arena. Thread
+/// safety: as a standard container.
 class Exploration {
  public:
-  /// @param mapping  the map to be filled; empty, or what is known already
+  /// @param mapping  the map to fill; empty, or with what is known already
   /// @throws std::invalid_argument naming the value that is out of bounds
   Exploration(ExplorationOptions options, Mapping mapping);
   ~Exploration();
   Exploration(Exploration&&) noexcept;
   Exploration& operator=(Exploration&&) noexcept;
 
-  /// Alg. 1, lines 1 and 2: takes the robots to their starts, where each looks all around.
+  /// Alg. 1, lines 1 and 2: each robot looks all around at its start.
   /// @throws std::invalid_argument if there is not one start for each robot, one is not finite, or it has
   /// begun already
   ExplorationStep begin(std::span<const ExplorationStart> starts, const Drive& drive);
 
-  /// Alg. 1, lines 4 to 11. At its end it may be called too, and goes on.
+  /// Alg. 1, lines 4 to 11. It may be called after the end, too.
   /// @throws std::invalid_argument before `begin`; so does `repeat`
   ExplorationStep step(const Drive& drive);
 
-  /// Goes through a step that was planned before, as recorded: afterwards the exploration is where it was
-  /// after that step, and goes on with the same steps as then. Takes about as long as the step did, but for
-  /// paths.
-  /// @return false if the robots did not learn what they learnt before: another world, or other options. The
-  /// exploration is of no more use then.
+  /// Repeats a recorded step: afterwards the exploration is in the state in which it was after that step, and
+  /// the next steps are the same as then. Takes about as long as the step did, except for paths.
+  /// @return false if the robots did not map what they mapped then: the world or the options are different.
+  /// The exploration must not be used any more.
   bool repeat(const ExplorationStep& recorded, const Drive& drive);
 
-  /// Alg. 1, line 3: why it is over; nothing as long as it is not.
+  /// Alg. 1, line 3: why the exploration is over; nothing while it goes on.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   [[nodiscard]] const ExplorationOptions& options() const;
   [[nodiscard]] const Mapping& mapping() const;
   /// Of the robots' sensors.
   [[nodiscard]] std::span<const Pose> poses() const;
-  /// Of the map as it is after the last step, abandoned ones included; sorted.
+  /// Of the map after the last step, abandoned ones included; sorted.
   [[nodiscard]] std::span<const VoxelKey> frontiers() const;
 
  private:

@@ -31,22 +31,9 @@ struct MappingOptions {
                                  ///< a surface that lies on a voxel face falls into the voxel behind it
 };
 
-/// All points within `radius` [m] of `center` [m].
-struct Ball {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0.0;
-};
-
-/// An upright cylinder.
-struct Cylinder {
-  Eigen::Vector3d bottom = Eigen::Vector3d::Zero();  ///< [m] centre of the lower end
-  double radius = 0.0;                               ///< [m]
-  double height = 0.0;                               ///< [m]
-};
-
 /// What the last insertion spent [s], by part.
 struct InsertionTime {
-  double rays = 0.0;    ///< following rays through the voxels, and merging what they passed
+  double rays = 0.0;    ///< finding the voxels that rays pass, and merging them
   double tree = 0.0;    ///< updating the tree
   double mirror = 0.0;  ///< sorting the changes and writing them to the grid
 };
@@ -72,25 +59,20 @@ class Mapping {
   Mapping(Mapping&&) noexcept;
   Mapping& operator=(Mapping&&) noexcept;
 
-  /// A scan: rays with a return end in a hit, `surface_depth` behind the surface. Rays of infinite range
-  /// clear the way up to `max_range`, rays of range NaN tell nothing.
+  /// A scan. Rays with a return end in a hit, `surface_depth` behind the surface. Rays of infinite range
+  /// clear all up to `max_range`; rays of range NaN change nothing.
   /// @throws std::invalid_argument if the scan fails `check` or begins outside the key range
   MapChange insert(const Scan& scan);
 
   /// The end points of rays from `origin` [m], world frame, taken as they are. Points beyond `max_range` [m]
-  /// clear the way up to it and are no hits; points that are not finite tell nothing.
+  /// clear all up to it and are no hits; points that are not finite change nothing.
   /// @throws std::invalid_argument if the origin lies outside the key range or the range is not above 0
   MapChange insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points,
                    double max_range = std::numeric_limits<double>::infinity());
 
-  /// Declares free what a robot knows to be free without seeing it: voxels whose centre lies in the shape,
-  /// its surface included. They become as free as one miss makes an unknown voxel, unless they are freer
-  /// already; so sensors can still correct it.
-  /// @throws std::invalid_argument if a number of the shape is not finite or a length is negative
-  MapChange mark_free(const Eigen::AlignedBox3d& box);
-  MapChange mark_free(const Ball& ball);
-  MapChange mark_free(const Cylinder& cylinder);
-  /// The same for chosen voxels; those outside the bounds are left out.
+  /// Marks free what a robot knows to be free without seeing it; voxels outside the bounds are left out. They
+  /// become as free as one miss makes an unknown voxel, unless they are freer already; so sensors can still
+  /// correct it.
   MapChange mark_free(std::span<const VoxelKey> voxels);
 
   /// The map itself. Its change detection is off, since insertion reports changes by itself.

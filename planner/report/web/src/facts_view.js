@@ -10,7 +10,7 @@ const PAPER = {
 };
 
 const ENDS = {
-  quiet: "the expected gain stayed too low for several steps",
+  low_gain: "the expected gain stayed too low for several steps",
   nothing_to_do: "no robot had a goal left",
   step_limit: "the step limit was reached",
   stopped: "it was stopped",

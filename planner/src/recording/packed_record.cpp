@@ -1,6 +1,6 @@
-#include "recording/recording_record.hpp"
+#include "recording/packed_record.hpp"
 
-#include "recording/recording_bytes.hpp"
+#include "recording/record_bytes.hpp"
 
 #include <array>
 #include <cstdint>

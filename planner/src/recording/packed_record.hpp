@@ -7,10 +7,6 @@
 
 namespace frontlux::planner::detail {
 
-/// The first line of a recording, but for the number of its format and the line's end.
-inline constexpr std::string_view kRecordingTitle = "frontlux recording, format ";
-inline constexpr int kRecordingFormat = 1;
-
 inline constexpr std::string_view kHeadTag = "head", kStepTag = "step", kEndTag = "end ";
 
 /// A record as it is in the file: tag, compressed and plain size and the checksum of these, then the
@@ -18,6 +14,7 @@ inline constexpr std::string_view kHeadTag = "head", kStepTag = "step", kEndTag 
 /// @throws std::invalid_argument if there are more than a gigabyte of them
 [[nodiscard]] std::string packed_record(std::string_view tag, const std::string& bytes);
 
+/// A record as it was packed.
 struct Record {
   std::string_view tag;
   std::string bytes;

@@ -7,6 +7,13 @@
 
 namespace frontlux::test {
 
+/// The voxels of a box.
+inline std::vector<VoxelKey> keys_of(const KeyBox& box) {
+  std::vector<VoxelKey> keys;
+  for_each_key(box, [&keys](const VoxelKey& key) { keys.push_back(key); });
+  return keys;
+}
+
 /// The voxels whose state differs between two maps, sorted.
 inline std::vector<VoxelKey> changed_keys(const VoxelGrid& before, const VoxelGrid& after) {
   std::vector<VoxelKey> keys;

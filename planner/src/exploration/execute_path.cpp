@@ -1,4 +1,4 @@
-#include "exploration/path_execution.hpp"
+#include "exploration/execute_path.hpp"
 
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -24,8 +24,8 @@ bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, co
   return true;
 }
 
-// The corridor is as old as the step; the map has learnt since. A robot beside which something was found may
-// move to the middle of its voxel, where it is free: on the way it comes to no voxel that it is not in.
+// The corridor is as old as the step; the map has changed since. A robot beside which something was found may
+// move to the middle of its voxel, where it is free: it enters no other voxel on that move.
 bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
   const Lattice& lattice = grid.lattice();
   const Eigen::Vector3d& begin =
@@ -35,16 +35,14 @@ bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose&
   });
 }
 
-// The voxels on a way, but for that which it begins in.
+// The voxels on a segment, but for that which it begins in. Sorted.
 std::vector<VoxelKey> cells_beyond(const Lattice& lattice, const Pose& from, const Pose& to) {
   std::vector<VoxelKey> cells;
   static_cast<void>(SegmentVoxels(lattice, from.position, to.position).all_of([&](const VoxelKey& key) {
     cells.push_back(key);
     return true;
   }));
-  const auto x = lattice.key(from.position.x()), y = lattice.key(from.position.y()),
-             z = lattice.key(from.position.z());
-  if (x && y && z) std::erase(cells, VoxelKey{*x, *y, *z});
+  if (const auto own = lattice.key(from.position)) std::erase(cells, *own);
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
@@ -56,48 +54,52 @@ Pose look_towards(const Pose& from, const Pose& to) {
   return {from.position, level ? std::atan2(on.y(), on.x()) : to.yaw};
 }
 
-}  // namespace
-
+// Those of some voxels, in any order, that differ between two maps. Sorted by key.
 std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& after,
-                                     std::vector<VoxelKey> candidates) {
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+                                     std::vector<VoxelKey> keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::vector<VoxelChange> changed;
-  for (const VoxelKey& key : candidates) {
+  for (const VoxelKey& key : keys) {
     const Occupancy was = before.at(key), is = after.at(key);
     if (was != is) changed.push_back({key, was, is});
   }
   return changed;
 }
 
-PathExecution travel(std::size_t robot, std::span<Pose> viewpoints, const TravelOptions* body,
-                     const Drive& drive, Mapping& mapping) {
-  PathExecution journey;
-  if (viewpoints.empty()) return journey;
+}  // namespace
+
+void execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body, const Drive& drive,
+                  Mapping& mapping, std::span<const VoxelKey> known_free) {
   const VoxelGrid before = mapping.grid();
   std::vector<VoxelKey> touched;
-  for (journey.travelled = 1; journey.travelled < viewpoints.size(); ++journey.travelled) {
-    const Pose& from = viewpoints[journey.travelled - 1];
-    Pose& to = viewpoints[journey.travelled];
+  const auto touch = [&touched](const MapChange& change) {
+    touched.insert(touched.end(), change.keys.begin(), change.keys.end());
+  };
+  touch(mapping.mark_free(known_free));
+  const std::span<Pose> path = step.planned;
+  step.blocked.clear();
+  for (step.travelled = std::min<std::size_t>(path.size(), 1); step.travelled < path.size();
+       ++step.travelled) {
+    const Pose& from = path[step.travelled - 1];
+    Pose& to = path[step.travelled];
     if (body != nullptr && !is_still_free(mapping.grid(), *body, from, to)) break;
     auto scan = drive(robot, to);
     const bool blocked = !scan;
     if (blocked) {
-      journey.blocked = cells_beyond(mapping.grid().lattice(), from, to);
+      step.blocked = cells_beyond(mapping.grid().lattice(), from, to);
       to = look_towards(from, to);
       scan = drive(robot, to);
       if (!scan) break;
     }
-    const auto keys = mapping.insert(*scan).keys;
-    touched.insert(touched.end(), keys.begin(), keys.end());
+    touch(mapping.insert(*scan));
     if (blocked) {
-      ++journey.travelled;
+      ++step.travelled;
       break;
     }
   }
-  journey.length = path_length(viewpoints.first(journey.travelled));
-  journey.changed = differences(before, mapping.grid(), std::move(touched));
-  return journey;
+  step.length = path_length(path.first(step.travelled));
+  step.changed = differences(before, mapping.grid(), std::move(touched));
 }
 
 }  // namespace frontlux::planner::detail

@@ -1,0 +1,294 @@
+#include "exploration/exploration_state.hpp"
+
+#include "exploration/execute_path.hpp"
+#include "frontier/small_clusters.hpp"
+#include "goal/counting_ray_caster.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/planner/look_around.hpp>
+#include <frontlux/planner/visible_pairs.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace frontlux::planner {
+namespace {
+
+// Adds the time that it lives to a phase.
+class PhaseClock {
+ public:
+  PhaseClock(ExplorationStep& step, Phase phase) : seconds_(step.seconds[static_cast<std::size_t>(phase)]) {}
+  ~PhaseClock() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+  PhaseClock(const PhaseClock&) = delete;
+  PhaseClock& operator=(const PhaseClock&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+std::unique_ptr<RayCaster> make_caster(CasterKind kind, const Mapping& mapping) {
+  switch (kind) {
+    case CasterKind::kGrid:
+      return make_grid_ray_caster(mapping.grid());
+    case CasterKind::kOctomap:
+      return make_octomap_ray_caster(mapping.tree());
+    case CasterKind::kEmbree:
+      break;
+  }
+  return make_embree_ray_caster(mapping.grid());
+}
+
+// Targets that are in view from where the robot has been, the first viewpoint left out, and are unknown
+// still.
+std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const InformationGain& gain,
+                                         std::span<const Pose> viewpoints,
+                                         std::span<const VoxelKey> targets) {
+  std::vector<VoxelKey> keys;
+  std::vector<std::uint8_t> in_view;
+  for (std::size_t i = 1; i < viewpoints.size(); ++i) {
+    const auto seen = gain.frontiers_of(i);
+    in_view.resize(seen.size());
+    gain.in_view(i, viewpoints[i].yaw, in_view);
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      if (in_view[k] != 0 && grid.at(targets[seen[k]]) == Occupancy::kUnknown)
+        keys.push_back(targets[seen[k]]);
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+}  // namespace
+
+Exploration::State::State(ExplorationOptions given, Mapping map)
+    : options(std::move(given)),
+      mapping(std::move(map)),
+      frontiers(mapping.grid(), mapping.bounds()),
+      caster(make_caster(options.caster, mapping)),
+      abandoned(options.max_visits) {}
+
+ExplorationStep Exploration::State::new_step() const {
+  ExplorationStep step;
+  step.number = number;
+  step.robots.resize(size());
+  return step;
+}
+
+void Exploration::State::start_from(std::span<const ExplorationStart> starts) {
+  std::vector<TeamMember> team = options.team;
+  for (std::size_t r = 0; r < size(); ++r) {
+    TravelOptions& travel = team[r].robot.travel;
+    // No sensor sees the floor on which its robot stands.
+    if (travel.motion == Motion::kPlane && !starts[r].known_free.empty())
+      travel.without_ground.push_back(bounds_of(starts[r].known_free));
+    voxel_corridors.emplace_back();
+    if (travel.node_edge == 0.0) continue;
+    TravelOptions by_voxels = travel;
+    by_voxels.node_edge = 0.0;
+    voxel_corridors.back().emplace(by_voxels, lattice(), mapping.bounds());
+  }
+  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.distribute);
+  for (const ExplorationStart& start : starts) poses.push_back(start.pose);
+  trails.resize(size());
+}
+
+// Lines 1 and 2.
+void Exploration::State::look_around(std::span<const ExplorationStart> starts, const Drive& drive,
+                                     ExplorationStep& step) {
+  const PhaseClock clock(step, Phase::kMoving);
+  for (std::size_t r = 0; r < size(); ++r) {
+    RobotStep& robot = step.robots[r];
+    robot.path = PathOutcome::kInPlace;
+    robot.planned = {starts[r].pose};  // nothing is measured at a path's first viewpoint
+    for (Pose look : planner::look_around(options.team[r].robot.view, starts[r].pose)) {
+      look.yaw = std::remainder(look.yaw, 2 * std::numbers::pi);
+      robot.planned.push_back(look);
+    }
+    if (robot.planned.size() > 2) robot.planned.push_back(starts[r].pose);  // it goes on from how it stood
+    detail::execute_path(r, robot, nullptr, drive, mapping, starts[r].known_free);
+    remember(r, robot);
+  }
+}
+
+// Brings up to date what answers questions about the map, but for the selection's own corridors.
+void Exploration::State::update_views(ExplorationStep& step) {
+  {
+    const PhaseClock clock(step, Phase::kFrontiers);
+    for (std::size_t r = 0; r < size(); ++r)
+      if (const auto cell = lattice().key(poses[r].position); cell && voxel_corridors[r])
+        voxel_corridors[r]->update(change(), *cell);
+  }
+  const PhaseClock clock(step, Phase::kCaster);
+  caster->update(mapping.grid());
+}
+
+// Lines 4 and 5.
+void Exploration::State::select_goals(ExplorationStep& step) {
+  Keys wanted, large;
+  {
+    const PhaseClock clock(step, Phase::kFrontiers);
+    wanted = abandoned.without_abandoned(frontiers.keys());
+    large = detail::in_large_clusters(frontiers, wanted, options.min_cluster_size);
+    step.frontiers = frontiers.size();
+    step.abandoned = frontiers.size() - wanted.size();
+  }
+  TeamGoals goals;
+  {
+    const PhaseClock clock(step, Phase::kGoals);
+    const auto has_goal = [](const Goal& goal) { return goal.pose.has_value(); };
+    goals = selection->select(*caster, change(), large, poses);
+    step.rays += goals.rays;
+    if (large.size() < wanted.size() && std::ranges::none_of(goals.goals, has_goal)) {
+      goals = selection->select(*caster, {mapping.grid()}, wanted, poses);
+      step.rays += goals.rays;
+    }
+  }
+  step.unassigned = goals.unassigned;
+  for (std::size_t r = 0; r < size(); ++r) {
+    step.robots[r].goal = std::move(goals.goals[r]);
+    if (options.team[r].robot.travel.motion == Motion::kPlane)
+      step.robots[r].image = selection->rendered_cells(r);
+  }
+}
+
+// The path on which a robot came, back to the last place that is still in its corridor. A robot beside which
+// a closer look has found something is in none.
+std::vector<Pose> Exploration::State::retreat(std::size_t robot) const {
+  const std::vector<Pose>& trail = trails[robot];
+  for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
+    const auto cell = lattice().key(place->position);
+    if (!cell || !path_corridor(robot).passable(*cell)) continue;
+    if (place == trail.rbegin()) return {};
+    return {trail.rbegin(), place + 1};
+  }
+  return {};
+}
+
+// Line 6.
+void Exploration::State::plan_paths(ExplorationStep& step) const {
+  const PhaseClock clock(step, Phase::kPaths);
+  for (std::size_t r = 0; r < size(); ++r) {
+    RobotStep& robot = step.robots[r];
+    if (!robot.goal.pose) {
+      if (robot.goal.state == GoalState::kNoCorridor) robot.planned = retreat(r);
+      robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
+      continue;
+    }
+    PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
+                              {options.seed, number, r}, options.path);
+    robot.path = plan.outcome;
+    robot.planned = std::move(plan.viewpoints);
+  }
+}
+
+// Line 7.
+Exploration::State::Gains Exploration::State::optimize_paths(ExplorationStep& step) const {
+  const PhaseClock clock(step, Phase::kOptimization);
+  PathOptimizerOptions turning = options.optimizer;
+  if (!options.optimize) {
+    turning.start = YawStart::kTangent;
+    turning.ascend = false;
+  }
+  const detail::CountingRayCaster counting(*caster, lattice());
+  Gains gains(size());
+  for (std::size_t r = 0; r < size(); ++r) {
+    RobotStep& robot = step.robots[r];
+    if (!robot.goal.pose || robot.planned.empty()) continue;
+    const FieldOfView& view = options.team[r].robot.view;
+    const auto targets = selection->targets(r);
+    const auto target_centers = centers(lattice(), targets);
+    const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets, view);
+    gains[r].emplace(robot.planned, target_centers, pairs, view, options.optimizer.gain);
+    const OptimizedPath turned = optimize_path(robot.planned, target_centers, pairs, view, turning);
+    for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
+    robot.gain_tangent = turned.tangent.distinct;
+    robot.gain_predicted = turned.result.distinct;
+  }
+  step.rays += counting.rays();
+  return gains;
+}
+
+// Lines 8 to 11.
+void Exploration::State::execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step) {
+  const PhaseClock clock(step, Phase::kMoving);
+  for (std::size_t r = 0; r < size(); ++r) {
+    RobotStep& robot = step.robots[r];
+    TravelOptions body = options.team[r].robot.travel;
+    body.node_edge = 0.0;
+    // A retreat need not be free: the robot came on it.
+    detail::execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
+    robot.gained =
+        static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& voxel) {
+          return voxel.before == Occupancy::kUnknown && frontiers.contains(voxel.key);
+        }));
+    // The look at an obstacle is not from where the path would have led.
+    const std::size_t reached = robot.travelled - (robot.blocked.empty() ? 0 : 1);
+    if (gains[r])
+      robot.still_unknown = find_still_unknown(
+          mapping.grid(), *gains[r], std::span(robot.planned).first(reached), selection->targets(r));
+    remember(r, robot);
+  }
+}
+
+// Goes through recorded paths. False if the robots do not learn what they learnt then.
+bool Exploration::State::execute_again(const ExplorationStep& recorded, const Drive& drive,
+                                       ExplorationStep& step) {
+  for (std::size_t r = 0; r < size(); ++r) {
+    const RobotStep& then = recorded.robots[r];
+    if (then.travelled > then.planned.size()) return false;
+    RobotStep& now = step.robots[r] = then;
+    now.planned.resize(then.travelled);
+    detail::execute_path(r, now, nullptr, drive, mapping);
+    if (now.travelled != then.travelled || now.changed != then.changed) return false;
+    remember(r, then);
+  }
+  return true;
+}
+
+// What a robot's part of a step leaves behind.
+void Exploration::State::remember(std::size_t robot, const RobotStep& step) {
+  abandoned.visited(step.still_unknown);
+  if (!step.blocked.empty()) {
+    selection->block(robot, step.blocked);
+    if (voxel_corridors[robot]) voxel_corridors[robot]->block(step.blocked);
+  }
+  for (std::size_t i = trails[robot].empty() ? 0 : 1; i < step.travelled; ++i)
+    trails[robot].push_back(step.planned[i]);
+  if (step.travelled > 0) poses[robot] = step.planned[step.travelled - 1];
+}
+
+void Exploration::State::update_frontiers(ExplorationStep& step) {
+  const PhaseClock clock(step, Phase::kFrontiers);
+  changed.clear();
+  for (const RobotStep& robot : step.robots)
+    for (const VoxelChange& voxel : robot.changed) changed.push_back(voxel.key);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  frontiers.update(change());
+}
+
+// Line 3: what the end depends on.
+void Exploration::State::judge(const ExplorationStep& step) {
+  double expected_gain = 0.0;
+  bool retreats = false;
+  idle = true;
+  for (const RobotStep& robot : step.robots) {
+    const bool moved = robot.travelled > 1;
+    if (robot.goal.pose || moved) idle = false;
+    if (moved && robot.goal.pose) expected_gain += static_cast<double>(robot.gain_predicted);
+    retreats = retreats || (moved && !robot.goal.pose);
+  }
+  if (expected_gain >= options.epsilon)
+    low_gain_steps = 0;
+  else if (!retreats)
+    ++low_gain_steps;
+  ++number;
+}
+
+}  // namespace frontlux::planner

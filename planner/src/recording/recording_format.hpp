@@ -1,0 +1,30 @@
+#pragma once
+
+#include <frontlux/planner/recording.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace frontlux::planner::detail {
+
+/// The first line of a recording, but for the number of its format and the line's end.
+inline constexpr std::string_view kRecordingTitle = "frontlux recording, format ";
+inline constexpr int kRecordingFormat = 2;
+
+/// The bytes of a recording's records. What writes them throws std::invalid_argument naming the value that is
+/// out of bounds, what reads them BadRecord.
+
+[[nodiscard]] std::string head_bytes(const RecordingHead& head);
+[[nodiscard]] RecordingHead head_from(std::string_view bytes);
+
+/// @param number  that the step must have
+[[nodiscard]] std::string step_bytes(const RecordedStep& step, const RecordingHead& head,
+                                     std::uint64_t number);
+[[nodiscard]] RecordedStep step_from(std::string_view bytes, const RecordingHead& head, std::uint64_t number);
+
+/// Why a run ended: a word of small letters and _, so that newer words need no newer format.
+[[nodiscard]] std::string end_bytes(const std::string& reason);
+[[nodiscard]] std::string end_from(std::string_view bytes);
+
+}  // namespace frontlux::planner::detail
