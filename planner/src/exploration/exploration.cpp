@@ -62,7 +62,7 @@ void Exploration::State::select_from(std::span<const ExplorationStart> starts) {
     by_voxels.node_edge = 0.0;
     ways.back().emplace(by_voxels, lattice(), mapping.bounds());
   }
-  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.distribute);
+  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
 }
 
 Exploration::Exploration(ExplorationOptions options, Mapping mapping) {

@@ -60,7 +60,7 @@ template <class Bytes, class AnyGoal>
 void code_goal(Bytes& bytes, AnyGoal& goal) {
   bytes.choice(goal.state, 7, "state of the goal");
   bytes.maybe(goal.pose, [&](auto& pose) { code_pose(bytes, pose); });
-  bytes.require(goal.pose.has_value() == (goal.state <= GoalState::kLeftOver),
+  bytes.require(goal.pose.has_value() == (goal.state <= GoalState::kUncovered),
                 "there is a goal, but its state says that there is none, or the other way round");
   bytes.key(goal.cell);
   bytes.text(goal.reason);
@@ -72,7 +72,7 @@ void code_goal(Bytes& bytes, AnyGoal& goal) {
   bytes.count(goal.assigned);
   bytes.count(goal.released);
   bytes.count(goal.received);
-  bytes.count(goal.left_over);
+  bytes.count(goal.uncovered);
 }
 
 template <class Bytes, class Robot>

@@ -30,7 +30,7 @@ enum class CasterKind : std::uint8_t {
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
   CasterKind caster = CasterKind::kEmbree;
-  bool distribute = true;  ///< off: every robot goes for all frontiers that it can see
+  bool assign = true;  ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;    ///< off: robots look where they go
   PathOptions path;
   PathOptimizerOptions optimizer;

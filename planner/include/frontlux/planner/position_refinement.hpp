@@ -41,7 +41,7 @@ struct RefinedPath {
 /// what it had. So the number of distinct frontiers in view, `after.distinct`, is never below
 /// `before.distinct`.
 ///
-/// A viewpoint moves only where the ways to both of its neighbours are free (`way_is_free`) and no longer
+/// A viewpoint moves only where the ways to both of its neighbours are free (`segment_is_free`) and no longer
 /// than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
 /// Deterministic. Thread safety: as `optimize_path`.
 /// @param viewpoints  with yaws, all of which count for `before`
