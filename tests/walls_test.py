@@ -30,7 +30,7 @@ LIBRARIES = [
     (r"embree[34]/", r"engine/src/embree/|planner/sim/src/sensing/surface\.cpp"),
     (r"octomap/|octomath/", r"engine/src/octomap/|planner/src/mapping/mapping\.cpp|planner/app/.*\.cpp"),
     (r"coin(-or)?/", r"planner/src/view_path/gain_ascent\.cpp"),
-    (r"ompl/", r"planner/src/path/sampling_search\.cpp"),
+    (r"ompl/", r"planner/src/path/.*"),
     (r"assimp/", r"planner/sim/src/mesh/mesh_import\.cpp"),
     (r"nlohmann/json_fwd\.hpp", r"planner/(app|io/src|report/src)/"),
     (r"nlohmann/", r"planner/(app|io/src|report/src)/.*\.cpp"),

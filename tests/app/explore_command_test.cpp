@@ -41,7 +41,7 @@ TEST_F(ExploreCommand, ItsFilesTellTheSame) {
   EXPECT_EQ(
       content_of(path("run/steps.csv")).substr(0, content_of(path("run/steps.csv")).find('\n')),
       "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
-      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
       "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
       "frontiers_s,caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s");
   std::vector<double> travelled(2);

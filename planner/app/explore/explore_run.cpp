@@ -192,7 +192,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   JsonObject json;
   json.add("version", FRONTLUX_VERSION).add("world", setup.head.world).add("seed", setup.exploration.seed);
   json.add("robots", std::span<const std::string>(names)).add("mode", options.mode);
-  json.add("goal", goal_rules(setup.exploration.team)).add("distribute", setup.exploration.distribute);
+  json.add("goal", goal_rules(setup.exploration.team)).add("distribute", setup.exploration.assign);
   json.add("optimize", setup.exploration.optimize).add("caster", options.caster);
   json.add("planner", planner::name_of(setup.exploration.path.search))
       .add("resolution_m", setup.head.resolution);

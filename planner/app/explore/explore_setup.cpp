@@ -186,7 +186,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
                                                   {"corridor", PathSearch::kCorridor}});
   constexpr int kOfRrtStar = 2000;
   if (exploration.path.search == PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
-  exploration.distribute = parse_switch("--distribute", options.distribute);
+  exploration.assign = parse_switch("--distribute", options.distribute);
   exploration.optimize = parse_switch("--optimize", options.optimize);
   exploration.caster = chosen<planner::CasterKind>("--caster", options.caster,
                                                    {{"embree", planner::CasterKind::kEmbree},

@@ -93,7 +93,7 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       seconds_(planner::kPhases) {
   std::string header =
       "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
-      "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
       "path,"
       "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays";
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
@@ -142,7 +142,7 @@ void RunFiles::add(const RecordedStep& recorded) {
     row.add(std::uint64_t{step.abandoned});
     row.add(step.number == 0 ? "start" : std::string(planner::name_of(robot.goal.state)));
     row.add(std::uint64_t{robot.goal.assigned}).add(std::uint64_t{robot.goal.released});
-    row.add(std::uint64_t{robot.goal.received}).add(std::uint64_t{robot.goal.left_over});
+    row.add(std::uint64_t{robot.goal.received}).add(std::uint64_t{robot.goal.uncovered});
     if (robot.goal.pose)
       row.add(*robot.goal.pose).add(robot.goal.gain);
     else

@@ -36,7 +36,7 @@ json facts_of(const planner::RobotStep& robot) {
                 {"assigned", goal.assigned},
                 {"released", goal.released},
                 {"received", goal.received},
-                {"left_over", goal.left_over},
+                {"uncovered", goal.uncovered},
                 {"path", describe(robot.path)},
                 {"gain_tangent", robot.gain_tangent},
                 {"gain_predicted", robot.gain_predicted},

@@ -1,9 +1,12 @@
 #pragma once
 
+#include "mapping/box_array.hpp"
+
+#include <frontlux/key_box.hpp>
 #include <frontlux/view_region.hpp>
-#include <frontlux/voxel_grid.hpp>
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,9 +20,7 @@ struct BlockCells {
   std::uint64_t bits = 0;
 
   [[nodiscard]] VoxelKey key(int bit) const {
-    return {static_cast<std::uint16_t>(corner.x + (bit >> 4)),
-            static_cast<std::uint16_t>(corner.y + ((bit >> 2) & 3)),
-            static_cast<std::uint16_t>(corner.z + (bit & 3))};
+    return make_key(corner.x + (bit >> 4), corner.y + ((bit >> 2) & 3), corner.z + (bit & 3));
   }
 };
 
@@ -34,11 +35,14 @@ class CorridorBlocks {
     std::array<std::uint64_t, 64> blocks{};
 
     [[nodiscard]] BlockCells block(int number) const {
-      const auto along = [number](std::uint16_t from, int shift) {
-        return static_cast<std::uint16_t>(from + kBlock * ((number >> shift) & 3));
-      };
-      return {{along(corner.x, 4), along(corner.y, 2), along(corner.z, 0)},
+      return {make_key(corner.x + kBlock * (number >> 4), corner.y + kBlock * ((number >> 2) & 3),
+                       corner.z + kBlock * (number & 3)),
               blocks[static_cast<std::size_t>(number)]};
+    }
+    /// Calls `visit` with every block that holds cells.
+    template <class Visit>
+    void for_each_block(const Visit& visit) const {
+      for (std::uint64_t rest = filled; rest != 0; rest &= rest - 1) visit(block(std::countr_zero(rest)));
     }
   };
 
@@ -47,33 +51,26 @@ class CorridorBlocks {
 
   [[nodiscard]] bool contains(const VoxelKey& key) const;
 
-  /// False only if there is no cell within these distances of a voxel: along x and y, and along z.
+  /// False only if no cell lies within these distances of a voxel: along x and y, and along z.
   [[nodiscard]] bool may_be_near(const VoxelKey& voxel, int across, int height) const {
-    const auto near = [](int k, int distance, int low, int high) {
-      return k + distance >= low && k - distance <= high;
-    };
-    return near(voxel.x, across, box_.min.x, box_.max.x) && near(voxel.y, across, box_.min.y, box_.max.y) &&
-           near(voxel.z, height, box_.min.z, box_.max.z);
+    return grown(bounds_, across, across, height).contains(voxel);
   }
 
   /// Whether most cells have others above and below them.
   [[nodiscard]] bool deep() const { return deep_; }
 
-  /// Appends the cubes with cells from which a voxel may be in view, those nearest to it first.
-  void cubes_near(const VoxelKey& voxel, const ViewRegion& view, std::vector<const Cube*>& cubes) const;
+  /// The cubes that the region of a voxel may meet, the nearest first.
+  [[nodiscard]] std::vector<const Cube*> cubes_near(const VoxelKey& voxel, const ViewRegion& region) const;
 
  private:
-  [[nodiscard]] std::size_t slot(int x, int y, int z) const;
-
-  KeyBox box_;  // around all cells; only if there are any
   bool deep_ = false;
-  std::array<int, 3> low_{}, size_{};  // of the cubes, along each axis
-  std::vector<std::uint32_t> slots_;   // 1 plus the place of the cube, 0 for none
+  KeyBox bounds_;                   // of all cells
+  BoxArray<std::uint32_t> places_;  // of the cubes: 1 plus the index, 0 for none
   std::vector<Cube> cubes_;
 };
 
-/// Those of a block's cells from which a voxel may be in view.
+/// The cells of a block from which a voxel may be in view.
 [[nodiscard]] BlockCells feasible_cells(const BlockCells& cells, const VoxelKey& voxel,
-                                        const ViewRegion& view);
+                                        const ViewRegion& region);
 
 }  // namespace frontlux::planner::detail

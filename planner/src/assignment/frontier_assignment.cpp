@@ -4,6 +4,7 @@
 #include "assignment/visibility_flood.hpp"
 
 #include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/view_region.hpp>
 
 #include <tbb/parallel_for.h>
 
@@ -11,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -23,46 +25,52 @@ using detail::CorridorBlocks;
 using detail::Occlusion;
 using detail::VisibilityFlood;
 
-constexpr std::size_t kPiece = 256;             // frontiers that are decided together, on one thread
-constexpr std::size_t kSome = 48, kMany = 512;  // rays for one frontier at a time
-constexpr std::size_t kSpread = 64;             // cells from all over the region, tried before any are listed
-constexpr int kNearby = 4;                      // [voxels] how far the first cells tried may be
+constexpr std::size_t kBatch = 256;             // frontiers that one thread decides together
+constexpr std::size_t kSome = 48, kMany = 512;  // rays for one frontier in a round
+constexpr std::size_t kSpread = 64;  // cells from all over the region, tested before any are listed
+constexpr int kNearby = 4;           // [voxels] greatest distance of the first cells tested
 
 // What all frontiers of an agent need.
 struct Search {
   const RayCaster& caster;
   std::span<const VoxelKey> frontiers;
-  std::span<const FrontierSight> tried_first;
+  std::span<const FrontierViewpoint> previous_viewpoints;
   std::span<const VoxelKey> unseen;
-  ViewRegion view;
+  ViewRegion region;
   CorridorBlocks blocks;
-  std::optional<VisibilityFlood> approach;
-  Occlusion shadow;  // without `approach`
+  std::optional<VisibilityFlood> flood;
+  Occlusion occlusion;  // without `flood`
   std::vector<std::array<int, 3>> nearby, spread;
+
+  [[nodiscard]] bool in_view(const VoxelKey& frontier, const VoxelKey& cell) const {
+    return region.contains(frontier.x - cell.x, frontier.y - cell.y, frontier.z - cell.z);
+  }
 };
 
-// Decides some frontiers by rounds of rays, a few for each that is undecided: from where it was seen before,
-// from cells nearby, from where its neighbours are seen, from some cells of everywhere, from all others.
-class Piece {
+// Decides some frontiers by rounds of rays, a few for each undecided one. The cells tested are first those
+// that saw the frontier before, then cells nearby, the viewpoints of its neighbours, some cells of the whole
+// region, and last all others.
+class Batch {
  public:
-  Piece(const Search& search, std::size_t begin, std::size_t end)
-      : search_(search), begin_(begin), seen_from_(end - begin), left_(end - begin) {
+  Batch(const Search& search, std::size_t begin, std::size_t end)
+      : search_(search), begin_(begin), seen_from_(end - begin), candidates_(end - begin) {
     for (std::size_t i = begin; i < end; ++i)
-      if (search.blocks.may_be_near(search.frontiers[i], search.view.reach(),
-                                    search.view.greatest_height()) &&
+      if (search.blocks.may_be_near(search.frontiers[i], search.region.reach(),
+                                    search.region.greatest_height()) &&
           !std::binary_search(search.unseen.begin(), search.unseen.end(), search.frontiers[i]))
-        open_.push_back(static_cast<std::uint32_t>(i - begin));
+        undecided_.push_back(static_cast<std::uint32_t>(i - begin));
   }
 
   void decide() {
-    try_first();
-    for (const std::uint32_t i : open_)
-      if (search_.blocks.may_be_near(frontier(i), kNearby, kNearby)) try_offsets(i, search_.nearby, 2);
+    add_previous_viewpoints();
     cast();
-    ask_neighbours();
-    ask_neighbours();
-    if (search_.approach)
-      decide_by_flood();
+    for (const std::uint32_t i : undecided_)
+      if (search_.blocks.may_be_near(frontier(i), kNearby, kNearby)) add_offsets(i, search_.nearby, 2);
+    cast();
+    test_neighbours_viewpoints();
+    test_neighbours_viewpoints();
+    if (search_.flood)
+      decide_by_flood(*search_.flood);
     else
       decide_by_blocks();
   }
@@ -71,11 +79,11 @@ class Piece {
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  // Candidates that a frontier has not tried yet.
-  struct Left {
+  // Cells that a frontier has not tested yet.
+  struct Candidates {
     std::vector<const CorridorBlocks::Cube*> cubes;
     std::size_t next_cube = 0;
-    std::vector<BlockCells> blocks;  // with cells not tried, some of them perhaps out of view
+    std::vector<BlockCells> blocks;  // some of their cells may be out of view
     std::size_t next_block = 0;
   };
 
@@ -83,159 +91,152 @@ class Piece {
 
   void add(std::uint32_t i, const VoxelKey& cell) {
     segments_.push_back({cell, frontier(i)});
-    owners_.push_back(i);
+    frontier_of_segment_.push_back(i);
   }
 
-  // Casts what has been added and leaves out the frontiers that it decides.
+  // Casts the segments added, and removes the frontiers that they decide.
   void cast() {
     if (segments_.empty()) return;
     visible_.resize(segments_.size());
     search_.caster.visible(std::span<const KeySegment>(segments_), visible_, UnknownPolicy::kPass);
     rays_ += segments_.size();
-    for (std::size_t k = 0; k < segments_.size(); ++k)
-      if (visible_[k] != 0 && !seen_from_[owners_[k]]) {
-        seen_from_[owners_[k]] = segments_[k].from;
-        left_[owners_[k]] = {};
-      }
-    std::erase_if(open_, [this](std::uint32_t i) { return seen_from_[i].has_value(); });
-    segments_.clear();
-    owners_.clear();
-  }
-
-  void try_first() {
-    for (const std::uint32_t i : open_) {
-      const VoxelKey& f = frontier(i);
-      const auto sight = std::lower_bound(
-          search_.tried_first.begin(), search_.tried_first.end(), f,
-          [](const FrontierSight& before, const VoxelKey& key) { return before.frontier < key; });
-      if (sight == search_.tried_first.end() || sight->frontier != f) continue;
-      const VoxelKey& cell = sight->cell;
-      if (search_.blocks.contains(cell) && search_.view.contains(f.x - cell.x, f.y - cell.y, f.z - cell.z))
-        add(i, cell);
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+      const std::uint32_t i = frontier_of_segment_[k];
+      if (visible_[k] == 0 || seen_from_[i]) continue;
+      seen_from_[i] = segments_[k].from;
+      candidates_[i] = {};
     }
-    cast();
+    std::erase_if(undecided_, [this](std::uint32_t i) { return seen_from_[i].has_value(); });
+    segments_.clear();
+    frontier_of_segment_.clear();
   }
 
-  void try_offsets(std::uint32_t i, const std::vector<std::array<int, 3>>& offsets, std::size_t most) {
-    const VoxelKey& f = frontier(i);
-    std::size_t found = 0;
-    for (const auto& offset : offsets) {
-      const int x = f.x - offset[0], y = f.y - offset[1], z = f.z - offset[2];
-      if (((x | y | z) & ~0xFFFF) != 0) continue;
-      const VoxelKey cell{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                          static_cast<std::uint16_t>(z)};
-      if (!search_.blocks.contains(cell)) continue;
-      add(i, cell);
-      if (++found == most) return;
+  void add_previous_viewpoints() {
+    const auto& previous = search_.previous_viewpoints;
+    for (const std::uint32_t i : undecided_) {
+      const auto found = std::lower_bound(
+          previous.begin(), previous.end(), frontier(i),
+          [](const FrontierViewpoint& before, const VoxelKey& key) { return before.frontier < key; });
+      if (found != previous.end() && found->frontier == frontier(i) && search_.blocks.contains(found->cell) &&
+          search_.in_view(frontier(i), found->cell))
+        add(i, found->cell);
+    }
+  }
+
+  void add_offsets(std::uint32_t i, const std::vector<std::array<int, 3>>& offsets, std::size_t most) {
+    std::size_t added = 0;
+    for (const auto& [x, y, z] : offsets) {
+      const auto cell = offset_key(frontier(i), -x, -y, -z);
+      if (!cell || !search_.blocks.contains(*cell)) continue;
+      add(i, *cell);
+      if (++added == most) return;
     }
   }
 
   // Frontiers next to each other are often seen from the same cell.
-  void ask_neighbours() {
-    for (const std::uint32_t i : open_) {
-      const VoxelKey& f = frontier(i);
-      std::optional<VoxelKey> last;
-      const auto ask = [&](std::size_t neighbour) {
+  void test_neighbours_viewpoints() {
+    constexpr std::size_t kSteps = 64;
+    for (const std::uint32_t i : undecided_) {
+      std::optional<VoxelKey> added;
+      const auto add_viewpoint_of = [&](std::size_t neighbour) {
         const auto& cell = seen_from_[neighbour];
-        if (!cell || cell == last || !search_.view.contains(f.x - cell->x, f.y - cell->y, f.z - cell->z))
-          return false;
-        last = cell;
+        if (!cell || cell == added || !search_.in_view(frontier(i), *cell)) return false;
+        added = cell;
         add(i, *cell);
         return true;
       };
-      for (std::size_t k = i, steps = 0; k-- > 0 && steps < 64; ++steps)
-        if (ask(k)) break;
-      for (std::size_t k = i + 1, steps = 0; k < seen_from_.size() && steps < 64; ++k, ++steps)
-        if (ask(k)) break;
+      for (std::size_t k = i; k > 0 && i - k < kSteps && !add_viewpoint_of(k - 1);) --k;
+      for (std::size_t k = i + 1; k < seen_from_.size() && k - i <= kSteps && !add_viewpoint_of(k);) ++k;
     }
     cast();
   }
 
-  // Where cells are many: what none of some cells from everywhere sees mostly stays undecided to the end, and
-  // only for it is it worth it to find out where rays may arrive from.
-  void decide_by_flood() {
-    for (const std::uint32_t i : open_) try_offsets(i, search_.spread, kSpread);
+  // For corridors with many cells. A frontier that none of some cells of the whole region sees mostly stays
+  // undecided to the end. Only for such frontiers is it worth finding the cells from which rays may arrive.
+  void decide_by_flood(const VisibilityFlood& flood) {
+    for (const std::uint32_t i : undecided_) add_offsets(i, search_.spread, kSpread);
     cast();
-    ask_neighbours();
-    std::vector<std::uint32_t> open = std::move(open_);
+    test_neighbours_viewpoints();
+    const std::vector<std::uint32_t> undecided = std::move(undecided_);
     VisibilityFlood::Row row;
     std::vector<VoxelKey> cells;
-    for (const std::uint32_t i : open) {
-      open_ = {i};
-      ask_neighbours();
-      if (open_.empty()) continue;
+    for (const std::uint32_t i : undecided) {
+      undecided_ = {i};
+      test_neighbours_viewpoints();
+      if (undecided_.empty()) continue;
       cells.clear();
-      search_.approach->cells(frontier(i), row, cells);
-      // Some of everywhere first.
+      flood.cells(frontier(i), row, cells);
+      // Some of the whole region first.
       const std::size_t stride = std::max<std::size_t>(1, cells.size() / kSome);
       for (std::size_t k = stride / 2; k < cells.size(); k += stride) add(i, cells[k]);
       cast();
       if (stride == 1) continue;
-      for (std::size_t k = 0; k < cells.size() && !open_.empty();) {
+      for (std::size_t k = 0; k < cells.size() && !undecided_.empty();) {
         for (const std::size_t end = std::min(cells.size(), k + kMany); k < end; ++k)
           if (k % stride != stride / 2) add(i, cells[k]);
         cast();
       }
     }
-    open_.clear();
+    undecided_.clear();
   }
 
-  // Where cells are few, or their region is too high for columns of bits.
+  // For corridors with few cells, and for regions that are too high for columns of bits.
   void decide_by_blocks() {
-    for (const std::uint32_t i : open_) search_.blocks.cubes_near(frontier(i), search_.view, left_[i].cubes);
-    for (std::size_t share = 2; take_one_per_block(share); share *= 4) {
+    for (const std::uint32_t i : undecided_)
+      candidates_[i].cubes = search_.blocks.cubes_near(frontier(i), search_.region);
+    for (std::size_t cubes = 2; add_one_per_block(cubes); cubes *= 4) {
       cast();
-      ask_neighbours();
+      test_neighbours_viewpoints();
     }
-    for (std::size_t share = 64; take_rest(share); share = std::min<std::size_t>(4 * share, 1024)) {
+    for (std::size_t cells = 64; add_rest(cells); cells = std::min<std::size_t>(4 * cells, 1024)) {
       cast();
-      ask_neighbours();
+      test_neighbours_viewpoints();
     }
   }
 
-  // From the next cubes, this many. Whether there was anything left to take.
-  bool take_one_per_block(std::size_t share) {
+  // For every frontier one cell of each block in the next cubes. Returns whether there was a cube left.
+  bool add_one_per_block(std::size_t count) {
     bool any = false;
-    for (const std::uint32_t i : open_) {
-      Left& left = left_[i];
-      for (std::size_t n = 0; n < share && left.next_cube < left.cubes.size(); ++n) {
+    for (const std::uint32_t i : undecided_) {
+      Candidates& mine = candidates_[i];
+      for (std::size_t n = 0; n < count && mine.next_cube < mine.cubes.size(); ++n) {
         any = true;
-        take_one_per_block(i, *left.cubes[left.next_cube++]);
+        add_one_per_block(i, *mine.cubes[mine.next_cube++]);
       }
     }
     return any;
   }
 
-  void take_one_per_block(std::uint32_t i, const CorridorBlocks::Cube& cube) {
+  void add_one_per_block(std::uint32_t i, const CorridorBlocks::Cube& cube) {
     const VoxelKey& f = frontier(i);
-    if (search_.shadow.hides(f, frontlux::cube(cube.corner, CorridorBlocks::kCube))) return;
-    for (std::uint64_t filled = cube.filled; filled != 0; filled &= filled - 1) {
-      const BlockCells block = cube.block(std::countr_zero(filled));
-      if (!search_.view.may_contain_voxel({f, f}, frontlux::cube(block.corner, CorridorBlocks::kBlock)))
-        continue;
+    if (search_.occlusion.hides(f, frontlux::cube(cube.corner, CorridorBlocks::kCube))) return;
+    cube.for_each_block([&](const BlockCells& block) {
+      if (!search_.region.may_contain_voxel({f, f}, frontlux::cube(block.corner, CorridorBlocks::kBlock)))
+        return;
       BlockCells cells = block;
       int bit = middle_bit(cells.bits);
-      const VoxelKey middle = cells.key(bit);
-      if (!search_.view.contains(f.x - middle.x, f.y - middle.y, f.z - middle.z)) {
-        cells = detail::feasible_cells(block, f, search_.view);
-        if (cells.bits == 0) continue;
+      if (!search_.in_view(f, cells.key(bit))) {
+        cells = detail::feasible_cells(block, f, search_.region);
+        if (cells.bits == 0) return;
         bit = middle_bit(cells.bits);
       }
       cells.bits &= ~(std::uint64_t{1} << bit);
       add(i, cells.key(bit));
-      if (cells.bits != 0) left_[i].blocks.push_back(cells);
-    }
+      if (cells.bits != 0) candidates_[i].blocks.push_back(cells);
+    });
   }
 
-  bool take_rest(std::size_t share) {
+  // For every frontier at least so many of its other cells. Returns whether there was a block left.
+  bool add_rest(std::size_t count) {
     bool any = false;
-    for (const std::uint32_t i : open_) {
-      Left& left = left_[i];
-      for (std::size_t n = 0; n < share && left.next_block < left.blocks.size();) {
+    for (const std::uint32_t i : undecided_) {
+      Candidates& mine = candidates_[i];
+      for (std::size_t n = 0; n < count && mine.next_block < mine.blocks.size();) {
         any = true;
-        const BlockCells block = left.blocks[left.next_block++];
-        if (search_.shadow.hides(frontier(i), frontlux::cube(block.corner, CorridorBlocks::kBlock))) continue;
-        BlockCells cells = detail::feasible_cells(block, frontier(i), search_.view);
+        const BlockCells block = mine.blocks[mine.next_block++];
+        if (search_.occlusion.hides(frontier(i), frontlux::cube(block.corner, CorridorBlocks::kBlock)))
+          continue;
+        BlockCells cells = detail::feasible_cells(block, frontier(i), search_.region);
         for (; cells.bits != 0; cells.bits &= cells.bits - 1, ++n)
           add(i, cells.key(std::countr_zero(cells.bits)));
       }
@@ -252,96 +253,81 @@ class Piece {
   const Search& search_;
   std::size_t begin_;
   std::vector<std::optional<VoxelKey>> seen_from_;
-  std::vector<Left> left_;
-  std::vector<std::uint32_t> open_, owners_;
+  std::vector<Candidates> candidates_;
+  std::vector<std::uint32_t> undecided_;
   std::vector<KeySegment> segments_;
+  std::vector<std::uint32_t> frontier_of_segment_;
   std::vector<std::uint8_t> visible_;
   std::uint64_t rays_ = 0;
 };
 
-KeyBox box_around(std::span<const VoxelKey> frontiers, int reach) {
-  KeyBox box{frontiers[0], frontiers[0]};
-  for (const VoxelKey& key : frontiers) {
-    box.min = {std::min(box.min.x, key.x), std::min(box.min.y, key.y), std::min(box.min.z, key.z)};
-    box.max = {std::max(box.max.x, key.x), std::max(box.max.y, key.y), std::max(box.max.z, key.z)};
-  }
-  const auto moved = [](std::uint16_t k, int by) {
-    return static_cast<std::uint16_t>(std::clamp(k + by, 0, 0xFFFF));
-  };
-  return {{moved(box.min.x, -reach), moved(box.min.y, -reach), moved(box.min.z, -reach)},
-          {moved(box.max.x, reach), moved(box.max.y, reach), moved(box.max.z, reach)}};
-}
-
 }  // namespace
 
 AssignedFrontiers find_visible_frontiers(const RayCaster& caster, const VoxelGrid& grid,
-                                     std::span<const VoxelKey> frontiers, const FrontierAgent& agent) {
+                                         std::span<const VoxelKey> frontiers, const FrontierAgent& agent) {
   if (frontiers.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument(std::to_string(frontiers.size()) + " frontiers are more than 32 bits count");
-  ViewRegion view(agent.view, grid.resolution());
+  ViewRegion region(agent.view, grid.resolution());
   if (frontiers.empty() || agent.corridor.empty()) return {};
-  const KeyBox box = box_around(frontiers, view.reach());
-  auto nearby = detail::nearby_offsets(view, kNearby);
-  auto spread = detail::spread_offsets(view, kSpread);
+  const KeyBox bounds = bounds_of(frontiers);
+  const int reach = region.reach();
+  auto nearby = detail::nearby_offsets(region, kNearby);
+  auto spread = detail::spread_offsets(region, kSpread);
   CorridorBlocks blocks(agent.corridor);
-  auto approach = blocks.deep() ? VisibilityFlood::make(grid, agent.corridor, view, box_around(frontiers, 0))
-                                : std::nullopt;
-  Occlusion shadow = approach ? Occlusion() : Occlusion(grid, box);
+  auto flood = blocks.deep() ? VisibilityFlood::make(grid, agent.corridor, region, bounds) : std::nullopt;
+  Occlusion occlusion = flood ? Occlusion() : Occlusion(grid, grown(bounds, reach));
   const Search search{caster,
                       frontiers,
-                      agent.tried_first,
+                      agent.previous_viewpoints,
                       agent.unseen,
-                      std::move(view),
+                      std::move(region),
                       std::move(blocks),
-                      std::move(approach),
-                      std::move(shadow),
+                      std::move(flood),
+                      std::move(occlusion),
                       std::move(nearby),
                       std::move(spread)};
-  const std::size_t pieces = (frontiers.size() + kPiece - 1) / kPiece;
-  std::vector<AssignedFrontiers> found(pieces);
-  tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t p) {
-    const std::size_t begin = p * kPiece;
-    Piece piece(search, begin, std::min(frontiers.size(), begin + kPiece));
-    piece.decide();
-    for (std::size_t i = 0; i < piece.seen_from().size(); ++i)
-      if (const auto& cell = piece.seen_from()[i]) {
-        found[p].frontiers.push_back(static_cast<std::uint32_t>(begin + i));
-        found[p].seen_from.push_back(*cell);
+  std::vector<AssignedFrontiers> found((frontiers.size() + kBatch - 1) / kBatch);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
+    const std::size_t begin = b * kBatch;
+    Batch batch(search, begin, std::min(frontiers.size(), begin + kBatch));
+    batch.decide();
+    for (std::size_t i = 0; i < batch.seen_from().size(); ++i)
+      if (const auto& cell = batch.seen_from()[i]) {
+        found[b].frontiers.push_back(static_cast<std::uint32_t>(begin + i));
+        found[b].seen_from.push_back(*cell);
       }
-    found[p].rays = piece.rays();
+    found[b].rays = batch.rays();
   });
-  AssignedFrontiers share;
+  AssignedFrontiers all;
   for (const AssignedFrontiers& part : found) {
-    share.frontiers.insert(share.frontiers.end(), part.frontiers.begin(), part.frontiers.end());
-    share.seen_from.insert(share.seen_from.end(), part.seen_from.begin(), part.seen_from.end());
-    share.rays += part.rays;
+    all.frontiers.insert(all.frontiers.end(), part.frontiers.begin(), part.frontiers.end());
+    all.seen_from.insert(all.seen_from.end(), part.seen_from.begin(), part.seen_from.end());
+    all.rays += part.rays;
   }
-  return share;
+  return all;
 }
 
 FrontierAssignment assign_frontiers(const RayCaster& caster, const VoxelGrid& grid,
-                                          std::span<const VoxelKey> frontiers,
-                                          std::span<const FrontierAgent> agents) {
+                                    std::span<const VoxelKey> frontiers,
+                                    std::span<const FrontierAgent> agents) {
   FrontierAssignment result;
-  std::vector<VoxelKey> left(frontiers.begin(), frontiers.end());
   result.unassigned.resize(frontiers.size());
-  for (std::size_t i = 0; i < frontiers.size(); ++i) result.unassigned[i] = static_cast<std::uint32_t>(i);
+  std::iota(result.unassigned.begin(), result.unassigned.end(), 0U);
+  std::vector<VoxelKey> unassigned(frontiers.begin(), frontiers.end());
   for (const FrontierAgent& agent : agents) {
-    AssignedFrontiers share = find_visible_frontiers(caster, grid, left, agent);
-    std::vector<std::uint32_t> remaining;
-    std::vector<VoxelKey> remaining_keys;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      if (next < share.frontiers.size() && share.frontiers[next] == i) {
-        share.frontiers[next++] = result.unassigned[i];
+    AssignedFrontiers assigned = find_visible_frontiers(caster, grid, unassigned, agent);
+    std::size_t kept = 0, next = 0;
+    for (std::size_t i = 0; i < unassigned.size(); ++i) {
+      if (next < assigned.frontiers.size() && assigned.frontiers[next] == i) {
+        assigned.frontiers[next++] = result.unassigned[i];
         continue;
       }
-      remaining.push_back(result.unassigned[i]);
-      remaining_keys.push_back(left[i]);
+      result.unassigned[kept] = result.unassigned[i];
+      unassigned[kept++] = unassigned[i];
     }
-    result.unassigned = std::move(remaining);
-    left = std::move(remaining_keys);
-    result.assigned.push_back(std::move(share));
+    result.unassigned.resize(kept);
+    unassigned.resize(kept);
+    result.assigned.push_back(std::move(assigned));
   }
   return result;
 }

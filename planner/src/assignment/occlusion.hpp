@@ -1,21 +1,20 @@
 #pragma once
 
+#include "assignment/voxel_columns.hpp"
+
 #include <frontlux/voxel_grid.hpp>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
+#include <optional>
 
 namespace frontlux::planner::detail {
 
-/// Tells of whole boxes at once that occupied voxels hide a target from them.
+/// Whether occupied voxels hide a target from a whole box at once.
 class Occlusion {
  public:
   /// Hides nothing.
   Occlusion() = default;
 
-  /// @param box  blockers outside are not regarded; none at all if the box is too large to be worth it
+  /// @param box  occupied voxels outside do not count; if the box is too large to be worth it, none do
   Occlusion(const VoxelGrid& grid, const KeyBox& box);
 
   /// True only if no voxel of a box sees the target: between them lies a layer of voxels in which all that
@@ -23,11 +22,9 @@ class Occlusion {
   [[nodiscard]] bool hides(const VoxelKey& target, const KeyBox& from) const;
 
  private:
-  [[nodiscard]] bool occupied(const std::array<int, 3>& low, const std::array<int, 3>& high) const;
+  [[nodiscard]] bool occupied(const KeyBox& box) const;
 
-  std::array<int, 3> low_{}, size_{};
-  std::size_t words_ = 0;            // in a column along z
-  std::vector<std::uint64_t> bits_;  // for x, y: a column of z
+  std::optional<VoxelColumns> walls_;
 };
 
 }  // namespace frontlux::planner::detail

@@ -10,23 +10,22 @@
 
 namespace frontlux::planner::detail {
 
-/// Frontiers that a robot sees from none of its cells, unknown voxels not blocking, for as long as that is
-/// certain: a frontier comes into view only where a voxel is no longer occupied or the robot can go to a new
-/// place, and within its reach.
+/// Frontiers that a robot sees from none of its cells, even through unknown voxels. A frontier stays unseen
+/// until, within its reach, a voxel stops being occupied or the robot can go to a new cell.
 class UnseenFrontiers {
  public:
-  /// Forgets those near what has changed.
+  /// Forgets the frontiers near what has changed.
   /// @param change    since the last call
   /// @param corridor  cells that the robot can go to now, sorted
-  void update(const MapChange& change, std::span<const VoxelKey> corridor, const ViewRegion& view);
+  void update(const MapChange& change, std::span<const VoxelKey> corridor, const ViewRegion& region);
 
-  /// Forgets all, the corridor too: whatever cells there are at the next call are new ones.
+  /// Forgets all frontiers and the corridor: at the next call every cell is new.
   void forget() {
     keys_.clear();
     corridor_.clear();
   }
 
-  /// Those that have been tried from all cells of the corridor of the last update, sorted.
+  /// @param keys  frontiers that no cell of the corridor of the last update sees, sorted
   void set(std::vector<VoxelKey> keys) { keys_ = std::move(keys); }
 
   [[nodiscard]] std::span<const VoxelKey> keys() const { return keys_; }

@@ -12,10 +12,6 @@ constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;
 constexpr int kMaxHeight = 63;  // [voxels]
 constexpr double kRounding = 1e-6;
 
-std::uint64_t up_to(int height) {
-  return height < 0 ? 0 : ~std::uint64_t{0} >> (kMaxHeight - std::min(height, kMaxHeight));
-}
-
 // All bits from those of `seeds` upwards until one is missing in `open`. Adding carries from a seed to the
 // end of its run of ones.
 std::uint64_t fill(std::uint64_t seeds, std::uint64_t open) {
@@ -29,65 +25,44 @@ double squared(double a) { return a * a; }
 
 std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid,
                                                      std::span<const VoxelKey> corridor,
-                                                     const ViewRegion& view, const KeyBox& targets) {
-  if (view.greatest_height() > kMaxHeight) return std::nullopt;
-  KeyBox cells{corridor[0], corridor[0]};
-  for (const VoxelKey& key : corridor) cells = {least(cells.min, key), greatest(cells.max, key)};
-  const KeyBox box{least(cells.min, targets.min), greatest(cells.max, targets.max)};
-  if (VoxelColumns::bytes(box) > kMaxBytes) return std::nullopt;
-  std::optional<VisibilityFlood> approach = VisibilityFlood(box, cells, view);
-  approach->add_walls(grid);
-  for (const VoxelKey& key : corridor) {
-    approach->up_.add(VoxelColumns::Kind::kCell, key);
-    approach->down_.add(VoxelColumns::Kind::kCell, key);
+                                                     const ViewRegion& region, const KeyBox& targets) {
+  if (region.greatest_height() > kMaxHeight) return std::nullopt;
+  const KeyBox cells = bounds_of(corridor), box = hull(cells, targets);
+  if (2 * VoxelColumns::bytes(box) > kMaxBytes) return std::nullopt;
+  std::optional<VisibilityFlood> flood = VisibilityFlood(box, cells, region);
+  for (Columns* columns : {&flood->up_, &flood->down_}) {
+    columns->walls.add_occupied(grid);
+    for (const VoxelKey& key : corridor) columns->cells.add(key);
   }
-  return approach;
+  return flood;
 }
 
 // A ray to an offset in the region rises no more than the region's slope allows, and crosses only voxels
 // that it touches.
-VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& view)
-    : up_(box, false), down_(box, true), corridor_(corridor), reach_(view.reach()) {
+VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& region)
+    : up_{VoxelColumns(box), VoxelColumns(box)},
+      down_{VoxelColumns(box, true), VoxelColumns(box, true)},
+      corridor_(corridor),
+      reach_(region.reach()) {
   constexpr double kWidth = std::numbers::pi / 2 / kSectors;
   for (int x = 0; x <= reach_; ++x)
     for (int y = 0; y <= reach_; ++y) {
       const double range = squared(std::max(x - 0.5, 0.0)) + squared(std::max(y - 0.5, 0.0));
-      const double rise = 0.5 + view.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
+      const double rise = 0.5 + region.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
       const std::uint64_t crossed =
-          range <= view.squared_range()
-              ? up_to(static_cast<int>(std::min(rise, 1.0 * view.greatest_height())))
+          range <= region.squared_range()
+              ? VoxelColumns::bits_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())))
               : 0;
-      const std::uint64_t cells = up_to(view.height(x, y));
+      std::uint64_t cells = VoxelColumns::bits_to(region.height(x, y));
+      if (x == 0 && y == 0) cells &= ~std::uint64_t{1};  // the target itself
       const double azimuth = std::atan2(y, x), low = std::atan2(y - 0.5, x + 0.5) - kRounding,
                    high = std::atan2(y + 0.5, x - 0.5) + kRounding;
       for (std::size_t sector = 0; sector < kSectors; ++sector) {
         const double from = kWidth * static_cast<double>(sector), to = from + kWidth;
-        const bool ours = azimuth >= from && (azimuth < to || sector + 1 == kSectors);
-        limits_[sector].push_back({low <= to && high >= from ? crossed : 0, ours ? cells : 0});
+        const bool in_sector = azimuth >= from && (azimuth < to || sector + 1 == kSectors);
+        limits_[sector].push_back({low <= to && high >= from ? crossed : 0, in_sector ? cells : 0});
       }
     }
-}
-
-void VisibilityFlood::add_walls(const VoxelGrid& grid) {
-  const KeyBox& box = up_.box();
-  grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
-    if (brick == nullptr && state != Occupancy::kOccupied) return;
-    const auto along = [&](std::uint16_t k) {
-      return static_cast<std::uint16_t>(k + (1 << block.log2_edge) - 1);
-    };
-    const VoxelKey& corner = block.corner;
-    const VoxelKey low = greatest(box.min, corner),
-                   high = least(box.max, {along(corner.x), along(corner.y), along(corner.z)});
-    for (int x = low.x; x <= high.x; ++x)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int z = low.z; z <= high.z; ++z) {
-          const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                             static_cast<std::uint16_t>(z)};
-          if (brick != nullptr && brick->at(key) != Occupancy::kOccupied) continue;
-          up_.add(VoxelColumns::Kind::kWall, key);
-          down_.add(VoxelColumns::Kind::kWall, key);
-        }
-  });
 }
 
 void VisibilityFlood::cells(const VoxelKey& target, Row& row, std::vector<VoxelKey>& cells) const {
@@ -99,9 +74,9 @@ void VisibilityFlood::cells(const VoxelKey& target, Row& row, std::vector<VoxelK
 }
 
 // Column by column, away from the target; heights come from the column before along x, and along y.
-void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector, Row& row,
-                     std::vector<VoxelKey>& cells) const {
-  // How far it is to the last cell: nothing is to be found beyond. Offsets of zero belong to the sides that
+void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector,
+                            Row& row, std::vector<VoxelKey>& cells) const {
+  // Distances to the last cell; beyond it there is nothing to find. Offsets of zero belong to the sides that
   // ascend.
   const std::array<int, 3> t = {target.x, target.y, target.z},
                            low = {corridor_.min.x, corridor_.min.y, corridor_.min.z},
@@ -111,16 +86,17 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
     size[a] = std::min(reach_, side[a] > 0 ? high[a] - t[a] : t[a] - low[a]);
     if (size[a] < (side[a] > 0 ? 0 : 1)) return;
   }
-  const VoxelColumns& columns = side[2] > 0 ? up_ : down_;
-  const std::uint64_t heights = up_to(size[2]), wanted = side[2] > 0 ? heights : heights & ~std::uint64_t{1};
-  const std::ptrdiff_t step_x = side[0] * columns.along_x(), step_y = side[1] * columns.along_y(),
-                       to_cells = columns.to_cells();
-  const int shift = columns.shift(target);
+  const Columns& columns = side[2] > 0 ? up_ : down_;
+  const std::uint64_t heights = VoxelColumns::bits_to(size[2]),
+                      wanted = side[2] > 0 ? heights : heights & ~std::uint64_t{1};
+  const std::ptrdiff_t step_x = side[0] * columns.walls.along_x(), step_y = side[1] * columns.walls.along_y();
+  const int shift = columns.walls.shift(target);
   row.assign(static_cast<std::size_t>(size[1]) + 1, 0);
   row[0] = 1;
   int first = 0, last = 0;  // columns of the row that are reached
   std::uint64_t start = 1;  // a target may be occupied itself
-  const std::uint64_t* const words_of_target = columns.at(target);
+  const std::uint64_t* const walls = columns.walls.at(target);
+  const std::uint64_t* const corridor_cells = columns.cells.at(target);
   for (int x = 0; x <= size[0] && first <= last; ++x) {
     const Limit* limits =
         &limits_[sector][static_cast<std::size_t>(x) * static_cast<std::size_t>(reach_ + 1)];
@@ -135,8 +111,9 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
         if (y > last) break;
         continue;
       }
-      const std::uint64_t* words = words_of_target + x * step_x + y * step_y;
-      reached = fill(seeds, (~VoxelColumns::read(words, shift) | start) & limits[y].crossed & heights);
+      const std::ptrdiff_t column = x * step_x + y * step_y;
+      reached =
+          fill(seeds, (~VoxelColumns::read(walls + column, shift) | start) & limits[y].crossed & heights);
       start = 0;
       here = reached;
       if (reached != 0) {
@@ -146,11 +123,10 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
       if ((x == 0 && side[0] < 0) || (y == 0 && side[1] < 0)) continue;
       // A cell may be occupied itself; what lies before it may not.
       std::uint64_t found = (seeds | reached << 1) & limits[y].cells & wanted;
-      if (found != 0) found &= VoxelColumns::read(words + to_cells, shift);
+      if (found != 0) found &= VoxelColumns::read(corridor_cells + column, shift);
       for (; found != 0; found &= found - 1)
-        cells.push_back({static_cast<std::uint16_t>(t[0] + side[0] * x),
-                         static_cast<std::uint16_t>(t[1] + side[1] * y),
-                         static_cast<std::uint16_t>(t[2] + side[2] * std::countr_zero(found))});
+        cells.push_back(
+            make_key(t[0] + side[0] * x, t[1] + side[1] * y, t[2] + side[2] * std::countr_zero(found)));
     }
     first = first_here;
     last = last_here;

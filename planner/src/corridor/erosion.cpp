@@ -1,5 +1,7 @@
 #include "corridor/erosion.hpp"
 
+#include "mapping/octree_order.hpp"
+
 #include <algorithm>
 
 namespace frontlux::planner::detail {
@@ -15,11 +17,6 @@ std::uint64_t transposed(std::uint64_t bits) {
   swap(0x0000CCCC0000CCCC, 14);
   swap(0x00000000F0F0F0F0, 28);
   return bits;
-}
-
-VoxelKey brick_corner(const VoxelKey& key) {
-  const auto along = [](std::uint16_t k) { return static_cast<std::uint16_t>(k & ~7); };
-  return {along(key.x), along(key.y), along(key.z)};
 }
 
 }  // namespace
@@ -62,9 +59,7 @@ void Erosion::read_brick(const VoxelGrid& grid, const VoxelKey& corner) {
 void Erosion::read(const VoxelGrid& grid) {
   for (int x = box_.min.x & ~7; x <= box_.max.x; x += 8)
     for (int y = box_.min.y & ~7; y <= box_.max.y; y += 8)
-      for (int z = base_z_; z <= box_.max.z; z += 8)
-        read_brick(grid, {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                          static_cast<std::uint16_t>(z)});
+      for (int z = base_z_; z <= box_.max.z; z += 8) read_brick(grid, make_key(x, y, z));
   erode();
 }
 
@@ -97,8 +92,8 @@ void Erosion::erode_along_z(std::size_t first) {
   }
 }
 
-// Columns of `to` whose window along an axis meets a stale column of `from` are made anew; those that came
-// out different are marked.
+// Renews the columns of `to` whose window along an axis meets a stale column of `from`, and marks those that
+// change.
 template <int kAxis>
 void Erosion::erode_across(const Bits& from, Bits& to, const Flags& stale_from, Flags& stale_to) {
   constexpr auto kPlace = static_cast<std::size_t>(kAxis);

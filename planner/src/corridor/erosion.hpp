@@ -17,8 +17,8 @@ struct VoxelWindow {
 
 /// The voxels of a box around which a whole window is free.
 ///
-/// Bits along z, a column of words for each x and y; a window is tested as a running AND along one axis after
-/// the other. What each axis gave is kept, so that a change costs the columns around it.
+/// Each x and y has a column of bits along z. A window is tested by ANDs along one axis after the other. The
+/// result of each axis is kept, so that a change renews only the columns around it.
 class Erosion {
  public:
   /// @param box     voxels outside are not free

@@ -23,8 +23,7 @@ void Ground::read(const VoxelGrid& grid) {
   const KeyBox& box = options_.box;
   if (options_.layer)
     for (int x = box.min.x; x <= box.max.x; ++x)
-      for (int y = box.min.y; y <= box.max.y; ++y)
-        read_voxel(grid, {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), *options_.layer});
+      for (int y = box.min.y; y <= box.max.y; ++y) read_voxel(grid, make_key(x, y, *options_.layer));
   decide();
 }
 
@@ -32,16 +31,14 @@ void Ground::read(const VoxelGrid& grid, std::span<const VoxelKey> changed) {
   const KeyBox& box = options_.box;
   bool any = false;
   for (const VoxelKey& key : changed) {
-    if (key.z != options_.layer || key.x < box.min.x || key.x > box.max.x || key.y < box.min.y ||
-        key.y > box.max.y)
-      continue;
+    if (key.z != options_.layer || !box.contains({key.x, key.y, box.min.z})) continue;
     read_voxel(grid, key);
     any = true;
   }
   if (any) decide();
 }
 
-// Columns with a flag within so many voxels along x and y.
+// The columns within so many voxels, along x and y, of one with a flag.
 Ground::Flags Ground::spread(const Flags& flags, int by_x, int by_y) const {
   const auto at = [this](int x, int y) {
     return static_cast<std::size_t>(x) * static_cast<std::size_t>(size_y_) + static_cast<std::size_t>(y);
@@ -66,7 +63,7 @@ void Ground::decide() {
   for (const KeyBox& exempt : options_.exempt)
     for (int x = std::max(exempt.min.x, box.min.x); x <= std::min(exempt.max.x, box.max.x); ++x)
       for (int y = std::max(exempt.min.y, box.min.y); y <= std::min(exempt.max.y, box.max.y); ++y)
-        carries_[column({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0})] = 1;
+        carries_[column(make_key(x, y, 0))] = 1;
 }
 
 }  // namespace frontlux::planner::detail

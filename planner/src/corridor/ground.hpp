@@ -9,23 +9,23 @@
 
 namespace frontlux::planner::detail {
 
-/// Where a layer of floor carries a robot: nothing known free under it, something known occupied near its
-/// middle.
+/// Where a layer of floor carries a robot: no voxel under it is known to be free, and one near its middle is
+/// known to be occupied.
 class Ground {
  public:
   struct Options {
     KeyBox box;                          ///< floor beyond its columns is unknown
-    std::optional<std::uint16_t> layer;  ///< key of the floor along z; none: there is no ground
-    int half_x = 0, half_y = 0;          ///< [voxels] beside the middle, of what must not be known free
-    int reach = 1;                       ///< [voxels] beside the middle, within which one has to be occupied
-    std::vector<KeyBox> exempt;          ///< needs no ground
+    std::optional<std::uint16_t> layer;  ///< key of the floor along z; without it there is no ground
+    int half_x = 0, half_y = 0;          ///< [voxels] from the middle; none within may be free
+    int reach = 1;                       ///< [voxels] from the middle; one within has to be occupied
+    std::vector<KeyBox> exempt = {};     ///< their columns need no ground
   };
   explicit Ground(Options options);
 
   void read(const VoxelGrid& grid);
   void read(const VoxelGrid& grid, std::span<const VoxelKey> changed);
 
-  /// @pre the key lies in the box as to x and y
+  /// @pre x and y of the key lie in the box
   [[nodiscard]] bool carries(const VoxelKey& key) const { return carries_[column(key)] != 0; }
 
  private:

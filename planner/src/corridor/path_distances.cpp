@@ -51,8 +51,8 @@ std::uint32_t PathDistances::closed_around(std::size_t cell) const {
   return closed;
 }
 
-// Dijkstra's algorithm with buckets as wide as the shortest step: what is in the nearest bucket is final, in
-// whatever order it is taken.
+// Dijkstra's algorithm with buckets as wide as the shortest step: distances in the nearest bucket are final,
+// whatever the order in which they are taken.
 void PathDistances::spread(const VoxelKey& from) {
   struct Entry {
     std::uint32_t cell;
@@ -61,7 +61,7 @@ void PathDistances::spread(const VoxelKey& from) {
   constexpr std::size_t kBuckets = 4;  // the longest step reaches two ahead
   constexpr Label kFarthest = kUnreached - 2 * kStraight;
   std::array<std::vector<Entry>, kBuckets> buckets;
-  // All the moves that there could be, so that the loop below unrolls: those left over stay where they are.
+  // As many moves as there can be, so that the loop below unrolls: the unused ones stay in place.
   std::array<std::ptrdiff_t, kMaxMoves> offsets{};
   std::array<Label, kMaxMoves> lengths{};
   for (std::size_t i = 0; i < moves_.size(); ++i) {
@@ -80,7 +80,7 @@ void PathDistances::spread(const VoxelKey& from) {
     empty = bucket.empty() ? empty + 1 : 0;
     for (const Entry& entry : bucket) {
       if (labels_[entry.cell] != entry.label || entry.label >= kFarthest) continue;
-      // No branches here: few moves bring a neighbour nearer, and which cannot be foretold.
+      // No branches here: few moves bring a neighbour nearer, and a processor cannot predict which.
       const Label* const cell_label = &labels_[entry.cell];
       std::uint32_t closed = 0, better = 0;
 #pragma GCC unroll 26

@@ -20,20 +20,17 @@ struct CellFrame {
   /// Number of the cell along each axis; nothing if the key is not that of a cell.
   [[nodiscard]] std::optional<std::array<int, 3>> place(const VoxelKey& key) const;
   [[nodiscard]] VoxelKey key(int x, int y, int z) const {
-    const auto along = [this](std::uint16_t from, int i) {
-      return static_cast<std::uint16_t>(from + i * stride);
-    };
-    return {along(first.x, x), along(first.y, y), along(first.z, z)};
+    return make_key(first.x + x * stride, first.y + y * stride, first.z + z * stride);
   }
 };
 
-/// Which cells are open, and the shortest ways from one of them to all others. A cell beyond 4 million steps
-/// counts as not connected.
+/// Which cells are open, and the shortest paths from one of them to all others. A cell more than 4 million
+/// steps away counts as not connected.
 class PathDistances {
  public:
   PathDistances(const CellFrame& frame, PathMetric metric);
 
-  /// Opens and closes all cells, and forgets the ways.
+  /// Opens the cells for which `open(key)` holds, closes the others, and forgets the paths.
   template <class Open>
   void reset(const Open& open) {
     for (int x = 0; x < frame_.size[0]; ++x)
@@ -42,15 +39,15 @@ class PathDistances {
           labels_[number(x, y, z)] = open(frame_.key(x, y, z)) ? kUnreached : kClosed;
   }
 
-  /// Finds the ways from an open cell.
+  /// Finds the paths from an open cell.
   void spread(const VoxelKey& from);
 
   [[nodiscard]] bool open(const VoxelKey& key) const;
-  /// [cells] nothing if there is no way.
+  /// [cells] nothing if there is no path.
   [[nodiscard]] std::optional<double> distance(const VoxelKey& key) const;
   [[nodiscard]] std::vector<VoxelKey> path_to(const VoxelKey& key) const;
 
-  /// Appends the cells with a way, in order.
+  /// Appends the cells with a path, in order.
   void reached(std::vector<VoxelKey>& cells) const;
 
  private:
@@ -64,7 +61,7 @@ class PathDistances {
     std::ptrdiff_t offset;    // of the cell's number
     std::array<int, 3> step;  // [cells]
     Label length;
-    std::uint32_t corners;  // bits of the moves to the cells that it would cut
+    std::uint32_t corners;  // bits of the moves to the cells whose corners it would cut
   };
 
   [[nodiscard]] std::size_t number(int x, int y, int z) const {

@@ -1,6 +1,7 @@
 #include "corridor/erosion.hpp"
 #include "corridor/ground.hpp"
 #include "corridor/path_distances.hpp"
+#include "mapping/box_array.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
 
@@ -51,11 +52,9 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
   }
   if (bounds.min.x > bounds.max.x || bounds.min.y > bounds.max.y || bounds.min.z > bounds.max.z)
     refuse("the bounds are empty");
-  const auto along = [](int low, int high) { return static_cast<std::uint64_t>(high - low + 1); };
-  const std::uint64_t layer = along(bounds.min.x, bounds.max.x) * along(bounds.min.y, bounds.max.y);
-  const std::uint64_t cells =
-      options.motion == Motion::kPlane ? layer : layer * along(bounds.min.z, bounds.max.z);
-  if (cells > kMaxCells)
+  KeyBox box = bounds;
+  if (options.motion == Motion::kPlane) box.max.z = box.min.z;
+  if (const std::uint64_t cells = detail::size_of(box); cells > kMaxCells)
     refuse("the bounds hold " + std::to_string(cells) + " cells, but at most " + std::to_string(kMaxCells) +
            " are possible; give smaller bounds");
 }
@@ -93,10 +92,8 @@ detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
 VoxelKey aligned(const TravelOptions& options, const detail::VoxelWindow& window, const VoxelKey& voxel) {
   if (options.node_edge == 0.0) return voxel;
   const int edge = window.high[0] - window.low[0] + 1;
-  const auto along = [&](std::uint16_t k) {
-    return static_cast<std::uint16_t>((k & ~(edge - 1)) - window.low[0]);
-  };
-  return {along(voxel.x), along(voxel.y), along(voxel.z)};
+  const auto along = [&](int key) { return (key & ~(edge - 1)) - window.low[0]; };
+  return make_key(along(voxel.x), along(voxel.y), along(voxel.z));
 }
 
 std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(key, 0, 0xFFFF)); }
@@ -107,7 +104,7 @@ TravelOptions ugv_travel() {
   TravelOptions options;
   options.motion = Motion::kPlane;
   options.extents = {1.0, 1.0, 0.7};
-  // Where wheels are. Of all of the box, some floor voxel is always passed by a beam that grazes it.
+  // Where the wheels are. Some beam always grazes a floor voxel under the rest of the box.
   options.ground_extents = Eigen::Vector2d(0.9, 0.9);
   return options;
 }
@@ -135,13 +132,13 @@ KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice, cons
 }
 
 Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
-  constexpr double kLetGo = 1e-4;  // of a voxel: centres that were floats are in the middle, too
+  constexpr double kIgnored = 1e-4;  // of a voxel: centres that were floats are in the middle, too
   Eigen::Vector3d reach = Eigen::Vector3d::Zero();
   if (options.node_edge > 0.0) return reach;
   const double resolution = lattice.resolution();
   for (Eigen::Index a = 0; a < (options.motion == Motion::kPlane ? 2 : 3); ++a) {
     const double beyond = options.extents[a] / 2 - half_width(options.extents[a], resolution) * resolution;
-    if (beyond > kLetGo * resolution) reach[a] = std::min(beyond, (0.5 - kLetGo) * resolution);
+    if (beyond > kIgnored * resolution) reach[a] = std::min(beyond, (0.5 - kIgnored) * resolution);
   }
   return reach;
 }
@@ -151,7 +148,7 @@ std::string_view describe(CorridorState state) {
     case CorridorState::kReady:
       return "has a corridor";
     case CorridorState::kNotUpdated:
-      return "has seen no map";
+      return "has no map yet";
     case CorridorState::kOutside:
       return "is outside the bounds";
     case CorridorState::kTooLow:
@@ -168,13 +165,16 @@ std::string_view describe(CorridorState state) {
   return "is in no known state";
 }
 
-// What depends on the plane is made anew when the robot is on another one; in space all of it is made once.
+// What depends on the plane is made again when the robot is on another one; in space it is made once.
 struct TravelCorridor::State {
-  TravelOptions options;
-  Lattice lattice;
-  KeyBox bounds;
-  detail::VoxelWindow window;
-  Eigen::Vector3d reach;
+  State(const TravelOptions& options_of_robot, const Lattice& map_lattice, const KeyBox& map_bounds)
+      : options(options_of_robot), lattice(map_lattice), bounds(map_bounds) {}
+
+  const TravelOptions options;
+  const Lattice lattice;
+  const KeyBox bounds;
+  const detail::VoxelWindow window = window_of(options, lattice.resolution());
+  const Eigen::Vector3d reach = reach_of(options, lattice);
 
   std::optional<std::uint16_t> plane;
   detail::CellFrame frame;
@@ -182,7 +182,7 @@ struct TravelCorridor::State {
   std::optional<detail::Ground> ground;
   std::optional<detail::PathDistances> distances;
   std::vector<VoxelKey> cells;
-  std::vector<VoxelKey> closed;  // sorted
+  std::vector<VoxelKey> blocked;  // sorted
   CorridorState state = CorridorState::kNotUpdated;
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
@@ -190,7 +190,7 @@ struct TravelCorridor::State {
   void read(const MapChange& change, const VoxelKey& robot);
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
     return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
-           (closed.empty() || !std::binary_search(closed.begin(), closed.end(), cell));
+           (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell));
   }
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
@@ -263,19 +263,7 @@ CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const Vox
 
 TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds) {
   check(options, lattice.resolution(), bounds);
-  state_ = std::make_unique<State>(State{options,
-                                         lattice,
-                                         bounds,
-                                         window_of(options, lattice.resolution()),
-                                         reach_of(options, lattice),
-                                         {},
-                                         {},
-                                         {},
-                                         {},
-                                         {},
-                                         {},
-                                         {},
-                                         CorridorState::kNotUpdated});
+  state_ = std::make_unique<State>(options, lattice, bounds);
 }
 TravelCorridor::~TravelCorridor() = default;
 TravelCorridor::TravelCorridor(TravelCorridor&&) noexcept = default;
@@ -295,9 +283,9 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot) {
 }
 
 void TravelCorridor::block(std::span<const VoxelKey> cells) {
-  std::vector<VoxelKey>& closed = state_->closed;
-  closed.insert(closed.end(), cells.begin(), cells.end());
-  std::sort(closed.begin(), closed.end());
+  std::vector<VoxelKey>& blocked = state_->blocked;
+  blocked.insert(blocked.end(), cells.begin(), cells.end());
+  std::sort(blocked.begin(), blocked.end());
 }
 
 CorridorState TravelCorridor::state() const { return state_->state; }

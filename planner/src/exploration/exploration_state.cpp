@@ -93,7 +93,7 @@ void Exploration::State::start_from(std::span<const ExplorationStart> starts) {
     by_voxels.node_edge = 0.0;
     voxel_corridors.back().emplace(by_voxels, lattice(), mapping.bounds());
   }
-  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.distribute);
+  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   trails.resize(size());
 }

@@ -8,13 +8,13 @@
 
 namespace frontlux::planner::detail {
 
-/// Frontiers that stay unknown although they were looked at, until they are given up.
+/// Counts how often frontiers were in view and stayed unknown. After some visits they are abandoned.
 class AbandonedFrontiers {
  public:
-  /// @param max_visits  a frontier is given up after so many visits
+  /// @param max_visits  after which a frontier is abandoned
   explicit AbandonedFrontiers(int max_visits) : max_visits_(max_visits) {}
 
-  /// These were in view, and have stayed unknown.
+  /// These were in view and stayed unknown.
   void visited(std::span<const VoxelKey> frontiers) {
     for (const VoxelKey& key : frontiers) ++visits_[key];
   }
@@ -24,7 +24,7 @@ class AbandonedFrontiers {
     return found != visits_.end() && found->second >= max_visits_;
   }
 
-  /// Those not given up, in their order.
+  /// Those that are not abandoned, in their order.
   [[nodiscard]] std::vector<VoxelKey> without_abandoned(std::span<const VoxelKey> frontiers) const {
     std::vector<VoxelKey> rest;
     rest.reserve(frontiers.size());

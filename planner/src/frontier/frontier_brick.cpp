@@ -16,7 +16,7 @@ struct Square {
 
 const Layers& free_in(const VoxelGrid& grid, const VoxelKey& corner, int dx, int dy, int dz) {
   static const Layers kNone{};
-  const auto at = neighbour_brick(corner, dx, dy, dz);
+  const auto at = offset_key(corner, 8 * dx, 8 * dy, 8 * dz);
   return at ? grid.brick(*at).free : kNone;
 }
 
@@ -26,7 +26,7 @@ std::uint64_t beside_x(const Square& s) {
          ((s.east & kColumn) << 7);
 }
 
-// The layer moved by one along y, both ways; `south` and `north` are the layers that come in.
+// The layer moved by one along y in both directions; `south` and `north` are the layers that move in.
 std::uint64_t beside_y(std::uint64_t here, std::uint64_t south, std::uint64_t north) {
   return (here << 8) | (here >> 8) | (south >> 56) | (north << 56);
 }

@@ -8,8 +8,8 @@
 
 namespace frontlux::planner::detail {
 
-/// Those of some frontiers whose connected cluster, by faces, edges and corners and of all frontiers, holds
-/// at least `size` voxels; in their order.
+/// Those of some frontiers that are in a cluster of at least `size` voxels, in their order. A cluster is what
+/// faces, edges and corners connect of all frontiers.
 [[nodiscard]] std::vector<VoxelKey> in_large_clusters(const FrontierSet& frontiers,
                                                       std::span<const VoxelKey> some, int size);
 

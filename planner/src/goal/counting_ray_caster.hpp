@@ -8,7 +8,7 @@
 
 namespace frontlux::planner::detail {
 
-/// Another caster, and of how many segments it was asked whether something stands between.
+/// Casts with another caster, and counts the segments whose visibility it is asked for.
 class CountingRayCaster final : public RayCaster {
  public:
   /// @param counted  has to outlive this
@@ -44,7 +44,7 @@ class CountingRayCaster final : public RayCaster {
     counted_.count(segments, counts, unknown);
   }
   void do_update(const VoxelGrid&) override {
-    throw std::logic_error("the caster that is counted has to be updated by whoever owns it");
+    throw std::logic_error("a counting caster cannot update; update the caster that it counts");
   }
 
   const RayCaster& counted_;

@@ -1,5 +1,6 @@
 #include <frontlux/planner/goal_selection.hpp>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -48,11 +49,11 @@ GoalOptions goal_options(const Robot& robot, Method method) {
     options.refined = on_plane ? 0 : 4096;  // all cells that see a frontier
   } else {
     options.advance = 4.0;
-    options.min_gain = 10.0;  // that of a step which is not quiet, as `ExplorationOptions` has it
+    options.min_gain = 10.0;  // fewer make a step quiet: `ExplorationOptions`
     if (on_plane) {
       options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
     } else {
-      // In space there are so many pairs that drawing some, and counting the best cells, is sooner done.
+      // In space there are so many pairs that it is faster to sample some and to count only the best cells.
       options.rendering.sampling = ViewQualityOptions::Sampling::kBuckets;
       options.viewpoint_spacing = 0.6;
       options.rendering.samples = 32;
@@ -64,23 +65,10 @@ GoalOptions goal_options(const Robot& robot, Method method) {
 }
 
 std::string_view name_of(GoalState state) {
-  switch (state) {
-    case GoalState::kOwn:
-      return "own";
-    case GoalState::kReleased:
-      return "released";
-    case GoalState::kLeftOver:
-      return "left_over";
-    case GoalState::kNoCorridor:
-      return "no_corridor";
-    case GoalState::kNoFrontiers:
-      return "no_frontiers";
-    case GoalState::kNothingAssigned:
-      return "nothing_assigned";
-    case GoalState::kNothingVisible:
-      return "nothing_visible";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 7> kNames = {"assigned",       "received",     "uncovered",
+                                                      "no_corridor",    "no_frontiers", "nothing_assigned",
+                                                      "nothing_visible"};
+  return kNames.at(static_cast<std::size_t>(state));
 }
 
 }  // namespace frontlux::planner

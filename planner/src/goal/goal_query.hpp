@@ -4,10 +4,11 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace frontlux::planner::detail {
 
@@ -26,14 +27,10 @@ struct GoalQuery {
     return view.shape == FieldOfView::Shape::kSpinning ? 0 : options.rendering.azimuth_bins;
   }
 
-  [[nodiscard]] Eigen::Vector3d center(const VoxelKey& key) const {
-    return {lattice.center(key.x), lattice.center(key.y), lattice.center(key.z)};
-  }
-
   /// [m] from the robot to a cell of the corridor, as eq. 1 takes it.
   [[nodiscard]] double distance(const VoxelKey& cell) const {
     return options.distance == TravelDistance::kPath ? corridor.distance(cell).value()
-                                                     : (center(cell) - position).norm();
+                                                     : (lattice.exact_center(cell) - position).norm();
   }
 
   /// Whether a distance [m] is far enough for a goal.
@@ -42,10 +39,10 @@ struct GoalQuery {
     return distance >= options.min_distance - kRounding;
   }
 
-  /// Whether a gain is enough to go for before all that is not.
+  /// Whether a gain reaches `GoalOptions::min_gain`.
   [[nodiscard]] bool enough(double gain) const { return gain >= options.min_gain; }
 
-  /// Eq. 1, and what `GoalOptions::advance` makes of it.
+  /// Eq. 1 with the factor of `GoalOptions::advance`.
   [[nodiscard]] double quality(double distance, double gain) const {
     const double advanced = distance < options.advance ? distance / options.advance : 1.0;
     return std::exp(-options.lambda * distance) * advanced * gain;
@@ -56,10 +53,15 @@ struct GoalQuery {
     return Eigen::Vector3d(to.x - from.x, to.y - from.y, to.z - from.z) * lattice.resolution();
   }
 
-  /// The yaw [rad] that looks along an offset.
-  [[nodiscard]] static double yaw_along(const Eigen::Vector3d& offset) {
-    return std::atan2(offset.y(), offset.x());
-  }
+  /// For each target 1 if it is in view from the centre of a voxel, at this yaw or, without one, at any yaw,
+  /// and no occupied or unknown voxel lies before it.
+  [[nodiscard]] std::vector<std::uint8_t> visible_targets(const VoxelKey& from,
+                                                          std::optional<double> yaw = {}) const;
 };
+
+/// The yaw [rad] of a robot that looks along an offset.
+[[nodiscard]] inline double yaw_along(const Eigen::Vector3d& offset) {
+  return std::atan2(offset.y(), offset.x());
+}
 
 }  // namespace frontlux::planner::detail

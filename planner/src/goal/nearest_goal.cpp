@@ -1,11 +1,8 @@
-#include "goal/nearest_goal.hpp"
-
-#include "goal/rendered_goal.hpp"
-#include "goal/seen_targets.hpp"
+#include "goal/goal_rules.hpp"
+#include "goal/rendered_cell.hpp"
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -13,19 +10,17 @@ namespace {
 
 // Yaw and gain of a cell that sees at least one target.
 RenderedCell look_at_nearest(const GoalQuery& query, const VoxelKey& cell, double distance) {
-  const std::vector<std::uint8_t> seen = seen_targets(query, cell, std::nullopt);
-  const VoxelKey* nearest = nullptr;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const VoxelKey& target = query.targets[i];
-    if (seen[i] == 0) continue;
-    const auto length = [&](const VoxelKey& to) { return query.offset(cell, to).squaredNorm(); };
-    if (nearest == nullptr || length(target) < length(*nearest)) nearest = &target;
+  const std::vector<std::uint8_t> visible = query.visible_targets(cell);
+  std::optional<Eigen::Vector3d> nearest;
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const Eigen::Vector3d offset = query.offset(cell, query.targets[i]);
+    if (visible[i] != 0 && (!nearest || offset.squaredNorm() < nearest->squaredNorm())) nearest = offset;
   }
   RenderedCell goal;
   goal.cell = cell;
   goal.distance = distance;
-  goal.yaw = GoalQuery::yaw_along(query.offset(cell, *nearest));
-  const std::vector<std::uint8_t> at_yaw = seen_targets(query, cell, goal.yaw);
+  goal.yaw = yaw_along(*nearest);
+  const std::vector<std::uint8_t> at_yaw = query.visible_targets(cell, goal.yaw);
   goal.hits = static_cast<std::uint32_t>(std::count(at_yaw.begin(), at_yaw.end(), std::uint8_t{1}));
   goal.gain = goal.hits;
   goal.quality = query.quality(distance, goal.gain);

@@ -7,21 +7,21 @@
 
 namespace frontlux::planner::detail {
 
-/// A way of straight parts: its ends and bends [m].
+/// A path of straight segments: its ends and bends [m].
 using Polyline = std::vector<Eigen::Vector3d>;
 
-[[nodiscard]] double length_of(const Polyline& way);  ///< [m]
+/// Whether a robot can go straight from one point [m] to another.
+using SegmentCheck = std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)>;
 
-/// The same way with so many more points on it that they are at most `spacing` [m] apart, evenly on each
-/// straight part. Rounding does not count: a part of 1.2 m is not divided because it comes out a little
-/// longer. The points that were there stay as they were.
-[[nodiscard]] Polyline divided(const Polyline& way, double spacing);
+[[nodiscard]] double length_of(const Polyline& path);  ///< [m]
 
-/// A shorter way between the same ends: bends are cut as far as one can go straight, from points at most
-/// `step` [m] apart, until a round gains less than a thousandth.
-/// @param is_free  whether one can go straight from one point to another
-[[nodiscard]] Polyline shortened(
-    Polyline way, double step, int rounds,
-    const std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)>& is_free);
+/// The same path with more points on it, so that they are at most `spacing` [m] apart, evenly on each
+/// segment. Rounding does not count: a segment of 1.2 m is not divided because it comes out a little longer.
+/// The points of the path stay as they are.
+[[nodiscard]] Polyline divided(const Polyline& path, double spacing);
+
+/// A shorter path between the same ends. Each round cuts bends as far as one can go straight, from points at
+/// most `step` [m] apart, until a round gains less than a thousandth.
+[[nodiscard]] Polyline shortened(Polyline path, double step, int rounds, const SegmentCheck& is_free);
 
 }  // namespace frontlux::planner::detail

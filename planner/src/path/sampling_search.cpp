@@ -1,6 +1,9 @@
 #include "path/sampling_search.hpp"
 
-#include "path/flat_points.hpp"
+#include "path/nearest_motions.hpp"
+
+#include <frontlux/key_box.hpp>
+#include <frontlux/split_mix.hpp>
 
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/PlannerTerminationCondition.h>
@@ -10,7 +13,6 @@
 #include <ompl/base/StateSampler.h>
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
-#include <ompl/datastructures/NearestNeighbors.h>
 #include <ompl/geometric/PathGeometric.h>
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -19,8 +21,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -32,49 +34,31 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
 using RealState = ob::RealVectorStateSpace::StateType;
-using WayIsFree = std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)>;
 
-// While one lives OMPL says nothing. The level and not the output handler is changed: of handlers OMPL
-// remembers just one before the present one, which is the embedding program's to come back to.
+// OMPL logs nothing while an object of this class exists. It changes the log level and not the output
+// handler: OMPL remembers only one earlier handler, which is for the embedding program to restore.
 class Silence {
  public:
   Silence() {
-    const std::lock_guard lock(mutex());
-    if (count()++ == 0) {
-      before() = ompl::msg::getLogLevel();
-      ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-    }
+    const std::lock_guard lock(mutex_);
+    if (count_++ != 0) return;
+    before_ = ompl::msg::getLogLevel();
+    ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   }
   ~Silence() {
-    const std::lock_guard lock(mutex());
-    if (--count() == 0) ompl::msg::setLogLevel(before());
+    const std::lock_guard lock(mutex_);
+    if (--count_ == 0) ompl::msg::setLogLevel(before_);
   }
   Silence(const Silence&) = delete;
   Silence& operator=(const Silence&) = delete;
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex the_mutex;
-    return the_mutex;
-  }
-  static int& count() {
-    static int the_count = 0;
-    return the_count;
-  }
-  static ompl::msg::LogLevel& before() {
-    static ompl::msg::LogLevel the_level = ompl::msg::LOG_NONE;
-    return the_level;
-  }
+  inline static std::mutex mutex_;
+  inline static int count_ = 0;
+  inline static ompl::msg::LogLevel before_ = ompl::msg::LOG_NONE;
 };
 
-template <std::size_t N>
-std::array<double, N> coordinates(const ob::State* state) {
-  std::array<double, N> point;
-  std::copy_n(state->as<RealState>()->values, N, point.begin());
-  return point;
-}
-
-// On a plane states have two coordinates, and all are at one height.
+// States as points. On a plane states have two coordinates, and all points are at one height.
 struct Points {
   bool plane;
   double height;  // [m] of the plane
@@ -88,130 +72,67 @@ struct Points {
   }
 };
 
-// OMPL's own neighbours start from random pivots, and of two equally near they return one or the other.
-template <std::size_t N>
-struct Neighbors {
-  template <class Motion>
-  class Of : public ompl::NearestNeighbors<Motion> {
-   public:
-    using ompl::NearestNeighbors<Motion>::add;
-    [[nodiscard]] bool reportsSortedResults() const override { return true; }
-    void clear() override {
-      points_.clear();
-      motions_.clear();
-    }
-    void add(const Motion& motion) override {
-      points_.add(coordinates<N>(motion->state));
-      motions_.push_back(motion);
-    }
-    bool remove(const Motion& motion) override {
-      const auto found = std::find(motions_.begin(), motions_.end(), motion);
-      if (found == motions_.end()) return false;
-      points_.remove(static_cast<std::size_t>(found - motions_.begin()));
-      motions_.erase(found);
-      return true;
-    }
-    Motion nearest(const Motion& motion) const override {
-      return motions_[points_.nearest(coordinates<N>(motion->state))];
-    }
-    void nearestK(const Motion& motion, std::size_t k, std::vector<Motion>& found) const override {
-      copy(points_.nearest(coordinates<N>(motion->state), k, std::numeric_limits<double>::infinity()), found);
-    }
-    void nearestR(const Motion& motion, double radius, std::vector<Motion>& found) const override {
-      copy(points_.nearest(coordinates<N>(motion->state), motions_.size(), radius), found);
-    }
-    [[nodiscard]] std::size_t size() const override { return motions_.size(); }
-    void list(std::vector<Motion>& all) const override { all = motions_; }
-
-   private:
-    void copy(const std::vector<std::size_t>& indices, std::vector<Motion>& found) const {
-      found.clear();
-      for (const std::size_t i : indices) found.push_back(motions_[i]);
-    }
-
-    FlatPoints<N> points_;
-    std::vector<Motion> motions_;
-  };
-};
-
-// Uniform over the cells, so that no sample is wasted on walls and rooms unseen. One too near to the side of
-// its cell moves towards the middle, so that passages of a single cell get their share.
+// Uniform over the cells, so that no sample falls on walls and unknown rooms. A sample too near to the side
+// of its cell moves towards the middle, so that passages of a single cell are sampled, too.
 class CellSampler : public ob::StateSampler {
  public:
-  CellSampler(const ob::StateSpace* space, const Lattice& lattice, const TreeQuery& query,
-              const WayIsFree& way_is_free)
+  CellSampler(const ob::StateSpace* space, const Lattice& lattice, const SamplingQuery& query,
+              const SegmentCheck& is_free)
       : ob::StateSampler(space),
         lattice_(lattice),
         cells_(query.cells),
         points_{query.plane, query.start.z()},
         reaches_(query.reach != Eigen::Vector3d::Zero()),
-        sure_(Eigen::Vector3d::Ones() - 2.0 / lattice.resolution() * query.reach),
-        way_is_free_(way_is_free),
-        state_(query.seed) {}
+        inner_(Eigen::Vector3d::Ones() - 2.0 / lattice.resolution() * query.reach),
+        is_free_(is_free),
+        random_(query.seed) {}
 
   void sampleUniform(ob::State* state) override {
     const auto n = static_cast<double>(cells_.size());
-    const VoxelKey& cell = cells_[std::min(static_cast<std::size_t>(uniform() * n), cells_.size() - 1)];
+    const VoxelKey& cell = cells_[std::min(static_cast<std::size_t>(random_.unit() * n), cells_.size() - 1)];
     const auto within = [this](std::uint16_t key) {
-      return lattice_.center(key) + (uniform() - 0.5) * kPart * lattice_.resolution();
+      return lattice_.center(key) + (random_.unit() - 0.5) * kPart * lattice_.resolution();
     };
     const double x = within(cell.x), y = within(cell.y), z = within(cell.z);
     points_.write({x, y, z}, state);
-    if (!reaches_ || way_is_free_(points_(state), points_(state))) return;
-    const Eigen::Vector3d middle(lattice_.center(cell.x), lattice_.center(cell.y), lattice_.center(cell.z));
-    points_.write(middle + sure_.cwiseProduct(Eigen::Vector3d(x, y, z) - middle), state);
+    if (!reaches_ || is_free_(points_(state), points_(state))) return;
+    const Eigen::Vector3d middle = lattice_.exact_center(cell);
+    points_.write(middle + inner_.cwiseProduct(Eigen::Vector3d(x, y, z) - middle), state);
   }
-  // No search here asks for these; they stay in the bounds of the space, cell or not.
+  // The searches used here call neither of these. Their samples stay in the bounds of the space.
   void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
     const Eigen::Vector3d middle = points_(near);
-    const auto along = [&](double at) { return at + (2.0 * uniform() - 1.0) * distance; };
+    const auto along = [&](double at) { return at + random_.between(-distance, distance); };
     const double x = along(middle.x()), y = along(middle.y()), z = along(middle.z());
     points_.write({x, y, z}, state);
     space_->enforceBounds(state);
   }
   void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
-    const Eigen::Vector3d middle = points_(mean);
-    // Twelve uniform numbers have a variance of one.
-    const auto along = [&](double at) {
-      double sum = -6.0;
-      for (int i = 0; i < 12; ++i) sum += uniform();
-      return at + deviation * sum;
-    };
-    const double x = along(middle.x()), y = along(middle.y()), z = along(middle.z());
-    points_.write({x, y, z}, state);
-    space_->enforceBounds(state);
+    sampleUniformNear(state, mean, std::sqrt(3.0) * deviation);  // of the same deviation
   }
 
  private:
   static constexpr double kPart = 0.98;  // of a voxel: a sample keeps off the faces
 
-  // SplitMix64. The standard's distributions differ from library to library.
-  double uniform() {
-    std::uint64_t bits = state_ += 0x9E3779B97F4A7C15;
-    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9;
-    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EB;
-    return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
-  }
-
   const Lattice& lattice_;
   std::span<const VoxelKey> cells_;
   Points points_;
   bool reaches_;
-  Eigen::Vector3d sure_;  // part of a voxel, around its middle, in which only this voxel counts
-  const WayIsFree& way_is_free_;
-  std::uint64_t state_;
+  Eigen::Vector3d inner_;  // part of a voxel, around its middle, in which only this voxel counts
+  const SegmentCheck& is_free_;
+  SplitMix64 random_;
 };
 
-// Asks for the whole way: OMPL would look at points some hundredth of the space apart.
-class WayValidator : public ob::MotionValidator {
+// Checks the whole segment: OMPL would check points some hundredth of the space apart.
+class SegmentValidator : public ob::MotionValidator {
  public:
-  WayValidator(const ob::SpaceInformationPtr& space, const WayIsFree& way_is_free, const Points& points)
-      : ob::MotionValidator(space), way_is_free_(way_is_free), points_(points) {}
+  SegmentValidator(const ob::SpaceInformationPtr& space, const SegmentCheck& is_free, const Points& points)
+      : ob::MotionValidator(space), is_free_(is_free), points_(points) {}
 
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
-    return way_is_free_(points_(from), points_(to));
+    return is_free_(points_(from), points_(to));
   }
-  // Of a blocked way only the beginning is vouched for.
+  // Of a blocked segment only the beginning is known to be valid.
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {
     if (checkMotion(from, to)) return true;
@@ -221,7 +142,7 @@ class WayValidator : public ob::MotionValidator {
   }
 
  private:
-  const WayIsFree& way_is_free_;
+  const SegmentCheck& is_free_;
   Points points_;
 };
 
@@ -235,19 +156,19 @@ class Seeded : public Planner {
 };
 
 template <class Planner>
-ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& space, const TreeQuery& query,
+ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& space, const SamplingQuery& query,
                             const PathOptions& options) {
   const auto planner = std::make_shared<Seeded<Planner>>(space, query.seed);
   planner->setRange(options.range);
   if constexpr (requires { planner->setGoalBias(0.0); }) planner->setGoalBias(options.goal_bias);
   if (query.plane)
-    planner->template setNearestNeighbors<Neighbors<2>::template Of>();
+    planner->template setNearestNeighbors<NearestMotions<2>::template Of>();
   else
-    planner->template setNearestNeighbors<Neighbors<3>::template Of>();
+    planner->template setNearestNeighbors<NearestMotions<3>::template Of>();
   return planner;
 }
 
-ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& space, const TreeQuery& query,
+ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& space, const SamplingQuery& query,
                             const PathOptions& options) {
   switch (options.search) {
     case PathSearch::kRrtConnect:
@@ -260,17 +181,9 @@ ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& space, const TreeQuer
 }
 
 // The box around the cells, and a voxel more.
-ob::RealVectorBounds bounds_of(const Lattice& lattice, const TreeQuery& query) {
-  std::array<int, 3> low, high;
-  low.fill(std::numeric_limits<int>::max());
-  high.fill(std::numeric_limits<int>::min());
-  for (const VoxelKey& cell : query.cells) {
-    const std::array<int, 3> key = {cell.x, cell.y, cell.z};
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], key[a]);
-      high[a] = std::max(high[a], key[a]);
-    }
-  }
+ob::RealVectorBounds search_bounds(const Lattice& lattice, const SamplingQuery& query) {
+  const KeyBox box = bounds_of(query.cells);
+  const std::array<int, 3> low = {box.min.x, box.min.y, box.min.z}, high = {box.max.x, box.max.y, box.max.z};
   const unsigned dimensions = query.plane ? 2 : 3;
   ob::RealVectorBounds bounds(dimensions);
   for (unsigned a = 0; a < dimensions; ++a) {
@@ -282,19 +195,18 @@ ob::RealVectorBounds bounds_of(const Lattice& lattice, const TreeQuery& query) {
 
 }  // namespace
 
-TreeAnswer search_tree(const Lattice& lattice, const TreeQuery& query, const PathOptions& options,
-                       const WayIsFree& way_is_free) {
+SamplingResult sampling_search(const Lattice& lattice, const SamplingQuery& query, const PathOptions& options,
+                               const SegmentCheck& is_free) {
   const Silence silence;
   const Points points{query.plane, query.start.z()};
   const auto space = std::make_shared<ob::RealVectorStateSpace>(query.plane ? 2U : 3U);
-  space->setBounds(bounds_of(lattice, query));
-  space->setStateSamplerAllocator([&](const ob::StateSpace* of) {
-    return std::make_shared<CellSampler>(of, lattice, query, way_is_free);
-  });
+  space->setBounds(search_bounds(lattice, query));
+  space->setStateSamplerAllocator(
+      [&](const ob::StateSpace* of) { return std::make_shared<CellSampler>(of, lattice, query, is_free); });
   const auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker(
-      [&](const ob::State* state) { return way_is_free(points(state), points(state)); });
-  information->setMotionValidator(std::make_shared<WayValidator>(information, way_is_free, points));
+      [&](const ob::State* state) { return is_free(points(state), points(state)); });
+  information->setMotionValidator(std::make_shared<SegmentValidator>(information, is_free, points));
   information->setup();
 
   ob::ScopedState<> start(space), goal(space);
@@ -314,12 +226,12 @@ TreeAnswer search_tree(const Lattice& lattice, const TreeQuery& query, const Pat
     return false;
   }));
 
-  TreeAnswer answer;
-  answer.iterations = iterations;
-  if (status != ob::PlannerStatus::EXACT_SOLUTION) return answer;
+  SamplingResult result;
+  result.iterations = iterations;
+  if (status != ob::PlannerStatus::EXACT_SOLUTION) return result;
   for (const ob::State* state : problem->getSolutionPath()->as<og::PathGeometric>()->getStates())
-    answer.way.push_back(points(state));
-  return answer;
+    result.path.push_back(points(state));
+  return result;
 }
 
 }  // namespace frontlux::planner::detail

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "path/polyline.hpp"
+
 #include <frontlux/lattice.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/ray.hpp>
@@ -7,14 +9,12 @@
 #include <Eigen/Core>
 
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <vector>
 
 namespace frontlux::planner::detail {
 
 /// What a random search works on. Start and goal lie in cells.
-struct TreeQuery {
+struct SamplingQuery {
   Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d goal = Eigen::Vector3d::Zero();   ///< [m]
   std::span<const VoxelKey> cells;                  ///< where samples are drawn, uniformly; not empty
@@ -23,16 +23,15 @@ struct TreeQuery {
   std::uint64_t seed = 0;
 };
 
-struct TreeAnswer {
-  std::vector<Eigen::Vector3d> way;  ///< [m] bends from start to goal; empty if none was found
-  int iterations = 0;
+struct SamplingResult {
+  Polyline path;       ///< from start to goal; empty if none was found
+  int iterations = 0;  ///< used
 };
 
-/// Grows trees through free space until they join start and goal or the iterations are used up.
-/// @param way_is_free  whether a robot can go straight from one point [m] to another
+/// Searches with OMPL's RRT, RRT-Connect or RRT* until start and goal are joined or the iterations are used
+/// up.
 /// @pre `options.search` is not `kCorridor`
-[[nodiscard]] TreeAnswer search_tree(
-    const Lattice& lattice, const TreeQuery& query, const PathOptions& options,
-    const std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)>& way_is_free);
+[[nodiscard]] SamplingResult sampling_search(const Lattice& lattice, const SamplingQuery& query,
+                                             const PathOptions& options, const SegmentCheck& is_free);
 
 }  // namespace frontlux::planner::detail

@@ -160,13 +160,13 @@ void code_image(RecordBytes& bytes, std::vector<RenderedCell>& image) {
 void code_goal(RecordBytes& bytes, Goal& goal) {
   bytes.whole(goal.state, "state of the goal", 6);
   bytes.maybe(goal.pose, [&](Pose& pose) { code_pose(bytes, pose); });
-  bytes.require(goal.pose.has_value() == (goal.state <= GoalState::kLeftOver),
+  bytes.require(goal.pose.has_value() == (goal.state <= GoalState::kUncovered),
                 "there is a goal, but its state says that there is none, or the other way round");
   bytes.key(goal.cell);
   bytes.text(goal.reason);
   for (double* number : {&goal.distance, &goal.gain, &goal.standard_error, &goal.quality})
     code_finite(bytes, *number, "a number of the goal is not finite");
-  for (std::size_t* count : {&goal.assigned, &goal.released, &goal.received, &goal.left_over})
+  for (std::size_t* count : {&goal.assigned, &goal.released, &goal.received, &goal.uncovered})
     bytes.whole(*count);
 }
 

@@ -81,7 +81,7 @@ class Moves {
   // The cells of both ends are among those that have to be passable.
   [[nodiscard]] bool admissible(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     return (to - from).norm() <= options_.spacing * (1.0 + kRounding) &&
-           way_is_free(corridor_, lattice_, from, to);
+           segment_is_free(corridor_, lattice_, from, to);
   }
 
   std::span<const Pose> origin_;

@@ -1,10 +1,11 @@
-// What is remembered as unseen, against trying everything again after every change.
+// The frontiers known to be unseen, against testing all frontiers again after every change.
 
 #include "assignment/unseen_frontiers.hpp"
 
 #include "support/random.hpp"
 
 #include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/view_region.hpp>
 
 #include <gtest/gtest.h>
 
@@ -24,9 +25,8 @@ using test::Random;
 constexpr double kDegree = std::numbers::pi / 180, kResolution = 0.3;
 
 VoxelKey random_key(Random& random) {
-  return {static_cast<std::uint16_t>(32768 + random.below(60)),
-          static_cast<std::uint16_t>(32768 + random.below(60)),
-          static_cast<std::uint16_t>(32768 + random.below(16))};
+  const int x = random.below(60), y = random.below(60);
+  return make_key(32768 + x, 32768 + y, 32768 + random.below(16));
 }
 
 // A map of walls that opens and closes here and there, with a corridor that does so too.
@@ -37,9 +37,7 @@ class Changing {
       for (int y = 0; y < 60; ++y)
         for (int z = 0; z < 16; ++z)
           if (const bool wall = x % 12 == 0 || y % 12 == 0 || z % 8 == 0; wall && !random_.one_in(60))
-            grid.set({static_cast<std::uint16_t>(32768 + x), static_cast<std::uint16_t>(32768 + y),
-                      static_cast<std::uint16_t>(32768 + z)},
-                     Occupancy::kOccupied);
+            grid.set(make_key(32768 + x, 32768 + y, 32768 + z), Occupancy::kOccupied);
     for (int i = 0; i < 600; ++i) frontiers.push_back(random_key(random_));
     sort(frontiers);
     for (int i = 0; i < 60; ++i) corridor.push_back(random_key(random_));
@@ -85,13 +83,13 @@ class Changing {
   Random random_;
 };
 
-std::vector<VoxelKey> seen(const std::vector<VoxelKey>& frontiers, const AssignedFrontiers& share) {
+std::vector<VoxelKey> seen(const std::vector<VoxelKey>& frontiers, const AssignedFrontiers& assigned) {
   std::vector<VoxelKey> keys;
-  for (const std::uint32_t i : share.frontiers) keys.push_back(frontiers[i]);
+  for (const std::uint32_t i : assigned.frontiers) keys.push_back(frontiers[i]);
   return keys;
 }
 
-TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
+TEST(UnseenFrontiers, AreThoseThatNoCellSeesAfterAChange) {
   std::uint64_t rays = 0, rays_for_all = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Changing scene(seed);
@@ -111,19 +109,18 @@ TEST(UnseenFrontiers, AreThoseThatTryingAgainWouldNotSee) {
       ASSERT_EQ(some.frontiers, all.frontiers) << "seed " << seed << ", step " << step;
       rays += some.rays;
       rays_for_all += all.rays;
-      std::vector<VoxelKey> left;
+      std::vector<VoxelKey> not_seen;
       const auto found = seen(scene.frontiers, all);
       std::set_difference(scene.frontiers.begin(), scene.frontiers.end(), found.begin(), found.end(),
-                          std::back_inserter(left));
-      unseen.set(std::move(left));
+                          std::back_inserter(not_seen));
+      unseen.set(std::move(not_seen));
     }
   }
   EXPECT_LT(rays, rays_for_all * 3 / 4);
 }
 
-// What was tried while there was no corridor says nothing once there is one again, though it is that of
-// before.
-TEST(UnseenFrontiers, ThatWereTriedWithoutACorridorAreTriedWithTheOldOneAgain) {
+// Frontiers that were unseen without a corridor may be seen once there is one again, even the same as before.
+TEST(UnseenFrontiers, AreForgottenWhenACorridorComesBack) {
   const ViewRegion region({FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 3.0}, kResolution);
   const std::vector<VoxelKey> cell = {{30000, 30000, 30000}};
   const VoxelKey near{30003, 30000, 30000}, far{40000, 30000, 30000};

@@ -6,6 +6,7 @@
 #include "support/random.hpp"
 
 #include <frontlux/ray_caster.hpp>
+#include <frontlux/view_region.hpp>
 
 #include <gtest/gtest.h>
 
@@ -37,9 +38,7 @@ Scene random_scene(std::uint64_t seed) {
   for (int x = 0; x < kSize; ++x)
     for (int y = 0; y < kSize; ++y)
       for (int z = 0; z < 2 * kSize; ++z) {
-        const VoxelKey key{static_cast<std::uint16_t>(corner[0] + x),
-                           static_cast<std::uint16_t>(corner[1] + y),
-                           static_cast<std::uint16_t>(corner[2] + z)};
+        const VoxelKey key = make_key(corner[0] + x, corner[1] + y, corner[2] + z);
         if (random.one_in(wall) || z % 11 == 5) {
           if (!random.one_in(10)) scene.grid.set(key, Occupancy::kOccupied);
         } else if (random.one_in(2)) {
@@ -49,15 +48,6 @@ Scene random_scene(std::uint64_t seed) {
         if (random.one_in(600)) scene.targets.push_back(key);
       }
   return scene;
-}
-
-KeyBox box_around(const std::vector<VoxelKey>& keys) {
-  KeyBox box{keys[0], keys[0]};
-  for (const VoxelKey& k : keys) {
-    box.min = {std::min(box.min.x, k.x), std::min(box.min.y, k.y), std::min(box.min.z, k.z)};
-    box.max = {std::max(box.max.x, k.x), std::max(box.max.y, k.y), std::max(box.max.z, k.z)};
-  }
-  return box;
 }
 
 std::vector<FieldOfView> views() {
@@ -73,12 +63,12 @@ TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
     const auto caster = make_grid_ray_caster(scene.grid);
     for (const FieldOfView& view : views()) {
       const ViewRegion region(view, scene.grid.resolution());
-      const auto approach = VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets));
-      ASSERT_TRUE(approach);
+      const auto flood = VisibilityFlood::make(scene.grid, scene.cells, region, bounds_of(scene.targets));
+      ASSERT_TRUE(flood);
       VisibilityFlood::Row row;
       for (const VoxelKey& target : scene.targets) {
         std::vector<VoxelKey> found;
-        approach->cells(target, row, found);
+        flood->cells(target, row, found);
         std::ranges::sort(found);
         ASSERT_TRUE(std::ranges::adjacent_find(found) == found.end()) << "a cell twice, seed " << seed;
         std::size_t feasible = 0;
@@ -116,10 +106,10 @@ TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
   const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0}, 0.5);
   const VoxelKey target{108, 110, 110};
   const auto found_from = [&] {
-    const auto approach = VisibilityFlood::make(grid, cells, region, {target, target});
+    const auto flood = VisibilityFlood::make(grid, cells, region, {target, target});
     VisibilityFlood::Row row;
     std::vector<VoxelKey> found;
-    approach->cells(target, row, found);
+    flood->cells(target, row, found);
     return found;
   };
   EXPECT_TRUE(found_from().empty());
@@ -132,7 +122,7 @@ TEST(VisibilityFlood, LeavesRegionsThatAreTooHighToOthers) {
   const Scene scene = random_scene(1);
   const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 90 * kDegree, 50.0}, 0.5);
   ASSERT_GT(region.greatest_height(), 63);
-  EXPECT_FALSE(VisibilityFlood::make(scene.grid, scene.cells, region, box_around(scene.targets)));
+  EXPECT_FALSE(VisibilityFlood::make(scene.grid, scene.cells, region, bounds_of(scene.targets)));
 }
 
 TEST(ViewOffsets, AreSpreadOverAllOfTheView) {

@@ -1,6 +1,6 @@
-#include <frontlux/planner/segment_voxels.hpp>
-
 #include "support/random.hpp"
+
+#include <frontlux/planner/segment_voxels.hpp>
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,11 @@ namespace {
 
 using Keys = std::set<VoxelKey>;
 
-Keys entered(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+Keys entered(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+             const Eigen::Vector3d& reach = Eigen::Vector3d::Zero()) {
   Keys keys;
-  EXPECT_TRUE(SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
-    keys.insert(key);
+  EXPECT_TRUE(SegmentVoxels(lattice, from, to, reach).all_of([&](const VoxelKey& key) {
+    EXPECT_TRUE(keys.insert(key).second) << "a voxel twice";
     return true;
   }));
   return keys;
@@ -61,8 +62,7 @@ Keys touched(const std::array<std::int64_t, 3>& from, const std::array<std::int6
           if (last * end.second < end.first * size) end = {last, size};
         }
         meets = begin.first * end.second <= end.first * begin.second;
-        const auto key = [](std::int64_t i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
-        if (meets) keys.insert({key(x), key(y), key(z)});
+        if (meets) keys.insert(make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z));
       }
   return keys;
 }
@@ -114,24 +114,49 @@ TEST(SegmentVoxels, MissesNoVoxelOfAnyPointOnIt) {
       for (int k = 0; k <= 400; ++k) {
         const Eigen::Vector3d at =
             (from + (to - from) * (k / 400.0)).cwiseMax(from.cwiseMin(to)).cwiseMin(from.cwiseMax(to));
-        const VoxelKey key{*lattice.key(at.x()), *lattice.key(at.y()), *lattice.key(at.z())};
-        ASSERT_TRUE(keys.contains(key)) << "resolution " << resolution << ", from " << from.transpose()
-                                        << " to " << to.transpose() << " at " << at.transpose();
+        ASSERT_TRUE(keys.contains(lattice.key(at).value()))
+            << "resolution " << resolution << ", from " << from.transpose() << " to " << to.transpose()
+            << " at " << at.transpose();
       }
     }
   }
 }
 
+TEST(SegmentVoxels, OfABoxAreExactlyThoseOfItsCorners) {
+  test::Random random(6);
+  const Lattice lattice(1.0);
+  for (int i = 0; i < 500; ++i) {
+    Eigen::Vector3d from, to, reach;
+    for (int a = 0; a < 3; ++a) {
+      from[a] = random.uniform(-5.0, 5.0);
+      to[a] = random.one_in(4) ? from[a] : random.uniform(-5.0, 5.0);
+      reach[a] = random.one_in(4) ? 0.0 : random.uniform(0.0, 0.49);
+    }
+    Keys sampled;
+    const Keys entered_by_box = entered(lattice, from, to, reach);
+    for (int k = 0; k <= 20'000; ++k)
+      for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                   (corner & 4) != 0 ? 1 : -1);
+        const Eigen::Vector3d at = from + (to - from) * (k / 20'000.0) + side.cwiseProduct(reach);
+        sampled.insert(lattice.key(at).value());
+      }
+    for (const VoxelKey& one : sampled) ASSERT_TRUE(entered_by_box.contains(one)) << "case " << i;
+    // Samples may skip a voxel whose corner is cut by less than their distance; few are.
+    ASSERT_LE(entered_by_box.size(), sampled.size() + 1) << "case " << i;
+  }
+}
+
 TEST(SegmentVoxels, StaysOnOneSideOfAFaceInWhichItLies) {
   const Lattice lattice(0.25);
-  const auto key = [](int i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
+  const auto keys = [](int x, int y, int z) {
+    return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
+  };
   EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.6, 0.1, 1.0}),
-            (Keys{{key(0), key(0), key(4)}, {key(1), key(0), key(4)}, {key(2), key(0), key(4)}}));
+            (Keys{keys(0, 0, 4), keys(1, 0, 4), keys(2, 0, 4)}));
   // Upwards from a face nothing below it is asked for, downwards both sides are.
-  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 1.3}),
-            (Keys{{key(0), key(0), key(4)}, {key(0), key(0), key(5)}}));
-  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 0.9}),
-            (Keys{{key(0), key(0), key(3)}, {key(0), key(0), key(4)}}));
+  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 1.3}), (Keys{keys(0, 0, 4), keys(0, 0, 5)}));
+  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 0.9}), (Keys{keys(0, 0, 3), keys(0, 0, 4)}));
   // Through an edge: all four around it.
   EXPECT_EQ(entered(lattice, {0.2, 0.2, 0.1}, {0.3, 0.3, 0.1}).size(), 4U);
   EXPECT_EQ(entered(lattice, {0.2, 0.2, 0.2}, {0.3, 0.3, 0.3}).size(), 8U);

@@ -120,7 +120,7 @@ class Watch {
     }
     for (const RobotStep& robot : step.robots)
       for (const VoxelKey& key : robot.still_unknown) ++looks_[key];
-    if (exploration_.options().distribute) {
+    if (exploration_.options().assign) {
       EXPECT_LE(assigned, step.frontiers - step.abandoned) << "a frontier is one robot's";
     } else if (assigned > step.frontiers) {
       sums_.shared = true;
@@ -164,7 +164,7 @@ class Watch {
     else
       EXPECT_EQ(robot.gain_predicted, robot.gain_tangent);
     if (robot.gain_predicted > robot.gain_tangent) ++sums_.turned;
-    EXPECT_LE(robot.gain_predicted, robot.goal.assigned + robot.goal.received + robot.goal.left_over);
+    EXPECT_LE(robot.gain_predicted, robot.goal.assigned + robot.goal.received + robot.goal.uncovered);
     EXPECT_TRUE(std::ranges::is_sorted(robot.still_unknown));
     if (!robot.goal.pose) {
       EXPECT_TRUE(robot.still_unknown.empty());
@@ -269,7 +269,7 @@ TEST(ExplorationSteps, AreAsTheySayForAnyTeam) {
 TEST(ExplorationSteps, WithoutDistributionRobotsGoForTheSame) {
   const TeamInWorld team("room", 1, uav_and_ugv());
   ExplorationOptions options = team.options();
-  options.distribute = false;
+  options.assign = false;
   options.optimize = false;
   const Sums sums = Watch(team, options).run(3);
   EXPECT_TRUE(sums.shared);

@@ -8,10 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,27 +17,21 @@ namespace {
 
 using test::Random;
 
-std::uint16_t key_at(int k) { return static_cast<std::uint16_t>(k); }
-
 // Voxel by voxel, neighbour by neighbour.
 std::vector<VoxelKey> frontiers_by_hand(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency) {
   std::vector<VoxelKey> frontiers;
-  const auto is_free = [&](int x, int y, int z) {
-    const auto in_range = [](int k) { return k >= 0 && k <= 0xFFFF; };
-    return in_range(x) && in_range(y) && in_range(z) &&
-           grid.at({key_at(x), key_at(y), key_at(z)}) == Occupancy::kFree;
-  };
   for (int x = bounds.min.x; x <= bounds.max.x; ++x)
     for (int y = bounds.min.y; y <= bounds.max.y; ++y)
       for (int z = bounds.min.z; z <= bounds.max.z; ++z) {
-        if (grid.at({key_at(x), key_at(y), key_at(z)}) != Occupancy::kUnknown) continue;
+        const VoxelKey key = make_key(x, y, z);
+        if (grid.at(key) != Occupancy::kUnknown) continue;
         bool frontier = false;
-        for (int dx = -1; dx <= 1; ++dx)
-          for (int dy = -1; dy <= 1; ++dy)
-            for (int dz = -1; dz <= 1; ++dz)
-              if (adjacency == Adjacency::kCorners || std::abs(dx) + std::abs(dy) + std::abs(dz) == 1)
-                frontier = frontier || is_free(x + dx, y + dy, z + dz);
-        if (frontier) frontiers.push_back({key_at(x), key_at(y), key_at(z)});
+        for_each_key(grown({key, key}, 1), [&](const VoxelKey& k) {
+          const int axes = (k.x != key.x) + (k.y != key.y) + (k.z != key.z);
+          frontier =
+              frontier || ((adjacency == Adjacency::kCorners || axes == 1) && grid.at(k) == Occupancy::kFree);
+        });
+        if (frontier) frontiers.push_back(key);
       }
   return frontiers;
 }
@@ -53,11 +44,7 @@ void expect_frontiers(const FrontierSet& set, const VoxelGrid& grid, const KeyBo
   for (const VoxelKey& key : expected) ASSERT_TRUE(set.contains(key)) << where;
 }
 
-KeyBox around(int x, int y, int z, int reach) {
-  const auto clipped = [](int k) { return key_at(std::clamp(k, 0, 0xFFFF)); };
-  return {{clipped(x - reach), clipped(y - reach), clipped(z - reach)},
-          {clipped(x + reach), clipped(y + reach), clipped(z + reach)}};
-}
+KeyBox around(int x, int y, int z, int reach) { return grown({make_key(x, y, z), make_key(x, y, z)}, reach); }
 
 // Random voxels and blocks at places where bricks, tiles, sectors and the key range end.
 TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
@@ -71,19 +58,15 @@ TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
       for (int round = 0; round < 25; ++round) {
         std::vector<VoxelKey> changed;
         for (int i = 0; i < 1 + random.below(60); ++i) {
-          const auto along = [&](std::uint16_t min, std::uint16_t max) {
-            return key_at(min + random.below(max - min + 1));
-          };
-          VoxelKey key{along(edits.min.x, edits.max.x), along(edits.min.y, edits.max.y),
-                       along(edits.min.z, edits.max.z)};
+          const auto along = [&](int min, int max) { return min + random.below(max - min + 1); };
           const int log2_edge = random.one_in(4) ? random.below(4) : 0;
-          const auto down = [&](std::uint16_t k) { return key_at((k >> log2_edge) << log2_edge); };
-          key = {down(key.x), down(key.y), down(key.z)};
+          const auto corner_along = [&](int min, int max) {
+            return (along(min, max) >> log2_edge) << log2_edge;
+          };
+          const int kx = corner_along(edits.min.x, edits.max.x), ky = corner_along(edits.min.y, edits.max.y);
+          const VoxelKey key = make_key(kx, ky, corner_along(edits.min.z, edits.max.z));
           grid.fill({key, log2_edge}, static_cast<Occupancy>(random.below(3)));
-          for (int v = 0; v < 1 << (3 * log2_edge); ++v)
-            changed.push_back({key_at(key.x + (v & ((1 << log2_edge) - 1))),
-                               key_at(key.y + ((v >> log2_edge) & ((1 << log2_edge) - 1))),
-                               key_at(key.z + (v >> (2 * log2_edge)))});
+          for_each_key(cube(key, 1 << log2_edge), [&](const VoxelKey& k) { changed.push_back(k); });
         }
         set.update({grid, changed});
         const std::string where = "at " + std::to_string(x) + ", round " + std::to_string(round);
@@ -110,7 +93,7 @@ Scan random_scan(Random& random) {
   return scan;
 }
 
-TEST(FrontierSet, FollowsAMapScanByScan) {
+TEST(FrontierSet, EqualsBruteForceAfterEveryScan) {
   Random random(12);
   const Lattice lattice(0.3);
   const KeyBox bounds = voxels_of(lattice, {Eigen::Vector3d(-4, -4, -2), Eigen::Vector3d(4, 5, 2)});
@@ -137,38 +120,6 @@ TEST(FrontierSet, FindsTheSurfaceOfLargeBlocks) {
     for (const KeyBox& bounds : {all, cut})
       expect_frontiers(FrontierSet(grid, bounds, adjacency), grid, bounds, adjacency, "block");
   EXPECT_EQ(FrontierSet(grid, kAllVoxels).size(), 6U * 64U * 64U - 64U);
-}
-
-TEST(FrontierSet, ClustersByOctreeLevel) {
-  Random random(13);
-  VoxelGrid grid(0.3);
-  const KeyBox bounds = around(32768, 32768, 32768, 15);
-  for (int i = 0; i < 300; ++i) {
-    const auto along = [&] { return key_at(32753 + random.below(31)); };
-    grid.set({along(), along(), along()}, random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree);
-  }
-  const FrontierSet set(grid, bounds);
-  const Lattice lattice(0.3);
-  for (const int level : {0, 1, 3, 4, 16}) {
-    std::map<VoxelKey, std::vector<Eigen::Vector3d>> expected;
-    for (const VoxelKey& k : frontiers_by_hand(grid, bounds, Adjacency::kFaces)) {
-      const auto down = [&](std::uint16_t c) { return key_at(c / (1 << level) * (1 << level)); };
-      expected[{down(k.x), down(k.y), down(k.z)}].push_back(
-          {lattice.center(k.x), lattice.center(k.y), lattice.center(k.z)});
-    }
-    const auto clusters = set.clusters(level);
-    ASSERT_EQ(clusters.size(), expected.size());
-    std::size_t i = 0;
-    for (const auto& [corner, centers] : expected) {
-      EXPECT_EQ(clusters[i].corner, corner);
-      EXPECT_EQ(clusters[i].count, centers.size());
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      for (const auto& c : centers) mean += c / static_cast<double>(centers.size());
-      EXPECT_LT((clusters[i++].mean - mean).norm(), 1e-9);
-    }
-  }
-  EXPECT_THROW(static_cast<void>(set.clusters(17)), std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(set.clusters(-1)), std::invalid_argument);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <set>
 #include <vector>
@@ -24,14 +25,9 @@ std::map<VoxelKey, std::size_t> cluster_sizes(std::span<const VoxelKey> frontier
     left.erase(left.begin());
     for (std::size_t i = 0; i < cluster.size(); ++i)
       for (auto next = left.begin(); next != left.end();) {
-        const auto near = [](int a, int b) { return a - b <= 1 && b - a <= 1; };
-        const VoxelKey at = cluster[i];
-        if (near(at.x, next->x) && near(at.y, next->y) && near(at.z, next->z)) {
-          cluster.push_back(*next);
-          next = left.erase(next);
-        } else {
-          ++next;
-        }
+        const bool near = grown({cluster[i], cluster[i]}, 1).contains(*next);
+        if (near) cluster.push_back(*next);
+        next = near ? left.erase(next) : std::next(next);
       }
     for (const VoxelKey& key : cluster) sizes[key] = cluster.size();
   }
@@ -48,7 +44,7 @@ TEST(SmallClusters, AreThoseThatAFloodFillFinds) {
         const auto along = [&] { return static_cast<std::uint16_t>(origin + random.below(20)); };
         grid.set({along(), along(), along()}, random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree);
       }
-      const FrontierSet frontiers(grid, {{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}});
+      const FrontierSet frontiers(grid, kAllVoxels);
       const auto sizes = cluster_sizes(frontiers.keys());
       std::vector<VoxelKey> some;
       for (const VoxelKey& key : frontiers.keys())
@@ -68,7 +64,7 @@ TEST(SmallClusters, AreThoseThatAFloodFillFinds) {
   EXPECT_GT(large, 50);
 }
 
-TEST(AbandonedFrontiers, AreGivenUpAfterSoManyVisits) {
+TEST(AbandonedFrontiers, AreAbandonedAfterSomeVisits) {
   for (const int visits : {1, 2, 5}) {
     Random random(static_cast<std::uint64_t>(visits));
     detail::AbandonedFrontiers abandoned(visits);

@@ -1,4 +1,4 @@
-// What a team does when a robot finds nothing: each case on a map made for it.
+// What a team does when a robot finds no goal: each case on a map made for it.
 
 #include "planner/goal/goal_room.hpp"
 
@@ -56,11 +56,11 @@ TEST_P(GoalFallback, WhatOneCannotSeeThroughUnknownSpaceIsReleasedToTheOther) {
   expect_none(ground, GoalState::kNothingVisible);
   EXPECT_EQ(ground.assigned, 1U);
   EXPECT_EQ(ground.released, 1U);
-  EXPECT_NE(ground.reason.find("releases 1 frontier, of which others take 1"), std::string::npos)
+  EXPECT_NE(ground.reason.find("releases 1 frontier, other robots take 1"), std::string::npos)
       << ground.reason;
   EXPECT_EQ(aerial.assigned, 0U);
   EXPECT_EQ(aerial.received, 1U);
-  EXPECT_EQ(aerial.state, GoalState::kReleased);
+  EXPECT_EQ(aerial.state, GoalState::kReceived);
   ASSERT_TRUE(aerial.pose);
   EXPECT_EQ(aerial.gain, 1.0);
   EXPECT_TRUE(
@@ -68,7 +68,7 @@ TEST_P(GoalFallback, WhatOneCannotSeeThroughUnknownSpaceIsReleasedToTheOther) {
   EXPECT_EQ(result.unassigned, 0U);
 }
 
-TEST_P(GoalFallback, WhatNobodySeesIsReleasedByBothAndEndsUnassigned) {
+TEST_P(GoalFallback, WhatNoRobotSeesIsReleasedByBothAndStaysUnassigned) {
   GoalRoom room(40, 16);
   std::vector<VoxelKey> frontiers;
   for (int x = 16; x < 25; ++x)
@@ -92,13 +92,13 @@ TEST_P(GoalFallback, WithNothingOfItsOwnTheAerialRobotTakesWhatTheOthersGoalDoes
   for (const VoxelKey& frontier : frontiers) room.grid.set(frontier, Occupancy::kUnknown);
   const TeamGoals result = select(room, frontiers, {room.pose(12, 12, 2), room.pose(30, 30, 4)});
   const Goal &ground = result.goals[0], &aerial = result.goals[1];
-  EXPECT_EQ(ground.state, GoalState::kOwn);
+  EXPECT_EQ(ground.state, GoalState::kAssigned);
   EXPECT_EQ(ground.assigned, 7U);
   ASSERT_TRUE(ground.pose);
   EXPECT_EQ(ground.gain, 4.0);
   EXPECT_EQ(aerial.assigned, 0U);
-  EXPECT_EQ(aerial.state, GoalState::kLeftOver) << aerial.reason;
-  EXPECT_EQ(aerial.left_over, 3U);
+  EXPECT_EQ(aerial.state, GoalState::kUncovered) << aerial.reason;
+  EXPECT_EQ(aerial.uncovered, 3U);
   ASSERT_TRUE(aerial.pose);
   EXPECT_EQ(aerial.gain, 3.0);
   EXPECT_GT(aerial.pose->position.x(), 9.0);
@@ -109,9 +109,10 @@ TEST_P(GoalFallback, WithNothingLeftTheAerialRobotStays) {
   const VoxelKey frontier = room.key(3, 3, 2);
   room.grid.set(frontier, Occupancy::kUnknown);
   const TeamGoals result = select(room, {frontier}, {room.pose(12, 12, 2), room.pose(20, 20, 4)});
-  EXPECT_EQ(result.goals[0].state, GoalState::kOwn);
+  EXPECT_EQ(result.goals[0].state, GoalState::kAssigned);
   expect_none(result.goals[1], GoalState::kNothingAssigned);
-  EXPECT_NE(result.goals[1].reason.find("others leave nothing"), std::string::npos);
+  EXPECT_NE(result.goals[1].reason.find("it sees no frontiers that the goals of other robots"),
+            std::string::npos);
 }
 
 TEST_P(GoalFallback, BehindWallsNothingIsAssigned) {
@@ -138,7 +139,7 @@ TEST_P(GoalFallback, ARobotInABadPlaceHasNoGoalAndTheOtherTakesAll) {
     EXPECT_NE(result.goals[0].reason.find(state == Occupancy::kUnknown ? "unknown voxel" : "occupied voxel"),
               std::string::npos)
         << result.goals[0].reason;
-    EXPECT_EQ(result.goals[1].state, GoalState::kOwn);
+    EXPECT_EQ(result.goals[1].state, GoalState::kAssigned);
     EXPECT_EQ(result.goals[1].assigned, 1U);
   }
   GoalRoom room(30, 8);
@@ -168,7 +169,7 @@ TEST_P(GoalFallback, WithoutUnknownSpaceThereIsNothingToDo) {
   EXPECT_EQ(result.rays, 0U);
 }
 
-TEST_P(GoalFallback, NobodyNeedsNoGoal) {
+TEST_P(GoalFallback, ATeamWithoutRobotsHasNoGoals) {
   const GoalRoom room(8, 8);
   const auto caster = make_grid_ray_caster(room.grid);
   GoalSelection selection({}, room.grid.lattice(), room.bounds());

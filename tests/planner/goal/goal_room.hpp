@@ -1,5 +1,6 @@
 #pragma once
 
+#include "planner/corridor/dijkstra.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
@@ -9,16 +10,11 @@
 #include <frontlux/voxel_grid.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <map>
-#include <queue>
-#include <set>
 #include <vector>
 
 namespace frontlux::test {
-
-inline std::uint16_t small_key(int k) { return static_cast<std::uint16_t>(k); }
 
 /// A closed room of known space on a floor at z = 0, to be furnished. Cells are counted from its corner.
 struct GoalRoom {
@@ -27,9 +23,9 @@ struct GoalRoom {
   VoxelGrid grid{0.3};
 
   GoalRoom(int edge, int layers) : length(edge), height(layers) {
-    for_each_cell([&](int x, int y, int z) { grid.set(key(x, y, z), Occupancy::kFree); });
-    for (int x = 0; x < length; ++x)
-      for (int y = 0; y < length; ++y) grid.set(key(x, y, -1), Occupancy::kOccupied);
+    for_each_key(bounds(), [this](const VoxelKey& at) {
+      grid.set(at, at.z < kLow ? Occupancy::kOccupied : Occupancy::kFree);
+    });
   }
 
   /// Pillars, crates and places that were never seen.
@@ -39,24 +35,14 @@ struct GoalRoom {
     for (int i = 0; i < 9; ++i) box(random, 1 + random.below(4), 4, Occupancy::kUnknown);
   }
 
-  [[nodiscard]] static VoxelKey key(int x, int y, int z) {
-    return {small_key(kLow + x), small_key(kLow + y), small_key(kLow + z)};
-  }
+  [[nodiscard]] static VoxelKey key(int x, int y, int z) { return make_key(kLow + x, kLow + y, kLow + z); }
   [[nodiscard]] KeyBox bounds() const { return {key(0, 0, -1), key(length - 1, length - 1, height - 1)}; }
-
-  template <class Visit>
-  void for_each_cell(const Visit& visit) const {
-    for (int x = 0; x < length; ++x)
-      for (int y = 0; y < length; ++y)
-        for (int z = 0; z < height; ++z) visit(x, y, z);
-  }
 
   void box(Random& random, int edge, int layers, Occupancy state) {
     const int x0 = random.below(length), y0 = random.below(length), z0 = random.below(height);
-    for (int x = x0; x < std::min(x0 + edge, length); ++x)
-      for (int y = y0; y < std::min(y0 + edge, length); ++y)
-        for (int z = layers == height ? 0 : z0; z < std::min(z0 + layers, height); ++z)
-          grid.set(key(x, y, z), state);
+    const VoxelKey corner = key(x0, y0, layers == height ? 0 : z0);
+    const KeyBox voxels{corner, key(x0 + edge - 1, y0 + edge - 1, z0 + layers - 1)};
+    for_each_key(*intersection(voxels, bounds()), [&](const VoxelKey& at) { grid.set(at, state); });
   }
 
   [[nodiscard]] std::vector<VoxelKey> frontiers() const {
@@ -65,16 +51,14 @@ struct GoalRoom {
   }
 
   [[nodiscard]] planner::Pose pose(int x, int y, int z) const {
-    const VoxelKey at = key(x, y, z);
-    const Lattice& lattice = grid.lattice();
-    return {{lattice.center(at.x), lattice.center(at.y), lattice.center(at.z)}, 0.0};
+    return {grid.lattice().exact_center(key(x, y, z)), 0.0};
   }
 
   /// Makes room for a robot around a cell, and floor under it.
   void clear(int x0, int y0, int z0, int half = 2) {
-    for (int x = x0 - half; x <= x0 + half; ++x)
-      for (int y = y0 - half; y <= y0 + half; ++y)
-        for (int z = std::max(z0 - half, 0); z <= z0 + half; ++z) grid.set(key(x, y, z), Occupancy::kFree);
+    const KeyBox around{key(x0 - half, y0 - half, std::max(z0 - half, 0)),
+                        key(x0 + half, y0 + half, z0 + half)};
+    for_each_key(around, [this](const VoxelKey& at) { grid.set(at, Occupancy::kFree); });
   }
 };
 
@@ -93,18 +77,18 @@ inline bool is_visible(const RayCaster& caster, const VoxelKey& from, const Voxe
 }
 
 /// The paper's Alg. 2, ray by ray.
-inline std::vector<VoxelKey> naive_share(const RayCaster& caster, double resolution,
-                                         const std::vector<VoxelKey>& frontiers,
-                                         std::span<const VoxelKey> corridor, const FieldOfView& view) {
-  std::vector<VoxelKey> share;
+inline std::vector<VoxelKey> naive_assigned(const RayCaster& caster, double resolution,
+                                            const std::vector<VoxelKey>& frontiers,
+                                            std::span<const VoxelKey> corridor, const FieldOfView& view) {
+  std::vector<VoxelKey> assigned;
   for (const VoxelKey& frontier : frontiers)
     for (const VoxelKey& cell : corridor)
       if (view.contains_at_some_yaw(offset_between(cell, frontier, resolution)) &&
           is_visible(caster, cell, frontier, UnknownPolicy::kPass)) {
-        share.push_back(frontier);
+        assigned.push_back(frontier);
         break;
       }
-  return share;
+  return assigned;
 }
 
 /// The frontiers that are visible from a cell at some yaw, through known free space.
@@ -120,19 +104,8 @@ inline std::vector<VoxelKey> naive_seen(const RayCaster& caster, double resoluti
 
 /// How many steps through faces lie between a cell and the others of a corridor.
 inline std::map<VoxelKey, int> naive_steps(std::span<const VoxelKey> corridor, const VoxelKey& from) {
-  const std::set<VoxelKey> cells(corridor.begin(), corridor.end());
-  std::map<VoxelKey, int> steps{{from, 0}};
-  std::queue<VoxelKey> open({from});
-  for (; !open.empty(); open.pop()) {
-    const VoxelKey at = open.front();
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int by : {-1, 1}) {
-        VoxelKey next = at;
-        std::uint16_t& k = axis == 0 ? next.x : axis == 1 ? next.y : next.z;
-        k = small_key(k + by);
-        if (cells.contains(next) && steps.try_emplace(next, steps[at] + 1).second) open.push(next);
-      }
-  }
+  auto steps = dijkstra({corridor.begin(), corridor.end()}, from, 1, planner::PathMetric::kSteps);
+  for (auto& [cell, length] : steps) length /= kStepLengths[1];
   return steps;
 }
 

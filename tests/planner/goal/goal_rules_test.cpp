@@ -15,18 +15,16 @@ namespace frontlux::test {
 namespace {
 
 std::optional<Found> naive_cluster_goal(const RayCaster& caster, const std::vector<VoxelKey>& cells,
-                                        const VoxelKey& start, const std::vector<VoxelKey>& share,
+                                        const VoxelKey& start, const std::vector<VoxelKey>& assigned,
                                         const FieldOfView& view, const Lattice& lattice) {
-  const auto center = [&](const VoxelKey& key) {
-    return Eigen::Vector3d(lattice.center(key.x), lattice.center(key.y), lattice.center(key.z));
-  };
   std::map<std::array<int, 3>, std::vector<VoxelKey>> clusters;
-  for (const VoxelKey& f : share) clusters[{f.x / 4, f.y / 4, f.z / 4}].push_back(f);
+  for (const VoxelKey& f : assigned) clusters[{f.x / 4, f.y / 4, f.z / 4}].push_back(f);
   const auto rank = [&](const std::vector<VoxelKey>& cluster, Eigen::Vector3d& mean) {
     mean.setZero();
-    for (const VoxelKey& f : cluster) mean += center(f);
+    for (const VoxelKey& f : cluster) mean += lattice.exact_center(f);
     mean /= static_cast<double>(cluster.size());
-    return static_cast<double>(cluster.size()) * std::exp(-0.1386 * (mean - center(start)).norm());
+    return static_cast<double>(cluster.size()) *
+           std::exp(-0.1386 * (mean - lattice.exact_center(start)).norm());
   };
   while (!clusters.empty()) {
     Eigen::Vector3d mean, best_mean;
@@ -36,16 +34,16 @@ std::optional<Found> naive_cluster_goal(const RayCaster& caster, const std::vect
     rank(best->second, best_mean);
     std::vector<VoxelKey> order = best->second;
     std::stable_sort(order.begin(), order.end(), [&](const VoxelKey& a, const VoxelKey& b) {
-      return (center(a) - best_mean).norm() < (center(b) - best_mean).norm();
+      return (lattice.exact_center(a) - best_mean).norm() < (lattice.exact_center(b) - best_mean).norm();
     });
     for (const VoxelKey& target : order) {
       std::optional<Found> goal;
       for (const VoxelKey& cell : cells) {
-        const double d = (center(cell) - center(start)).norm();
+        const double d = (lattice.exact_center(cell) - lattice.exact_center(start)).norm();
         if (d < 0.59 || !view.contains_at_some_yaw(offset_between(cell, target, kResolution)) ||
             !is_visible(caster, cell, target, UnknownPolicy::kBlock))
           continue;
-        const auto seen = naive_seen(caster, kResolution, cell, share, view);
+        const auto seen = naive_seen(caster, kResolution, cell, assigned, view);
         Found found = best_yaw(cell, seen, view.horizontal, &target);
         found.quality = found.gain * std::exp(-0.1386 * d);
         if (!goal || found.quality > goal->quality * (1 + 1e-9)) goal = found;
@@ -78,9 +76,9 @@ TEST(GoalSelection, ClustersAsANaiveSearchFindsThem) {
     const std::vector<VoxelKey> cells(selection.corridor(0).cells().begin(),
                                       selection.corridor(0).cells().end());
     if (cells.empty()) continue;
-    const auto share = naive_share(*caster, kResolution, frontiers, cells, member.robot.view);
-    const auto truth =
-        naive_cluster_goal(*caster, cells, room.key(9, 9, 5), share, member.robot.view, room.grid.lattice());
+    const auto assigned = naive_assigned(*caster, kResolution, frontiers, cells, member.robot.view);
+    const auto truth = naive_cluster_goal(*caster, cells, room.key(9, 9, 5), assigned, member.robot.view,
+                                          room.grid.lattice());
     expect_goal(team.goals[0], truth);
     if (truth) {
       EXPECT_NEAR(team.goals[0].pose->yaw, truth->yaw, 1e-9);
@@ -129,18 +127,18 @@ TEST(GoalSelection, NearestIsTheFirstCellByStepsThatSeesAny) {
       const Goal goal = selection.select(*caster, {room.grid}, frontiers, {&pose, 1}).goals[0];
       const auto cells = selection.corridor(0).cells();
       const auto steps = naive_steps(cells, room.key(5, 20, 2));
-      const auto share = naive_share(*caster, kResolution, frontiers, cells, member.robot.view);
+      const auto assigned = naive_assigned(*caster, kResolution, frontiers, cells, member.robot.view);
       std::optional<VoxelKey> nearest;
       for (const auto& [cell, count] : steps)
         if (count >= 2 && (!nearest || count < steps.at(*nearest)) &&
-            !naive_seen(*caster, kResolution, cell, share, member.robot.view).empty())
+            !naive_seen(*caster, kResolution, cell, assigned, member.robot.view).empty())
           nearest = cell;
       ASSERT_EQ(goal.pose.has_value(), nearest.has_value());
       if (!nearest) continue;
       EXPECT_EQ(goal.cell, *nearest);
       EXPECT_NEAR(goal.distance, steps.at(*nearest) * kResolution, 1e-9);
       if (member.robot.name == "ugv") continue;
-      const auto seen = naive_seen(*caster, kResolution, *nearest, share, member.robot.view);
+      const auto seen = naive_seen(*caster, kResolution, *nearest, assigned, member.robot.view);
       const auto length = [&](const VoxelKey& key) { return offset_between(*nearest, key, 1.0).norm(); };
       const auto closest = std::min_element(
           seen.begin(), seen.end(), [&](const auto& a, const auto& b) { return length(a) < length(b); });

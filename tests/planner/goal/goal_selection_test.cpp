@@ -31,9 +31,9 @@ TEST(GoalSelection, GroundRobotTakesTheCellWithTheBestViewQuality) {
       const TeamGoals team = selection.select(*caster, {room.grid}, frontiers, {&pose, 1});
       const auto cells = selection.corridor(0).cells();
       ASSERT_GT(cells.size(), 40U);
-      const auto share = naive_share(*caster, kResolution, frontiers, cells, member.robot.view);
-      EXPECT_EQ(team.goals[0].assigned, share.size());
-      EXPECT_EQ(team.unassigned, frontiers.size() - share.size());
+      const auto assigned = naive_assigned(*caster, kResolution, frontiers, cells, member.robot.view);
+      EXPECT_EQ(team.goals[0].assigned, assigned.size());
+      EXPECT_EQ(team.unassigned, frontiers.size() - assigned.size());
       const VoxelKey start = room.key(13, 13, 2);
       const auto steps = naive_steps(cells, start);
       ASSERT_EQ(steps.size(), cells.size());
@@ -43,19 +43,20 @@ TEST(GoalSelection, GroundRobotTakesTheCellWithTheBestViewQuality) {
                                                            : offset_between(start, cell, kResolution).norm();
         if (d < 0.59) continue;
         const auto gain =
-            static_cast<double>(naive_seen(*caster, kResolution, cell, share, member.robot.view).size());
+            static_cast<double>(naive_seen(*caster, kResolution, cell, assigned, member.robot.view).size());
         const double quality = worth(gain, d);
         // Sums of equal cells in another order differ in the last digits.
         if (gain > 0 && (!best || quality > best->quality * (1 + 1e-9))) best = Found{cell, gain, quality, 0};
       }
       expect_goal(team.goals[0], best);
-      EXPECT_EQ(team.goals[0].state, GoalState::kOwn);
+      EXPECT_EQ(team.goals[0].state, GoalState::kAssigned);
       const auto rendered = selection.rendered_cells(0);
       ASSERT_EQ(rendered.size(), cells.size());
       for (std::size_t i = 0; i < rendered.size(); i += 17)
-        EXPECT_EQ(rendered[i].gain,
-                  static_cast<double>(
-                      naive_seen(*caster, kResolution, rendered[i].cell, share, member.robot.view).size()));
+        EXPECT_EQ(
+            rendered[i].gain,
+            static_cast<double>(
+                naive_seen(*caster, kResolution, rendered[i].cell, assigned, member.robot.view).size()));
     }
 }
 
@@ -72,9 +73,10 @@ TEST(GoalSelection, DrawnTargetsLeadToACellWhoseGainIsCounted) {
     GoalSelection selection({member}, room.grid.lattice(), room.bounds());
     const Goal goal = selection.select(*caster, {room.grid}, frontiers, {&pose, 1}).goals[0];
     ASSERT_TRUE(goal.pose);
-    const std::vector<VoxelKey> share(selection.targets(0).begin(), selection.targets(0).end());
-    EXPECT_EQ(goal.gain, static_cast<double>(
-                             naive_seen(*caster, kResolution, goal.cell, share, member.robot.view).size()));
+    const std::vector<VoxelKey> assigned(selection.targets(0).begin(), selection.targets(0).end());
+    EXPECT_EQ(
+        goal.gain,
+        static_cast<double>(naive_seen(*caster, kResolution, goal.cell, assigned, member.robot.view).size()));
     EXPECT_EQ(goal.standard_error, 0.0);
   }
 }
@@ -117,8 +119,8 @@ TEST(GoalSelection, AerialRobotTakesTheCellWithTheBestWindow) {
     const TeamGoals team = selection.select(*caster, {room.grid}, frontiers, {&pose, 1});
     const auto cells = selection.corridor(0).cells();
     ASSERT_GT(cells.size(), 40U);
-    const auto share = naive_share(*caster, kResolution, frontiers, cells, member.robot.view);
-    EXPECT_EQ(team.goals[0].assigned, share.size());
+    const auto assigned = naive_assigned(*caster, kResolution, frontiers, cells, member.robot.view);
+    EXPECT_EQ(team.goals[0].assigned, assigned.size());
     const VoxelKey start = room.key(7, 7, 4);
     const auto steps = naive_steps(cells, start);
     std::set<std::array<int, 3>> cubes;
@@ -130,7 +132,7 @@ TEST(GoalSelection, AerialRobotTakesTheCellWithTheBestWindow) {
       if (!first && away.maxCoeff() > 2) continue;
       ++viewpoints;
       if (steps.at(cell) < 2) continue;
-      const auto seen = naive_seen(*caster, kResolution, cell, share, member.robot.view);
+      const auto seen = naive_seen(*caster, kResolution, cell, assigned, member.robot.view);
       Found found = best_yaw(cell, seen, member.robot.view.horizontal, nullptr);
       found.quality = worth(found.gain, steps.at(cell) * kResolution);
       if (found.gain > 0 && (!best || found.quality > best->quality * (1 + 1e-9))) best = found;
@@ -165,7 +167,7 @@ void expect_same(const TeamGoals& a, const TeamGoals& b, bool rays = true) {
     EXPECT_EQ(x.assigned, y.assigned);
     EXPECT_EQ(x.released, y.released);
     EXPECT_EQ(x.received, y.received);
-    EXPECT_EQ(x.left_over, y.left_over);
+    EXPECT_EQ(x.uncovered, y.uncovered);
   }
 }
 

@@ -23,8 +23,7 @@ constexpr std::array kSearches = {PathSearch::kRrt, PathSearch::kRrtConnect, Pat
                                   PathSearch::kCorridor};
 
 VoxelKey key(int x, int y, int z) {
-  const auto along = [](int i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
-  return {along(x), along(y), along(z)};
+  return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
 }
 
 // A map of 24 x 24 x 12 voxels: a floor, free space above it, and what a test puts there.
@@ -37,9 +36,8 @@ struct Scene {
     fill({0, 0, 0}, {23, 23, 10}, Occupancy::kFree);
   }
   void fill(const std::array<int, 3>& low, const std::array<int, 3>& high, Occupancy state) {
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = low[2]; z <= high[2]; ++z) grid.set(key(x, y, z), state);
+    for_each_key({key(low[0], low[1], low[2]), key(high[0], high[1], high[2])},
+                 [&](const VoxelKey& at) { grid.set(at, state); });
   }
   void wall(const std::array<int, 3>& low, const std::array<int, 3>& high) {
     fill(low, high, Occupancy::kOccupied);
@@ -74,14 +72,11 @@ void expect_free(const Scene& scene, const PathPlan& plan, int half, int below, 
     const int steps = 1 + static_cast<int>((to - from).norm() / (kResolution / 100));
     for (int k = 0; k <= steps; ++k) {
       const Eigen::Vector3d at = from + (to - from) * (static_cast<double>(k) / steps);
-      const int x = static_cast<int>(std::floor(at.x() / kResolution)),
-                y = static_cast<int>(std::floor(at.y() / kResolution)),
-                z = static_cast<int>(std::floor(at.z() / kResolution));
-      for (int dx = -half; dx <= half; ++dx)
-        for (int dy = -half; dy <= half; ++dy)
-          for (int dz = -below; dz <= above; ++dz)
-            ASSERT_EQ(scene.grid.at(key(x + dx, y + dy, z + dz)), Occupancy::kFree)
-                << "at " << at.transpose() << ", voxel " << x + dx << " " << y + dy << " " << z + dz;
+      const VoxelKey voxel = scene.grid.lattice().key(at).value();
+      const KeyBox box{make_key(voxel.x - half, voxel.y - half, voxel.z - below),
+                       make_key(voxel.x + half, voxel.y + half, voxel.z + above)};
+      ASSERT_TRUE(all_of(box, [&](const VoxelKey& v) { return scene.grid.at(v) == Occupancy::kFree; }))
+          << "at " << at.transpose();
     }
   }
 }
@@ -132,7 +127,7 @@ TEST(PathPlanner, GoesAroundAWallWithEachSearchAndBothRobots) {
   }
 }
 
-TEST(PathPlanner, LooksTheWayItGoes) {
+TEST(PathPlanner, LooksWhereItGoes) {
   const Scene scene = two_rooms();
   const TravelCorridor corridor = scene.corridor(uav_travel(), key(4, 4, 5));
   const PathPlan plan =
@@ -192,7 +187,7 @@ TEST(PathPlanner, FallsBackOnTheCorridorInANarrowPassage) {
   scene.fill({13, 14, 0}, {16, 18, 2}, Occupancy::kFree);
   const TravelCorridor corridor = scene.corridor(ugv_travel(), key(4, 4, 2));
   PathOptions options;
-  options.iterations = 20;  // no random tree finds it with so few
+  options.iterations = 20;  // too few for a random search
   const Pose start = pose(0.95, 5.9, 0.7), goal = pose(5.9, 0.95, 0.8);
   for (const PathSearch search : {PathSearch::kRrt, PathSearch::kRrtConnect, PathSearch::kRrtStar}) {
     options.search = search;
@@ -206,7 +201,7 @@ TEST(PathPlanner, FallsBackOnTheCorridorInANarrowPassage) {
     EXPECT_LE(plan.length, *corridor.distance(key(19, 3, 2)) + *corridor.distance(key(3, 19, 2)));
     EXPECT_NE(describe(plan.outcome).find("corridor"), std::string::npos);
   }
-  // The same without a limit that bites: a tree gets through as well.
+  // With enough iterations the search gets through, too.
   options = {};
   options.iterations = 20'000;
   const PathPlan plan = plan_path(corridor, scene.grid.lattice(), start, goal, {}, options);
@@ -249,7 +244,7 @@ TEST(PathPlanner, SaysWhyThereIsNone) {
   EXPECT_EQ(plan_path(stuck, lattice, here, beside_wall, {}).outcome, PathOutcome::kNoCorridor);
 }
 
-TEST(PathPlanner, RefusesWhatIsNoNumberOrNoOption) {
+TEST(PathPlanner, RefusesNumbersAndOptionsThatAreNotValid) {
   const Scene scene;
   const TravelCorridor corridor = scene.corridor(uav_travel(), key(4, 4, 5));
   const Lattice& lattice = scene.grid.lattice();
@@ -260,7 +255,7 @@ TEST(PathPlanner, RefusesWhatIsNoNumberOrNoOption) {
       (i < 3 ? broken.position[i] : broken.yaw) = bad;
       EXPECT_THROW((void)plan_path(corridor, lattice, here, broken, {}), std::invalid_argument);
       EXPECT_THROW((void)plan_path(corridor, lattice, broken, here, {}), std::invalid_argument);
-      EXPECT_FALSE(i < 3 && way_is_free(corridor, lattice, here.position, broken.position));
+      EXPECT_FALSE(i < 3 && segment_is_free(corridor, lattice, here.position, broken.position));
     }
   const auto refused = [&](auto change) {
     PathOptions options;
@@ -292,7 +287,7 @@ TEST(PathPlanner, PlansBetweenPlacesThatAreNotTheRobots) {
       plan_path(corridor, scene.grid.lattice(), pose(1.0, 5.0, 0.7), pose(5.2, 4.1, 0.8), {}, options);
   ASSERT_TRUE(plan.found());
   expect_free(scene, plan, 2, 2, 0);
-  EXPECT_LT(plan.length, 7.5);  // not by way of the robot, which is 4 m off
+  EXPECT_LT(plan.length, 7.5);  // not past the robot, which is 4 m off
   for (std::size_t i = 1; i < plan.viewpoints.size(); ++i)
     EXPECT_GE(plan.viewpoints[i].position.z(), plan.viewpoints[i - 1].position.z());
 }

@@ -93,7 +93,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     robot.length = random.uniform(0, 40);
     robot.path = static_cast<planner::PathOutcome>(random.below(7));
     robot.goal.state = static_cast<planner::GoalState>(random.below(7));
-    if (robot.goal.state <= planner::GoalState::kLeftOver) robot.goal.pose = random_pose(random);
+    if (robot.goal.state <= planner::GoalState::kUncovered) robot.goal.pose = random_pose(random);
     robot.goal.cell = random_key(random, planner::kAllVoxels);
     robot.goal.reason = "goal " + std::to_string(random.bits());
     robot.goal.distance = random.uniform(0, 50);
@@ -103,7 +103,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     robot.goal.assigned = random.bits();
     robot.goal.released = random.bits() % 9;
     robot.goal.received = random.bits() % 9;
-    robot.goal.left_over = random.bits() % 9;
+    robot.goal.uncovered = random.bits() % 9;
     if (size > 0) {
       for (int i = random.below(12); i > 0; --i) robot.planned.push_back(random_pose(random));
       robot.travelled = random.bits() % (robot.planned.size() + 1);
@@ -156,7 +156,7 @@ class Listing {
     for (const auto& r : s.robots) {
       const auto& g = r.goal;
       line("goal", static_cast<int>(g.state), g.reason, g.distance, g.gain, g.standard_error, g.quality,
-           g.assigned, g.released, g.received, g.left_over, g.pose.has_value());
+           g.assigned, g.released, g.received, g.uncovered, g.pose.has_value());
       if (g.pose) add(*g.pose);
       add(g.cell);
       line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.travelled, r.length,

@@ -31,8 +31,8 @@ enum class CasterKind : std::uint8_t {
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
   CasterKind caster = CasterKind::kEmbree;
-  bool distribute = true;  ///< off: every robot goes for all frontiers that it can see
-  bool optimize = true;    ///< off: robots look ahead along their paths
+  bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
+  bool optimize = true;  ///< off: robots look ahead along their paths
   PathOptions path;
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options

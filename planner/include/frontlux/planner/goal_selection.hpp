@@ -20,15 +20,15 @@ namespace frontlux::planner {
 
 /// How a robot's goal is found.
 enum class GoalRule : std::uint8_t {
-  kViewQuality,  ///< the cell of the corridor from which eq. 1 promises most
+  kViewQuality,  ///< the cell of the corridor with the best view quality by eq. 1
   kClusters,     ///< the paper's Sec. VI: a cell that sees the middle of the best cluster of frontiers
   kNearest,      ///< the nearest cell from which any frontier is visible: the usual baseline
 };
 
 /// What eq. 1 takes for the distance between a viewpoint and the robot.
 enum class TravelDistance : std::uint8_t {
-  kPath,      ///< length of the shortest way through the corridor; to the middle of a cluster, to which
-              ///< there may be none, the straight distance
+  kPath,      ///< length of the shortest path through the corridor; to the mean of a cluster, which may have
+              ///< no path to it, the straight distance
   kStraight,  ///< Euclidean, as printed
 };
 
@@ -37,29 +37,29 @@ struct GoalOptions {
   GoalRule rule = GoalRule::kViewQuality;
   TravelDistance distance = TravelDistance::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
-  double min_distance = 0.6;  ///< [m] nearer cells are no goals
-  /// [m] Not 0: the quality of cells at distance d that are nearer than this is eq. 1 times d / advance. What
-  /// lies behind the frontiers is uncovered about as far as the robot moves on, so that of two cells that
-  /// see as many, one far enough to uncover something is worth the step.
+  double min_distance = 0.6;  ///< [m] cells nearer to the robot are not goals
+  /// [m] If not 0, the quality of cells at a distance d below it is eq. 1 times d / advance. A robot uncovers
+  /// what lies behind the frontiers about as far as it moves on. So of two cells that see the same number,
+  /// the one far enough away to uncover something is worth the step.
   double advance = 0.0;
 
-  /// [frontiers] Cells that promise fewer are goals only if no other cell is found that promises as many,
-  /// however near they are. Else a robot would pick up what is left around it, and a loop that ends when
-  /// paths promise little would end with far regions untouched.
+  /// [frontiers] Cells with a smaller gain are goals only if no cell with this gain is found, however near
+  /// they are. Without it a robot would pick up what is left around it, and a loop that ends when the
+  /// expected gain is small would end with far regions unexplored.
   double min_gain = 0.0;
 
-  /// How viewpoints are rendered. `azimuth_bins` matters for robots that do not see all around: their gain is
-  /// what the best window of bins holds.
+  /// How viewpoints are rendered. `azimuth_bins` is for robots that do not see all around: their gain is that
+  /// of the best window of bins.
   ViewQualityOptions rendering;
   double viewpoint_spacing = 0.0;  ///< [m] of the rendered cells along each axis; 0: every cell
-  /// With a spacing: all cells within so many spacings of the robot are rendered nevertheless.
+  /// With a spacing, all cells within this many spacings of the robot are rendered nevertheless.
   int surroundings = 2;
-  /// So many cells, the best as far as drawn targets tell, are rendered again with all their targets, and the
-  /// goal is the best of them; a gain of zero is then certain. 0: the best by the drawn targets is the goal.
+  /// This many cells, the best by the drawn targets, are rendered again with all their targets, and the goal
+  /// is the best of them; a gain of zero is then certain. 0: the best by the drawn targets is the goal.
   int refined = 200;
   /// Cells that cannot be the goal are not rendered: a few cells are counted with all their targets first,
-  /// and those that would be worse than the best of them even if they saw all in their reach are left out.
-  /// Without `refined` it means nothing.
+  /// and cells that would be worse than the best of them even if they saw all in their reach are left out.
+  /// Used only if `refined` is not 0.
   bool prune = false;
 
   double cluster_edge = 4.8;  ///< [m] clusters are the frontiers in octree nodes of at least this edge
@@ -68,58 +68,58 @@ struct GoalOptions {
   void check() const;
 };
 
-/// View quality for all robots: counted exactly on a plane; drawn from buckets, at every second voxel,
-/// pruned, and counted for the best, in space. Or as printed, for robots on a plane by hits among the drawn
-/// frontiers and for those in space by clusters.
+/// By default, view quality for all robots: on a plane counted exactly; in space drawn from buckets at every
+/// second voxel, pruned, and counted for the best cells. As printed: on a plane by hits among the drawn
+/// frontiers, in space by clusters.
 [[nodiscard]] GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 
-/// Why a robot has a goal, or none.
+/// Which frontiers a robot's goal is for, or why it has no goal.
 enum class GoalState : std::uint8_t {
-  kOwn,              ///< a goal, for frontiers distributed to it
-  kReleased,         ///< a goal, for frontiers that another could make nothing of, or those too
-  kLeftOver,         ///< a goal, for frontiers of others that their goals do not see
-  kNoCorridor,       ///< none: it is nowhere from where it could go
-  kNoFrontiers,      ///< none: the map has no frontiers
-  kNothingAssigned,  ///< none: it sees none of them from its corridor, or others see them all
-  kNothingVisible,   ///< none: it sees none through known space, so it has released its frontiers
+  kAssigned,         ///< a goal for frontiers assigned to it
+  kReceived,         ///< a goal for its frontiers, some of them released by other robots
+  kUncovered,        ///< a goal for frontiers of other robots that their goals do not see
+  kNoCorridor,       ///< no goal: there is no corridor where it is
+  kNoFrontiers,      ///< no goal: the map has no frontiers
+  kNothingAssigned,  ///< no goal: it sees no frontiers from its corridor, or they are assigned to others
+  kNothingVisible,   ///< no goal: it sees its frontiers through unknown space only, and has released them
 };
 
-/// One of the words above, as it is written in logs: "own", "no_corridor", ...
+/// As it is written in logs: "assigned", "no_corridor", ...
 [[nodiscard]] std::string_view name_of(GoalState state);
 
 /// A robot's next goal.
 struct Goal {
-  std::optional<Pose> pose;  ///< of its sensor; nothing, and then it stays where it is
-  VoxelKey cell;             ///< that of the pose, a cell of its corridor
+  std::optional<Pose> pose;  ///< of its sensor; if there is none, the robot stays where it is
+  VoxelKey cell;             ///< of the pose; a cell of its corridor
   GoalState state = GoalState::kNoCorridor;
-  std::string reason;           ///< the state in a sentence, with numbers
+  std::string reason;           ///< the state in words, with numbers
   double distance = 0.0;        ///< [m] as eq. 1 takes it
-  double gain = 0.0;            ///< frontiers that it is expected to see; clusters: those in view at this yaw
+  double gain = 0.0;            ///< frontiers that it is expected to see at this yaw
   double standard_error = 0.0;  ///< of the gain; 0 if it was counted
   double quality = 0.0;         ///< eq. 1
 
-  std::size_t assigned = 0;   ///< frontiers distributed to it
-  std::size_t released = 0;   ///< of its frontiers, given back because it sees none
-  std::size_t received = 0;   ///< released by others
-  std::size_t left_over = 0;  ///< taken of others, which their goals do not see
+  std::size_t assigned = 0;   ///< frontiers assigned to it
+  std::size_t released = 0;   ///< frontiers that it released because it sees none of them
+  std::size_t received = 0;   ///< frontiers that other robots released and it took
+  std::size_t uncovered = 0;  ///< frontiers of other robots that their goals do not see and it took
 };
 
 /// What one step decides for all robots.
 struct TeamGoals {
   std::vector<Goal> goals;     ///< of each robot, in the order given
   std::size_t frontiers = 0;   ///< in the map
-  std::size_t unassigned = 0;  ///< that nobody sees or could make anything of
-  std::uint64_t rays = 0;      ///< cast for all this
+  std::size_t unassigned = 0;  ///< frontiers that no robot sees, or that all released
+  std::uint64_t rays = 0;      ///< cast in this step
 };
 
 /// A cell as it was rendered for a robot's goal.
 struct RenderedCell {
   VoxelKey cell;
   double distance = 0.0;        ///< [m] as eq. 1 takes it
-  double gain = 0.0;            ///< expected number of frontiers that it sees, at the best yaw
+  double gain = 0.0;            ///< expected number of frontiers visible at the best yaw
   double standard_error = 0.0;  ///< of the gain
   double quality = 0.0;         ///< eq. 1
-  double yaw = 0.0;             ///< [rad] the best one; 0 for robots that see all around
+  double yaw = 0.0;             ///< [rad] the best yaw; 0 for robots that see all around
   std::uint32_t hits = 0;       ///< visible among the drawn targets, at the best yaw
 };
 
@@ -131,22 +131,21 @@ struct TeamMember {
 
 /// Chooses the goals of a team, step by step: the paper's Alg. 1, lines 4 and 5.
 ///
-/// The first robot has the first choice among the frontiers, so that the paper's UGV comes first. A robot
-/// that sees nothing of what it got from anywhere it can go to releases it to the others, and one that is
-/// left with nothing takes of the others what their goals do not see.
+/// The first robot, the paper's UGV, comes first when frontiers are assigned. A robot that sees none of its
+/// frontiers through known space, from wherever it can go, releases them to the others. A robot without
+/// frontiers takes those of the others that their goals do not see.
 ///
-/// Corridors and rendered cells keep from step to step what a change of the map does not reach; the result is
-/// the same as that of a new object. It does not depend on the number of threads, nor on whether the caster
-/// walks the grid or uses Embree.
+/// When the map changes, corridors and rendered cells keep what the change does not reach. The result is the
+/// same as that of a new object, on any number of threads and with any exact caster.
 ///
 /// Thread safety: as a standard container. Works in TBB's current arena.
 class GoalSelection {
  public:
-  /// @param bounds      where collision boxes have to be, as `TravelCorridor` takes them
-  /// @param distribute  whether a frontier is one robot's, by Alg. 2; else it is every robot's that sees it
+  /// @param bounds  of all collision boxes, as `TravelCorridor` takes them
+  /// @param assign  whether each frontier is assigned to one robot (Alg. 2), else to all that see it
   /// @throws std::invalid_argument naming the robot and the value that is out of bounds
   GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
-                bool distribute = true);
+                bool assign = true);
   ~GoalSelection();
   GoalSelection(GoalSelection&&) noexcept;
   GoalSelection& operator=(GoalSelection&&) noexcept;
@@ -154,28 +153,28 @@ class GoalSelection {
   /// One step.
   /// @param caster     of the map as it is now
   /// @param change     since the last step
-  /// @param frontiers  all of the map's, in any order
-  /// @param poses      of the robots' sensors, one for each
+  /// @param frontiers  of the map, in any order
+  /// @param poses      of the robots' sensors, one for each robot
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
 
-  /// From the next step on a robot does not go through these cells: see `TravelCorridor::block`.
+  /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()
   void block(std::size_t robot, std::span<const VoxelKey> cells);
 
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 
-  /// Where a robot could go at the last step. @pre robot < team().size()
+  /// The robot's corridor at the last step. @pre robot < team().size()
   [[nodiscard]] const TravelCorridor& corridor(std::size_t robot) const;
 
-  /// The frontiers that a robot's goal was last chosen for, sorted. @pre robot < team().size()
+  /// The frontiers of a robot's last choice, sorted. @pre robot < team().size()
   [[nodiscard]] std::span<const VoxelKey> targets(std::size_t robot) const;
 
-  /// All cells that were rendered for a robot's goal at the last step, sorted, whatever their distance; with
-  /// `prune` only those that might have been the goal; none if its rule is not `kViewQuality` or it had no
-  /// frontiers. @pre robot < team().size()
+  /// All cells that were rendered for a robot's goal at the last step, sorted, at any distance. With `prune`
+  /// these are only the cells that might have been the goal. There are none if the rule is not
+  /// `kViewQuality`, or without frontiers. @pre robot < team().size()
   [[nodiscard]] std::vector<RenderedCell> rendered_cells(std::size_t robot) const;
 
  private:

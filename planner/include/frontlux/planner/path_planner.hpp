@@ -13,12 +13,12 @@
 
 namespace frontlux::planner {
 
-/// Which search grows the path. All but `kCorridor` are random, and repeat with the same key.
+/// Which search finds the path. All but `kCorridor` are random, and repeat with the same key.
 enum class PathSearch : std::uint8_t {
-  kRrt,         ///< one tree from the start
-  kRrtConnect,  ///< two trees, from start and goal
-  kRrtStar,     ///< one tree that is rewired until the iterations are used up
-  kCorridor,    ///< none: the corridor's own shortest path
+  kRrt,         ///< RRT, which grows from the start
+  kRrtConnect,  ///< RRT-Connect, which grows from start and goal
+  kRrtStar,     ///< RRT*, which shortens its paths until the iterations are used up
+  kCorridor,    ///< no search: the shortest path through the corridor
 };
 
 /// "rrt", "rrt-connect", "rrt-star", "corridor"
@@ -26,16 +26,16 @@ enum class PathSearch : std::uint8_t {
 
 struct PathOptions {
   PathSearch search = PathSearch::kRrt;
-  /// The search ends after so many; 1 to a million. RRT* takes them all, a hundred times as long as RRT, and
-  /// is served well by 2,000.
+  /// Of the search, at most; 1 to a million. RRT* uses them all, which takes a hundred times as long as RRT;
+  /// 2,000 suit it well.
   int iterations = 20'000;
-  double range = 4.0;       ///< [m] longest edge of a tree
-  double goal_bias = 0.1;   ///< share of the samples that are the goal itself, 0 to 1; not of RRT-Connect
-  double spacing = 1.2;     ///< [m] greatest distance between one viewpoint and the next
-  int shortcut_rounds = 6;  ///< at most so many passes of shortening; 0: the path stays as it was found
+  double range = 4.0;       ///< [m] longest edge of the search
+  double goal_bias = 0.1;   ///< fraction of the samples that are the goal itself, 0 to 1; not for RRT-Connect
+  double spacing = 1.2;     ///< [m] greatest distance between successive viewpoints
+  int shortcut_rounds = 6;  ///< of shortening, at most; 0: the path stays as it was found
 };
 
-/// What a random search is keyed by: the same key gives the same path, another one may give another.
+/// The key of a random search. The same key gives the same path; another key may give another path.
 struct PathKey {
   std::uint64_t seed = 0, step = 0, robot = 0;
 };
@@ -43,62 +43,60 @@ struct PathKey {
 /// How a search for a path ended.
 enum class PathOutcome : std::uint8_t {
   kFound,         ///< by the search that was asked for
-  kFellBack,      ///< that search found none; the path is the corridor's own shortest, shortened
-  kInPlace,       ///< start and goal are the same point: the robot turns, or does nothing
+  kFellBack,      ///< that search found none; the path is the corridor's shortest, shortened further
+  kInPlace,       ///< start and goal are the same point: the robot turns, or stays as it is
   kNoCorridor,    ///< the corridor has no cells
-  kStartNotFree,  ///< the robot does not fit, as far as is known, where it starts
-  kGoalNotFree,   ///< nor where it should go
-  kOutOfReach,    ///< it fits at both, but the corridor does not connect them
+  kStartNotFree,  ///< the space that the robot needs at the start is not known to be free
+  kGoalNotFree,   ///< the space that the robot needs at the goal is not known to be free
+  kOutOfReach,    ///< the robot fits at both, but the corridor does not connect them
 };
 
-/// One of the words above, as it is written in logs: "found", "fell_back", ...
+/// As it is written in logs: "found", "fell_back", ...
 [[nodiscard]] std::string_view name_of(PathOutcome outcome);
 
 /// In words, as the end of a sentence about the path.
 [[nodiscard]] std::string_view describe(PathOutcome outcome);
 
-/// A way from pose to pose.
+/// A path from pose to pose.
 struct PathPlan {
   PathOutcome outcome = PathOutcome::kNoCorridor;
-  /// Start, goal and what lies between, all bends included; the way from one to the next is straight. Start
-  /// and goal are those given to the last bit; the yaw of the others is that of the way on, or the yaw before
-  /// where the way on is vertical. Empty if there is no path.
+  /// From start to goal, with all bends; the robot goes straight from each to the next. Start and goal are
+  /// exactly those given. At the others the robot looks where it goes next; before a vertical segment it
+  /// keeps its yaw. Empty if there is no path.
   std::vector<Pose> viewpoints;
   double length = 0.0;  ///< [m]
-  int iterations = 0;   ///< that the search took
+  int iterations = 0;   ///< used by the search
 
   [[nodiscard]] bool found() const { return !viewpoints.empty(); }
 };
 
-/// Finds a way for a robot through its corridor.
+/// Finds a path for a robot through its corridor.
 ///
-/// A position is free if all of the robot's body is known free there: not only has the cell of the voxel that
-/// holds it to be passable, but all cells that are within `reach()` of it, so positions need not be centres
-/// of voxels. A way is free if `way_is_free` says so of each part. From a start that is not free although its
-/// cell is passable, as when the map has changed around a robot, the way leads to the middle of that cell
-/// first.
+/// A position need not be the centre of a voxel. It is free if all of the robot's body is known to be free
+/// there: all cells within the corridor's `reach()` of it have to be passable. A path is free if
+/// `segment_is_free` holds for each segment. If the start is not free although its cell is passable, as when
+/// the map has changed around the robot, the path goes to the middle of that cell first.
 ///
-/// If start and goal are in the corridor, there is a path, since the corridor's own is the last resort; it is
-/// the shortest if the start is where the corridor begins, at the robot, else it may make a detour. On a
-/// plane the search is along x and y, and the height changes evenly from start to goal.
+/// If start and goal are in the corridor, there is a path: the last resort is the corridor's own. That one is
+/// the shortest if the corridor begins at the start; else it may make a detour. On a plane the search is
+/// along x and y, and the height changes evenly from start to goal.
 ///
 /// The search ends after a number of iterations, not after a time, and the result depends on the arguments
-/// only. Nothing is printed. Thread safety: any number of threads may plan at once; while one does, what else
-/// uses OMPL in the process is silent too.
-/// @param corridor  of voxels, not of nodes, in which a robot at the edge would reach into the next
+/// only. Nothing is printed. Thread safety: any number of threads may plan at once; while one does, OMPL logs
+/// nothing in the whole process.
+/// @param corridor  of voxels; in one of nodes, a robot at the edge of a node would reach into the next
 /// @throws std::invalid_argument if a number of a pose or of the options is not finite or out of its range,
-/// or if the corridor is one of nodes
+/// or if the corridor is made of nodes
 [[nodiscard]] PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const Pose& start,
                                  const Pose& goal, const PathKey& key, const PathOptions& options = {});
 
-/// Whether the body of a robot that goes straight from one point [m] to another stays in what is known free:
-/// every voxel that a box of the corridor's `reach()` around the robot enters on the way is looked at, and
-/// has to be a passable cell; where the box comes within a billionth of a voxel of an edge or corner, all
-/// that meet there and lie between those of its ends. False if an end is not finite or beyond the key range.
-[[nodiscard]] bool way_is_free(const TravelCorridor& corridor, const Lattice& lattice,
-                               const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+/// Whether the body of a robot that goes straight from one point [m] to another stays in space that is known
+/// to be free: every voxel that a box of the corridor's `reach()` around the robot enters has to be a
+/// passable cell (see `SegmentVoxels`). False if an end is not finite or beyond the key range.
+[[nodiscard]] bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
+                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-/// Sum of the distances from viewpoint to viewpoint [m].
+/// Sum of the distances between successive viewpoints [m].
 [[nodiscard]] double path_length(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

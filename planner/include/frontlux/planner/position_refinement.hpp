@@ -40,8 +40,8 @@ struct RefinedPath {
 /// frontiers are in view than before, or as many with a greater fuzzy gain; else the refinement ends with the
 /// result before it. So `after.distinct` is never below `before.distinct`.
 ///
-/// A viewpoint moves only if the segments to both of its neighbours are free (`way_is_free`) and no longer
-/// than the spacing. On a plane its height stays. Segments between viewpoints that stay are not checked.
+/// A viewpoint moves only where the ways to both of its neighbours are free (`segment_is_free`) and no longer
+/// than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
 /// Deterministic. Thread safety: as `optimize_path`.
 /// @param viewpoints  with yaws, all of which count for `before`
 /// @param grid        of the caster, the corridor and the keys of the frontiers

@@ -3,26 +3,26 @@
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace frontlux::planner {
 
-/// Where the paper can be read in two ways, or something else works better.
+/// Which method to use where something works better than the paper's.
 enum class Method : std::uint8_t {
   kDefault,  ///< what works best
-  kPaper,    ///< as printed
+  kPaper,    ///< the paper's, as printed
 };
 
-/// A robot, as far as planning concerns it. Its pose is that of its sensor: on a plane above the floor, in
-/// space the middle of its body.
+/// A robot as planning sees it. Its pose is that of its sensor: on a plane above the floor, in space the
+/// middle of its body.
 struct Robot {
   std::string name;      ///< in messages
   TravelOptions travel;  ///< where it fits
   FieldOfView view;      ///< what it sees from there
 
-  /// [m] of the sensor above the place where the robot stands or, in space, above its middle
+  /// [m] of the sensor above the floor where the robot stands or, in space, above its middle
   [[nodiscard]] double mount_height() const {
     return travel.motion == Motion::kPlane ? travel.sensor_height : 0.0;
   }
@@ -36,7 +36,7 @@ struct Robot {
 [[nodiscard]] Robot ugv();
 
 /// The paper's aerial robot: a cube of 0.8 m, a depth camera of 90 x 72 degrees that sees 10 m far. It goes
-/// wherever its box fits; as printed, through free octree nodes of 1.2 m.
+/// where its box fits; as printed, through free octree nodes of 1.2 m.
 [[nodiscard]] Robot uav(Method method = Method::kDefault);
 
 /// A robot with the number of rays in a scan of its sensor.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
-#include <frontlux/ray.hpp>
 
 #include <Eigen/Core>
 
@@ -13,18 +13,18 @@
 
 namespace frontlux::planner {
 
-/// Whether `open(key)` holds for every voxel that a segment enters, or a small box that moves along it.
+/// The voxels that a segment enters, or that a small box enters as it moves along the segment.
 ///
-/// Along each axis voxels are taken for wider than they are by kWiden on both sides, more than all rounding,
-/// so none is missed that the segment touches. Along an axis the segment never leaves the range of the
-/// voxels that hold its ends, so a segment that lies in a face asks for the voxels of one side only: those
-/// that hold its points, since voxels are half open.
+/// Along each axis voxels count as wider than they are by a billionth on both sides, more than all rounding,
+/// so that none is missed that the segment touches. So at an edge or corner all voxels that meet there count.
+/// Along an axis none count beyond those that hold the ends, so of a segment that lies in a face only the
+/// voxels of one side count: those that hold its points, since voxels are half open.
 class SegmentVoxels {
  public:
   /// @param from, to  [m]
-  /// @param reach  [m] of the box to each side of its middle, which goes from `from` to `to`
+  /// @param reach  [m] of the box to each side of its middle, which moves from `from` to `to`
   SegmentVoxels(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-              const Eigen::Vector3d& reach = Eigen::Vector3d::Zero()) {
+                const Eigen::Vector3d& reach = Eigen::Vector3d::Zero()) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto i = static_cast<Eigen::Index>(a);
       const auto first = lattice.key(std::min(from[i], to[i]) - reach[i]),
@@ -42,14 +42,13 @@ class SegmentVoxels {
     }
   }
 
-  template <class Open>
-  [[nodiscard]] bool all_of(const Open& open) const {
+  /// Whether `holds(key)` for every voxel; calls it no more after the first for which it does not. False if
+  /// an end is not finite or beyond the key range.
+  template <class Holds>
+  [[nodiscard]] bool all_of(const Holds& holds) const {
     return inside_ && axes_[0].for_each({0.0, 1.0}, [&](int x, const Part& in_x) {
       return axes_[1].for_each(in_x, [&](int y, const Part& in_xy) {
-        return axes_[2].for_each(in_xy, [&](int z, const Part&) {
-          return open(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                               static_cast<std::uint16_t>(z)});
-        });
+        return axes_[2].for_each(in_xy, [&](int z, const Part&) { return holds(make_key(x, y, z)); });
       });
     });
   }

@@ -16,7 +16,7 @@
 
 namespace frontlux::planner {
 
-/// Where a robot can go at all.
+/// How a robot moves.
 enum class Motion : std::uint8_t {
   kPlane,  ///< on the layer of voxels that its sensor is in
   kSpace,  ///< anywhere above a minimum height
@@ -24,35 +24,37 @@ enum class Motion : std::uint8_t {
 
 /// What a step from cell to cell costs.
 enum class PathMetric : std::uint8_t {
-  kEuclidean,  ///< also diagonal steps, of their own length, which cut no corner; right to 1 in 20,000
+  kEuclidean,  ///< also diagonal steps that cut no corner, by their own length; right to 1 in 20,000
   kSteps,      ///< steps through faces only, each as long as a cell
 };
 
-/// What a robot needs to be somewhere.
+/// Where a robot fits.
 ///
-/// Its collision box is measured in whole voxels and keeps to the lattice whatever the yaw: around the cell
-/// it is the smallest odd number of voxels, along each axis, that covers `extents`. A box on a plane stands
-/// on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution) above that
-/// face, and the box has the fewest layers that cover its height and hold the sensor.
+/// Its collision box is made of whole voxels and does not turn with the yaw. Along each axis it is the
+/// smallest odd number of voxels, with the cell in the middle, that covers `extents`. On a plane the box
+/// stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution) above
+/// that face, and the box has the fewest layers that cover its height and hold the sensor.
 struct TravelOptions {
   Motion motion = Motion::kSpace;
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the collision box along x, y and z
   PathMetric metric = PathMetric::kEuclidean;
 
   double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
-  /// On a plane: go only where no floor voxel under the box is known free, and one within `ground_reach`
-  /// voxels of the cell's column is known occupied. The floor is the layer that the box stands on.
+  /// On a plane: go only where no floor voxel under the box is known to be free, and one within
+  /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is the layer below the
+  /// box.
   bool require_ground = true;
-  /// [m] Along x and y, the part of the floor that must not be known free, if not all that is under the box.
+  /// [m] Along x and y: the part of the floor that must not be known to be free; all under the box if not
+  /// given.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;                ///< [voxels] along x and y
-  std::vector<KeyBox> without_ground;  ///< cells that need no ground: the start, whose floor no sensor sees
+  std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its floor
 
   double floor = 0.0;       ///< [m] in space: height of the floor in the world
   double min_height = 1.2;  ///< [m] in space: of the cell's centre above the floor
-  /// [m] In space: not 0 makes cells of whole octree nodes, the smallest with at least this edge, that are
-  /// known and free to the last voxel, instead of voxels with a free box around. A cell's key is then that of
-  /// the voxel above the node's centre on all axes.
+  /// [m] In space: if not 0, cells are whole octree nodes, the smallest with at least this edge, and a cell
+  /// is passable if all its voxels are free; no collision box is used. The key of a cell is then that of the
+  /// voxel above the node's centre on all axes.
   double node_edge = 0.0;
 };
 
@@ -61,7 +63,7 @@ struct TravelOptions {
 [[nodiscard]] TravelOptions uav_travel();
 [[nodiscard]] TravelOptions uav_node_travel();
 
-/// The key of the cell that holds a voxel: itself, except among nodes.
+/// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
 [[nodiscard]] VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel);
 
 /// The voxels that have to be free for a robot in a cell: its collision box, or the cell's node. Cut off at
@@ -71,20 +73,20 @@ struct TravelOptions {
 
 /// How far a body that is not in the middle of a voxel may stick out of the collision box around the voxel,
 /// along each axis [m]. The body fits at a position if all cells are passable that a box of this half width
-/// around the position touches. 0 where the collision box has room for the body wherever in the voxel the
-/// robot is, on a plane along z, and among nodes. A ten thousandth of a voxel is let go, so that a body as
-/// wide as its collision box fits in the middle.
+/// around the position touches. It is 0 along axes on which the collision box has room for the body anywhere
+/// in the voxel, on a plane along z, and for nodes. A ten thousandth of a voxel does not count, so that a
+/// body as wide as its collision box fits in the middle.
 [[nodiscard]] Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
 
 /// Why there is a corridor, or none.
 enum class CorridorState : std::uint8_t {
   kReady,
-  kNotUpdated,     ///< no map has been seen
+  kNotUpdated,     ///< there was no update yet
   kOutside,        ///< the robot is outside the bounds
   kTooLow,         ///< its cell is below the minimum height
   kUnknown,        ///< it is in an unknown voxel
   kOccupied,       ///< it is in an occupied voxel
-  kBoxNotFree,     ///< its collision box, or its node, is not known free
+  kBoxNotFree,     ///< its collision box, or its node, is not known to be free
   kWithoutGround,  ///< the floor under it does not satisfy `require_ground`
 };
 
@@ -93,30 +95,31 @@ enum class CorridorState : std::uint8_t {
 
 /// The cells that a robot can reach through what is known to be free, and how far they are.
 ///
-/// A cell is passable where the whole collision box is known free; the corridor is what passable cells
-/// connect with the robot's by faces. Diagonal steps shorten ways but reach nothing else. Follows a map by
-/// its changed voxels: the result is the same as of a new corridor.
+/// A cell is passable if its whole collision box is known to be free. The corridor is all cells that passable
+/// cells connect with the robot's by faces. Diagonal steps shorten paths but reach no other cells. After an
+/// update the result is the same as that of a new corridor.
 ///
-/// Takes memory for every voxel of the bounds, or of a layer of them. Thread safety: as a standard container.
+/// Takes memory for every voxel of the bounds, or of one layer of them. Thread safety: as a standard
+/// container.
 class TravelCorridor {
  public:
-  /// @param bounds  where the collision box has to be; of the plane only x and y are used
-  /// @throws std::invalid_argument naming the option that cannot be, or if the bounds hold more than 2^29
+  /// @param bounds  of the collision box; on a plane only x and y are used
+  /// @throws std::invalid_argument naming the option that is not valid, or if the bounds hold more than 2^29
   /// cells
   TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds);
   ~TravelCorridor();
   TravelCorridor(TravelCorridor&&) noexcept;
   TravelCorridor& operator=(TravelCorridor&&) noexcept;
 
-  /// The map has changed, or the robot has moved. The first update reads the whole map, and so does one with
-  /// the robot on another plane.
+  /// Takes the changes of the map and the robot's new position. The first update reads the whole map, and so
+  /// does one with the robot on another plane.
   /// @param change  since the last update
   /// @param robot   the voxel of its sensor
   /// @throws std::invalid_argument if the grid has another resolution
   void update(const MapChange& change, const VoxelKey& robot);
 
-  /// Takes these cells for impassable from the next update on, whatever the map says: something is there that
-  /// no sensor has shown.
+  /// Makes these cells impassable from the next update on, whatever the map says: there is something that no
+  /// sensor has seen.
   void block(std::span<const VoxelKey> cells);
 
   /// If it is not `kReady`, there are no cells.
@@ -126,10 +129,10 @@ class TravelCorridor {
   [[nodiscard]] std::span<const VoxelKey> cells() const;
   [[nodiscard]] bool contains(const VoxelKey& key) const { return distance(key).has_value(); }
 
-  /// Length of the shortest way from the robot [m]; nothing if the key is not that of a cell of the corridor.
+  /// Length of the shortest path from the robot [m]; nothing if the key is not a cell of the corridor.
   [[nodiscard]] std::optional<double> distance(const VoxelKey& key) const;
 
-  /// The cells of a shortest way, from the robot's to this one, both included; empty if there is none.
+  /// The cells of a shortest path, from the robot's to this one, both included; empty if there is none.
   [[nodiscard]] std::vector<VoxelKey> path_to(const VoxelKey& key) const;
 
   /// Whether a cell is passable, connected or not. In constant time.
@@ -138,7 +141,7 @@ class TravelCorridor {
   /// `reach_of` the corridor's options.
   [[nodiscard]] const Eigen::Vector3d& reach() const;
 
-  /// The key of the cell that holds a voxel: itself, except among nodes.
+  /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const;
 
  private:

@@ -1,4 +1,5 @@
-// Ways for the body itself: wherever on a voxel the robot is, all that its body covers is known free.
+// Segments and paths of the body itself: wherever in a voxel the robot is, all that its body covers is known
+// to be free.
 
 #include "support/random.hpp"
 
@@ -8,14 +9,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 namespace frontlux::planner {
 namespace {
 
 VoxelKey key(int x, int y, int z) {
-  const auto along = [](int i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
-  return {along(x), along(y), along(z)};
+  return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
 }
 
 struct Scene {
@@ -24,9 +23,9 @@ struct Scene {
 
   Scene(std::uint64_t seed, double resolution) : grid(resolution) {
     test::Random random(seed);
-    for (int x = 0; x < 24; ++x)
-      for (int y = 0; y < 24; ++y)
-        for (int z = -1; z < 11; ++z) grid.set(key(x, y, z), z < 0 ? Occupancy::kOccupied : Occupancy::kFree);
+    for_each_key(bounds, [this](const VoxelKey& at) {
+      grid.set(at, at.z < Lattice::kOrigin ? Occupancy::kOccupied : Occupancy::kFree);
+    });
     for (int i = 0; i < 25; ++i) {  // pillars
       const int x = random.below(24), y = random.below(24), high = random.below(11);
       for (int z = 0; z <= high; ++z)
@@ -59,7 +58,7 @@ double depth_in_unknown(const Scene& scene, const TravelOptions& travel, const E
   return deepest;
 }
 
-TEST(BodyWay, ReachIsWhatTheCollisionBoxLeavesOpen) {
+TEST(BodyClearance, ReachIsWhatTheCollisionBoxLeavesOpen) {
   const auto reach = [](const TravelOptions& travel, double resolution) {
     return reach_of(travel, Lattice(resolution));
   };
@@ -74,7 +73,7 @@ TEST(BodyWay, ReachIsWhatTheCollisionBoxLeavesOpen) {
   EXPECT_EQ(full.z(), 0.0);
 }
 
-TEST(BodyWay, IsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
+TEST(BodyClearance, ASegmentIsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
   int free = 0, blocked_only_by_body = 0;
   for (const double resolution : {0.3, 0.2, 0.25})
     for (const bool plane : {false, true}) {
@@ -94,13 +93,12 @@ TEST(BodyWay, IsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
           to[a] = from[a] + (random.one_in(4) ? 0.0 : random.uniform(-4.0, 4.0) * resolution);
         }
         if (plane) from.z() = to.z() = 0.35;
-        const bool is_free = way_is_free(corridor, lattice, from, to);
+        const bool is_free = segment_is_free(corridor, lattice, from, to);
         bool middle_free = true, cells_free = true;
         for (int k = 0; k <= 60; ++k) {
           const Eigen::Vector3d at = from + (to - from) * (k / 60.0);
           const auto cell = [&](const Eigen::Vector3d& p) {
-            return corridor.passable(
-                {lattice.key(p.x()).value(), lattice.key(p.y()).value(), lattice.key(p.z()).value()});
+            return corridor.passable(lattice.key(p).value());
           };
           middle_free = middle_free && cell(at);
           for (int corner = 0; corner < 8; ++corner)
@@ -109,9 +107,9 @@ TEST(BodyWay, IsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
                                                                  (corner & 4) != 0 ? d.z() : -d.z()));
           if (is_free) {
             ASSERT_TRUE(cells_free) << at.transpose();
-            // What reach_of lets go is a ten thousandth of a voxel.
+            // What `reach_of` ignores is a ten thousandth of a voxel.
             ASSERT_LE(depth_in_unknown(scene, travel, at), 1.001e-4 * resolution)
-                << at.transpose() << " on the way from " << from.transpose() << " to " << to.transpose();
+                << at.transpose() << " on the segment from " << from.transpose() << " to " << to.transpose();
           }
         }
         free += static_cast<int>(is_free);
@@ -122,44 +120,15 @@ TEST(BodyWay, IsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
       }
       // In the middle of a passable cell there is always room.
       for (const VoxelKey& cell : corridor.cells()) {
-        const Eigen::Vector3d center = lattice.center(cell).cast<double>();
-        ASSERT_TRUE(way_is_free(corridor, lattice, center, center));
+        const Eigen::Vector3d center = lattice.exact_center(cell);
+        ASSERT_TRUE(segment_is_free(corridor, lattice, center, center));
       }
     }
   EXPECT_GT(free, 1000);
-  EXPECT_GT(blocked_only_by_body, 200);  // else nothing was tested that was not so before
+  EXPECT_GT(blocked_only_by_body, 200);  // else the body was never what decided
 }
 
-TEST(BodyWay, ABoxEntersExactlyTheVoxelsOfItsCornersOnTheWay) {
-  test::Random random(6);
-  const Lattice lattice(1.0);
-  for (int i = 0; i < 500; ++i) {
-    Eigen::Vector3d from, to, reach;
-    for (int a = 0; a < 3; ++a) {
-      from[a] = random.uniform(-5.0, 5.0);
-      to[a] = random.one_in(4) ? from[a] : random.uniform(-5.0, 5.0);
-      reach[a] = random.one_in(4) ? 0.0 : random.uniform(0.0, 0.49);
-    }
-    std::set<VoxelKey> entered, sampled;
-    ASSERT_TRUE(SegmentVoxels(lattice, from, to, reach).all_of([&](const VoxelKey& at) {
-      EXPECT_TRUE(entered.insert(at).second) << "asked twice";
-      return true;
-    }));
-    for (int k = 0; k <= 20'000; ++k)
-      for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3d side((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
-                                   (corner & 4) != 0 ? 1 : -1);
-        const Eigen::Vector3d at = from + (to - from) * (k / 20'000.0) + side.cwiseProduct(reach);
-        sampled.insert(
-            {lattice.key(at.x()).value(), lattice.key(at.y()).value(), lattice.key(at.z()).value()});
-      }
-    for (const VoxelKey& one : sampled) ASSERT_TRUE(entered.contains(one)) << "case " << i;
-    // Samples may skip a voxel whose corner is cut by less than their distance; few are.
-    ASSERT_LE(entered.size(), sampled.size() + 1) << "case " << i;
-  }
-}
-
-TEST(BodyWay, PlansFromAndToAnywhereInTheBody) {
+TEST(BodyClearance, PlansFromAndToAnywhereInTheBody) {
   int paths = 0, escapes = 0, refused = 0;
   for (const double resolution : {0.3, 0.2, 0.25}) {
     for (const bool plane : {false, true}) {
@@ -177,20 +146,18 @@ TEST(BodyWay, PlansFromAndToAnywhereInTheBody) {
       const auto cells = corridor.cells();
       for (int i = 0; i < 60; ++i) {
         const auto somewhere = [&] {
-          const VoxelKey& cell =
-              cells[static_cast<std::size_t>(random.below(static_cast<int>(cells.size())))];
-          Pose pose{lattice.center(cell).cast<double>()};
+          Pose pose{lattice.exact_center(random.pick(cells))};
           for (int a = 0; a < 3; ++a) pose.position[a] += random.uniform(-0.49, 0.49) * resolution;
           return pose;
         };
         const Pose start = somewhere(), goal = somewhere();
-        const bool starts_free = way_is_free(corridor, lattice, start.position, start.position);
+        const bool starts_free = segment_is_free(corridor, lattice, start.position, start.position);
         PathOptions options;
         options.search = i % 2 == 0 ? PathSearch::kRrt : PathSearch::kCorridor;
         options.iterations = 300;
         options.shortcut_rounds = i % 4 < 2 ? 0 : 6;
         const PathPlan plan = plan_path(corridor, lattice, start, goal, {1, 2, 3}, options);
-        if (!way_is_free(corridor, lattice, goal.position, goal.position)) {
+        if (!segment_is_free(corridor, lattice, goal.position, goal.position)) {
           EXPECT_EQ(plan.outcome, PathOutcome::kGoalNotFree);
           ++refused;
           continue;

@@ -1,6 +1,7 @@
-#include "goal/possible_goals.hpp"
+#include "goal/viewpoint_candidates.hpp"
 
-#include "goal/rendered_goal.hpp"
+#include "goal/rendered_cell.hpp"
+#include "mapping/box_array.hpp"
 
 #include <frontlux/view_region.hpp>
 
@@ -12,13 +13,14 @@
 #include <cstddef>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr int kLog2Edge = 3, kEdge = 1 << kLog2Edge;  // [voxels] of the cubes that are bounded together
-constexpr std::size_t kCounted = 16;                  // cells, each of another cube
+constexpr int kEdge = 8;              // [voxels] of the cubes that are bounded together
+constexpr std::size_t kCounted = 16;  // cells, each of another cube
 
 // A cube, with how many of some voxels it holds.
 struct Cube {
@@ -27,8 +29,7 @@ struct Cube {
 };
 
 VoxelKey corner_of(const VoxelKey& key) {
-  const auto along = [](std::uint16_t k) { return static_cast<std::uint16_t>(k & ~(kEdge - 1)); };
-  return {along(key.x), along(key.y), along(key.z)};
+  return make_key(key.x & ~(kEdge - 1), key.y & ~(kEdge - 1), key.z & ~(kEdge - 1));
 }
 
 bool by_corner(const Cube& a, const Cube& b) { return a.corner < b.corner; }
@@ -51,7 +52,7 @@ std::vector<Cube> cubes_of(std::span<const VoxelKey> keys) {
   return cubes;
 }
 
-// How much one yaw may show, by sectors of the horizon in which the window that it shows may start.
+// How many targets one yaw may show, by the sector of the horizon in which the window of that yaw starts.
 class CubeView {
  public:
   explicit CubeView(const GoalQuery& query)
@@ -62,7 +63,7 @@ class CubeView {
       for (int y = -reach_; y <= reach_; ++y) sectors_.push_back(sectors_showing(x, y));
   }
 
-  // How many targets some cell of a cube may see at one yaw, at most.
+  // The most targets that some cell of a cube may see at one yaw.
   [[nodiscard]] std::size_t most(const Cube& from, std::span<const Cube> targets) const {
     const KeyBox box = cube(from.corner, kEdge);
     const auto number = [](int key, int from_key) { return (key - from_key) / kEdge; };
@@ -103,7 +104,7 @@ class CubeView {
     if (x == 0 && y == 0) return {};
     constexpr double kWidth = 2 * std::numbers::pi / kSectors, kRounding = 1e-6;
     const double middle = std::atan2(y, x);
-    double low = 0.0, high = 0.0;  // of what it spans around its middle, seen from all of the other
+    double low = 0.0, high = 0.0;  // of what it spans around its middle, seen from anywhere in the other cube
     for (const int dx : {1 - kEdge, kEdge - 1})
       for (const int dy : {1 - kEdge, kEdge - 1}) {
         const double turn =
@@ -124,65 +125,78 @@ class CubeView {
   std::vector<Sectors> sectors_;  // by offset along x and y
 };
 
-// What cells could be worth at most: as if each saw all that one yaw may show to some cell of its cube.
-struct Prospects {
+// Upper bounds of what cells are worth: as if each saw all that one yaw may show to some cell of its cube.
+struct UpperBounds {
   std::vector<std::size_t> cube;  // of each cell
   std::size_t cubes = 0;
-  std::vector<double> gain, quality;  // of each cell, no less than what counting it would show
+  std::vector<double> gain, quality;  // of each cell
 };
 
-Prospects prospects_of(const GoalQuery& query, std::span<const VoxelKey> cells) {
+UpperBounds upper_bounds(const GoalQuery& query, std::span<const VoxelKey> cells) {
   const CubeView view(query);
   const std::vector<Cube> targets = cubes_of(query.targets);
   std::vector<Cube> cubes = cubes_of(cells);
   tbb::parallel_for(std::size_t{0}, cubes.size(),
                     [&](std::size_t i) { cubes[i].count = view.most(cubes[i], targets); });
-  Prospects result{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size()),
-                   std::vector<double>(cells.size())};
+  UpperBounds bounds{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size()),
+                     std::vector<double>(cells.size())};
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
     const auto cube = std::lower_bound(cubes.begin(), cubes.end(), Cube{corner_of(cells[i])}, by_corner);
     const double distance = query.distance(cells[i]);
-    result.cube[i] = static_cast<std::size_t>(cube - cubes.begin());
+    bounds.cube[i] = static_cast<std::size_t>(cube - cubes.begin());
     if (!query.far_enough(distance)) return;
-    result.gain[i] = static_cast<double>(cube->count);
-    result.quality[i] = query.quality(distance, result.gain[i]);
+    bounds.gain[i] = static_cast<double>(cube->count);
+    bounds.quality[i] = query.quality(distance, bounds.gain[i]);
   });
-  return result;
+  return bounds;
 }
 
-// The best prospects, each of another cube.
-std::vector<VoxelKey> most_promising(const GoalQuery& query, std::span<const VoxelKey> cells,
-                                     const Prospects& prospects) {
-  std::vector<std::size_t> best(prospects.cubes, cells.size());
+// The cells with the best bounds, each of another cube.
+std::vector<VoxelKey> cells_to_count(const GoalQuery& query, std::span<const VoxelKey> cells,
+                                     const UpperBounds& bounds) {
+  std::vector<std::size_t> best(bounds.cubes, cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    std::size_t& there = best[prospects.cube[i]];
-    if (there == cells.size() || prospects.quality[i] > prospects.quality[there]) there = i;
+    std::size_t& there = best[bounds.cube[i]];
+    if (there == cells.size() || bounds.quality[i] > bounds.quality[there]) there = i;
   }
   const auto end = best.begin() + static_cast<std::ptrdiff_t>(std::min(kCounted, best.size()));
   std::partial_sort(best.begin(), end, best.end(), [&](std::size_t a, std::size_t b) {
-    const bool enough = query.enough(prospects.gain[a]);
-    if (enough != query.enough(prospects.gain[b])) return enough;
-    return prospects.quality[a] > prospects.quality[b] ||
-           (prospects.quality[a] == prospects.quality[b] && a < b);
+    const bool enough = query.enough(bounds.gain[a]);
+    if (enough != query.enough(bounds.gain[b])) return enough;
+    return bounds.quality[a] > bounds.quality[b] || (bounds.quality[a] == bounds.quality[b] && a < b);
   });
-  std::vector<VoxelKey> promising;
-  for (auto i = best.begin(); i != end; ++i) promising.push_back(cells[*i]);
-  return promising;
+  std::vector<VoxelKey> chosen;
+  for (auto i = best.begin(); i != end; ++i) chosen.push_back(cells[*i]);
+  return chosen;
 }
 
 }  // namespace
 
+std::vector<VoxelKey> spaced_cells(std::span<const VoxelKey> cells, int stride, const VoxelKey& robot,
+                                   int surroundings) {
+  if (stride <= 1 || cells.empty()) return {cells.begin(), cells.end()};
+  const auto cube = [stride](const VoxelKey& key) {
+    return make_key(key.x / stride, key.y / stride, key.z / stride);
+  };
+  const KeyBox bounds = bounds_of(cells), near = grown({robot, robot}, surroundings);
+  BoxArray<std::uint8_t> taken({cube(bounds.min), cube(bounds.max)});
+  std::vector<VoxelKey> chosen;
+  for (const VoxelKey& key : cells)
+    if (std::exchange(taken[cube(key)], 1) == 0 || near.contains(key)) chosen.push_back(key);
+  return chosen;
+}
+
 PossibleGoals possible_goals(const GoalQuery& query, std::span<const VoxelKey> cells) {
-  const Prospects prospects = prospects_of(query, cells);
+  const UpperBounds bounds = upper_bounds(query, cells);
+  const auto image = render_cells(query, cells_to_count(query, cells, bounds), all_targets(query));
   PossibleGoals possible;
-  const ViewQualityImage image = render_cells(query, most_promising(query, cells, prospects), all_targets(query));
   possible.counted = best_cell(query, image);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (prospects.quality[i] <= 0.0) continue;
+    if (bounds.quality[i] <= 0.0) continue;
     if (possible.counted) {
-      RenderedCell at_best = *possible.counted;  // of its key, too: who draws level stays in
-      at_best.gain = prospects.gain[i];
-      at_best.quality = prospects.quality[i];
+      RenderedCell at_best = *possible.counted;  // with its key, too: cells of the same quality stay in
+      at_best.gain = bounds.gain[i];
+      at_best.quality = bounds.quality[i];
       if (better(query, *possible.counted, at_best)) continue;
     }
     possible.cells.push_back(cells[i]);

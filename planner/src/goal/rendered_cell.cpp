@@ -1,4 +1,4 @@
-#include "goal/rendered_goal.hpp"
+#include "goal/rendered_cell.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -13,11 +13,11 @@ namespace {
 struct Candidate {
   RenderedCell rated;
   double most = 0.0;       // quality, if all that was not drawn were visible
-  bool undecided = false;  // targets were left out, so that the image's gain is an estimate
+  bool undecided = false;  // some targets were not drawn, so that the image's gain is an estimate
 };
 
-// Estimates first; where they are zero, what may be hidden in them.
-bool more_promising(const GoalQuery& query, const Candidate& a, const Candidate& b) {
+// By the estimate; where it is zero, by what may be hidden in it.
+bool better_candidate(const GoalQuery& query, const Candidate& a, const Candidate& b) {
   const bool enough = query.enough(a.rated.gain);
   if (enough != query.enough(b.rated.gain)) return enough;
   if (a.rated.quality != b.rated.quality) return a.rated.quality > b.rated.quality;
@@ -36,19 +36,16 @@ std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQuality
     candidate.most = query.quality(candidate.rated.distance, value.population);
   });
   std::erase_if(candidates, [&](const Candidate& candidate) {
-    const bool hopeless = candidate.rated.gain <= 0.0 && !candidate.undecided;
-    return hopeless || !query.far_enough(candidate.rated.distance);
+    const bool sees_none = candidate.rated.gain <= 0.0 && !candidate.undecided;
+    return sees_none || !query.far_enough(candidate.rated.distance);
   });
   return candidates;
 }
 
-std::optional<RenderedCell> best_of(const GoalQuery& query, const ViewQualityImage& image,
-                                    const VoxelKey* containing) {
+std::optional<RenderedCell> best_of(const GoalQuery& query, std::span<const Candidate> candidates) {
   std::optional<RenderedCell> best;
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    const RenderedCell rated = rate(query, image, i, containing);
+  for (const auto& [rated, most, undecided] : candidates)
     if (rated.gain > 0.0 && (!best || better(query, rated, *best))) best = rated;
-  }
   return best;
 }
 
@@ -70,7 +67,7 @@ RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::si
   std::uint64_t hits = value.hits;
   if (query.bins() != 0 && (value.hits != 0 || containing != nullptr)) {
     std::optional<double> azimuth;
-    if (containing != nullptr) azimuth = GoalQuery::yaw_along(query.offset(rated.cell, *containing));
+    if (containing != nullptr) azimuth = yaw_along(query.offset(rated.cell, *containing));
     const AzimuthWindow window = best_window(image.bin_hits(index), query.view.horizontal, azimuth);
     hits = window.hits;
     rated.yaw = window.yaw;
@@ -100,25 +97,21 @@ std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityI
   std::vector<Candidate> candidates = list_candidates(query, image, containing);
   const bool exact = std::none_of(candidates.begin(), candidates.end(),
                                   [](const Candidate& candidate) { return candidate.undecided; });
+  if (exact || query.options.refined == 0) return best_of(query, candidates);
   std::optional<RenderedCell> best;
-  if (exact || query.options.refined == 0) {
-    for (const Candidate& candidate : candidates)
-      if (candidate.rated.gain > 0.0 && (!best || better(query, candidate.rated, *best)))
-        best = candidate.rated;
-    return best;
-  }
   std::vector<VoxelKey> cells;
   auto begin = candidates.begin();
   for (auto count = static_cast<std::size_t>(query.options.refined); begin != candidates.end(); count *= 4) {
-    const auto left = static_cast<std::size_t>(candidates.end() - begin);
-    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(count, left));
-    std::partial_sort(
-        begin, end, candidates.end(),
-        [&query](const Candidate& a, const Candidate& b) { return more_promising(query, a, b); });
+    const auto remaining = static_cast<std::size_t>(candidates.end() - begin);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(count, remaining));
+    std::partial_sort(begin, end, candidates.end(), [&query](const Candidate& a, const Candidate& b) {
+      return better_candidate(query, a, b);
+    });
     if (best && (query.enough(best->gain) || !query.enough(begin->rated.gain))) break;
     cells.clear();
     for (auto candidate = begin; candidate != end; ++candidate) cells.push_back(candidate->rated.cell);
-    const auto found = best_of(query, render_cells(query, cells, all_targets(query)), containing);
+    const auto image_of_all = render_cells(query, cells, all_targets(query));
+    const auto found = best_of(query, list_candidates(query, image_of_all, containing));
     if (found && (!best || better(query, *found, *best))) best = found;
     begin = end;
   }

@@ -1,10 +1,14 @@
-// Rendering only the cells that may be the goal, against rendering all of them.
+// The cells that are rendered: some that stand for all, and only those that may be the goal, against all.
+
+#include "goal/viewpoint_candidates.hpp"
 
 #include "planner/goal/goal_room.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <set>
 #include <vector>
 
@@ -18,6 +22,30 @@ using planner::RenderedCell;
 using planner::TeamMember;
 
 constexpr int kAllCells = 1 << 30;
+
+TEST(SpacedCells, AreTheFirstOfEachCubeAndAllAroundTheRobot) {
+  Random random(3);
+  for (int round = 0; round < 60; ++round) {
+    const int x = random.one_in(2) ? 0 : 32700, stride = random.below(5), surroundings = random.below(6);
+    std::vector<VoxelKey> cells;
+    for_each_key({make_key(x, 500, 65520), make_key(x + 15, 515, 65535)}, [&](const VoxelKey& key) {
+      if (random.one_in(4)) cells.push_back(key);
+    });
+    std::sort(cells.begin(), cells.end());
+    const VoxelKey robot = random.pick(cells);
+    std::set<std::array<int, 3>> cubes;
+    std::vector<VoxelKey> expected;
+    for (const VoxelKey& cell : cells) {
+      const bool near = std::abs(cell.x - robot.x) <= surroundings &&
+                        std::abs(cell.y - robot.y) <= surroundings &&
+                        std::abs(cell.z - robot.z) <= surroundings;
+      const int edge = std::max(stride, 1);
+      if (cubes.insert({cell.x / edge, cell.y / edge, cell.z / edge}).second || near)
+        expected.push_back(cell);
+    }
+    EXPECT_EQ(planner::detail::spaced_cells(cells, stride, robot, surroundings), expected);
+  }
+}
 
 struct Case {
   double lambda, advance;

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "assignment/unseen_frontiers.hpp"
+#include "goal/goal_query.hpp"
+
+#include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/planner/goal_selection.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// What a team knows between the steps, and how it decides one.
+struct GoalSelection::State {
+  using Keys = std::vector<VoxelKey>;  // sorted, each once
+
+  struct Member {
+    TravelCorridor corridor;
+    ViewQualityImage image;
+    Keys changed = {};                                        // since the image was last rendered
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();       // [m]
+    VoxelKey cell = {};                                       // of the position
+    Keys assigned = {};                                       // frontiers to choose a goal for
+    Keys released = {};                                       // assigned frontiers that no goal of its sees
+    Keys targets = {};                                        // frontiers of its last choice
+    std::vector<FrontierViewpoint> previous_viewpoints = {};  // of the assigned frontiers, sorted
+    detail::UnseenFrontiers unseen = {};
+    Keys blocked = {};      // cells it does not go through, in any order
+    bool rendered = false;  // whether the image is that of `targets`
+  };
+
+  // One step.
+  struct Step {
+    const RayCaster& caster;
+    const VoxelGrid& grid;
+    TeamGoals& result;
+    std::vector<bool> pending = {};  // robots that have to choose, or to choose again
+  };
+
+  std::vector<TeamMember> team;
+  Lattice lattice;
+  KeyBox bounds;
+  bool exclusive;  // a frontier is one robot's; else every robot goes for all that it sees
+  std::vector<Member> members = {};
+
+  void update(const MapChange& change, std::span<const Pose> poses);
+  void assign(Step& step, const Keys& frontiers);
+  void decide(Step& step);
+
+  [[nodiscard]] bool can_move(std::size_t robot) const {
+    return members[robot].corridor.state() == CorridorState::kReady;
+  }
+  [[nodiscard]] detail::GoalQuery query(const RayCaster& caster, std::size_t robot,
+                                        std::span<const VoxelKey> targets) const;
+
+ private:
+  void renew_corridor(std::size_t robot);
+  [[nodiscard]] Keys seen_by(const Step& step, std::size_t robot, const Keys& frontiers) const;
+  [[nodiscard]] std::optional<RenderedCell> choose(const Step& step, std::size_t robot, const Keys& targets);
+  [[nodiscard]] std::optional<RenderedCell> render(const detail::GoalQuery& query, const VoxelGrid& grid,
+                                                   Member& member) const;
+  void decide(Step& step, std::size_t robot);
+  [[nodiscard]] std::size_t release(Step& step, std::size_t robot);
+  void take_uncovered(Step& step, std::size_t robot);
+  void set_goal(Goal& goal, std::size_t robot, const RenderedCell& best) const;
+};
+
+}  // namespace frontlux::planner
