@@ -86,7 +86,7 @@ class Run {
                      planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
         folder_(run.folder) {}
 
-  /// Begins the tables anew, with the steps so far. @pre called before `begin` and `step`
+  /// Writes the tables up to now. @pre called before `begin` and `step`
   void open_files(std::span<const RecordedStep> steps) {
     files_.emplace(folder_, setup_.head);
     for (const RecordedStep& step : steps) files_->add(step);
@@ -109,13 +109,12 @@ class Run {
                      " the robots see another world than the recorded one; has " + setup_.head.world +
                      " changed since?");
     last_ = recorded;
-    begun_ = true;
     collisions_ = robots_.total().physical;
   }
 
   [[nodiscard]] const Exploration& exploration() const { return exploration_; }
   [[nodiscard]] const RunFiles& files() const { return *files_; }
-  [[nodiscard]] const RecordedStep& last() const { return last_; }
+  [[nodiscard]] const RecordedStep& last() const { return *last_; }
 
  private:
   [[nodiscard]] planner::Drive drive() {
@@ -126,20 +125,17 @@ class Run {
   void note(ExplorationStep step) {
     const std::uint64_t before = collisions_;
     collisions_ = robots_.total().physical;
-    last_ = with_known_voxels(std::move(step), step_known(), *setup_.truth);
-    last_.collisions = collisions_ - before;
-    begun_ = true;
-    files_->add(last_);
+    last_ = with_known_voxels(std::move(step), last_ ? &*last_ : nullptr, *setup_.truth);
+    last_->collisions = collisions_ - before;
+    files_->add(*last_);
   }
-  [[nodiscard]] const RecordedStep* step_known() const { return begun_ ? &last_ : nullptr; }
 
   ExploreSetup& setup_;
   sim::SimulatedRobots robots_;
   Exploration exploration_;
   fs::path folder_;
   std::optional<RunFiles> files_;
-  RecordedStep last_;
-  bool begun_ = false;
+  std::optional<RecordedStep> last_;
   std::uint64_t collisions_ = 0;
 };
 
@@ -174,8 +170,8 @@ void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSu
   for (std::size_t r = 0; r < setup.head.robots.size(); ++r)
     out += row(setup.head.robots[r].robot.name, "travelled " + fixed(sums.travelled[r], 1) + " m");
   out += row("collisions", std::to_string(sums.collisions)) +
-         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s a step, max " +
-                             fixed(sums.planning_max, 3) + " s") +
+         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, max " + fixed(sums.planning_max, 3) +
+                             " s per step") +
          row("time", fixed(seconds, 1) + " s");
   std::cout << out;
 }

@@ -20,21 +20,26 @@ using planner::RobotStep;
 constexpr const char* kSteps = "steps.csv";
 constexpr const char* kPaths = "paths.csv";
 
-// A line of a table with commas, cell by cell.
+// A line of a table with commas.
 class Row {
  public:
-  Row& add(const std::string& text) {
-    (line_.empty() ? line_ : line_ += ',') += text;
+  template <class... Cells>
+  Row& add(const Cells&... cells) {
+    ((line_ += (line_.empty() ? "" : ",") + cell_text(cells)), ...);
     return *this;
-  }
-  Row& add(double number) { return add(to_text(number)); }
-  Row& add(std::uint64_t number) { return add(std::to_string(number)); }
-  Row& add(const Pose& pose) {
-    return add(pose.position.x()).add(pose.position.y()).add(pose.position.z()).add(pose.yaw);
   }
   [[nodiscard]] std::string line() const { return line_ + '\n'; }
 
  private:
+  static std::string cell_text(std::string_view text) { return std::string(text); }
+  static std::string cell_text(const Pose& pose) {
+    const Eigen::Vector3d& p = pose.position;
+    return Row().add(p.x(), p.y(), p.z(), pose.yaw).line_;
+  }
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  static std::string cell_text(Number number) { return to_text(number); }
+
   std::string line_;
 };
 
@@ -52,11 +57,8 @@ std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead
     const RobotStep& robot = recorded.step.robots[r];
     for (std::size_t i = 0; i < robot.planned.size(); ++i)
       rows += Row()
-                  .add(recorded.step.number)
-                  .add(quoted_cell(head.robots[r].robot.name))
-                  .add(std::uint64_t{i})
-                  .add(std::uint64_t{i < robot.travelled ? 1U : 0U})
-                  .add(robot.planned[i])
+                  .add(recorded.step.number, quoted_cell(head.robots[r].robot.name), i,
+                       i < robot.travelled ? 1 : 0, robot.planned[i])
                   .line();
   }
   return rows;
@@ -134,25 +136,18 @@ void RunFiles::add(const RecordedStep& recorded) {
     sums_.travelled[r] += robot.length;
     if (!robot.blocked.empty()) ++sums_.held_back;
     Row row;
-    row.add(step.number)
-        .add(quoted_cell(head_.robots[r].robot.name))
-        .add(sums_.observable)
-        .add(sums_.bounding);
-    row.add(fraction(recorded.known[r].observable, head_.observable));
-    row.add(fraction(recorded.known[r].bounding, head_.bounding));
-    row.add(std::uint64_t{step.frontiers}).add(std::uint64_t{step.unassigned});
-    row.add(std::uint64_t{step.abandoned});
-    row.add(step.number == 0 ? "start" : std::string(planner::name_of(robot.goal.state)));
-    row.add(std::uint64_t{robot.goal.assigned}).add(std::uint64_t{robot.goal.released});
-    row.add(std::uint64_t{robot.goal.received}).add(std::uint64_t{robot.goal.left_over});
+    row.add(step.number, quoted_cell(head_.robots[r].robot.name), sums_.observable, sums_.bounding,
+            fraction(recorded.known[r].observable, head_.observable),
+            fraction(recorded.known[r].bounding, head_.bounding), step.frontiers, step.unassigned,
+            step.abandoned, step.number == 0 ? "start" : planner::name_of(robot.goal.state),
+            robot.goal.assigned, robot.goal.released, robot.goal.received, robot.goal.left_over);
     if (robot.goal.pose)
-      row.add(*robot.goal.pose).add(robot.goal.gain);
+      row.add(*robot.goal.pose, robot.goal.gain);
     else
-      for (int i = 0; i < 5; ++i) row.add(std::string());
-    row.add(std::string(planner::name_of(robot.path)));
-    row.add(std::uint64_t{robot.planned.size()}).add(robot.length).add(sums_.travelled[r]);
-    row.add(robot.gain_tangent).add(robot.gain_predicted).add(robot.gained);
-    row.add(std::uint64_t{robot.still_unknown.size()}).add(recorded.collisions).add(step.rays);
+      row.add("", "", "", "", "");
+    row.add(planner::name_of(robot.path), robot.planned.size(), robot.length, sums_.travelled[r],
+            robot.gain_tangent, robot.gain_predicted, robot.gained, robot.still_unknown.size(),
+            recorded.collisions, step.rays);
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
       if (planner::name_of(static_cast<planner::Phase>(phase)) == "moving") row.add(step.planning_seconds());
       row.add(step.seconds[phase]);

@@ -1,14 +1,15 @@
 #include "explore/run_json.hpp"
 
-#include "explore/machine.hpp"
-
 #include <frontlux/file.hpp>
 
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <fstream>
 #include <numeric>
 #include <ostream>
+#include <thread>
 
 namespace frontlux::app {
 namespace {
@@ -21,6 +22,26 @@ std::string goal_rules(const std::vector<planner::TeamMember>& team) {
                     [&](const planner::TeamMember& member) { return member.options.rule == rule.value; }))
       names.append(names.empty() ? "" : "+").append(rule.name);
   return names;
+}
+
+// The processor's name and the number of its threads, for people.
+std::string machine_name() {
+  std::string name = "unknown processor";
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
+      name = line.substr(line.find(": ") + 2);
+      break;
+    }
+  return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
+}
+
+// Most memory that this process has held so far [MB].
+double peak_memory_mb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  constexpr double kPerMegabyte = 1000.0 / 1.024;  // the kernel counts kibibytes
+  return static_cast<double>(usage.ru_maxrss) / kPerMegabyte;
 }
 
 }  // namespace
