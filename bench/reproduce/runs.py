@@ -14,7 +14,7 @@ STEP_LIMIT = 1000
 COMPARED, COMPARED_SEEDS = ("team", "uav"), 5  # with at least so many seeds
 LONGEST_RUN = 3600  # [s], after which a run counts as hanging
 
-DEFAULTS = {"mode": "default", "goal": "render", "distribute": "on", "optimize": "on", "caster": "embree",
+DEFAULTS = {"mode": "default", "goal": "render", "assign": "on", "optimize": "on", "caster": "embree",
             "robots": {"uav", "ugv"}}
 
 
@@ -29,7 +29,7 @@ VARIANTS = {
     "uav": Variant("UAV alone", ("--team", "uav"), {"robots": {"uav"}}),
     "ugv": Variant("UGV alone", ("--team", "ugv"), {"robots": {"ugv"}}),
     "unoptimised": Variant("no optimisation", ("--optimize", "off"), {"optimize": "off"}),
-    "undistributed": Variant("no distribution", ("--distribute", "off"), {"distribute": "off"}),
+    "unassigned": Variant("no assignment", ("--assign", "off"), {"assign": "off"}),
     "paper": Variant("paper mode", ("--mode", "paper"), {"mode": "paper", "goal": None}),
     "cluster": Variant("cluster goals", ("--goal", "cluster"), {"goal": "cluster"}),
     # The nearest place of all is always beside the robot: by steps of 0.6 m most runs would not end.

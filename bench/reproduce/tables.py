@@ -70,12 +70,12 @@ def uav_efficiency(runs):
 def contribution_table(results):
     rows = []
     for world in WORLDS:
-        before, after, mixed = (results.of(world, v) for v in ("unoptimised", "team", "undistributed"))
+        before, after, mixed = (results.of(world, v) for v in ("unoptimised", "team", "unassigned"))
         rows.append([world, "{} / {} %".format(*paper.UAV_SHARE[world]),
                      *(spread_of(spread(r.share_of("uav") for r in runs), 0, 100, " %") for runs in (before, after)),
                      *(mean_of(uav_efficiency(runs), 2) for runs in (mixed, after, results.of(world, "uav")))])
     return table(["world", "UAV's share, paper, before / after", "ours, before", "ours, after",
-                  "% per 100 m: no distribution", "team", "UAV alone"], rows)
+                  "% per 100 m: no assignment", "team", "UAV alone"], rows)
 
 
 def optimisation_table(results):
@@ -204,7 +204,7 @@ The paper: 30 to 54 % fewer steps than the UAV alone; the UAV flies 1,147 m alon
 ## Contributions
 
 A voxel is the robot's that made it known first. Before: without optimisation. The paper has the UAV's efficiency
-grow by 24 % with distribution, in the factory; per 100 m is one reading of that.
+grow by 24 % with assignment, in the factory; per 100 m is one reading of that.
 
 {contribution_table(results)}
 {figure("contributions", "What each robot made known, against steps")}

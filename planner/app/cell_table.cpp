@@ -1,7 +1,8 @@
 #include "cell_table.hpp"
 
-#include "draw/color_scale.hpp"
+#include "draw/colors.hpp"
 #include "text.hpp"
+
 #include <frontlux/file.hpp>
 
 #include <algorithm>
@@ -12,12 +13,6 @@
 
 namespace frontlux::app {
 namespace {
-
-void write(const std::filesystem::path& file, const std::string& bytes) {
-  write_file(file, [&](std::ostream& stream) {
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  });
-}
 
 // Little-endian on every machine.
 void append(std::string& bytes, std::uint32_t word) {
@@ -31,14 +26,13 @@ void write_csv(const std::filesystem::path& file, const Lattice& lattice,
                std::span<const planner::RenderedCell> cells) {
   std::string out = "key_x,key_y,key_z,x,y,z,distance,gain,standard_error,quality,hits,yaw\n";
   for (const planner::RenderedCell& cell : cells) {
-    const VoxelKey& key = cell.cell;
-    for (const std::uint16_t k : {key.x, key.y, key.z}) out += std::to_string(k) + ',';
-    for (const std::uint16_t k : {key.x, key.y, key.z}) out += rounded(lattice.center(k)) + ',';
+    for (const std::uint16_t k : {cell.cell.x, cell.cell.y, cell.cell.z}) out += std::to_string(k) + ',';
+    for (const double metres : lattice.exact_center(cell.cell)) out += rounded(metres) + ',';
     for (const double number : {cell.distance, cell.gain, cell.standard_error, cell.quality})
       out += to_text(number) + ',';
     out += std::to_string(cell.hits) + ',' + to_text(cell.yaw) + '\n';
   }
-  write(file, out);
+  write_file(file, [&](std::ostream& stream) { stream << out; });
 }
 
 void write_ply(const std::filesystem::path& file, const Lattice& lattice,
@@ -57,11 +51,11 @@ void write_ply(const std::filesystem::path& file, const Lattice& lattice,
           cell.distance, cell.gain, cell.standard_error, cell.quality, cell.yaw})
       append(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
     append(out, cell.hits);
-    const Color color = color_of_share(best > 0.0 ? cell.quality / best : 0.0);
+    const Color color = color_of(best > 0.0 ? cell.quality / best : 0.0);
     for (const std::uint8_t part : {color.red, color.green, color.blue})
       out.push_back(static_cast<char>(part));
   }
-  write(file, out);
+  write_file(file, [&](std::ostream& stream) { stream << out; });
 }
 
 }  // namespace frontlux::app

@@ -1,58 +1,66 @@
 #include "bad_input.hpp"
-#include "commands/cast_command.hpp"
-#include "commands/explore_command.hpp"
-#include "commands/info_command.hpp"
-#include "explore/interrupt.hpp"
-#include "commands/map_command.hpp"
-#include "commands/plan_command.hpp"
-#include "commands/render_command.hpp"
-#include "commands/report_command.hpp"
-#include "commands/scan_command.hpp"
-#include "commands/world_command.hpp"
+#include "commands/commands.hpp"
+#include "interrupt.hpp"
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <array>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
-#include <string_view>
-#include <vector>
+#include <utility>
 
 namespace {
 
 constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
 
-// CLI11 takes "-.5,1,2" and "-inf" for options of their own: bind such words to the option before them.
-std::vector<std::string> words_of(int argc, const char* const* argv) {
-  constexpr std::array<std::string_view, 25> kNumeric = {
-      "--from",   "--to",         "--direction",    "--range",  "--start",   "--ground",     "--scale",
-      "--seed",   "--resolution", "--bounds",       "--at",     "--yaw",     "--iterations", "--min-height",
-      "--floor",  "--noise",      "--dropout",      "--sweep",  "--epsilon", "--max-steps",  "--threads",
-      "--lambda", "--advance",    "--min-distance", "--samples"};
-  std::vector<std::string> words;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const bool bound = !words.empty() && word.size() > 1 && word[0] == '-' && word[1] != '-' &&
-                       std::find(kNumeric.begin(), kNumeric.end(), words.back()) != kNumeric.end();
-    if (bound)
-      words.back().append("=").append(word);
-    else
-      words.emplace_back(word);
+// "--range METRES   Longest distance to a voxel's centre [10]", or "(required)".
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_type_size() == 0 || option->get_type_name().empty()) return "";
+    return " " + option->get_type_name();
   }
-  return words;
-}
+  std::string make_option_desc(const CLI::Option* option) const override {
+    if (option->get_required()) return option->get_description() + " (required)";
+    const std::string value = option->get_default_str();
+    return option->get_description() + (value.empty() ? "" : " [" + value + "]");
+  }
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
+    for (std::size_t gap; (gap = help.find("\n\n\n")) != std::string::npos;) help.erase(gap, 1);
+    return help;
+  }
+};
 
 int complain(const std::string& message, int code) {
   std::cerr << "frontlux: " << message << '\n';
   return code;
 }
 
+// What is wrong with the words. CLI11 would rather name the option that a misspelt one leaves missing.
+std::string describe(const CLI::ParseError& error, const CLI::App& app) {
+  const auto strays = app.remaining(true);
+  const auto commands = app.get_subcommands();
+  if (strays.empty()) {
+    const bool both = dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;
+    return error.what() + std::string(both ? "; give only one of them" : "");
+  }
+  const std::string& stray = strays.front();
+  const char* kind = stray.starts_with("-") ? "unknown option '"
+                     : commands.empty()     ? "unknown command '"
+                                            : "unexpected argument '";
+  return kind + stray + "'";
+}
+
 int run(int argc, const char* const* argv) {
-  CLI::App app("Makes OctoMap maps, asks what can be seen in them, and lets robots explore.");
+  CLI::App app("Cast rays in OctoMap maps, make such maps, and let simulated robots explore.");
   app.name("frontlux");
+  const auto formatter = std::make_shared<HelpFormatter>();
+  formatter->label("SUBCOMMAND", "COMMAND");
+  formatter->label("Positionals", "Arguments");
+  app.formatter(formatter);
   app.set_version_flag("--version", std::string("frontlux ") + FRONTLUX_VERSION, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
   app.require_subcommand(1);
@@ -63,8 +71,8 @@ int run(int argc, const char* const* argv) {
       "  frontlux world station --seed 3 -o station.ply\n"
       "  frontlux scan station --seed 3 -o station.bt\n"
       "  frontlux explore station --seed 3 -o station_run\n"
-      "Each command's --help says more. Lengths are in metres. Exit code: 0 if the question was answered,\n"
-      "2 if the input was not usable, 130 after Ctrl-C, 1 if anything else went wrong.");
+      "Run frontlux COMMAND --help for the options of a command. Lengths are in metres, angles in radians.\n"
+      "Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other failure.");
   frontlux::app::add_info_command(app);
   frontlux::app::add_cast_command(app);
   frontlux::app::add_world_command(app);
@@ -75,17 +83,13 @@ int run(int argc, const char* const* argv) {
   frontlux::app::add_explore_command(app);
   frontlux::app::add_report_command(app);
   try {
-    auto words = words_of(argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    app.parse(std::move(words));
+    app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
     app.exit(wish);
   } catch (const CLI::ParseError& error) {
-    // CLI11 would rather name the option that a misspelt one leaves missing.
-    const auto strange = app.remaining(true);
-    const std::string what =
-        strange.empty() ? error.what() : "'" + strange.front() + "' is no option or command that fits here";
-    return complain(what + "; see frontlux --help", kBadInput);
+    const auto commands = app.get_subcommands();
+    const std::string command = commands.empty() ? "" : commands.front()->get_name() + " ";
+    return complain(describe(error, app) + "; see frontlux " + command + "--help", kBadInput);
   }
   if (!std::cout.flush()) return complain("standard output cannot be written to", kFailure);
   return 0;
@@ -105,6 +109,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(error.what(), kFailure);
   } catch (...) {
-    return complain("something unknown went wrong", kFailure);
+    return complain("unknown error", kFailure);
   }
 }

@@ -2,12 +2,13 @@
 
 #include "bad_input.hpp"
 
+#include <frontlux/key_box.hpp>
+
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
 #include <new>
 #include <stdexcept>
-#include <utility>
 #include <variant>
 
 namespace frontlux::app {
@@ -42,6 +43,31 @@ TreeSize tree_size(const MapFile& map) {
 
 VoxelGrid make_voxel_grid(const MapFile& map) {
   return std::visit([](const auto& tree) { return frontlux::make_voxel_grid(*tree); }, map.tree);
+}
+
+std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, planner::CasterKind kind) {
+  if (kind == planner::CasterKind::kOctomap)
+    return std::visit([](const auto& tree) { return make_octomap_ray_caster(*tree); }, map.tree);
+  return kind == planner::CasterKind::kGrid ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
+}
+
+std::uint64_t volume(const KeyBox& box) {
+  const auto edge = [](int min, int max) { return static_cast<std::uint64_t>(max - min + 1); };
+  const auto& [min, max] = box;
+  return edge(min.x, max.x) * edge(min.y, max.y) * edge(min.z, max.z);
+}
+
+std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds) {
+  constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;  // around large free blocks, one brick thick
+  constexpr int kBrickEdge = 1 << Brick::kLog2;
+  std::uint64_t around = 0;
+  grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    if (brick != nullptr || state != Occupancy::kFree || block.log2_edge <= Brick::kLog2) return;
+    const KeyBox free = cube(block.corner, 1 << block.log2_edge);
+    around += volume(*intersection(grown(free, kBrickEdge), bounds)) - volume(free);
+  });
+  if (around > kMostVoxels) return std::nullopt;
+  return planner::FrontierSet(grid, bounds);
 }
 
 }  // namespace frontlux::app

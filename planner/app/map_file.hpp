@@ -1,10 +1,15 @@
 #pragma once
 
 #include <frontlux/octomap.hpp>
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 
 namespace frontlux::app {
@@ -24,11 +29,25 @@ struct MapFile {
 struct TreeSize {
   std::uint64_t leaves = 0;
   std::uint64_t inner_nodes = 0;
-  std::uint64_t bytes = 0;  ///< by OctoMap's own reckoning, which leaves the allocator's share out
+  std::uint64_t bytes = 0;  ///< as OctoMap computes it, without what the allocator adds
 };
 
 [[nodiscard]] TreeSize tree_size(const MapFile& map);
 
 [[nodiscard]] VoxelGrid make_voxel_grid(const MapFile& map);
+
+/// @param map   outlives the caster
+/// @param grid  of the map
+[[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,
+                                                     planner::CasterKind kind);
+
+/// Number of voxels in a box.
+[[nodiscard]] std::uint64_t volume(const KeyBox& box);
+
+/// The frontiers of a map.
+/// @param bounds  known bounds of the grid
+/// @return nothing if the map's large free blocks have so wide a surface that looking at all of it would take
+/// too much time and memory
+[[nodiscard]] std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds);
 
 }  // namespace frontlux::app

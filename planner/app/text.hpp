@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <concepts>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -12,12 +14,10 @@ namespace frontlux::app {
 /// The shortest decimals that read back as the same number, in every locale.
 [[nodiscard]] std::string to_text(float number);
 [[nodiscard]] std::string to_text(double number);
+[[nodiscard]] std::string to_text(std::integral auto number) { return std::to_string(number); }
 
-/// A number for people: seven digits.
-[[nodiscard]] std::string rounded(double number);
-
-/// "12.3 MiB"
-[[nodiscard]] std::string to_text_bytes(std::size_t bytes);
+/// The double that is written with the same decimals as this float.
+[[nodiscard]] double as_written(float number);
 
 /// "1, 2, 3"
 [[nodiscard]] std::string to_text(const Eigen::Vector3f& point);
@@ -26,25 +26,16 @@ namespace frontlux::app {
 /// "occupied", "free", "unknown"
 [[nodiscard]] std::string to_text(Occupancy state);
 
+/// Numbers for people: seven significant digits; so many digits after the point; "12.3 MiB".
+[[nodiscard]] std::string rounded(double number);
+[[nodiscard]] std::string fixed(double number, int digits);
+[[nodiscard]] std::string bytes_text(std::size_t bytes);
+
+/// A fraction from 0 to 1 for people: "97.2 %". What is not all never reads as "100 %".
+/// @param digits after the point
+[[nodiscard]] std::string percent(double fraction, int digits = 1);
+
 /// A line of output: the label, padded, and what it names.
 [[nodiscard]] std::string row(std::string_view label, std::string_view value);
-
-/// A finite number.
-/// @param name of the option, for the message
-/// @throws BadInput
-[[nodiscard]] double parse_number(std::string_view name, std::string_view text);
-
-/// A finite number above 0 [m].
-/// @throws BadInput
-[[nodiscard]] double parse_length(std::string_view name, std::string_view text);
-
-/// The edge of a map's voxel, 1 mm to 1 km, from the option --resolution.
-/// @throws BadInput
-[[nodiscard]] double parse_resolution(std::string_view text);
-
-/// Three finite numbers with commas between them.
-/// @param name of the option, for the message
-/// @throws BadInput
-[[nodiscard]] Eigen::Vector3f parse_vector(std::string_view name, std::string_view text);
 
 }  // namespace frontlux::app

@@ -8,16 +8,11 @@
 #include <frontlux/sim/ground.hpp>
 #include <frontlux/sim/map_world.hpp>
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
 namespace frontlux::app {
 namespace {
@@ -32,7 +27,7 @@ WorldKind kind_of(const std::string& name) {
     std::string names;
     for (const auto& world : sim::built_in_worlds())
       names.append(names.empty() ? "" : ", ").append(world.name);
-    throw BadInput("'" + name + "' is neither a file nor a built-in world; those are " + names);
+    throw BadInput(quote(name) + " is neither a file nor a built-in world; built-in worlds: " + names);
   }
   return WorldKind::kMesh;
 }
@@ -40,22 +35,12 @@ WorldKind kind_of(const std::string& name) {
 void check_options(const WorldSource& source, WorldKind kind) {
   const auto only_for = [&](bool given, WorldKind right, const char* option, const char* what) {
     if (given && kind != right)
-      throw BadInput(std::string(option) + " is for " + what + ", and " + source.world + " is none");
+      throw BadInput(std::string(option) + ": " + source.world + " is not a " + what +
+                     "; leave the option out");
   };
-  only_for(source.seed.has_value(), WorldKind::kBuiltIn, "--seed", "built-in worlds");
-  only_for(source.scale.has_value(), WorldKind::kMesh, "--scale", "mesh files");
-  only_for(source.up.has_value(), WorldKind::kMesh, "--up", "mesh files");
-}
-
-sim::MeshOptions mesh_options(const WorldSource& source) {
-  sim::MeshOptions options;
-  if (source.scale) options.scale = parse_number("--scale", *source.scale);
-  if (options.scale <= 0.0) throw BadInput("--scale: " + *source.scale + " is not positive");
-  if (!source.up) return options;
-  if (*source.up != "x" && *source.up != "y" && *source.up != "z")
-    throw BadInput("--up: '" + *source.up + "' is not x, y or z");
-  options.up = static_cast<sim::UpAxis>((*source.up)[0] - 'x');
-  return options;
+  only_for(source.seed.has_value(), WorldKind::kBuiltIn, "--seed", "built-in world");
+  only_for(source.scale.has_value(), WorldKind::kMesh, "--scale", "mesh file");
+  only_for(source.up.has_value(), WorldKind::kMesh, "--up", "mesh file");
 }
 
 sim::World make_map_world(const std::string& file) {
@@ -86,21 +71,12 @@ double count_voxels(const WorldSource& source, const sim::World& world, WorldKin
   return voxels;
 }
 
-void put_start(const std::string& text, sim::World& world) {
-  const Eigen::Vector3f start = parse_vector("--start", text);
+void put_start(const Eigen::Vector3f& start, sim::World& world) {
   world.start = start.cast<double>();
   if (!world.bounds.contains(*world.start))
-    throw BadInput("--start: " + to_text(start) + " is outside of the world, which goes from " +
+    throw BadInput("--start: " + to_text(start) + " is outside the world, which extends from " +
                    to_text(Eigen::Vector3f(world.bounds.min().cast<float>())) + " to " +
                    to_text(Eigen::Vector3f(world.bounds.max().cast<float>())));
-}
-
-double align_ground(const WorldSource& source, sim::World& world) {
-  std::optional<double> ground;
-  if (*source.ground != "auto") ground = parse_number("--ground", *source.ground);
-  if (!ground && !world.start)
-    throw BadInput("--ground auto looks for the floor below the start: give --start, or the floor's height");
-  return sim::align_ground(world, ground, source.resolution);
 }
 
 }  // namespace
@@ -110,48 +86,51 @@ bool is_built_in_world(const std::string& name) {
   return std::any_of(worlds.begin(), worlds.end(), [&](const auto& world) { return world.name == name; });
 }
 
-std::uint64_t parse_seed(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
-    throw BadInput("--seed: '" + text + "' is not a whole number from 0 to 18446744073709551615");
-  return seed;
+void read(std::string_view word, GroundAlignment& ground) {
+  ground.align = word != "off";
+  ground.height.reset();
+  if (!ground.align || word == "auto") return;
+  try {
+    read(word, ground.height, kAnyNumber);
+  } catch (const BadInput&) {
+    throw BadInput(quote(word) + " is not auto, off or a height");
+  }
 }
 
-void add_world_options(CLI::App& command, WorldSource& source) {
-  command.add_option("--scale", source.scale, "Metres per unit of a mesh file");
-  command.add_option("--up", source.up, "Axis of a mesh file that points up: x, y or z");
-  command.add_option("--start", source.start,
-                     "Where robots start, x,y,z in metres, before the ground is aligned");
-  command.add_option(
-      "--ground", source.ground,
-      "Shift the world so that its floor, at this height or (auto) below the start, lies right "
-      "for mapping; the start and all heights shown are those after the shift");
+void add_world_options(Command& command, WorldSource& source, const char* ground_default) {
+  command.group("World");
+  command.add("--resolution", source.resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
+  command.add("--start", source.start, "X,Y,Z",
+              "Free point near which robots start, before the --ground shift");
+  command.add("--ground", source.ground, "auto|off|Z",
+              ("Shift the floor to just below a voxel boundary; auto: the floor below the start [" +
+               std::string(ground_default) + "]")
+                  .c_str());
+  command.add("--scale", source.scale, "METRES", "Length of a mesh file's unit [1]", kAboveZero);
+  command.add("--up", source.up, "Axis of a mesh file that points up [as the format defines, else z]");
 }
 
 SourcedWorld make_world(const WorldSource& source) {
-  if (!(source.resolution > 0.0))
-    throw BadInput("--resolution: " + rounded(source.resolution) + " is not positive");
   SourcedWorld sourced;
   sourced.kind = kind_of(source.world);
   check_options(source, sourced.kind);
-  try {
+  work_on(source.world, "give a larger --resolution", [&] {
     if (sourced.kind == WorldKind::kBuiltIn) {
-      sourced.seed = source.seed ? parse_seed(*source.seed) : 1;
+      sourced.seed = source.seed.value_or(1);
       sourced.world = sim::make_world(source.world, sourced.seed);
     } else {
       sourced.world = sourced.kind == WorldKind::kMap
                           ? make_map_world(source.world)
-                          : sim::read_mesh_world(source.world, mesh_options(source));
+                          : sim::read_mesh_world(source.world, {source.scale.value_or(1.0), source.up});
     }
     sourced.voxels = count_voxels(source, sourced.world, sourced.kind);
     if (source.start) put_start(*source.start, sourced.world);
-    if (source.ground) sourced.ground_shift = align_ground(source, sourced.world);
-  } catch (const BadInput&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw BadInput(error.what());
-  }
+    if (!source.ground || !source.ground->align) return;
+    if (!source.ground->height && !sourced.world.start)
+      throw BadInput(
+          "--ground: auto looks for the floor below the start; give --start, or the floor's height");
+    sourced.ground_shift = sim::align_ground(sourced.world, source.ground->height, source.resolution);
+  });
   return sourced;
 }
 

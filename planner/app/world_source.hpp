@@ -1,27 +1,36 @@
 #pragma once
 
+#include "command.hpp"
+
 #include <frontlux/sim/mesh_file.hpp>
 #include <frontlux/sim/world.hpp>
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <optional>
 #include <string>
-
-namespace CLI {
-class App;
-}
+#include <string_view>
 
 namespace frontlux::app {
 
+/// Whether a world is moved along z so that its floor lies right for mapping.
+struct GroundAlignment {
+  bool align = false;
+  std::optional<double> height = std::nullopt;  ///< [m] of the floor; nothing: it is below the start
+};
+/// "off", "auto" or a height. @throws BadInput
+void read(std::string_view word, GroundAlignment& ground);
+
 /// Where a world comes from, as the user names it.
 struct WorldSource {
-  std::string world;                  ///< a built-in world, or a mesh or OctoMap file
-  std::optional<std::string> seed;    ///< of a built-in world; 1 if not given
-  std::optional<std::string> scale;   ///< of a mesh file: metres per unit
-  std::optional<std::string> up;      ///< of a mesh file: x, y or z
-  std::optional<std::string> start;   ///< x,y,z [m], in the world's frame before the ground is aligned
-  std::optional<std::string> ground;  ///< align the floor: its height [m], or auto
-  double resolution = 0.3;            ///< [m] of the map that the world is for
+  std::string world;                      ///< a built-in world, or a mesh or OctoMap file
+  std::optional<std::uint64_t> seed;      ///< of a built-in world; 1 if not given
+  std::optional<double> scale;            ///< of a mesh file: metres per unit
+  std::optional<sim::UpAxis> up;          ///< of a mesh file
+  std::optional<Eigen::Vector3f> start;   ///< [m] in the world's frame before the ground is aligned
+  std::optional<GroundAlignment> ground;  ///< off if not given
+  double resolution = 0.3;                ///< [m] of the map that the world is for
 };
 
 enum class WorldKind { kBuiltIn, kMesh, kMap };
@@ -34,13 +43,11 @@ struct SourcedWorld {
   double voxels = 0.0;        ///< that its bounds hold
 };
 
-/// Adds the options that fill a source, but for the resolution and the seed, to a command.
-void add_world_options(CLI::App& command, WorldSource& source);
+/// Adds the options that fill a source, but for the world itself and the seed, to a command.
+/// @param ground_default  what --help says
+void add_world_options(Command& command, WorldSource& source, const char* ground_default);
 
 [[nodiscard]] bool is_built_in_world(const std::string& name);
-
-/// @throws BadInput unless the text is a whole number from 0 to 2^64 - 1
-[[nodiscard]] std::uint64_t parse_seed(const std::string& text);
 
 /// A world's number of voxels that takes much memory.
 inline constexpr double kManyVoxels = 2e8;

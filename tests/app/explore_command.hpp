@@ -1,7 +1,7 @@
 #pragma once
 
 #include "planner/exploration/team_in_world.hpp"
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 
 #include <frontlux/planner/recording.hpp>
 
@@ -13,7 +13,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -44,7 +43,7 @@ inline std::vector<std::vector<std::string>> table_of(const fs::path& csv) {
   return rows;
 }
 
-/// steps.csv without what it tells of time.
+/// steps.csv without its times.
 inline std::vector<std::vector<std::string>> timeless(const fs::path& csv) {
   auto rows = table_of(csv);
   if (rows.empty()) return rows;
@@ -56,19 +55,10 @@ inline std::vector<std::vector<std::string>> timeless(const fs::path& csv) {
   return rows;
 }
 
-class ExploreCommand : public testing::Test {
+class ExploreCommand : public CommandTest {
  protected:
-  ExploreCommand() : folder_(fs::temp_directory_path() / ("frontlux_explore_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~ExploreCommand() override { fs::remove_all(folder_); }
+  ExploreCommand() : CommandTest("explore") {}
 
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  [[nodiscard]] Answer run(std::vector<std::string> words, const std::string& before = "") const {
-    words.insert(words.begin(), "explore");
-    return run_frontlux(words, folder_, before);
-  }
   /// The room in four steps.
   [[nodiscard]] Answer explore(const std::string& output, std::vector<std::string> more = {}) const {
     more.insert(more.begin(), {"room", "--max-steps", kSteps, "-o", path(output)});
@@ -114,7 +104,7 @@ class ExploreCommand : public testing::Test {
       EXPECT_EQ(p.at(name), q.at(name)) << name;
   }
 
-  /// Starts the command and waits until it has told of so many steps.
+  /// Starts the command and waits until it has printed so many steps.
   [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps) const {
     std::vector<std::string> all = {FRONTLUX_COMMAND, "explore"};
     all.insert(all.end(), words.begin(), words.end());
@@ -140,29 +130,6 @@ class ExploreCommand : public testing::Test {
     EXPECT_EQ(waitpid(child, &status, 0), child);
     return status;
   }
-
-  /// Every file below the folder with its bytes, but for what the command prints.
-  [[nodiscard]] std::map<std::string, std::string> files() const {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_))
-      all[entry.path().string()] = entry.is_regular_file() ? content_of(entry.path()) : "";
-    all.erase(path("out"));
-    all.erase(path("err"));
-    return all;
-  }
-  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
-    const auto before = files();
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
-    EXPECT_EQ(answer.err.find('\n'), answer.err.size() - 1) << answer.err;
-    for (const std::string& part : parts)
-      EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
-    EXPECT_TRUE(files() == before) << "something was written: " << answer.err;
-  }
-
-  fs::path folder_;
 };
 
 }  // namespace frontlux::test

@@ -27,7 +27,7 @@ using test::content_of;
 using test::ExploreCommand;
 using test::table_of;
 
-TEST_F(ExploreCommand, ItsFilesTellTheSame) {
+TEST_F(ExploreCommand, ItsFilesAgree) {
   ASSERT_EQ(explore("run").code, 0);
   EXPECT_GT(content_of(path("run/report.html")).size(), 1000U);
   const Recording recording = read_recording(path("run/run.frontlux"));
@@ -114,7 +114,7 @@ TEST_F(ExploreCommand, ItsFilesTellTheSame) {
   EXPECT_EQ(json.at("seed"), 1);
   EXPECT_EQ(json.at("mode"), "default");
   EXPECT_EQ(json.at("caster"), "embree");
-  EXPECT_EQ(json.at("distribute"), true);
+  EXPECT_EQ(json.at("assign"), true);
   EXPECT_EQ(json.at("robots"), (std::vector<std::string>{"ugv", "uav"}));
   EXPECT_EQ(json.at("end"), "step_limit");
   EXPECT_EQ(json.at("steps"), 4);
@@ -150,7 +150,7 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   expect_refused({"castle", "-o", output}, {"castle"});
   expect_refused({path("none.ply"), "-o", output}, {"none.ply"});
   expect_refused({"-o", output}, {"WORLD"});
-  expect_refused({"room"}, {"-o"});
+  expect_refused({"room"}, {"--output"});
   for (const char* team : {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv"})
     expect_refused(with({"--team", team}), {"--team"});
   expect_refused(with({"--robot", path("none.json")}), {"none.json"});
@@ -163,7 +163,7 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   expect_refused(with({"--caster", "gpu"}), {"--caster", "'gpu'", "embree, grid, octomap"});
   expect_refused(with({"--mode", "fast"}), {"--mode", "'fast'"});
   expect_refused(with({"--planner", "prm"}), {"--planner", "'prm'"});
-  expect_refused(with({"--distribute", "yes"}), {"--distribute", "'yes'"});
+  expect_refused(with({"--assign", "yes"}), {"--assign: 'yes' is none of on, off"});
   expect_refused(with({"--optimize", "1"}), {"--optimize", "'1'"});
   expect_refused(with({"--report", "maybe"}), {"--report", "'maybe'"});
   for (const char* number : {"-1", "1.5", "1025", "two", "", "99999999999999999999"})
@@ -174,13 +174,11 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
     expect_refused(with({"--seed", number}), {"--seed"});
   for (const char* number : {"0", "-0.3", "nan", "inf", "1e-9", "x"})
     expect_refused(with({"--resolution", number}), {"--resolution"});
-  expect_refused(with({"--epsilon", "-2"}), {"epsilon"});
-  expect_refused(with({"--epsilon", "nan"}), {"--epsilon"});
-  expect_refused(with({"--lambda", "-1"}), {"lambda"});
-  expect_refused(with({"--advance", "-1"}), {"advance"});
-  expect_refused(with({"--min-distance", "-1"}), {"min"});
+  for (const char* option : {"--epsilon", "--lambda", "--advance", "--min-distance", "--noise"})
+    for (const std::string number : {"-2", "nan", "inf", "1e999", "1m", ""})
+      expect_refused(with({option, number}),
+                     {option + std::string(": '") + number + "' is not a number of at least 0"});
   expect_refused(with({"--samples", "0"}), {"--samples"});
-  expect_refused(with({"--noise", "-0.1"}), {"--noise"});
   expect_refused(with({"--dropout", "1.01"}), {"--dropout"});
   expect_refused(with({"--what"}), {"--what"});
   expect_refused(with({"--resume", output}), {"--resume"});
@@ -193,7 +191,7 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   std::ofstream(path("file")) << "mine";
   expect_refused({"room", "-o", path("file")}, {"--output", "is a file"});
   expect_refused({"room", "-o", path("file/run")}, {"--output"});
-  expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be made"});
+  expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be created"});
   expect_refused({"room", "-o", ""}, {"--output"});
   expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
   expect_refused({"--resume", path("nowhere")}, {"--resume", "holds no run.frontlux"});

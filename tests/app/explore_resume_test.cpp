@@ -1,4 +1,5 @@
-// `frontlux explore` comes to the same however it is run: going on after every kind of end.
+// `frontlux explore` gives the same result however it is run: on any number of threads, and resumed after
+// every kind of end.
 
 #include "app/explore_command.hpp"
 
@@ -26,7 +27,7 @@ using test::ExploreCommand;
 using test::kSteps;
 using test::timeless;
 
-TEST_F(ExploreCommand, ComesToTheSameHoweverItIsRun) {
+TEST_F(ExploreCommand, GivesTheSameResultHoweverItIsRun) {
   expect_explored("one", {"--threads", "1"});
   expect_explored("two", {"--threads", "2"});
   expect_same_runs("one", "two");
@@ -77,7 +78,7 @@ sim::TriangleMesh with_unseen_poles(sim::TriangleMesh mesh, const Eigen::Vector3
   return mesh;
 }
 
-TEST_F(ExploreCommand, CountsTheWaysThatWereClosedBeforeItWentOn) {
+TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
   const sim::World room = sim::make_world("room", 1);
   sim::write_ply(path("poles.ply"), with_unseen_poles(room.mesh, *room.start));
   std::ostringstream at;
@@ -122,8 +123,9 @@ TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
   status = status_of(child);
   ASSERT_TRUE(WIFEXITED(status)) << status;
   EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_NE(content_of(path("err")).find("frontlux explore --resume " + path("stopped") + " goes on"),
-            std::string::npos)
+  EXPECT_NE(
+      content_of(path("err")).find("frontlux explore --resume " + path("stopped") + " continues the run"),
+      std::string::npos)
       << content_of(path("err"));
   const nlohmann::json json = json_in("stopped");
   EXPECT_EQ(json.at("end"), "stopped");
@@ -145,7 +147,7 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
     const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);
     EXPECT_EQ(answer.code, 2) << answer.err;
     for (const std::string& words : {path("full/run.frontlux") + ": cannot be written",
-                                     "frontlux explore --resume " + path("full") + " goes on"})
+                                     "frontlux explore --resume " + path("full") + " continues the run"})
       EXPECT_NE(answer.err.find(words), std::string::npos) << words << " in " << answer.err;
     const std::size_t kept = read_recording(path("full/run.frontlux")).steps.size();
     EXPECT_GE(kept, 1U);

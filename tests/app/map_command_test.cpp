@@ -2,6 +2,7 @@
 #include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 
+#include <frontlux/io/recorded_scan.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/io/scan_graph.hpp>
@@ -99,15 +100,17 @@ TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");
   expect_refused({graph}, "--output");
-  expect_refused({graph, "-o", path("map.pcd")}, "ends in .bt or .ot");
+  expect_refused({graph, "-o", path("map.pcd")}, "does not end in .bt or .ot");
   expect_refused({graph, "-o", path("no/map.bt")}, "there is no folder");
-  expect_refused({graph, "-o", map, "--resolution", "0"}, "--resolution: 0 m is no length");
-  expect_refused({graph, "-o", map, "--resolution", "nan"}, "not a finite number");
-  expect_refused({graph, "-o", map, "--resolution", "1e-300"}, "is no voxel to map with");
+  expect_refused({graph, "-o", map, "--resolution", "0"},
+                 "--resolution: '0' is not a number from 0.001 to 1000");
+  expect_refused({graph, "-o", map, "--resolution", "nan"}, "--resolution: 'nan' is not a number from");
+  expect_refused({graph, "-o", map, "--resolution", "1e-300"}, "--resolution: '1e-300' is not a number from");
   expect_refused({graph, "-o", map, "--max-range", "-3"}, "--max-range");
-  expect_refused({graph, "-o", map, "--bounds", "0,0,0,1,1"}, "is not six numbers");
+  expect_refused({graph, "-o", map, "--bounds", "0,0,0,1,1"}, "is not six finite numbers");
   expect_refused({graph, "-o", map, "--bounds", "0,0,0,1,1,-1"}, "--bounds: the box");
-  expect_refused({graph, "-o", map, "--bounds", "90,90,90,91,91,91"}, "tells anything within the bounds");
+  expect_refused({graph, "-o", map, "--bounds", "90,90,90,91,91,91"},
+                 "make no voxel within the bounds known");
   expect_refused({graph, "-o", map, "--poses", path("clouds/poses.csv")}, "has its own poses");
   const auto with_poses = [&](const std::string& table) {
     std::ofstream(path("bad.csv")) << table;

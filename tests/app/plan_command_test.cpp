@@ -75,19 +75,18 @@ TEST_F(PlanCommandTest, WritesAPathForEachRobotAndPlanner) {
   for (const std::string robot : {"ugv", "uav"})
     for (const std::string planner : {"rrt", "rrt-connect", "rrt-star", "corridor"}) {
       const std::string z = robot == "ugv" ? "0.75" : "1.9", file = path("path.csv");
-      const std::vector<std::string> words = {path("hall.bt"),
-                                              "--robot",
-                                              robot,
-                                              "--from",
-                                              "1.5,1.1," + z + ",-0.5",
-                                              "--to",
-                                              "7.5,1.3," + z + ",2",
-                                              "--planner",
-                                              planner,
-                                              "-o",
-                                              file,
-                                              "--iterations",
-                                              "1500"};
+      std::vector<std::string> words = {path("hall.bt"),
+                                        "--robot",
+                                        robot,
+                                        "--from",
+                                        "1.5,1.1," + z + ",-0.5",
+                                        "--to",
+                                        "7.5,1.3," + z + ",2",
+                                        "--planner",
+                                        planner,
+                                        "-o",
+                                        file};
+      if (planner != "corridor") words.insert(words.end(), {"--iterations", "1500"});
       const Answer answer = run(words);
       ASSERT_EQ(answer.code, 0) << answer.err;
       EXPECT_EQ(answer.err, "");
@@ -245,37 +244,47 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
     words.push_back(value);
     return words;
   };
-  expect_refused(with("--robot", "boat"), "--robot: 'boat'");
-  expect_refused(with("--from", "1,2,3"), "--from: '1,2,3'");
-  expect_refused(with("--from", "1,nan,0.75,0"), "--from: 'nan'");
-  expect_refused(with("--from", "1,2,0.75,1e999"), "--from: '1e999'");
+  expect_refused(with("--robot", "boat"), "--robot: 'boat' is none of ugv, uav");
+  for (const std::string word : {"1,2,3", "1,nan,0.75,0", "1,2,0.75,1e999", "1,2,0.75,0,0"})
+    expect_refused(with("--from", word), "--from: '" + word + "' is not four finite numbers");
   expect_refused(with("--from", "1e9,2,0.75,0"), "--from: 1e9,2,0.75,0 lies outside");
   expect_refused(with("--from", "4.65,1.3,0.75,0"),
                  "--from: at 4.65,1.3,0.75,0 the ugv is in an occupied voxel");
   expect_refused(with("--from", "-3,1.3,0.75,0"), "--from: at -3,1.3,0.75,0 the ugv is");
-  expect_refused(with("--to", "1,2,3,4,5"), "--to: '1,2,3,4,5'");
-  expect_refused(with("--to", ""), "--to: ''");
+  for (const std::string word : {"1,2,3,4,5", "1,2", ""})
+    expect_refused(with("--to", word), "--to: '" + word + "' is not three or four finite numbers");
   expect_refused(with("--to", "7.5,1.3,2"), "--to: 7.5,1.3,2 is not on the ugv's plane");
-  expect_refused(with("--to", "4.65,1.3,0.75"), "--to: the path to 4.65,1.3,0.75 is not there");
-  expect_refused(with("--planner", "prm"), "--planner: 'prm'");
-  expect_refused(with("--seed", "-1"), "--seed: '-1'");
-  expect_refused(with("--seed", "1.5"), "--seed: '1.5'");
-  expect_refused(with("--iterations", "0"), "--iterations: '0'");
-  expect_refused(with("--require-ground", "maybe"), "--require-ground: 'maybe'");
-  expect_refused(with("--optimize", "yes"), "--optimize: 'yes'");
-  expect_refused(with("--mode", "fast"), "--mode: 'fast'");
-  expect_refused(with("--move", "maybe"), "--move: 'maybe'");
-  auto still = with("--move", "on");
-  still.insert(still.end(), {"--optimize", "off"});
-  expect_refused(still, "--move: on needs --optimize on");
-  expect_refused(with("-o", path("path.txt")), "path.txt is no name for a path");
+  expect_refused(with("--to", "4.65,1.3,0.75"), "--to: the path to 4.65,1.3,0.75 ");
+  expect_refused(with("--planner", "prm"),
+                 "--planner: 'prm' is none of corridor, rrt, rrt-connect, rrt-star");
+  for (const std::string seed : {"-1", "1.5", "18446744073709551616", ""})
+    expect_refused(with("--seed", seed), "--seed: '" + seed + "' is not a whole number from 0 to");
+  for (const std::string number : {"0", "1000001", "1e3", ""})
+    expect_refused(with("--iterations", number),
+                   "--iterations: '" + number + "' is not a whole number from 1 to 1000000");
+  for (const std::string option : {"--require-ground", "--optimize", "--move"})
+    expect_refused(with(option, "maybe"), option + ": 'maybe' is none of on, off");
+  expect_refused(with("--mode", "fast"), "--mode: 'fast' is none of default, paper");
+  expect_refused(with("-o", path("path.txt")), "path.txt does not end in .csv or .ply");
   expect_refused(with("-o", path("none/path.csv")), "there is no folder");
   std::filesystem::create_directory(path("folder.csv"));
-  expect_refused(with("-o", path("folder.csv")), "folder.csv: cannot be written");
+  expect_refused(with("-o", path("folder.csv")), "folder.csv is a folder");
   expect_refused({path("broken.bt"), "--robot", "ugv", "--from", from, "--to", to}, "broken.bt");
   expect_refused({path("missing.bt"), "--robot", "ugv", "--from", from, "--to", to}, "missing.bt");
   expect_refused({map, "--robot", "uav", "--from", "1,1,2,0", "--to", "2,2,2", "--min-height", "nan"},
-                 "--min-height: 'nan'");
+                 "--min-height: 'nan' is not a finite number");
+  // What would change nothing beside the other options.
+  const auto beside = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect_refused(beside(with("--move", "on"), {"--optimize", "off"}), "--move: ");
+  expect_refused(beside(with("--mode", "paper"), {"--optimize", "off"}), "--mode: ");
+  expect_refused(beside(with("--planner", "corridor"), {"--seed", "2"}), "--seed: ");
+  expect_refused(beside(with("--planner", "corridor"), {"--iterations", "9"}), "--iterations: ");
+  expect_refused(with("--min-height", "2"), "--min-height: ");
+  expect_refused({map, "--robot", "uav", "--from", "1,1,2,0", "--to", "2,2,2", "--require-ground", "on"},
+                 "--require-ground: ");
 }
 
 }  // namespace

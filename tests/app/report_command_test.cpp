@@ -1,5 +1,5 @@
 #include "report/explored_run.hpp"
-#include "support/command.hpp"
+#include "support/command_test.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace frontlux::report {
@@ -16,37 +15,27 @@ namespace {
 using test::Answer;
 using test::content_of;
 
-class ReportCommandTest : public testing::Test {
+class ReportCommandTest : public test::CommandTest {
  protected:
-  ReportCommandTest()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("frontlux_report_command_" + std::to_string(getpid()))) {
+  ReportCommandTest() : CommandTest("report") {
     for (const char* run : {"one", "two"}) {
-      std::filesystem::create_directories(folder_ / run);
+      std::filesystem::create_directories(path(run));
       static const planner::Recording recording = test::explored_run("room", 4);
       planner::RecordingWriter writer(folder_ / run / "run.frontlux", recording.head);
       for (const auto& step : recording.steps) writer.write(step);
       writer.write_end("stopped");
     }
   }
-  ~ReportCommandTest() override { std::filesystem::remove_all(folder_); }
-  ReportCommandTest(const ReportCommandTest&) = delete;
-  ReportCommandTest& operator=(const ReportCommandTest&) = delete;
 
   // In the folder, so that its files can be named as they are.
-  [[nodiscard]] Answer run(std::vector<std::string> words) const {
-    words.insert(words.begin(), "report");
-    return test::run_frontlux(words, folder_, "cd " + test::quoted(folder_.string()) + " &&");
+  [[nodiscard]] Answer run(const std::vector<std::string>& words) const {
+    return CommandTest::run(words, in_folder_);
+  }
+  void expect_refused(const std::vector<std::string>& words, const std::string& part) const {
+    CommandTest::expect_refused(words, {part}, in_folder_);
   }
 
-  void expect_refused(const std::vector<std::string>& words, const std::string& told) const {
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << told;
-    EXPECT_NE(answer.err.find(told), std::string::npos) << answer.err;
-    EXPECT_EQ(answer.out, "");
-  }
-
-  std::filesystem::path folder_;
+  std::string in_folder_ = "cd " + test::quoted(folder_.string()) + " &&";
 };
 
 std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
@@ -90,7 +79,7 @@ TEST_F(ReportCommandTest, RefusesWhatIsNoRun) {
   expect_refused({"nowhere"}, "nowhere");
   expect_refused({"empty"}, "run.frontlux");
   expect_refused({"foreign.frontlux"}, "foreign.frontlux");
-  expect_refused({"one", "-o", "report.pdf"}, ".html");
+  expect_refused({"one", "-o", "report.pdf"}, "does not end in .html");
   expect_refused({"one", "-o", "nowhere/report.html"}, "nowhere");
   expect_refused({}, "RUN");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one" / "report.html"));
@@ -101,7 +90,7 @@ TEST_F(ReportCommandTest, ShowsWhatIsLeftOfATruncatedRecording) {
   std::filesystem::resize_file(file, std::filesystem::file_size(file) * 3 / 4);
   const Answer answer = run({"one"});
   EXPECT_EQ(answer.code, 0) << answer.err;
-  EXPECT_NE(answer.err.find("its last step is not complete"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("the last step is not complete"), std::string::npos) << answer.err;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / "report.html"));
   std::filesystem::resize_file(file, 20);
   expect_refused({"one"}, "run.frontlux");

@@ -26,21 +26,6 @@ class ScanCommand : public test::CommandTest {
  protected:
   ScanCommand() : CommandTest("scan") { std::filesystem::create_directory(folder_ / "maps"); }
   [[nodiscard]] std::string map(const std::string& name) const { return (folder_ / "maps" / name).string(); }
-
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
-
-  void expect_refusal(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
-    const Answer answer = run(words);
-    EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_TRUE(answer.err.starts_with("frontlux: ")) << answer.err;
-    for (const auto& part : parts)
-      EXPECT_NE(answer.err.find(part), std::string::npos) << part << "\nin\n" << answer.err;
-    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps")) << "something was written";
-  }
 };
 
 TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
@@ -89,17 +74,17 @@ TEST_F(ScanCommand, RefusesPosesByLine) {
            {"8.4,8.3,1e999,0\n", "line 1"},
            {"# nothing\n", "holds no pose"},
            {"", "holds no pose"}})
-    expect_refusal(with(text), {path("poses.csv"), part});
-  expect_refusal({"room", "--poses", path("none.csv"), "-o", map("no.bt")}, {path("none.csv")});
-  expect_refusal({"room", "--poses", folder_.string(), "-o", map("no.bt")}, {folder_.string()});
-  expect_refusal({"room", "--poses", path("none.csv"), "--sweep", "-o", map("no.bt")}, {"--sweep"});
+    expect_refused(with(text), {path("poses.csv"), part});
+  expect_refused({"room", "--poses", path("none.csv"), "-o", map("no.bt")}, {path("none.csv")});
+  expect_refused({"room", "--poses", folder_.string(), "-o", map("no.bt")}, {folder_.string()});
+  expect_refused({"room", "--poses", path("none.csv"), "--sweep", "-o", map("no.bt")}, {"--sweep"});
 }
 
 TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   const std::string out = map("no.bt");
   const auto expect = [&](std::vector<std::string> words, const std::vector<std::string>& parts) {
     words.insert(words.end(), {"-o", out});
-    expect_refusal(words, parts);
+    expect_refused(words, parts);
   };
   expect({}, {"WORLD"});
   expect({"attic"}, {"'attic'", "room"});
@@ -128,11 +113,11 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
 }
 
 TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
-  expect_refusal({"station", "-o", map("map.txt")}, {"--output", "map.txt"});
-  expect_refusal({"station", "-o", path("no/folder/map.bt")}, {"--output", "no/folder"});
+  expect_refused({"station", "-o", map("map.txt")}, {"--output", "map.txt"});
+  expect_refused({"station", "-o", path("no/folder/map.bt")}, {"--output", "no/folder"});
   std::filesystem::create_directories(path("folder.bt"));
-  expect_refusal({"station", "-o", path("folder.bt")}, {"--output", "folder.bt", "folder"});
-  expect_refusal({"station"}, {"--output"});
+  expect_refused({"station", "-o", path("folder.bt")}, {"--output", "folder.bt", "folder"});
+  expect_refused({"station"}, {"--output"});
 }
 
 TEST_F(ScanCommand, WritesNothingWhenStopped) {

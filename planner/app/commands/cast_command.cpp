@@ -1,13 +1,12 @@
-#include "commands/cast_command.hpp"
-
 #include "bad_input.hpp"
-#include "json.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
 
 #include <frontlux/ray_caster.hpp>
 
-#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdint>
@@ -16,22 +15,26 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
 namespace frontlux::app {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct Options {
   std::string map;
-  std::string from, to, direction, range;  // as written; empty if not given
-  std::string unknown = "block", caster = "embree";
+  Eigen::Vector3f from = Eigen::Vector3f::Zero();
+  std::optional<Eigen::Vector3f> to, direction;
+  std::optional<double> range;
+  UnknownPolicy unknown = UnknownPolicy::kBlock;
+  planner::CasterKind caster = planner::CasterKind::kEmbree;
   bool count = false, json = false;
 };
 
 struct Answer {
   Hit hit;
-  std::optional<bool> visible;               // of the voxel of --to
-  std::optional<PathCount> crossed, before;  // on the way to the hit, and to --to
+  std::optional<bool> visible;                  // of the voxel of --to
+  std::optional<PathCount> crossed, before_to;  // up to the hit, and up to --to
 };
 
 void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Vector3f& point) {
@@ -44,53 +47,32 @@ void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Ve
                      rounded(-edge) + " m to below " + rounded(edge) + " m");
 }
 
-std::unique_ptr<RayCaster> make_caster(const MapFile& map, const std::string& name) {
-  if (name == "octomap")
-    return std::visit([](const auto& tree) { return make_octomap_ray_caster(*tree); }, map.tree);
-  const VoxelGrid grid = make_voxel_grid(map);
-  return name == "grid" ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
-}
-
 Answer cast(const Options& options) {
-  if (options.to.empty() == options.direction.empty())
-    throw BadInput(options.to.empty() ? "cast needs --to or --direction; see frontlux cast --help"
-                                      : "cast takes --to or --direction, not both; leave one out");
-  Ray ray;
-  ray.origin = parse_vector("--from", options.from);
-  std::optional<Eigen::Vector3f> to;
-  if (!options.to.empty()) {
-    to = parse_vector("--to", options.to);
-    ray.direction = *to - ray.origin;
-  } else {
-    ray.direction = parse_vector("--direction", options.direction);
-    if (ray.direction.isZero(0.F))
-      throw BadInput("--direction: " + options.direction + " has no length; give at least one number but 0");
-  }
-  if (!options.range.empty()) {
-    ray.max_range = parse_number("--range", options.range);
-    if (ray.max_range <= 0.)
-      throw BadInput("--range: " + options.range + " m is no range; give one above 0, or none for no limit");
-  }
-  const UnknownPolicy unknown = options.unknown == "pass" ? UnknownPolicy::kPass : UnknownPolicy::kBlock;
-
+  if (options.direction && options.direction->isZero(0.F))
+    throw BadInput("--direction: " + to_text(*options.direction) +
+                   " has no length; give a number other than 0");
+  if (options.to == options.from)
+    throw BadInput("--to: " + to_text(*options.to) +
+                   " is the point of --from; give another, or a --direction");
+  const Ray ray{options.from, options.to ? Eigen::Vector3f(*options.to - options.from) : *options.direction,
+                options.range.value_or(-1.0)};
   const MapFile map = read_map_file(options.map);
   const Lattice lattice(map.resolution);
   check_inside(lattice, "--from", ray.origin);
-  if (to) check_inside(lattice, "--to", *to);
-  if (to && *to == ray.origin)
-    throw BadInput("--to: " + options.to + " is the point of --from; give another, or a --direction");
+  if (options.to) check_inside(lattice, "--to", *options.to);
 
-  const auto caster = make_caster(map, options.caster);
-  Answer answer{caster->cast(ray, unknown), {}, {}, {}};
+  const auto caster = make_caster(map, make_voxel_grid(map), options.caster);
+  Answer answer{caster->cast(ray, options.unknown), {}, {}, {}};
   if (answer.hit.stop == RayStop::kInvalid)
-    throw BadInput((to ? "--to: " + options.to : "--direction: " + options.direction) +
+    throw BadInput((options.to ? "--to: " : "--direction: ") +
+                   to_text(options.to ? *options.to : ray.direction) +
                    " gives no direction that a float can hold; give one of a length nearer to 1");
-  if (options.count) caster->count({&ray, 1}, {&answer.crossed.emplace(), 1}, unknown);
-  if (to) {
-    const Segment segment{ray.origin, *to};
-    if (options.count) caster->count({&segment, 1}, {&answer.before.emplace(), 1}, unknown);
+  if (options.count) caster->count({&ray, 1}, {&answer.crossed.emplace(), 1}, options.unknown);
+  if (options.to) {
+    const Segment segment{ray.origin, *options.to};
+    if (options.count) caster->count({&segment, 1}, {&answer.before_to.emplace(), 1}, options.unknown);
     std::uint8_t visible = 0;
-    caster->visible({&segment, 1}, {&visible, 1}, unknown);
+    caster->visible({&segment, 1}, {&visible, 1}, options.unknown);
     answer.visible = visible != 0;
   }
   return answer;
@@ -103,9 +85,9 @@ std::string explain(RayStop stop) {
     case RayStop::kUnknown:
       return "stopped by an unknown voxel";
     case RayStop::kOutOfRange:
-      return "nothing within --range; this is the first voxel beyond it";
+      return "nothing hit within --range; this is the first voxel beyond it";
     case RayStop::kLeftMap:
-      return "nothing up to the end of the map's key range; this is the last voxel";
+      return "nothing hit up to the end of the map's key range; this is the last voxel";
     case RayStop::kReached:
     case RayStop::kInvalid:
       break;
@@ -135,66 +117,69 @@ void print_text(const Answer& answer) {
                               (hit.stop == RayStop::kLeftMap ? " (with this one)" : " (before this one)"));
   if (answer.visible)
     out += row("visible", *answer.visible ? "yes, the voxel of --to is" : "no, the voxel of --to is not");
-  if (answer.before)
-    out += row("on the way", list(*answer.before) + (answer.before->stop == RayStop::kReached
-                                                         ? " (before that of --to)"
-                                                         : " (before the way to that of --to ends)"));
+  if (answer.before_to)
+    out += row("before --to", list(*answer.before_to) + (answer.before_to->stop == RayStop::kReached
+                                                             ? ""
+                                                             : " (up to the voxel that blocks the view)"));
   std::cout << out;
+}
+
+Json json_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+Json json_of(const Eigen::Vector3f& point) {
+  return {as_written(point.x()), as_written(point.y()), as_written(point.z())};
+}
+Json json_of(const PathCount& count) {
+  return {{"unknown", count.unknown},
+          {"free", count.free},
+          {"occupied", count.occupied},
+          {"stop", name_of(count.stop)}};
 }
 
 void print_json(const Answer& answer) {
   const Hit& hit = answer.hit;
-  JsonObject out;
-  out.add("hit", hit.occupied())
-      .add("stop", name_of(hit.stop))
-      .add("key", hit.key)
-      .add("state", to_text(hit.state))
-      .add("end_m", hit.end)
-      .add("entry_m", hit.entry)
-      .add("distance_m", hit.distance);
-  const auto add = [&](const char* name, const PathCount& count) {
-    out.add(name, JsonObject()
-                      .add("unknown", std::uint64_t{count.unknown})
-                      .add("free", std::uint64_t{count.free})
-                      .add("occupied", std::uint64_t{count.occupied})
-                      .add("stop", name_of(count.stop)));
-  };
-  if (answer.crossed) add("crossed", *answer.crossed);
-  if (answer.visible) out.add("visible", *answer.visible);
-  if (answer.before) add("before_to", *answer.before);
-  std::cout << out.text() << '\n';
+  Json out = {{"hit", hit.occupied()},
+              {"stop", name_of(hit.stop)},
+              {"key", json_of(hit.key)},
+              {"state", to_text(hit.state)},
+              {"end_m", json_of(hit.end)},
+              {"entry_m", json_of(hit.entry)},
+              {"distance_m", as_written(hit.distance)}};
+  if (answer.crossed) out["crossed"] = json_of(*answer.crossed);
+  if (answer.visible) out["visible"] = *answer.visible;
+  if (answer.before_to) out["before_to"] = json_of(*answer.before_to);
+  std::cout << out.dump() << '\n';
 }
 
 }  // namespace
 
 void add_cast_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("cast", "Cast one ray into a map and say where it ends");
+  Command command(app, "cast", "Cast one ray into a map and print where it ends");
   const auto options = std::make_shared<Options>();
-  command->add_option("MAP", options->map, "OctoMap file, .bt or .ot")->required();
-  command->add_option("--from", options->from, "Where the ray starts [m]")->required()->type_name("X,Y,Z");
-  command->add_option("--to", options->to, "A point on its way, which it may pass [m]")->type_name("X,Y,Z");
-  command->add_option("--direction", options->direction, "Its direction, of any length")->type_name("X,Y,Z");
-  command->add_option("--range", options->range, "Limit on the distance to voxel centres [m]")
-      ->type_name("M");
-  command->add_option("--unknown", options->unknown, "Whether unknown voxels block the ray or let it pass")
-      ->check(CLI::IsMember({"block", "pass"}))
-      ->capture_default_str();
-  command->add_option("--caster", options->caster, "What casts it; all give the same answer")
-      ->check(CLI::IsMember({"embree", "grid", "octomap"}))
-      ->capture_default_str();
-  command->add_flag("--count", options->count,
-                    "Also count the voxels crossed: by the ray, and with --to on the way there");
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
+  command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
+  command.group("Ray");
+  command.add("--from", options->from, "X,Y,Z", "Origin").required();
+  Option to = command.add("--to", options->to, "X,Y,Z", "A point to aim at; the ray may pass it");
+  Option direction = command.add("--direction", options->direction, "X,Y,Z", "Direction, of any length");
+  command.require_one(to, direction);
+  command.add("--range", options->range, "METRES", "Longest distance to a voxel's centre [no limit]",
+              kAboveZero);
+  command.add("--unknown", options->unknown, "Unknown voxels block the ray or let it pass");
+  command.group("Method and output");
+  command.add("--caster", options->caster, "Ray caster; all give the same answer");
+  command.add_flag("--count", options->count, "Count the voxels crossed: by the ray, and before --to");
+  command.add_flag("--json", options->json, "Print one JSON object");
+  command.examples(
       "Examples:\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
       "  frontlux cast building.bt --from -2.5,0,1.2 --to 4,-1,0.5 --unknown pass\n"
       "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10 --unknown pass --count\n"
-      "The first asks what a sensor at (0, 0, 1.2) sees along x within 10 m. The second also says whether\n"
-      "the voxel that holds (4, -1, 0.5) is visible when unknown voxels do not block the view. The third\n"
-      "counts the unknown, free and occupied voxels that the first's ray crosses if unknown voxels let it\n"
-      "pass: from its first voxel, included, to the one in which it ended, excluded.");
-  command->callback([options] {
+      "The first prints what a sensor at (0, 0, 1.2) sees along x within 10 m. The second also prints "
+      "whether\n"
+      "the voxel of (4, -1, 0.5) is visible when unknown voxels do not block the view. The third also "
+      "counts\n"
+      "the unknown, free and occupied voxels that the ray crosses, from its first voxel, included, to its\n"
+      "last, excluded.");
+  command.run([options] {
     const Answer answer = cast(*options);
     options->json ? print_json(answer) : print_text(answer);
   });

@@ -1,146 +1,98 @@
-#include "commands/explore_command.hpp"
-
 #include "bad_input.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "explore/explore_options.hpp"
 #include "explore/explore_run.hpp"
 
-#include <CLI/CLI.hpp>
-
-#include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 namespace frontlux::app {
 namespace {
 
-struct Words {
+struct Options {
   ExploreOptions options;
-  std::optional<std::string> output, resume, max_steps;
-  std::string threads = "0", report = "on";
-  bool force = false;
+  ExploreRun run;
+  std::string output, resume;
 };
 
-int parse_threads(const std::string& text) {
-  constexpr int kMost = 1024;
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || number < 0 ||
-      number > kMost)
-    throw BadInput("--threads: '" + text + "' is not a whole number from 0 (all cores) to " +
-                   std::to_string(kMost));
-  return number;
+void check(const Options& given) {
+  if (!given.resume.empty()) return;
+  if (given.options.source.world.empty())
+    throw BadInput("WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map");
+  if (given.output.empty()) throw BadInput("--output: give a folder for the files of the run");
 }
 
-// Options that change what comes out; a run that goes on has its own.
-void refuse_with_resume(const CLI::App& command, const Words& words) {
-  if (words.output) throw BadInput("--resume: goes on in its own folder; leave -o out");
-  if (words.force) throw BadInput("--resume: goes on with a run, --force replaces it; give one of them");
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_name();
-    const bool allowed = name == "--resume" || name == "--threads" || name == "--max-steps" ||
-                         name == "--report" || name == "--help";
-    if (option->count() > 0 && !allowed)
-      throw BadInput("--resume: the run has its options already; leave " + name + " out");
-  }
+void run(Options given) {
+  check(given);
+  given.run.resume = !given.resume.empty();
+  given.run.folder = given.run.resume ? given.resume : given.output;
+  given.options.max_steps = given.run.max_steps.value_or(given.options.max_steps);
+  explore(std::move(given.options), given.run);
 }
 
-void run(const CLI::App& command, Words words) {
-  ExploreRun run;
-  run.threads = parse_threads(words.threads);
-  if (words.report != "on" && words.report != "off")
-    throw BadInput("--report: '" + words.report + "' is neither on nor off");
-  run.report = words.report == "on";
-  run.force = words.force;
-  run.max_steps = words.max_steps;
-  if (words.resume) {
-    refuse_with_resume(command, words);
-    run.resume = true;
-    run.folder = *words.resume;
-  } else {
-    if (words.options.source.world.empty())
-      throw BadInput(
-          "WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map");
-    if (!words.output) throw BadInput("-o: give a folder for the files of the run");
-    run.folder = *words.output;
-    if (words.max_steps) words.options.max_steps = *words.max_steps;
-  }
-  explore(std::move(words.options), run);
+void add_method_options(Command& command, ExploreOptions& options) {
+  command.group("Method");
+  command.add("--mode", options.mode, "What works best, or as printed in the paper");
+  command.add("--goal", options.goal, "Goals by view quality, clusters of frontiers, or distance [by mode]");
+  command.add("--planner", options.search, "Path search; corridor: shortest paths [by mode]");
+  command.add("--renderer", options.renderer,
+              "View quality of all frontiers, or by rays to drawn ones [by mode]");
+  command.add("--samples", options.samples, "N", "Frontiers drawn for each viewpoint with rays [64]",
+              Range<int>{1});
+  command.add("--assign", options.assign, "Assign each frontier to one robot, or to all that see it");
+  command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");
+  command.add("--caster", options.caster, "Ray caster that answers visibility");
+  command.add("--lambda", options.lambda, "PER_METRE",
+              "Decay of a goal's value with its distance, eq. 1 [by mode]", kFromZero);
+  command.add("--advance", options.advance, "METRES",
+              "Goals nearer than this lose value in proportion; 0: they do not [by mode]", kFromZero);
+  command.add("--min-distance", options.min_distance, "METRES", "Least distance of a goal [0.6]", kFromZero);
 }
 
 }  // namespace
 
 void add_explore_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("explore", "Let robots explore a world");
-  const auto words = std::make_shared<Words>();
-  ExploreOptions& options = words->options;
-  const auto add = [command](const char* name, auto& value, const char* what, const char* type) {
-    command->add_option(name, value, what)->type_name(type);
-  };
-  add("WORLD", options.source.world, "A built-in world (see frontlux world), a mesh file or an OctoMap file",
-      "");
-  add("-o,--output", words->output, "Folder for the files of the run; made if it is not there", "DIR");
-  command->add_flag("--force", words->force, "Replace the run that is in the folder");
-  add("--resume", words->resume, "Go on with the run in this folder, with its own options", "DIR");
-  add("--team", options.team, "Robots, with + between them: uav, ugv, 2uav+ugv; uav+ugv if not given",
-      "TEAM");
-  command->add_option("--robot", options.robot_files, "One more robot, described in a JSON file; repeatable")
-      ->type_name("FILE.json")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--pose", options.poses, "Where a robot's sensor starts [m, rad]; repeatable")
-      ->type_name("NAME=X,Y,Z,YAW")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add("--mode", options.mode, "default: what works best; paper: as printed", "NAME");
-  add("--goal", options.goal,
-      "How goals are chosen: render (view quality), cluster (of frontiers) or nearest; by the mode if not "
-      "given",
-      "NAME");
-  add("--planner", options.search,
-      "corridor (shortest paths), rrt, rrt-connect or rrt-star; by the mode if not given", "NAME");
-  add("--renderer", options.renderer,
-      "How view quality is rendered: exact (all frontiers), or rays (to drawn ones); by the mode if not "
-      "given",
-      "NAME");
-  add("--distribute", options.distribute, "Give each frontier to one robot (on), or to all that see it (off)",
-      "ON|OFF");
-  add("--optimize", options.optimize,
-      "Turn robots along their paths so that they see more (on), or not (off)", "ON|OFF");
-  add("--caster", options.caster, "What answers visibility: embree, grid or octomap", "NAME");
-  add("--seed", options.seed,
-      "Which of a built-in world's layouts, which random numbers, which errors of the sensors; 1 if not "
-      "given",
-      "N");
-  add("--max-steps", words->max_steps, "End after so many steps; 1000 if not given", "N");
-  add("--epsilon", options.epsilon,
-      "End when three steps in a row promise fewer frontiers than this, and go first where as many are seen; "
-      "10, or 1 with --goal nearest, if not given",
-      "N");
-  add("--lambda", options.lambda,
-      "How much less a goal is worth by the metre [1/m], eq. 1; by the mode if not given", "L");
-  add("--advance", options.advance,
-      "Goals nearer than this [m] are worth less in proportion; 0: they are not; by the mode if not given",
-      "M");
-  add("--min-distance", options.min_distance, "Nearer places are no goals [m]; 0.6 if not given", "M");
-  add("--samples", options.samples, "Frontiers drawn for each viewpoint; 64 if not given", "N");
-  add("--resolution", options.resolution, "Edge of a voxel in metres; 0.3 if not given", "M");
-  add("--noise", options.noise, "Standard deviation of a range in metres; 0 if not given", "M");
-  add("--dropout", options.dropout, "Probability that a ray gives no measurement; 0 if not given", "P");
-  add("--threads", words->threads, "How many to use; 0, all cores, if not given. The result is the same",
-      "N");
-  add("--report", words->report, "Write report.html (on), or not (off)", "ON|OFF");
-  add_world_options(*command, options.source);
-  command->footer(
+  Command command(app, "explore", "Let simulated robots explore a world");
+  const auto given = std::make_shared<Options>();
+  ExploreOptions& options = given->options;
+  command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
+  command.group("Run");
+  command.add("-o,--output", given->output, "DIR", "Folder for the files of the run; created if missing");
+  command.add_flag("--force", given->run.force, "Replace the run in the folder");
+  Option resume =
+      command.add("--resume", given->resume, "DIR", "Continue the run in this folder, with its options");
+  command.add("--threads", given->run.threads, "N",
+              "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
+  command.add("--report", given->run.report, "Write report.html");
+  command.add("--seed", options.seed, "N", "Random seed (layout, planner, noise)", kSeeds);
+  command.group("Stopping");
+  command.add("--max-steps", given->run.max_steps, "N", "Stop after this many steps [1000]", Range<int>{0});
+  command.add("--epsilon", options.epsilon, "FRONTIERS",
+              "Stop when the expected gain stays below this for 3 steps;\n"
+              "goals of at least this gain come first [10; --goal nearest: 1]",
+              kFromZero);
+  command.group("Robots");
+  command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
+  command.add("--robot", options.robot_files, "FILE.json", "Add a robot described in this file; repeatable");
+  command.add("--pose", options.poses, "NAME=X,Y,Z,YAW", "Start pose of a robot's sensor; repeatable");
+  command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
+  command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
+              kProbability);
+  add_method_options(command, options);
+  add_world_options(command, options.source, "auto; built-in worlds: off");
+  command.allow_only(resume, {"--threads", "--max-steps", "--report"});
+  command.examples(
       "Examples:\n"
       "  frontlux explore station --seed 3 -o station_run\n"
       "  frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run\n"
       "  frontlux explore --resume station_run\n"
-      "The folder then holds run.json (what was asked for and what came out), steps.csv, paths.csv, map.ot,\n"
-      "map.bt, run.frontlux (the recording) and report.html. The ground of files is aligned to the map "
-      "unless\n"
-      "--ground off says otherwise. Ctrl-C ends a run after the step that it is in.");
-  command->callback([command, words] { run(*command, *words); });
+      "Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux "
+      "(the\n"
+      "recording) and report.html. Ctrl-C ends a run after the current step.");
+  command.run([given] { run(*given); });
 }
 
 }  // namespace frontlux::app

@@ -1,11 +1,9 @@
-#include "commands/info_command.hpp"
-
-#include "frontier_count.hpp"
-#include "json.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
 
-#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <iostream>
@@ -15,9 +13,6 @@
 
 namespace frontlux::app {
 namespace {
-
-// A few seconds of counting.
-constexpr std::uint64_t kMaxSurfaceBricks = std::uint64_t{1} << 24;
 
 struct Options {
   std::string map;
@@ -43,10 +38,9 @@ Info gather(const MapFile& map) {
   info.free = voxels[static_cast<std::size_t>(Occupancy::kFree)];
   info.frontiers = 0;
   if (info.bounds) {
-    const auto edge = [](int min, int max) { return static_cast<std::uint64_t>(max - min + 1); };
-    const auto& [min, max] = *info.bounds;
-    info.unknown = edge(min.x, max.x) * edge(min.y, max.y) * edge(min.z, max.z) - info.occupied - info.free;
-    info.frontiers = count_frontiers(grid, *info.bounds, kMaxSurfaceBricks);
+    info.unknown = volume(*info.bounds) - info.occupied - info.free;
+    const auto frontiers = find_frontiers(grid, *info.bounds);
+    info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
   }
   return info;
 }
@@ -57,7 +51,7 @@ Eigen::Vector3d corner(const VoxelKey& key, int added, double resolution) {
   return {along(key.x), along(key.y), along(key.z)};
 }
 
-constexpr const char* kNotCounted = "not counted: the map's large free blocks have too wide a surface";
+constexpr const char* kNotCounted = "not counted: the surface of the map's large free blocks is too large";
 
 void print_text(const MapFile& map, const Info& info) {
   std::string out = row("map", map.path.string() + " (" + map.tree_type + ")") +
@@ -78,52 +72,55 @@ void print_text(const MapFile& map, const Info& info) {
   out += row("occupied", std::to_string(info.occupied) + " voxels") +
          row("free", std::to_string(info.free) + " voxels") +
          row("unknown", std::to_string(info.unknown) + " voxels within the bounds") +
-         row("frontiers", info.frontiers ? std::to_string(*info.frontiers) +
-                                               " unknown voxels within the bounds beside a free one"
-                                         : kNotCounted) +
+         row("frontiers", info.frontiers
+                              ? std::to_string(*info.frontiers) +
+                                    " (unknown voxels within the bounds that share a face with a free one)"
+                              : kNotCounted) +
          row("leaves", std::to_string(info.tree.leaves)) +
          row("inner nodes", std::to_string(info.tree.inner_nodes)) +
-         row("memory",
-             "tree " + to_text_bytes(info.tree.bytes) + ", mirror " + to_text_bytes(info.mirror_bytes));
+         row("memory", "tree " + bytes_text(info.tree.bytes) + ", mirror " + bytes_text(info.mirror_bytes));
   std::cout << out;
 }
 
 void print_json(const MapFile& map, const Info& info) {
-  JsonObject out;
-  out.add("map", map.path.string()).add("tree", map.tree_type).add("resolution_m", map.resolution);
-  if (info.bounds)
-    out.add("bounds", JsonObject()
-                          .add("min_m", corner(info.bounds->min, 0, map.resolution))
-                          .add("max_m", corner(info.bounds->max, 1, map.resolution))
-                          .add("min_key", info.bounds->min)
-                          .add("max_key", info.bounds->max));
-  else
-    out.add_null("bounds");
-  out.add("voxels",
-          JsonObject().add("occupied", info.occupied).add("free", info.free).add("unknown", info.unknown));
+  nlohmann::ordered_json out = {{"map", map.path.string()},
+                                {"tree", map.tree_type},
+                                {"resolution_m", map.resolution},
+                                {"bounds", nullptr}};
+  if (info.bounds) {
+    const auto& [min, max] = *info.bounds;
+    const Eigen::Vector3d low = corner(min, 0, map.resolution), high = corner(max, 1, map.resolution);
+    out["bounds"] = {{"min_m", {low.x(), low.y(), low.z()}},
+                     {"max_m", {high.x(), high.y(), high.z()}},
+                     {"min_key", {min.x, min.y, min.z}},
+                     {"max_key", {max.x, max.y, max.z}}};
+  }
+  out["voxels"] = {{"occupied", info.occupied}, {"free", info.free}, {"unknown", info.unknown}};
+  out["frontiers"] = nullptr;
   if (info.frontiers)
-    out.add("frontiers", *info.frontiers);
+    out["frontiers"] = *info.frontiers;
   else
-    out.add_null("frontiers").add("frontiers_note", kNotCounted);
-  out.add("leaves", info.tree.leaves)
-      .add("inner_nodes", info.tree.inner_nodes)
-      .add("memory_bytes", JsonObject().add("tree", info.tree.bytes).add("mirror", info.mirror_bytes));
-  std::cout << out.text() << '\n';
+    out["frontiers_note"] = kNotCounted;
+  out["leaves"] = info.tree.leaves;
+  out["inner_nodes"] = info.tree.inner_nodes;
+  out["memory_bytes"] = {{"tree", info.tree.bytes}, {"mirror", info.mirror_bytes}};
+  // File names are bytes, JSON is Unicode.
+  std::cout << out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "Say what a map holds");
+  Command command(app, "info", "Print what a map holds");
   const auto options = std::make_shared<Options>();
-  command->add_option("MAP", options->map, "OctoMap file, .bt or .ot")->required();
-  command->add_flag("--json", options->json, "Print one JSON object");
-  command->footer(
+  command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
+  command.add_flag("--json", options->json, "Print one JSON object");
+  command.examples(
       "Example:\n"
       "  frontlux info building.bt\n"
-      "prints the map's resolution, the box that holds all known voxels, how many voxels of each state\n"
-      "that box holds, how many of the unknown ones are frontiers, and what the map takes in memory.");
-  command->callback([options] {
+      "prints the map's resolution, the box that holds all known voxels, the number of voxels of each state\n"
+      "and of frontiers in that box, and the memory that the map takes.");
+  command.run([options] {
     const MapFile map = read_map_file(options->map);
     const Info info = gather(map);
     options->json ? print_json(map, info) : print_text(map, info);

@@ -1,16 +1,14 @@
-#include "commands/map_command.hpp"
-
 #include "bad_input.hpp"
-#include "map_output.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
+#include "output_file.hpp"
 #include "progress_line.hpp"
 #include "text.hpp"
 
-#include <frontlux/planner/mapping.hpp>
 #include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/scan_graph.hpp>
-
-#include <CLI/CLI.hpp>
+#include <frontlux/planner/mapping.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,10 +17,9 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace frontlux::app {
@@ -34,7 +31,9 @@ using io::RecordedScan;
 
 struct Options {
   std::string scans, output, poses;
-  std::string resolution = "0.1", max_range, bounds;  // as written; empty if not given
+  double resolution = 0.1;
+  std::optional<double> max_range;
+  std::optional<Eigen::AlignedBox3d> bounds;
 };
 
 // Scans one after the other, so that a folder larger than the memory can be mapped.
@@ -61,32 +60,6 @@ Recording open_graph(const std::filesystem::path& file, const std::string& pose_
           [scans](std::size_t i) { return (*scans)[i]; }};
 }
 
-KeyBox parse_bounds(const Lattice& lattice, std::string_view text) {
-  std::vector<double> numbers;
-  for (std::string_view rest = text;; rest.remove_prefix(rest.find(',') + 1)) {
-    numbers.push_back(parse_number("--bounds", rest.substr(0, rest.find(','))));
-    if (rest.find(',') == std::string_view::npos) break;
-  }
-  if (numbers.size() != 6)
-    throw BadInput(
-        "--bounds: '" + std::string(text) +
-        "' is not six numbers; give the lowest and the highest corner, as in --bounds=-5,-5,0,5,5,3");
-  const Eigen::AlignedBox3d box(Eigen::Vector3d(numbers[0], numbers[1], numbers[2]),
-                                Eigen::Vector3d(numbers[3], numbers[4], numbers[5]));
-  try {
-    return planner::voxels_of(lattice, box);
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(std::string("--bounds: ") + error.what());
-  }
-}
-
-MappingOptions mapping_options(const Options& options) {
-  MappingOptions mapping;
-  mapping.resolution = parse_resolution(options.resolution);
-  if (!options.bounds.empty()) mapping.bounds = parse_bounds(Lattice(mapping.resolution), options.bounds);
-  return mapping;
-}
-
 std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& mapping) {
   const ProgressLine progress;
   std::uint64_t points = 0;
@@ -103,65 +76,59 @@ std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& m
   return points;
 }
 
-void map(const Options& options) {
-  const MappingOptions mapping_with = mapping_options(options);
-  const double max_range = options.max_range.empty() ? std::numeric_limits<double>::infinity()
-                                                     : parse_length("--max-range", options.max_range);
-  check_map_output(options.output);
+MappingOptions mapping_options(const Options& options) {
+  MappingOptions mapping;
+  mapping.resolution = options.resolution;
   try {
-    const Recording recording = std::filesystem::is_directory(options.scans)
-                                    ? open_folder(options.scans, options.poses)
-                                    : open_graph(options.scans, options.poses);
-    Mapping mapping(mapping_with);
-    const std::uint64_t points = map_scans(recording, max_range, mapping);
-    const auto voxels = mapping.grid().count();
-    if (voxels[1] + voxels[2] == 0)
-      throw BadInput(options.scans + ": none of its " + std::to_string(points) +
-                     " points tells anything within the bounds");
-    mapping.write(options.output);
-    std::cout << row("map", options.output) << row("resolution", to_text(mapping.grid().resolution()) + " m")
-              << row("scans", std::to_string(recording.scans)) << row("points", std::to_string(points))
-              << row("free", std::to_string(voxels[1]) + " voxels")
-              << row("occupied", std::to_string(voxels[2]) + " voxels");
-  } catch (const BadInput&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw BadInput(error.what());
-  } catch (const std::bad_alloc&) {
-    throw BadInput(options.scans +
-                   ": its map does not fit into this machine's memory; give --max-range, --bounds or a "
-                   "coarser --resolution");
+    if (options.bounds) mapping.bounds = planner::voxels_of(Lattice(options.resolution), *options.bounds);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(std::string("--bounds: ") + error.what());
   }
+  return mapping;
+}
+
+void map(const Options& options) {
+  Mapping mapping(mapping_options(options));
+  check_output(options.output, {".bt", ".ot"});
+  const Recording recording = std::filesystem::is_directory(options.scans)
+                                  ? open_folder(options.scans, options.poses)
+                                  : open_graph(options.scans, options.poses);
+  const std::uint64_t points =
+      map_scans(recording, options.max_range.value_or(std::numeric_limits<double>::infinity()), mapping);
+  const auto voxels = mapping.grid().count();
+  if (voxels[1] + voxels[2] == 0)
+    throw BadInput(options.scans + ": its " + std::to_string(points) +
+                   " points make no voxel within the bounds known; give other --bounds");
+  mapping.write(options.output);
+  std::cout << row("map", options.output) << row("resolution", to_text(mapping.grid().resolution()) + " m")
+            << row("scans", std::to_string(recording.scans)) << row("points", std::to_string(points))
+            << row("free", std::to_string(voxels[1]) + " voxels")
+            << row("occupied", std::to_string(voxels[2]) + " voxels");
 }
 
 }  // namespace
 
 void add_map_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("map", "Map recorded scans");
+  Command command(app, "map", "Map recorded scans");
   const auto options = std::make_shared<Options>();
-  command
-      ->add_option("SCANS", options->scans, "OctoMap scan graph (.graph), or a folder of .pcd or .ply clouds")
-      ->required();
-  command->add_option("-o,--output", options->output, "Map to write, .bt or .ot")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--poses", options->poses, "Poses of a folder's clouds (default: poses.csv in it)")
-      ->type_name("FILE");
-  command->add_option("--resolution", options->resolution, "Edge of a voxel [m]")
-      ->type_name("M")
-      ->capture_default_str();
-  command->add_option("--max-range", options->max_range, "Beyond it points clear the way and are no hits [m]")
-      ->type_name("M");
-  command->add_option("--bounds", options->bounds, "Box outside of which nothing is mapped [m]")
-      ->type_name("X,Y,Z,X,Y,Z");
-  command->footer(
+  command.add("SCANS", options->scans, "", "OctoMap scan graph (.graph), or a folder of .pcd or .ply clouds")
+      .required();
+  command.add("-o,--output", options->output, "FILE", "Map to write, .bt or .ot").required();
+  command.add("--poses", options->poses, "FILE", "Poses of a folder's clouds [poses.csv in the folder]");
+  command.add("--resolution", options->resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
+  command.add("--max-range", options->max_range, "METRES",
+              "Longest range of a hit; farther points only free the space up to it [no limit]", kAboveZero);
+  command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
+              "Box to map: lowest and highest corner [everything]");
+  command.examples(
       "Examples:\n"
       "  frontlux map corridor.graph -o corridor.bt --resolution 0.05\n"
       "  frontlux map clouds/ -o clouds.ot --max-range 20 --bounds -10,-10,0,10,10,4\n"
-      "The clouds are in the sensor's frame. A line of the pose file says where one was recorded, in metres "
-      "and\n"
-      "radians: file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw.");
-  command->callback([options] { map(*options); });
+      "Clouds are in the sensor's frame. The pose file has a line for each cloud, in metres and radians:\n"
+      "file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw.");
+  command.run([options] {
+    work_on(options->scans, "give --max-range, --bounds or a coarser --resolution", [&] { map(*options); });
+  });
 }
 
 }  // namespace frontlux::app

@@ -1,179 +1,146 @@
-#include "commands/plan_command.hpp"
-
 #include "bad_input.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "map_file.hpp"
+#include "output_file.hpp"
+#include "stopwatch.hpp"
 #include "text.hpp"
 
-#include <frontlux/field_of_view.hpp>
 #include <frontlux/io/path_file.hpp>
+#include <frontlux/key_box.hpp>
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/position_refinement.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 #include <frontlux/ray_caster.hpp>
 
-#include <CLI/CLI.hpp>
-
-#include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <new>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace frontlux::app {
 namespace {
 
 using planner::PathOptions;
-using planner::PathOutcome;
 using planner::PathPlan;
 using planner::PathSearch;
 using planner::Pose;
 using planner::TravelCorridor;
 using planner::TravelOptions;
 
-struct Options {
-  std::string map, robot, from, to, output;  // as written
-  std::string search = "rrt", seed = "1", ground = "on", min_height = "1.2";
-  std::string iterations;
-  std::string optimize = "on", mode = "default", move = "off";
-};
-
-std::vector<double> parse_numbers(std::string_view name, std::string_view text) {
-  std::vector<double> numbers;
-  for (std::string_view rest = text;; rest.remove_prefix(rest.find(',') + 1)) {
-    numbers.push_back(parse_number(name, rest.substr(0, rest.find(','))));
-    if (rest.find(',') == std::string_view::npos) return numbers;
-  }
-}
-
-struct Place {
+// An end of the path, as the user gives it.
+struct End {
+  std::string word;
   Pose pose;
   bool has_yaw = true;
 };
 
-Place parse_place(const std::string& name, const std::string& text, bool needs_yaw) {
-  const auto numbers = parse_numbers(name, text);
-  if (numbers.size() != 4 && (needs_yaw || numbers.size() != 3))
-    throw BadInput(name + ": '" + text + "' is not " +
-                   (needs_yaw ? "four numbers" : "three or four numbers") +
-                   "; give x,y,z in metres and the yaw in radians, as in " + name + "=1.5,-2,0.75" +
-                   (needs_yaw ? ",0" : ""));
-  Place place;
-  place.pose.position = {numbers[0], numbers[1], numbers[2]};
-  place.has_yaw = numbers.size() == 4;
-  if (place.has_yaw) place.pose.yaw = numbers[3];
-  return place;
+void read_end(std::string_view word, End& end, bool needs_yaw) {
+  const auto numbers = numbers_in(word);
+  if (!numbers || (numbers->size() != 4 && (needs_yaw || numbers->size() != 3)))
+    throw BadInput(quote(word) + " is not " + (needs_yaw ? "four" : "three or four") +
+                   " finite numbers; give x,y,z in metres and the yaw in radians, as in 1.5,-2,0.75,0");
+  end.word = word;
+  end.pose.position = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  end.has_yaw = numbers->size() == 4;
+  if (end.has_yaw) end.pose.yaw = (*numbers)[3];
 }
+struct From : End {};
+struct To : End {};
+void read(std::string_view word, From& from) { read_end(word, from, true); }
+void read(std::string_view word, To& to) { read_end(word, to, false); }
 
-template <class Number>
-Number parse_whole(const char* name, const std::string& text, Number low, Number high) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || number < low ||
-      number > high)
-    throw BadInput(std::string(name) + ": '" + text + "' is not a whole number from " + std::to_string(low) +
-                   " to " + std::to_string(high));
-  return number;
-}
+struct Options {
+  std::string map, output;
+  std::optional<RobotKind> robot;
+  From from;
+  To to;
+  std::optional<bool> require_ground;
+  std::optional<double> min_height;
+  PathSearch search = PathSearch::kRrt;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> iterations;
+  bool optimize = true, move = false;
+  std::optional<planner::Method> mode;
+};
 
-PathSearch parse_search(const std::string& text) {
-  std::string names;
-  for (const PathSearch search :
-       {PathSearch::kRrt, PathSearch::kRrtConnect, PathSearch::kRrtStar, PathSearch::kCorridor}) {
-    if (text == planner::name_of(search)) return search;
-    names.append(names.empty() ? "" : ", ").append(planner::name_of(search));
+// Options that would change nothing beside the others.
+void check_options(const Options& options) {
+  const auto refuse = [](bool given, const char* option, const char* why) {
+    if (given) throw BadInput(std::string(option) + ": " + why + "; leave the option out");
+  };
+  if (options.robot == RobotKind::kUgv)
+    refuse(options.min_height.has_value(), "--min-height", "a ugv stays on the plane of --from");
+  else
+    refuse(options.require_ground.has_value(), "--require-ground", "a uav needs no ground");
+  if (options.search == PathSearch::kCorridor) {
+    refuse(options.iterations.has_value(), "--iterations", "the corridor's shortest path takes none");
+    refuse(options.seed.has_value(), "--seed", "the corridor's shortest path is not random");
   }
-  throw BadInput("--planner: '" + text + "' is none; those are " + names);
+  if (!options.optimize) {
+    refuse(options.move, "--move", "viewpoints only move with --optimize on");
+    refuse(options.mode.has_value(), "--mode", "it is a mode of --optimize on");
+  }
 }
 
 PathOptions path_options(const Options& options) {
   PathOptions path;
-  path.search = parse_search(options.search);
-  constexpr int kOfRrtStar = 2000, kMost = 1'000'000;
-  if (path.search == PathSearch::kRrtStar) path.iterations = kOfRrtStar;
-  if (!options.iterations.empty())
-    path.iterations = parse_whole<int>("--iterations", options.iterations, 1, kMost);
+  path.search = options.search;
+  constexpr int kOfRrtStar = 2000;
+  path.iterations =
+      options.iterations.value_or(path.search == PathSearch::kRrtStar ? kOfRrtStar : path.iterations);
   return path;
 }
 
-TravelOptions travel_options(const Options& options) {
-  if (options.ground != "on" && options.ground != "off")
-    throw BadInput("--require-ground: '" + options.ground + "' is neither on nor off");
-  if (options.robot == "ugv") {
-    TravelOptions travel = planner::ugv_travel();
-    travel.require_ground = options.ground == "on";
-    return travel;
+planner::Robot make_robot(const Options& options) {
+  if (options.robot == RobotKind::kUav) {
+    planner::Robot robot = planner::uav();
+    robot.travel.min_height = options.min_height.value_or(robot.travel.min_height);
+    return robot;
   }
-  if (options.robot != "uav") throw BadInput("--robot: '" + options.robot + "' is neither ugv nor uav");
-  TravelOptions travel = planner::uav_travel();
-  travel.min_height = parse_number("--min-height", options.min_height);
-  return travel;
+  planner::Robot robot = planner::ugv();
+  robot.travel.require_ground = options.require_ground.value_or(true);
+  return robot;
 }
 
-VoxelKey voxel_of(const Lattice& lattice, const std::string& name, const std::string& text,
-                  const Pose& pose) {
-  const auto x = lattice.key(pose.position.x()), y = lattice.key(pose.position.y()),
-             z = lattice.key(pose.position.z());
-  if (!x || !y || !z)
-    throw BadInput(name + ": " + text + " lies outside the map's key range, which ends " +
+VoxelKey voxel_of(const Lattice& lattice, const char* name, const End& end) {
+  const auto key = lattice.key(end.pose.position);
+  if (!key)
+    throw BadInput(std::string(name) + ": " + end.word + " lies outside the map's key range, which ends " +
                    rounded(Lattice::kOrigin * lattice.resolution()) + " m from its origin");
-  return {*x, *y, *z};
+  return *key;
 }
 
-TravelCorridor make_corridor(const Options& options, TravelOptions travel, const VoxelGrid& grid,
-                             const VoxelKey& robot) {
+TravelCorridor make_corridor(TravelOptions travel, const VoxelGrid& grid, const VoxelKey& robot) {
   const auto bounds = grid.known_bounds();
-  if (!bounds) throw BadInput(options.map + ": every voxel is unknown, so there is nowhere to go");
+  if (!bounds) throw std::invalid_argument("every voxel is unknown");
   travel.without_ground = {{robot, robot}};  // no sensor sees the floor that it starts on
-  try {
-    TravelCorridor corridor(travel, grid.lattice(), *bounds);
-    corridor.update({grid}, robot);
-    return corridor;
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(options.map + ": " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw BadInput(options.map + ": its corridor does not fit into this machine's memory");
-  }
+  TravelCorridor corridor(travel, grid.lattice(), *bounds);
+  corridor.update({grid}, robot);
+  return corridor;
 }
 
-[[noreturn]] void complain(const Options& options, const TravelCorridor& corridor, const PathPlan& plan) {
+[[noreturn]] void complain(const Options& options, const planner::Robot& robot,
+                           const TravelCorridor& corridor, const PathPlan& plan) {
   if (corridor.state() != planner::CorridorState::kReady)
-    throw BadInput("--from: at " + options.from + " the " + options.robot + " " +
+    throw BadInput("--from: at " + options.from.word + " the " + robot.name + " " +
                    std::string(planner::describe(corridor.state())) + "; give another start");
-  const std::string advice = options.robot == "ugv" && options.ground == "on"
-                                 ? "give another goal, or --require-ground off"
-                                 : "give another goal";
-  throw BadInput("--to: the path to " + options.to + " " + std::string(planner::describe(plan.outcome)) +
-                 "; " + advice);
+  const bool on_ground = robot.travel.motion == planner::Motion::kPlane && robot.travel.require_ground;
+  throw BadInput("--to: the path to " + options.to.word + " " + std::string(planner::describe(plan.outcome)) +
+                 "; give another goal" + (on_ground ? ", or --require-ground off" : ""));
 }
 
-// What would fail in the end fails before the work.
-void check_output(const std::filesystem::path& file) {
-  if (file.empty()) return;
-  if (file.extension() != ".csv" && file.extension() != ".ply")
-    throw BadInput("--output: " + file.string() +
-                   " is no name for a path; give one that ends in .csv or .ply");
-  std::error_code error;
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder, error))
-    throw BadInput("--output: there is no folder " + folder.string() + "; make it first");
-}
-
-// Without a wish the robot arrives looking the way it came.
+// Without a yaw of --to the robot looks ahead when it arrives.
 void look_ahead(std::vector<Pose>& viewpoints) {
   Pose& goal = viewpoints.back();
   goal.yaw = viewpoints.front().yaw;
@@ -185,212 +152,148 @@ void look_ahead(std::vector<Pose>& viewpoints) {
   }
 }
 
-// What the paper's robots see with.
-FieldOfView view_of(const std::string& robot) {
-  using std::numbers::pi;
-  if (robot == "ugv") return {FieldOfView::Shape::kSpinning, 0.0, 2.0 * pi / 9.0, 6.0};
-  return {FieldOfView::Shape::kPyramid, pi / 2.0, 2.0 * pi / 5.0, 10.0};
-}
-
-planner::PathOptimizerOptions optimizer_options(const Options& options) {
-  if (options.optimize != "on" && options.optimize != "off")
-    throw BadInput("--optimize: '" + options.optimize + "' is neither on nor off");
-  if (options.mode == "paper") return planner::paper_path_options();
-  if (options.mode != "default")
-    throw BadInput("--mode: '" + options.mode + "' is neither default nor paper");
-  return {};
-}
-
-void check_move(const Options& options) {
-  if (options.move != "on" && options.move != "off")
-    throw BadInput("--move: '" + options.move + "' is neither on nor off");
-  if (options.move == "on" && options.optimize == "off")
-    throw BadInput("--move: on needs --optimize on, since viewpoints that move also turn");
-}
-
 // The part of the known map from which frontiers can be in view somewhere along the path.
 KeyBox surroundings(const VoxelGrid& grid, const std::vector<Pose>& viewpoints, double range) {
-  KeyBox box = *grid.known_bounds();
-  const auto clip = [&](int axis, std::uint16_t& low, std::uint16_t& high) {
-    double least = viewpoints.front().position[axis], most = least;
-    for (const Pose& viewpoint : viewpoints) {
-      least = std::min(least, viewpoint.position[axis]);
-      most = std::max(most, viewpoint.position[axis]);
-    }
-    if (const auto key = grid.lattice().key(least - range)) low = std::max(low, *key);
-    if (const auto key = grid.lattice().key(most + range)) high = std::min(high, *key);
+  const KeyBox known = grid.known_bounds().value();
+  Eigen::AlignedBox3d box;
+  for (const Pose& viewpoint : viewpoints) box.extend(viewpoint.position);
+  const auto key = [&](double coordinate, std::uint16_t beyond) {
+    return grid.lattice().key(coordinate).value_or(beyond);
   };
-  clip(0, box.min.x, box.max.x);
-  clip(1, box.min.y, box.max.y);
-  clip(2, box.min.z, box.max.z);
-  return box;
+  const auto corner = [&](const Eigen::Vector3d& point, const VoxelKey& beyond) {
+    return VoxelKey{key(point.x(), beyond.x), key(point.y(), beyond.y), key(point.z(), beyond.z)};
+  };
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(range);
+  return {greatest(known.min, corner(box.min() - reach, known.min)),
+          least(known.max, corner(box.max() + reach, known.max))};
 }
 
-struct Turned {
-  planner::OptimizedPath path;
+// What became of the viewpoints between the ends.
+struct Optimized {
+  planner::OptimizedPath turned;
   std::optional<planner::RefinedPath> moved;
-  double milliseconds = 0.0, moving_milliseconds = 0.0;
+  double turn_ms = 0.0, move_ms = 0.0;
 };
 
-double milliseconds_since(std::chrono::steady_clock::time_point before) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+// Turns the viewpoints between the ends so that they see more, and then moves them if --move is on.
+Optimized optimize(const Options& options, const planner::Robot& robot, const VoxelGrid& grid,
+                   const TravelCorridor& corridor, PathPlan& path) {
+  planner::PositionOptions position;
+  if (options.mode == planner::Method::kPaper) position.optimizer = planner::paper_path_options();
+  position.spacing = path_options(options).spacing;
+  std::vector<Pose>& viewpoints = path.viewpoints;
+  const double first_yaw = viewpoints.front().yaw, last_yaw = viewpoints.back().yaw;
+  const auto caster = make_embree_ray_caster(grid);
+  const double range = robot.view.max_range + (options.move ? position.max_shift : 0.0);
+  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
+
+  Optimized result;
+  const Stopwatch turning;
+  const auto pairs = planner::visible_pairs(*caster, grid, viewpoints, frontiers.keys(), robot.view);
+  const auto centers = planner::centers(grid.lattice(), frontiers.keys());
+  result.turned = planner::optimize_path(viewpoints, centers, pairs, robot.view, position.optimizer);
+  result.turn_ms = turning.milliseconds();
+  for (std::size_t i = 0; i < viewpoints.size(); ++i) viewpoints[i].yaw = result.turned.yaws[i];
+  if (options.move) {
+    const Stopwatch moving;
+    result.moved =
+        planner::refine_positions(viewpoints, frontiers.keys(), *caster, grid, corridor, robot, position);
+    result.move_ms = moving.milliseconds();
+    viewpoints = result.moved->viewpoints;
+    path.length = planner::path_length(viewpoints);
+  }
+  viewpoints.front().yaw = first_yaw;  // as given, without the optimizer's wrapping to [-pi, pi]
+  viewpoints.back().yaw = last_yaw;
+  return result;
 }
 
-// Turns the viewpoints between the ends so that they see more, and then moves them, if that is wanted.
-Turned turn(const Options& options, const planner::PositionOptions& position, const VoxelGrid& grid,
-            const TravelCorridor& corridor, const planner::TravelOptions& travel,
-            std::vector<Pose>& viewpoints) {
-  const bool move = options.move == "on";
-  const FieldOfView view = view_of(options.robot);
-  const auto caster = make_embree_ray_caster(grid);
-  const double range = view.max_range + (move ? position.max_shift : 0.0);
-  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
-  auto before = std::chrono::steady_clock::now();
-  const auto pairs = planner::visible_pairs(*caster, grid, viewpoints, frontiers.keys(), view);
-  const auto centers = planner::centers(grid.lattice(), frontiers.keys());
-  Turned turned;
-  turned.path = planner::optimize_path(viewpoints, centers, pairs, view, position.optimizer);
-  turned.milliseconds = milliseconds_since(before);
-  for (std::size_t i = 0; i < viewpoints.size(); ++i) viewpoints[i].yaw = turned.path.yaws[i];
-  if (!move) return turned;
-  before = std::chrono::steady_clock::now();
-  turned.moved = planner::refine_positions(viewpoints, frontiers.keys(), *caster, grid, corridor,
-                                           {options.robot, travel, view}, position);
-  turned.moving_milliseconds = milliseconds_since(before);
-  viewpoints = turned.moved->viewpoints;
-  return turned;
+std::string gain_text(const planner::PathGain& before, const planner::PathGain& after) {
+  return std::to_string(before.distinct) + " frontiers in view before, " + std::to_string(after.distinct) +
+         " after; fuzzy " + rounded(before.fuzzy) + " before, " + rounded(after.fuzzy) + " after";
+}
+
+void print(const Options& options, const planner::Robot& robot, const TravelCorridor& corridor,
+           const PathPlan& path, double path_ms, const std::optional<Optimized>& optimized) {
+  std::cout << row("map", options.map)
+            << row("robot", robot.name + ", " + std::to_string(corridor.cells().size()) + " reachable cells")
+            << row("path", "the path " + std::string(planner::describe(path.outcome)))
+            << row("length", rounded(path.length) + " m")
+            << row("viewpoints", std::to_string(path.viewpoints.size()))
+            << row("planner", std::string(planner::name_of(options.search)) + ", " +
+                                  std::to_string(path.iterations) + " iterations")
+            << row("time", fixed(path_ms, 3) + " ms");
+  if (optimized) {
+    const auto& [turned, moved, turn_ms, move_ms] = *optimized;
+    std::cout << row("gain", gain_text(turned.tangent, turned.result))
+              << row("optimizer", std::string(planner::describe(turned.end)) + ", " +
+                                      std::to_string(turned.evaluations) + " evaluations, " +
+                                      fixed(turn_ms, 3) + " ms");
+    if (moved)
+      std::cout << row("moved", gain_text(moved->before, moved->after) + "; " +
+                                    std::to_string(moved->outer_iterations) + " iterations kept, " +
+                                    std::to_string(moved->rays) + " rays, " + fixed(move_ms, 3) + " ms");
+  }
+  if (!options.output.empty()) std::cout << row("written", options.output);
 }
 
 void plan(const Options& options) {
-  const PathOptions path = path_options(options);
-  const TravelOptions travel = travel_options(options);
-  const auto seed = parse_whole<std::uint64_t>("--seed", options.seed, 0, UINT64_MAX);
-  const Place from = parse_place("--from", options.from, true), to = parse_place("--to", options.to, false);
-  planner::PositionOptions position;
-  position.optimizer = optimizer_options(options);
-  position.spacing = path.spacing;
-  check_move(options);
-  check_output(options.output);
-
+  check_options(options);
+  if (!options.output.empty()) check_output(options.output, {".csv", ".ply"});
+  const planner::Robot robot = make_robot(options);
   const VoxelGrid grid = make_voxel_grid(read_map_file(options.map));
-  const VoxelKey robot = voxel_of(grid.lattice(), "--from", options.from, from.pose);
-  const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to, to.pose);
-  if (options.robot == "ugv" && goal.z != robot.z) {
-    const double half = grid.resolution() / 2, middle = grid.lattice().center(robot.z);
-    throw BadInput("--to: " + options.to + " is not on the ugv's plane, where z is from " +
+  const VoxelKey start = voxel_of(grid.lattice(), "--from", options.from);
+  const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to);
+  if (options.robot == RobotKind::kUgv && goal.z != start.z) {
+    const double half = grid.resolution() / 2, middle = grid.lattice().center(start.z);
+    throw BadInput("--to: " + options.to.word + " is not on the ugv's plane, where z is from " +
                    rounded(middle - half) + " to " + rounded(middle + half) + " m; give the z of --from");
   }
-  const TravelCorridor corridor = make_corridor(options, travel, grid, robot);
-
-  const auto before = std::chrono::steady_clock::now();
-  PathPlan found = planner::plan_path(corridor, grid.lattice(), from.pose, to.pose, {seed, 0, 0}, path);
-  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - before;
-  if (!found.found()) complain(options, corridor, found);
-  if (!to.has_yaw) look_ahead(found.viewpoints);
-  std::optional<Turned> turned;
-  if (options.optimize == "on") {
-    const double first = found.viewpoints.front().yaw, last = found.viewpoints.back().yaw;
-    turned = turn(options, position, grid, corridor, travel, found.viewpoints);
-    found.viewpoints.front().yaw = first;  // to the last bit, by how many turns whatever
-    found.viewpoints.back().yaw = last;
-    found.length = turned->moved ? planner::path_length(found.viewpoints) : found.length;
-  }
-
-  try {
-    if (!options.output.empty()) io::write_path(options.output, found.viewpoints);
-  } catch (const std::runtime_error& error) {
-    throw BadInput(std::string("--output: ") + error.what());
-  }
-  std::cout << row("map", options.map)
-            << row("robot",
-                   options.robot + ", " + std::to_string(corridor.cells().size()) + " cells within its reach")
-            << row("path", "the path " + std::string(planner::describe(found.outcome)))
-            << row("length", rounded(found.length) + " m")
-            << row("viewpoints", std::to_string(found.viewpoints.size()))
-            << row("planner", std::string(planner::name_of(path.search)) + ", " +
-                                  std::to_string(found.iterations) + " iterations")
-            << row("time", rounded(std::round(time.count() * 1e3) / 1e3) + " ms");
-  if (turned) {
-    const auto& [path_turned, moved, milliseconds, moving_milliseconds] = *turned;
-    std::cout << row("gain", std::to_string(path_turned.tangent.distinct) + " frontiers in view before, " +
-                                 std::to_string(path_turned.result.distinct) + " after; fuzzy " +
-                                 rounded(path_turned.tangent.fuzzy) + " before, " +
-                                 rounded(path_turned.result.fuzzy) + " after")
-              << row("optimiser", std::string(planner::describe(path_turned.end)) + ", " +
-                                      std::to_string(path_turned.evaluations) + " evaluations, " +
-                                      rounded(std::round(milliseconds * 1e3) / 1e3) + " ms");
-    if (moved)
-      std::cout << row("moved", std::to_string(moved->before.distinct) + " frontiers in view before, " +
-                                    std::to_string(moved->after.distinct) + " after; fuzzy " +
-                                    rounded(moved->before.fuzzy) + " before, " + rounded(moved->after.fuzzy) +
-                                    " after; " + std::to_string(moved->outer_iterations) +
-                                    " iterations kept, " + std::to_string(moved->rays) + " rays, " +
-                                    rounded(std::round(moving_milliseconds * 1e3) / 1e3) + " ms");
-  }
-  if (!options.output.empty()) std::cout << row("written", options.output);
+  const TravelCorridor corridor = make_corridor(robot.travel, grid, start);
+  const Stopwatch planning;
+  PathPlan path = planner::plan_path(corridor, grid.lattice(), options.from.pose, options.to.pose,
+                                     {options.seed.value_or(1), 0, 0}, path_options(options));
+  const double path_ms = planning.milliseconds();
+  if (!path.found()) complain(options, robot, corridor, path);
+  if (!options.to.has_yaw) look_ahead(path.viewpoints);
+  std::optional<Optimized> optimized;
+  if (options.optimize) optimized = optimize(options, robot, grid, corridor, path);
+  if (!options.output.empty()) io::write_path(options.output, path.viewpoints);
+  print(options, robot, corridor, path, path_ms, optimized);
 }
 
 }  // namespace
 
 void add_plan_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("plan", "Plan a robot's path through a map");
+  Command command(app, "plan", "Plan a robot's path through a map");
   const auto options = std::make_shared<Options>();
-  command->add_option("MAP", options->map, "OctoMap file, .bt or .ot")->required();
-  command->add_option("--robot", options->robot, "ugv: 1.0 x 1.0 x 0.7 m on the ground; uav: a cube of 0.8 m")
-      ->required()
-      ->type_name("ROBOT");
-  command->add_option("--from", options->from, "Where the robot's sensor is [m] and looks [rad]")
-      ->required()
-      ->type_name("X,Y,Z,YAW");
-  command->add_option("--to", options->to, "Where it goes; without a yaw it arrives looking ahead")
-      ->required()
-      ->type_name("X,Y,Z[,YAW]");
-  command
-      ->add_option("--planner", options->search,
-                   "rrt, rrt-connect, rrt-star, or the corridor's shortest path")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the random search: the same seed gives the same path")
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("--iterations", options->iterations,
-                   "Of the search before it falls back on the corridor (default: 20000; rrt-star: 2000)")
-      ->type_name("N");
-  command
-      ->add_option("--require-ground", options->ground,
-                   "ugv: go only where the floor is known (on), or also where it is not (off)")
-      ->type_name("ON|OFF")
-      ->capture_default_str();
-  command->add_option("--min-height", options->min_height, "uav: of its centre above z = 0 [m]")
-      ->type_name("M")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--optimize", options->optimize,
-          "Turn the viewpoints between the ends so that they see more frontiers (on), or let them look "
-          "ahead (off)")
-      ->type_name("ON|OFF")
-      ->capture_default_str();
-  command
-      ->add_option("--move", options->move,
-                   "Also move the viewpoints between the ends, by 0.6 m at most (on), or not (off)")
-      ->type_name("ON|OFF")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--mode", options->mode,
-          "Of the optimisation: each frontier counts once (default), or as the paper prints it (paper)")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command->add_option("-o,--output", options->output, "Write the viewpoints here: .csv, or .ply to look at")
-      ->type_name("FILE");
-  command->footer(
+  command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
+  command.add("-o,--output", options->output, "FILE", "Write the viewpoints, as .csv or .ply");
+  command.group("Robot");
+  command.add("--robot", options->robot, "Ground robot of 1.0 x 1.0 x 0.7 m, or aerial robot of 0.8 m")
+      .required();
+  command.add("--from", options->from, "X,Y,Z,YAW", "Pose of the robot's sensor at the start").required();
+  command.add("--to", options->to, "X,Y,Z[,YAW]", "Pose at the goal; without a yaw it looks ahead")
+      .required();
+  command.add("--require-ground", options->require_ground, "ugv: drive only where the floor is known [on]");
+  command.add("--min-height", options->min_height, "METRES",
+              "uav: least height of its centre above z = 0 [1.2]", kAnyNumber);
+  command.group("Path search");
+  command.add("--planner", options->search, "Search method; corridor: the corridor's shortest path");
+  command.add("--seed", options->seed, "N", "Random seed of the search [1]", kSeeds);
+  command.add("--iterations", options->iterations, "N",
+              "Limit of the search; then the corridor's path is taken [20000; rrt-star: 2000]",
+              Range<int>{1, 1'000'000});
+  command.group("View optimization");
+  command.add("--optimize", options->optimize, "Turn the viewpoints so that they see more frontiers");
+  command.add("--move", options->move, "Also move the viewpoints, by 0.6 m at most");
+  command.add("--mode", options->mode, "Count each frontier once, or as printed in the paper [default]");
+  command.examples(
       "Example:\n"
       "  frontlux plan building.bt --robot uav --from 0,0,1.5,0 --to 8,3,2 -o path.csv\n"
-      "plans a path on which the robot fits, as far as the map knows, and writes viewpoints at most 1.2 m\n"
-      "apart. A ugv's sensor is 0.75 m above the floor, and so are both ends of its path.");
-  command->callback([options] { plan(*options); });
+      "plans a path on which the robot fits in known free space, and writes viewpoints at most 1.2 m apart.\n"
+      "The sensor of a ugv is 0.75 m above the floor at both ends of its path.");
+  command.run(
+      [options] { work_on(options->map, "give a map of a coarser resolution", [&] { plan(*options); }); });
 }
 
 }  // namespace frontlux::app

@@ -1,14 +1,13 @@
-#include "commands/report_command.hpp"
-
 #include "bad_input.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "draw/coverage_still.hpp"
 #include "draw/map_still.hpp"
 #include "draw/png_file.hpp"
+#include "output_file.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -39,7 +38,7 @@ std::filesystem::path recording_of(const std::filesystem::path& run) {
   if (std::filesystem::is_directory(run, error)) {
     if (!std::filesystem::exists(run / "run.frontlux", error))
       throw BadInput(run.string() +
-                     ": this folder holds no run.frontlux; give a folder that frontlux explore has written");
+                     ": the folder holds no run.frontlux; give a folder that frontlux explore has written");
     return run / "run.frontlux";
   }
   if (!std::filesystem::exists(run, error))
@@ -47,7 +46,8 @@ std::filesystem::path recording_of(const std::filesystem::path& run) {
   return run;
 }
 
-// The folder's name says more than run.frontlux; a file with a name of its own is called by it.
+// The name of the folder, since every recording is called run.frontlux; or the name that a user gave the
+// file.
 std::string name_of(const std::filesystem::path& file) {
   const std::filesystem::path full = std::filesystem::absolute(file).lexically_normal();
   return full.filename() == "run.frontlux" ? full.parent_path().filename().string() : full.stem().string();
@@ -63,23 +63,18 @@ std::vector<Run> read_runs(const Options& options) {
     runs.push_back({file, std::move(name), planner::read_recording(file)});
     const planner::Recording& recording = runs.back().recording;
     if (recording.truncated)
-      std::cerr << "frontlux: " << file.string() << ": its last step is not complete and is left out\n";
-    if (recording.steps.empty()) throw BadInput(file.string() + ": it holds no step; explore first");
+      std::cerr << "frontlux: " << file.string() << ": the last step is not complete and is left out\n";
+    if (recording.steps.empty()) throw BadInput(file.string() + ": the recording holds no step");
   }
   return runs;
 }
 
 std::filesystem::path output_of(const Options& options, const std::vector<Run>& runs) {
   if (!options.output.empty()) {
-    const std::filesystem::path file = options.output;
-    if (file.extension() != ".html")
-      throw BadInput("--output: " + options.output + " is no name for a report; give one that ends in .html");
-    std::error_code error;
-    if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), error))
-      throw BadInput("--output: there is no folder " + file.parent_path().string() + "; make it first");
-    return file;
+    check_output(options.output, {".html"});
+    return options.output;
   }
-  if (runs.size() > 1) throw BadInput("--output: several runs make one report; say where it goes");
+  if (runs.size() > 1) throw BadInput("--output: give a file for the report of several runs");
   return runs.front().file.parent_path() / "report.html";
 }
 
@@ -102,34 +97,23 @@ void report(const Options& options) {
 }  // namespace
 
 void add_report_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("report", "Make a page that shows runs, for any browser, offline");
+  Command command(app, "report", "Write a web page that shows runs");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option("RUN", options->runs,
-                   "Folders that frontlux explore has written, or recordings (.frontlux); the first is the "
-                   "one that others are compared with")
-      ->required();
-  command->add_option("-o,--output", options->output,
-                      "Report to write, .html; of one run report.html in its folder if not given");
-  command->add_flag("--png", options->png,
-                    "Also stills, beside each recording: final_map.png and coverage.png");
-  command->footer(
+      .add("RUN", options->runs, "",
+           "Folders that frontlux explore has written, or recordings (.frontlux);\n"
+           "all runs are compared with the first")
+      .required();
+  command.add("-o,--output", options->output, "FILE.html", "Page to write [report.html beside a single run]");
+  command.add_flag("--png", options->png, "Also write final_map.png and coverage.png beside each recording");
+  command.examples(
       "Examples:\n"
       "  frontlux report runs/station --png\n"
       "  frontlux report runs/team runs/uav_alone -o comparison.html\n"
-      "The page needs no network and no other file. A recording that was cut off is shown up to its last\n"
-      "complete step.");
-  command->callback([options] {
-    try {
-      report(*options);
-    } catch (const std::invalid_argument& error) {
-      throw BadInput(error.what());
-    } catch (const BadInput&) {
-      throw;
-    } catch (const std::runtime_error& error) {
-      throw BadInput(error.what());
-    }
-  });
+      "The page needs no network and no other file. An incomplete recording is shown up to its last "
+      "complete\n"
+      "step.");
+  command.run([options] { work_on("report", "report fewer runs", [&] { report(*options); }); });
 }
 
 }  // namespace frontlux::app

@@ -1,6 +1,6 @@
-#include "commands/world_command.hpp"
-
 #include "bad_input.hpp"
+#include "command.hpp"
+#include "commands/commands.hpp"
 #include "text.hpp"
 #include "world_source.hpp"
 
@@ -9,8 +9,6 @@
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 #include <frontlux/sim/start_pose.hpp>
-
-#include <CLI/CLI.hpp>
 
 #include <iostream>
 #include <memory>
@@ -23,7 +21,6 @@ namespace {
 
 struct Options {
   WorldSource source;
-  std::string resolution = "0.3";
   std::string output;
 };
 
@@ -35,7 +32,7 @@ void print_list() {
 
 std::string free_volume_text(const sim::World& world) {
   const auto solid = sim::solid_volume(world.mesh);
-  if (!solid) return "not known: the surface is not closed, or its triangles face different ways";
+  if (!solid) return "not known: the surface is not closed, or its triangles are oriented differently";
   // A surface that faces inwards, towards free space, holds just that.
   const double free = *solid >= 0.0 ? world.bounds.volume() - *solid : -*solid;
   if (free < 0.0) return "not known: solids overlap";
@@ -80,38 +77,34 @@ void print_text(const SourcedWorld& sourced, const WorldSource& source) {
          row("surface", rounded(sim::surface_area(world.mesh)) + " m^2") +
          row("free", free_volume_text(world)) + row("start", start_text(world)) +
          row("observable", observable_text(sourced, source.resolution));
-  if (source.ground) out += row("ground", "moved by " + rounded(sourced.ground_shift) + " m along z");
+  if (source.ground) out += row("ground", "shifted by " + rounded(sourced.ground_shift) + " m along z");
   std::cout << out;
 }
 
 }  // namespace
 
 void add_world_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("world", "Show a world to explore, or write it as a mesh");
+  Command command(app, "world", "Measure a world to explore, or write it as a mesh");
   const auto options = std::make_shared<Options>();
   WorldSource& source = options->source;
-  command->add_option(
-      "WORLD", source.world,
-      "A built-in world, a mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or an OctoMap file (.bt, .ot); "
-      "without it, the built-in worlds are listed");
-  command->add_option("--seed", source.seed, "Which of a built-in world's layouts; 1 if not given");
-  add_world_options(*command, source);
-  command->add_option("--resolution", options->resolution,
-                      "Edge of a voxel of the map to be made, in metres");
-  command->add_option("-o,--output", options->output, "Write the surface to this PLY file");
-  command->footer(
+  command.add("WORLD", source.world, "",
+              "Built-in world, mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or OctoMap file (.bt, .ot)\n"
+              "[list the built-in worlds]");
+  command.add("-o,--output", options->output, "FILE.ply", "Write the world's surface to this file");
+  add_world_options(command, source, "off");
+  command.add("--seed", source.seed, "N", "Layout of a built-in world [1]", kSeeds);
+  command.examples(
       "Example:\n"
       "  frontlux world factory --seed 7 -o factory.ply\n"
-      "prints what the seventh factory measures and writes it as a mesh.");
-  command->callback([options] {
+      "prints the measures of the seventh factory and writes it as a mesh.");
+  command.run([options] {
     if (options->source.world.empty()) return print_list();
-    options->source.resolution = parse_resolution(options->resolution);
     const SourcedWorld sourced = make_world(options->source);
     if (!options->output.empty()) {
       try {
         sim::write_ply(options->output, sourced.world.mesh);
       } catch (const std::runtime_error& error) {
-        throw BadInput(std::string("-o: ") + error.what());
+        throw BadInput(std::string("--output: ") + error.what());
       }
     }
     print_text(sourced, options->source);

@@ -1,7 +1,7 @@
 #include "draw/coverage_still.hpp"
 
-#include "draw/robot_color.hpp"
-#include "share_text.hpp"
+#include "draw/colors.hpp"
+#include "text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ struct Curve {
   std::string name;
   Color color;
   double thickness;
-  std::vector<double> shares;
+  std::vector<double> fractions;
 };
 
 std::vector<Curve> curves_of(const planner::Recording& recording, std::string& of) {
@@ -28,7 +28,7 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
   const auto count = [&](const planner::KnownVoxels& known) {
     return static_cast<double>(observable ? known.observable : known.bounding);
   };
-  of = observable ? "of the observable" : head.bounding > 0 ? "of the box" : "of what is known in the end";
+  of = observable ? "of the observable" : head.bounding > 0 ? "of the box" : "of what is mapped in the end";
   double total = static_cast<double>(observable ? head.observable : head.bounding);
   if (total == 0.0)
     for (const planner::KnownVoxels& known : recording.steps.back().known) total += count(known);
@@ -39,10 +39,10 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
   for (const planner::RecordedStep& step : recording.steps) {
     double sum = 0.0;
     for (std::size_t r = 0; r < head.robots.size(); ++r) {
-      curves[r + 1].shares.push_back(count(step.known[r]) / total);
-      sum += curves[r + 1].shares.back();
+      curves[r + 1].fractions.push_back(count(step.known[r]) / total);
+      sum += curves[r + 1].fractions.back();
     }
-    curves.front().shares.push_back(sum);
+    curves.front().fractions.push_back(sum);
   }
   if (head.robots.size() == 1) curves.erase(curves.begin());
   return curves;
@@ -63,23 +63,25 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
   const std::uint64_t first = recording.steps.front().step.number, last = recording.steps.back().step.number;
   const double steps = std::max(1.0, static_cast<double>(last - first));
   const auto pixel_x = [&](double step) { return kLeft + (kWidth - kLeft - kRight) * step / steps; };
-  const auto pixel_y = [](double share) { return kHeight - kBottom - (kHeight - kTop - kBottom) * share; };
+  const auto pixel_y = [](double fraction) {
+    return kHeight - kBottom - (kHeight - kTop - kBottom) * fraction;
+  };
 
   Canvas canvas(kWidth, kHeight, kPaper);
   canvas.text(24, 24,
-              (name == recording.head.world ? name : name + ": " + recording.head.world) + ", known " + of,
+              (name == recording.head.world ? name : name + ": " + recording.head.world) + ", mapped " + of,
               kLetters, kInk);
   int x = 24;
   for (const Curve& curve : curves) {
     canvas.fill(x, 58, 24, 5, curve.color);
-    const std::string text = curve.name + " " + share_text(curve.shares.back(), 1);
+    const std::string text = curve.name + " " + percent(curve.fractions.back(), 1);
     canvas.text(x + 32, 54, text, kLetters, kInk);
     x += 32 + Canvas::text_width(text, kLetters) + 28;
   }
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = static_cast<int>(std::lround(pixel_y(tick / 4.0)));
     canvas.fill(kLeft, y, kWidth - kLeft - kRight, 1, kGrid);
-    const std::string text = share_text(tick / 4.0, 0);
+    const std::string text = percent(tick / 4.0, 0);
     canvas.text(kLeft - 10 - Canvas::text_width(text, kLetters), y - Canvas::kTextHeight, text, kLetters,
                 kMuted);
   }
@@ -92,12 +94,12 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
   }
   canvas.text(kWidth - kRight - Canvas::text_width("step", kLetters), kHeight - 30, "step", kLetters, kMuted);
   std::for_each(curves.rbegin(), curves.rend(), [&](const Curve& curve) {
-    for (std::size_t i = 1; i < curve.shares.size(); ++i) {
+    for (std::size_t i = 1; i < curve.fractions.size(); ++i) {
       const auto step = [&](std::size_t k) {
         return static_cast<double>(recording.steps[k].step.number - first);
       };
-      canvas.line(pixel_x(step(i - 1)), pixel_y(curve.shares[i - 1]), pixel_x(step(i)),
-                  pixel_y(curve.shares[i]), curve.thickness, curve.color);
+      canvas.line(pixel_x(step(i - 1)), pixel_y(curve.fractions[i - 1]), pixel_x(step(i)),
+                  pixel_y(curve.fractions[i]), curve.thickness, curve.color);
     }
   });
   return canvas;

@@ -1,13 +1,14 @@
 #include "draw/map_still.hpp"
 
-#include "draw/robot_color.hpp"
-#include "share_text.hpp"
+#include "draw/colors.hpp"
+#include "text.hpp"
+
+#include <frontlux/key_box.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <numbers>
 #include <vector>
 
@@ -46,51 +47,42 @@ struct Face {
   std::size_t axis;        // of its normal
 };
 
-Eigen::Vector3d in_voxels(const VoxelKey& key) {
-  return {key.x - double{Lattice::kOrigin}, key.y - double{Lattice::kOrigin},
-          key.z - double{Lattice::kOrigin}};
-}
-
 std::vector<Face> visible_faces(const VoxelGrid& grid) {
   std::vector<Face> faces;
-  const auto look = [&](const VoxelKey& key) {
-    const Eigen::Vector3d middle = in_voxels(key) + Eigen::Vector3d::Constant(0.5);
-    const auto free = [&](int x, int y, int z) {
-      if (x < 0 || y < 0 || z > 0xFFFF) return false;
-      return grid.at({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                      static_cast<std::uint16_t>(z)}) == Occupancy::kFree;
+  const auto add_faces = [&](const VoxelKey& key) {
+    const Eigen::Vector3d middle = Lattice(1.0).exact_center(key);
+    const auto add = [&](std::size_t axis, int side) {
+      const Eigen::Vector3i step = side * Eigen::Vector3i::Unit(static_cast<Eigen::Index>(axis));
+      const auto next = offset_key(key, step.x(), step.y(), step.z());
+      if (next && grid.at(*next) == Occupancy::kFree)
+        faces.push_back({middle + 0.5 * step.cast<double>(), axis});
     };
-    if (free(key.x - 1, key.y, key.z)) faces.push_back({middle - 0.5 * Eigen::Vector3d::UnitX(), 0});
-    if (free(key.x, key.y - 1, key.z)) faces.push_back({middle - 0.5 * Eigen::Vector3d::UnitY(), 1});
-    if (free(key.x, key.y, key.z + 1)) faces.push_back({middle + 0.5 * Eigen::Vector3d::UnitZ(), 2});
+    add(0, -1);
+    add(1, -1);
+    add(2, 1);
   };
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
     if (brick == nullptr && state != Occupancy::kOccupied) return;
-    const int edge = 1 << block.log2_edge;
-    for (int x = 0; x < edge; ++x)
-      for (int y = 0; y < edge; ++y)
-        for (int z = 0; z < edge; ++z) {
-          const VoxelKey key{static_cast<std::uint16_t>(block.corner.x + x),
-                             static_cast<std::uint16_t>(block.corner.y + y),
-                             static_cast<std::uint16_t>(block.corner.z + z)};
-          if (grid.at(key) == Occupancy::kOccupied) look(key);
-        }
+    for_each_key(cube(block.corner, 1 << block.log2_edge), [&](const VoxelKey& key) {
+      if (grid.at(key) == Occupancy::kOccupied) add_faces(key);
+    });
   });
   return faces;
 }
 
-Color mixed(Color a, Color b, double share) {
+Color mixed(Color a, Color b, double fraction) {
   const auto channel = [&](std::uint8_t from, std::uint8_t to) {
-    return static_cast<std::uint8_t>(std::lround(from + share * (to - from)));
+    return static_cast<std::uint8_t>(std::lround(from + fraction * (to - from)));
   };
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
 
 Color face_color(const Face& face, double low, double high) {
-  constexpr std::array<double, 3> kShadow = {0.3, 0.18, 0.0};
-  const double share = high > low ? std::clamp((face.middle.z() - low) / (high - low), 0.0, 1.0) : 0.0;
-  const Color lit = share < 0.5 ? mixed(kLow, kMiddle, 2 * share) : mixed(kMiddle, kHigh, 2 * share - 1);
-  return mixed(lit, {0, 0, 0}, kShadow.at(face.axis));
+  constexpr std::array<double, 3> kShade = {0.3, 0.18, 0.0};
+  const double fraction = high > low ? std::clamp((face.middle.z() - low) / (high - low), 0.0, 1.0) : 0.0;
+  const Color lit =
+      fraction < 0.5 ? mixed(kLow, kMiddle, 2 * fraction) : mixed(kMiddle, kHigh, 2 * fraction - 1);
+  return mixed(lit, {0, 0, 0}, kShade.at(face.axis));
 }
 
 // Pixels whose middle lies in the parallelogram of the face.
@@ -115,7 +107,7 @@ void fill_face(Canvas& canvas, const Projection& projection, const Face& face, C
     }
 }
 
-// Fits all faces and ways between the margins.
+// Fits all faces and paths between the margins.
 Projection fit(const std::vector<Eigen::Vector3d>& points, int header, int& width, int& height) {
   Projection projection;
   double min_x = 0, max_x = 1, min_y = 0, max_y = 1;
@@ -138,29 +130,29 @@ Projection fit(const std::vector<Eigen::Vector3d>& points, int header, int& widt
   return projection;
 }
 
-std::vector<Eigen::Vector3d> way_of(const planner::Recording& recording, std::size_t robot) {
-  std::vector<Eigen::Vector3d> way;
+std::vector<Eigen::Vector3d> path_of(const planner::Recording& recording, std::size_t robot) {
+  std::vector<Eigen::Vector3d> path;
   const double resolution = recording.head.resolution;
   for (const planner::RecordedStep& step : recording.steps) {
     const planner::RobotStep& moved = step.step.robots[robot];
     for (std::size_t i = 0; i < std::min(moved.travelled, moved.planned.size()); ++i)
-      way.push_back(moved.planned[i].position / resolution);
+      path.push_back(moved.planned[i].position / resolution);
   }
-  return way;
+  return path;
 }
 
-void draw_way(Canvas& canvas, const Projection& projection, const std::vector<Eigen::Vector3d>& way,
-              Color color) {
+void draw_path(Canvas& canvas, const Projection& projection, const std::vector<Eigen::Vector3d>& path,
+               Color color) {
   const auto pass = [&](double thickness, Color with) {
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const auto a = projection.spot(way[i - 1]), b = projection.spot(way[i]);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const auto a = projection.spot(path[i - 1]), b = projection.spot(path[i]);
       canvas.line(a.x, a.y, b.x, b.y, thickness, with);
     }
   };
   pass(5.0, kPaper);
   pass(2.6, color);
-  if (way.empty()) return;
-  const auto begin = projection.spot(way.front()), end = projection.spot(way.back());
+  if (path.empty()) return;
+  const auto begin = projection.spot(path.front()), end = projection.spot(path.back());
   canvas.disc(begin.x, begin.y, 8, kPaper);
   canvas.ring(begin.x, begin.y, 5, 3, color);
   canvas.disc(end.x, end.y, 9, kPaper);
@@ -173,10 +165,10 @@ std::string summary_of(const planner::Recording& recording) {
   const double total = static_cast<double>(recording.head.observable);
   const std::string step = "step " + std::to_string(recording.steps.back().step.number);
   if (total == 0.0) return "after " + step;
-  return share_text(static_cast<double>(known) / total, 1) + " known after " + step;
+  return percent(static_cast<double>(known) / total, 1) + " mapped after " + step;
 }
 
-// What a run is called, and where it was, if the name does not say so.
+// The name of a run, and its world if the name does not say it.
 std::string title_of(const std::string& name, const planner::Recording& recording) {
   const std::string& world = recording.head.world;
   return name == world ? name + ": " : name + ": " + world + ", ";
@@ -190,8 +182,8 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
     for (const planner::RobotStep& robot : step.step.robots)
       for (const planner::VoxelChange& change : robot.changed) grid.set(change.key, change.after);
   std::vector<Face> faces = visible_faces(grid);
-  std::vector<std::vector<Eigen::Vector3d>> ways;
-  for (std::size_t r = 0; r < recording.head.robots.size(); ++r) ways.push_back(way_of(recording, r));
+  std::vector<std::vector<Eigen::Vector3d>> paths;
+  for (std::size_t r = 0; r < recording.head.robots.size(); ++r) paths.push_back(path_of(recording, r));
 
   std::vector<Eigen::Vector3d> points;
   double low = 0.0, high = 0.0;
@@ -200,8 +192,8 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
     high = points.empty() ? face.middle.z() : std::max(high, face.middle.z());
     points.push_back(face.middle);
   }
-  for (const auto& way : ways) points.insert(points.end(), way.begin(), way.end());
-  const int header = kLine * (1 + static_cast<int>(ways.size()));
+  for (const auto& path : paths) points.insert(points.end(), path.begin(), path.end());
+  const int header = kLine * (1 + static_cast<int>(paths.size()));
   int width = 0, height = 0;
   const Projection projection = fit(points, header, width, height);
   Canvas canvas(width, height, kPaper);
@@ -210,17 +202,16 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
     return projection.nearness(a.middle) < projection.nearness(b.middle);
   });
   for (const Face& face : faces) fill_face(canvas, projection, face, face_color(face, low, high));
-  for (std::size_t r = 0; r < ways.size(); ++r) draw_way(canvas, projection, ways[r], robot_color(r));
+  for (std::size_t r = 0; r < paths.size(); ++r) draw_path(canvas, projection, paths[r], robot_color(r));
 
   canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kLetters, kInk);
-  for (std::size_t r = 0; r < ways.size(); ++r) {
+  for (std::size_t r = 0; r < paths.size(); ++r) {
     const int y = kMargin + kLine * (1 + static_cast<int>(r));
     canvas.fill(kMargin, y + 4, 26, 6, robot_color(r));
     double length = 0.0;
     for (const planner::RecordedStep& step : recording.steps) length += step.step.robots[r].length;
-    std::array<char, 64> metres{};
-    std::snprintf(metres.data(), metres.size(), "  %.0f m", length);
-    canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + metres.data(), kLetters, kInk);
+    canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + "  " + fixed(length, 0) + " m",
+                kLetters, kInk);
   }
   return canvas;
 }

@@ -8,9 +8,9 @@
 
 namespace frontlux::app {
 
-/// The map at a recording's end, from above and aside, with the robots' ways and where they began and ended.
-/// Shown are the faces of occupied voxels that look onto free space and towards the viewer, so that walls on
-/// the near side hide nothing. At most 2000 x 1600 pixels, or as many as there are voxels.
+/// The map at a recording's end, seen obliquely from above, with the robots' paths, their starts and their
+/// ends. Shown are the faces of occupied voxels that look onto free space and towards the viewer, so that
+/// walls on the near side hide nothing. At most 2000 x 1600 pixels, or as many as there are voxels.
 /// @throws std::invalid_argument if the map is too wide for an image
 [[nodiscard]] Canvas draw_final_map(const planner::Recording& recording, const std::string& name);
 

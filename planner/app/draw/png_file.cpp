@@ -22,8 +22,8 @@ void write_png(const std::filesystem::path& file, const Canvas& image) {
   bytes.resize(size);
   if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.bytes().data(), 0, nullptr) == 0)
     throw std::runtime_error(file.string() + ": cannot be made: libpng says " + header.message);
-  write_file(
-      file, [&](std::ostream& stream) { stream.write(bytes.data(), static_cast<std::streamsize>(size)); });
+  write_file(file,
+             [&](std::ostream& stream) { stream.write(bytes.data(), static_cast<std::streamsize>(size)); });
 }
 
 }  // namespace frontlux::app

@@ -1,6 +1,6 @@
 #include "draw/view_picture.hpp"
 
-#include "draw/color_scale.hpp"
+#include "draw/colors.hpp"
 #include "text.hpp"
 
 #include <algorithm>
@@ -95,8 +95,8 @@ std::vector<double> columns_of(const ViewScene& scene, const Window& window) {
   return columns;
 }
 
-// On a scale of square roots: what lies far away, and so is worth little, stays visible.
-double share_of(double quality, double most) { return most > 0.0 ? std::sqrt(quality / most) : 0.0; }
+// On a scale of square roots, so that low qualities, which are far away, stay visible.
+double fraction_of(double quality, double most) { return most > 0.0 ? std::sqrt(quality / most) : 0.0; }
 
 void draw_cells(Canvas& canvas, const ViewScene& scene, const Window& window, double most) {
   const std::vector<double> columns = columns_of(scene, window);
@@ -108,7 +108,7 @@ void draw_cells(Canvas& canvas, const ViewScene& scene, const Window& window, do
     for (int y = window.min_y; y <= window.max_y; ++y)
       if (quality(x, y) >= 0.0)
         canvas.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale,
-                    color_of_share(share_of(quality(x, y), most)));
+                    color_of(fraction_of(quality(x, y), most)));
   // Frontiers of all heights, those far above or below faintly, and none over cells.
   const int inset = window.scale >= 5 ? window.scale / 5 : 0;
   const int layer = scene.grid.lattice().key(scene.pose.position.z()).value();
@@ -176,7 +176,7 @@ void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, in
   canvas.text(left, window.top, "view quality", kLetters, kInk);
   const int top = window.top + kLine;
   for (int y = 0; y < kBarHeight; ++y)
-    canvas.fill(left, top + y, kBar, 1, color_of_share(1.0 - y / (kBarHeight - 1.0)));
+    canvas.fill(left, top + y, kBar, 1, color_of(1.0 - y / (kBarHeight - 1.0)));
   canvas.frame(left - 1, top - 1, kBar + 2, kBarHeight + 2, 1, kInk);
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = top + (kBarHeight - 1) * (4 - tick) / 4;

@@ -2,16 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <optional>
 #include <stdexcept>
-#include <utility>
 
 namespace frontlux::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Every member with its name, in one place for both ways.
+// Every member with its name, in one place for both directions.
 template <class Options, class Visit>
 void for_each_member(Options& options, const Visit& visit) {
   visit("world", options.source.world);
@@ -26,7 +24,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("goal", options.goal);
   visit("planner", options.search);
   visit("renderer", options.renderer);
-  visit("distribute", options.distribute);
+  visit("assign", options.assign);
   visit("optimize", options.optimize);
   visit("caster", options.caster);
   visit("seed", options.seed);
@@ -36,40 +34,102 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("advance", options.advance);
   visit("min_distance", options.min_distance);
   visit("samples", options.samples);
-  visit("resolution", options.resolution);
-  visit("noise", options.noise);
-  visit("dropout", options.dropout);
+  visit("resolution", options.source.resolution);
+  visit("noise", options.errors.sigma);
+  visit("dropout", options.errors.dropout);
+}
+
+// Enumerations and starts as the words of the command line, the rest as JSON's own types.
+template <class Value>
+Json json_of(const Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    return choice_name(value);
+  else
+    return value;
+}
+Json json_of(const StartPose& start) { return start.word; }
+Json json_of(const Eigen::Vector3f& point) {
+  return {as_written(point.x()), as_written(point.y()), as_written(point.z())};
+}
+Json json_of(const GroundAlignment& ground) {
+  if (ground.height) return *ground.height;
+  return ground.align ? "auto" : "off";
+}
+template <class Value>
+Json json_of(const std::vector<Value>& values) {
+  Json list = Json::array();
+  for (const Value& value : values) list.push_back(json_of(value));
+  return list;
+}
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+  return value ? json_of(*value) : Json();
+}
+
+template <class Value>
+void take(const Json& json, Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    read(json.get<std::string>(), value);
+  else
+    json.get_to(value);
+}
+void take(const Json& json, StartPose& start) { read(json.get<std::string>(), start); }
+void take(const Json& json, Eigen::Vector3f& point) {
+  for (int i = 0; i < 3; ++i) point[i] = json.at(static_cast<std::size_t>(i)).get<float>();
+}
+void take(const Json& json, GroundAlignment& ground) {
+  if (json.is_number())
+    ground = {true, json.get<double>()};
+  else
+    read(json.get<std::string>(), ground);
+}
+template <class Value>
+void take(const Json& json, std::vector<Value>& values) {
+  for (const Json& item : json) take(item, values.emplace_back());
+}
+template <class Value>
+void take(const Json& json, std::optional<Value>& value) {
+  take(json, value.emplace());
 }
 
 }  // namespace
 
-std::string to_json(const ExploreOptions& options) {
+void read(std::string_view word, StartPose& start) {
+  const std::size_t equals = word.find('='), comma = word.rfind(',');
+  try {
+    if (equals > word.size() || comma > word.size() || comma < equals) throw BadInput("");
+    Eigen::Vector3f position;
+    read(word.substr(equals + 1, comma - equals - 1), position);
+    read(word.substr(comma + 1), start.pose.yaw, kAnyNumber);
+    start.pose.position = position.cast<double>();
+  } catch (const BadInput&) {
+    throw BadInput(quote(word) +
+                   " is not a start; give NAME=x,y,z,yaw in metres and radians, as in ugv=1.5,-2,0.75,0");
+  }
+  start.word = word;
+  start.robot = word.substr(0, equals);
+}
+
+nlohmann::ordered_json to_json(const ExploreOptions& options) {
   Json json = Json::object();
   for_each_member(options, [&](const char* name, const auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, std::optional<std::string>>) {
-      if (value) json[name] = *value;
-    } else {
-      json[name] = value;
-    }
+    Json member = json_of(value);
+    if (!member.is_null()) json[name] = std::move(member);
   });
-  // File names are bytes, JSON is Unicode.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json;
+}
+
+std::string json_text(const ExploreOptions& options) {
+  return to_json(options).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 ExploreOptions explore_options_of(const std::string& text) {
   try {
     const Json json = Json::parse(text);
-    if (!json.is_object()) throw std::runtime_error("they are no JSON object");
+    if (!json.is_object()) throw std::runtime_error("they are not a JSON object");
     ExploreOptions options;
     for_each_member(options, [&](const char* name, auto& value) {
-      const auto found = json.find(name);
-      if (found == json.end()) return;
-      using Value = std::decay_t<decltype(value)>;
-      if constexpr (std::is_same_v<Value, std::optional<std::string>>)
-        value = found->template get<std::string>();
-      else
-        value = found->template get<Value>();
+      if (const auto found = json.find(name); found != json.end()) take(*found, value);
     });
     return options;
   } catch (const Json::exception& error) {

@@ -2,29 +2,57 @@
 
 #include "world_source.hpp"
 
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/pose.hpp>
+#include <frontlux/sim/sensor.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace frontlux::app {
 
-/// A run of `frontlux explore` as the user asks for it; everything that its result depends on.
+/// Where one robot's sensor starts.
+struct StartPose {
+  std::string word;  ///< as the user gives it: NAME=X,Y,Z,YAW
+  std::string robot;
+  planner::Pose pose;  ///< before the ground is aligned
+};
+/// @throws BadInput
+void read(std::string_view word, StartPose& start);
+
+/// A run of `frontlux explore` as the user asks for it; everything that its result depends on. What is not
+/// given depends on the mode, or on the goal.
 struct ExploreOptions {
-  WorldSource source;                    // its resolution is `resolution`, its seed `seed`
-  std::string team = "uav+ugv";          ///< names with + between them, a number before a name for several
-  std::vector<std::string> robot_files;  ///< more robots
-  std::vector<std::string> poses;        ///< NAME=x,y,z,yaw of sensors that are not to start near the start
-  std::string mode = "default", goal, search, renderer;  ///< the last three: by the mode if empty
-  std::string distribute = "on", optimize = "on", caster = "embree";
-  std::string seed = "1", max_steps = "1000", resolution = "0.3";
-  std::string epsilon, lambda, advance, min_distance, samples;  ///< by mode and goal if empty
-  std::string noise = "0", dropout = "0";
+  WorldSource source;  ///< its seed is not used
+  std::string team = "uav+ugv";
+  std::vector<std::string> robot_files;
+  std::vector<StartPose> poses;
+  planner::Method mode = planner::Method::kDefault;
+  std::optional<planner::GoalRule> goal;
+  std::optional<planner::PathSearch> search;
+  std::optional<ViewQualityOptions::Renderer> renderer;
+  bool assign = true, optimize = true;
+  planner::CasterKind caster = planner::CasterKind::kEmbree;
+  std::uint64_t seed = 1;
+  int max_steps = 1000;
+  std::optional<double> epsilon, lambda, advance, min_distance;
+  std::optional<int> samples;
+  sim::RangeErrors errors;
 };
 
-/// As a JSON object, on one line.
-[[nodiscard]] std::string to_json(const ExploreOptions& options);
+/// As a JSON object, without what is not given.
+[[nodiscard]] nlohmann::ordered_json to_json(const ExploreOptions& options);
 
-/// What `to_json` made. Members that are missing keep their default.
+/// As it is recorded: the object on one line, in Unicode whatever the bytes of file names.
+[[nodiscard]] std::string json_text(const ExploreOptions& options);
+
+/// What `json_text` made. Members that are missing keep their default.
 /// @throws std::runtime_error if it is not such an object
-[[nodiscard]] ExploreOptions explore_options_of(const std::string& json);
+[[nodiscard]] ExploreOptions explore_options_of(const std::string& text);
 
 }  // namespace frontlux::app

@@ -2,10 +2,10 @@
 
 #include "bad_input.hpp"
 #include "explore/explore_setup.hpp"
-#include "explore/interrupt.hpp"
-#include "explore/machine.hpp"
 #include "explore/run_files.hpp"
-#include "json.hpp"
+#include "explore/run_json.hpp"
+#include "interrupt.hpp"
+#include "stopwatch.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
@@ -16,16 +16,11 @@
 
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
 #include <iostream>
-#include <ostream>
 #include <span>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 
@@ -33,7 +28,6 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using planner::Exploration;
 using planner::ExplorationStep;
 using planner::RecordedStep;
@@ -52,38 +46,37 @@ void prepare_folder(const ExploreRun& run) {
   if (fs::exists(run.folder, error) && !fs::is_directory(run.folder, error))
     refuse("is a file; name a folder");
   if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))
-    refuse("cannot be made: " + (error ? error.message() : "no folder to make it in") +
-           "; name a folder whose parent exists and may be written to");
+    refuse("cannot be created: " + (error ? error.message() : "its parent folder does not exist") +
+           "; name a folder in one that exists and may be written to");
   if (::access(run.folder.c_str(), W_OK | X_OK) != 0) refuse("cannot be written to; check its permissions");
   if (!fs::is_empty(run.folder, error)) {
     if (!run.force)
       refuse(
-          "is not empty; name another folder, go on with the run in it by --resume, or replace that run by "
+          "is not empty; name another folder, continue the run in it with --resume, or replace it with "
           "--force");
     for (const char* file : kFiles) fs::remove(run.folder / file, error);
   }
 }
 
-std::string percent(double part) { return rounded(std::round(part * 1e4) / 100) + " %"; }
-std::string milli(double number) { return rounded(std::round(number * 1e3) / 1e3); }
-
-void show(const ExplorationStep& step, const RunFiles& files, const planner::RecordingHead& head) {
-  std::string line = "step " + std::to_string(step.number) + ": " + percent(files.observable()) + " known, " +
-                     std::to_string(step.frontiers) + " frontiers";
+// How far the run is, and what each robot does in this step.
+void show(const ExplorationStep& step, const RunSums& sums, const planner::RecordingHead& head,
+          double seconds) {
+  std::string line = "step " + std::to_string(step.number) + ": mapped " + percent(sums.observable) +
+                     " after " + fixed(seconds, 1) + " s, " + std::to_string(step.frontiers) + " frontiers";
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
     const planner::RobotStep& robot = step.robots[r];
     line += "; " + head.robots[r].robot.name + " ";
     if (robot.goal.pose)
-      line += rounded(std::round(robot.length * 10) / 10) + " m for " + std::to_string(robot.gain_predicted) +
-              " of " + std::to_string(robot.goal.assigned);
+      line += "travels " + fixed(robot.length, 1) + " m, expected gain " +
+              std::to_string(robot.gain_predicted) + " of " + std::to_string(robot.goal.assigned);
     else
       line += step.number == 0 ? "looks around" : robot.length > 0.0 ? "backs off" : "waits";
   }
-  if (step.number > 0) line += "; planned in " + milli(step.planning_seconds()) + " s";
+  if (step.number > 0) line += "; planned in " + fixed(step.planning_seconds(), 3) + " s";
   std::cout << line << std::endl;
 }
 
-// A run while it goes: the robots, the exploration that sends them, and the files that tell of it.
+// A run in progress: the robots, the exploration that moves them, and the files that record it.
 class Run {
  public:
   Run(ExploreSetup& setup, const ExploreRun& run)
@@ -94,7 +87,7 @@ class Run {
                      planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
         folder_(run.folder) {}
 
-  /// Begins the tables anew, with the steps so far. @pre called before `begin` and `step`
+  /// Writes the tables up to now. @pre called before `begin` and `step`
   void open_files(std::span<const RecordedStep> steps) {
     files_.emplace(folder_, setup_.head);
     for (const RecordedStep& step : steps) files_->add(step);
@@ -114,16 +107,15 @@ class Run {
     }
     if (!same)
       throw BadInput("--resume: in step " + std::to_string(recorded.step.number) +
-                     " the robots see another world than the one recorded; has " + setup_.head.world +
+                     " the robots see another world than the recorded one; has " + setup_.head.world +
                      " changed since?");
     last_ = recorded;
-    begun_ = true;
     collisions_ = robots_.total().physical;
   }
 
   [[nodiscard]] const Exploration& exploration() const { return exploration_; }
   [[nodiscard]] const RunFiles& files() const { return *files_; }
-  [[nodiscard]] const RecordedStep& last() const { return last_; }
+  [[nodiscard]] const RecordedStep& last() const { return *last_; }
 
  private:
   [[nodiscard]] planner::Drive drive() {
@@ -134,20 +126,17 @@ class Run {
   void note(ExplorationStep step) {
     const std::uint64_t before = collisions_;
     collisions_ = robots_.total().physical;
-    last_ = with_known_voxels(std::move(step), step_known(), *setup_.truth);
-    last_.collisions = collisions_ - before;
-    begun_ = true;
-    files_->add(last_);
+    last_ = with_known_voxels(std::move(step), last_ ? &*last_ : nullptr, *setup_.truth);
+    last_->collisions = collisions_ - before;
+    files_->add(*last_);
   }
-  [[nodiscard]] const RecordedStep* step_known() const { return begun_ ? &last_ : nullptr; }
 
   ExploreSetup& setup_;
   sim::SimulatedRobots robots_;
   Exploration exploration_;
   fs::path folder_;
   std::optional<RunFiles> files_;
-  RecordedStep last_;
-  bool begun_ = false;
+  std::optional<RecordedStep> last_;
   std::uint64_t collisions_ = 0;
 };
 
@@ -156,7 +145,7 @@ Recording read_run(const ExploreRun& run) {
   std::error_code error;
   if (!fs::exists(file, error))
     throw BadInput("--resume: " + run.folder.string() + " holds no " + kRecording +
-                   ", so no run to go on with; name the folder that was given to -o");
+                   ", so there is no run to continue; name the folder that was given to -o");
   try {
     return planner::read_recording(file);
   } catch (const std::runtime_error& failure) {
@@ -170,62 +159,28 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
       recorded.bounding == now.bounding && recorded.resolution == now.resolution)
     return;
   throw BadInput("--resume: the world of the run in " + run.folder.string() + " is not what " + now.world +
-                 " is now; start anew with the world as it is");
+                 " is now; start a new run");
 }
 
-// "render", or the rules of all robots with + between them.
-std::string goal_rules(std::span<const planner::TeamMember> team) {
-  constexpr std::array<std::string_view, 3> kNames = {"render", "cluster", "nearest"};
-  std::string names;
-  for (std::size_t rule = 0; rule < kNames.size(); ++rule)
-    if (std::any_of(team.begin(), team.end(), [rule](const planner::TeamMember& member) {
-          return static_cast<std::size_t>(member.options.rule) == rule;
-        }))
-      names.append(names.empty() ? "" : "+").append(kNames[rule]);
-  return names;
-}
-
-void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunFiles& files, const std::string& end, double seconds) {
-  std::vector<std::string> names;
-  for (const planner::RobotDescription& robot : setup.head.robots) names.push_back(robot.robot.name);
-  JsonObject json;
-  json.add("version", FRONTLUX_VERSION).add("world", setup.head.world).add("seed", setup.exploration.seed);
-  json.add("robots", std::span<const std::string>(names)).add("mode", options.mode);
-  json.add("goal", goal_rules(setup.exploration.team)).add("distribute", setup.exploration.assign);
-  json.add("optimize", setup.exploration.optimize).add("caster", options.caster);
-  json.add("planner", planner::name_of(setup.exploration.path.search))
-      .add("resolution_m", setup.head.resolution);
-  json.add("max_steps", static_cast<std::uint64_t>(setup.exploration.max_steps));
-  json.add("epsilon", setup.exploration.epsilon);
-  json.add("threads", static_cast<std::uint64_t>(run.threads)).add("machine", machine_name());
-  json.add("end", end);
-  files.add_sums(json);
-  json.add("wall_s", seconds).add("memory_mb", peak_memory_mb()).add_raw("options", to_json(options));
-  const std::string text = json.text() + '\n';
-  write_file(run.folder / "run.json", [&](std::ostream& out) { out << text; });
-}
-
-void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunFiles& files,
+void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSums& sums,
                    const std::string& end, double seconds) {
   std::string out = row("run", run.folder.string()) + row("world", setup.head.world) + row("end", end) +
-                    row("steps", std::to_string(files.steps())) +
-                    row("coverage", percent(files.observable()) + " of the observable space, " +
-                                        percent(files.bounding()) + " of the world's box");
+                    row("steps", std::to_string(sums.steps)) +
+                    row("mapped", percent(sums.observable) + " of the observable space, " +
+                                      percent(sums.bounding) + " of the world's box");
   for (std::size_t r = 0; r < setup.head.robots.size(); ++r)
-    out += row(setup.head.robots[r].robot.name,
-               "travelled " + rounded(std::round(files.travelled()[r] * 10) / 10) + " m");
-  out += row("collisions", std::to_string(files.collisions())) +
-         row("planning",
-             milli(files.planning_mean()) + " s a step, at most " + milli(files.planning_max()) + " s") +
-         row("time", milli(seconds) + " s");
+    out += row(setup.head.robots[r].robot.name, "travelled " + fixed(sums.travelled[r], 1) + " m");
+  out += row("collisions", std::to_string(sums.collisions)) +
+         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, max " + fixed(sums.planning_max, 3) +
+                             " s per step") +
+         row("time", fixed(seconds, 1) + " s");
   std::cout << out;
 }
 
 }  // namespace
 
 void explore(ExploreOptions options, const ExploreRun& run) {
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   std::optional<Recording> recording;
   if (run.resume) {
     recording = read_run(run);
@@ -245,56 +200,54 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   bool stopped = false;
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     try {
-      Run going(setup, run);
+      Run exploring(setup, run);
       std::span<const RecordedStep> before;
       if (recording) before = recording->steps;
-      for (const RecordedStep& step : before) going.repeat(step);  // if that is refused, all stays as it is
-      // First the recording, which is locked: the files may be those of a process that is at it.
+      for (const RecordedStep& step : before) exploring.repeat(step);  // before any file is touched
+      // The recording comes first and is locked: another process may still be writing this run.
       const fs::path file = run.folder / kRecording;
       planner::RecordingWriter writer =
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
-      going.open_files(before);
+      exploring.open_files(before);
       const auto record = [&] {
-        writer.write(going.last());
-        show(going.last().step, going.files(), setup.head);
+        writer.write(exploring.last());
+        show(exploring.last().step, exploring.files().sums(), setup.head, watch.seconds());
       };
       if (!recording || recording->steps.empty()) {
-        going.begin();
+        exploring.begin();
         record();
       }
-      while (!going.exploration().end() && !InterruptNote::taken()) {
-        going.step();
+      while (!exploring.exploration().end() && !InterruptNote::taken()) {
+        exploring.step();
         record();
       }
-      const auto reason = going.exploration().end();
+      const auto reason = exploring.exploration().end();
       stopped = !reason;
       const std::string end = reason ? std::string(planner::name_of(*reason)) : kStopped;
       writer.write_end(end);
-      going.exploration().mapping().write(run.folder / "map.ot");
-      going.exploration().mapping().write(run.folder / "map.bt");
-      write_run_json(run, options, setup, going.files(), end, seconds());
+      exploring.exploration().mapping().write(run.folder / "map.ot");
+      exploring.exploration().mapping().write(run.folder / "map.bt");
+      write_run_json(run, options, setup, exploring.files().sums(), end, watch.seconds());
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{
             fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole};
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
-      print_summary(run, setup, going.files(),
-                    reason ? end + ": " + planner::describe(*reason, going.exploration().options()) : end,
-                    seconds());
+      print_summary(run, setup, exploring.files().sums(),
+                    reason ? end + ": " + planner::describe(*reason, exploring.exploration().options()) : end, watch.seconds());
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw BadInput(std::string(error.what()) +
-                     "; what is recorded is kept, and frontlux explore --resume " + run.folder.string() +
-                     " goes on with it");
+      throw BadInput(std::string(error.what()) + "; the recorded steps are kept: frontlux explore --resume " +
+                     run.folder.string() + " continues the run");
     }
   });
-  if (stopped) throw Interrupted("stopped; frontlux explore --resume " + run.folder.string() + " goes on");
+  if (stopped)
+    throw Interrupted("stopped; frontlux explore --resume " + run.folder.string() + " continues the run");
 }
 
 }  // namespace frontlux::app

@@ -4,21 +4,20 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 namespace frontlux::app {
 
 /// How a run is carried out; none of it changes the result.
 struct ExploreRun {
   std::filesystem::path folder;
-  bool resume = false;                   ///< go on with the run that is there
-  bool force = false;                    ///< else the folder has to be new or empty
-  int threads = 0;                       ///< 0: all cores
-  bool report = true;                    ///< write report.html
-  std::optional<std::string> max_steps;  ///< of a run that goes on: another limit
+  bool resume = false;           ///< continue the run that is there
+  bool force = false;            ///< else the folder has to be new or empty
+  int threads = 0;               ///< 0: all cores
+  bool report = true;            ///< write report.html
+  std::optional<int> max_steps;  ///< of a resumed run: another limit
 };
 
-/// Explores, and leaves the files of the run in its folder. Tells on standard output how it goes.
+/// Explores, and writes the files of the run into its folder. Prints a line for each step, and a summary.
 /// @throws BadInput, Interrupted
 void explore(ExploreOptions options, const ExploreRun& run);
 

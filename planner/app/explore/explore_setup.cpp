@@ -28,30 +28,6 @@ using planner::RobotDescription;
 
 constexpr std::size_t kMaxRobots = 32;
 
-template <class Value>
-Value chosen(const char* option, const std::string& text,
-             std::initializer_list<std::pair<std::string_view, Value>> choices) {
-  std::string names;
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-    names.append(names.empty() ? "" : ", ").append(name);
-  }
-  throw BadInput(std::string(option) + ": '" + text + "' is none of " + names);
-}
-
-bool parse_switch(const char* option, const std::string& text) {
-  return chosen<bool>(option, text, {{"on", true}, {"off", false}});
-}
-
-int parse_count(const char* option, const std::string& text, int low) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || number < low)
-    throw BadInput(std::string(option) + ": '" + text + "' is not a whole number of at least " +
-                   std::to_string(low));
-  return number;
-}
-
 // "2uav+ugv": two aerial robots and a ground robot.
 std::vector<RobotDescription> parse_team(const std::string& text, Method method) {
   std::vector<RobotDescription> robots;
@@ -63,9 +39,9 @@ std::vector<RobotDescription> parse_team(const std::string& text, Method method)
     const std::string_view name = word.substr(static_cast<std::size_t>(end - word.data()));
     if ((error != std::errc{} && end != word.data()) || count < 1 || count > kMaxRobots ||
         (name != "uav" && name != "ugv"))
-      throw BadInput("--team: '" + text +
-                     "' is no team; give uav, ugv, or several with + between them, as in " +
-                     "uav+ugv or 2uav+ugv");
+      throw BadInput(
+          "--team: " + quote(text) +
+          " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
     for (std::size_t i = 0; i < count; ++i)
       robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
     if (rest.find('+') == std::string_view::npos) return robots;
@@ -76,10 +52,10 @@ std::vector<RobotDescription> parse_team(const std::string& text, Method method)
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
   auto robots = parse_team(options.team, method);
   for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
-  if (robots.empty()) throw BadInput("--team: there is no robot; give one there or with --robot");
+  if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");
   if (robots.size() > kMaxRobots)
-    throw BadInput("--team: " + std::to_string(robots.size()) + " robots are too many; at most " +
-                   std::to_string(kMaxRobots) + " are possible");
+    throw BadInput("--team: " + std::to_string(robots.size()) + " robots are too many; give at most " +
+                   std::to_string(kMaxRobots));
   std::stable_partition(robots.begin(), robots.end(), [](const RobotDescription& robot) {
     return robot.robot.travel.motion == Motion::kPlane;
   });
@@ -92,30 +68,27 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   return robots;
 }
 
-void place_by_hand(const std::string& text, double shift, const sim::GroundTruth& truth,
+void place_by_hand(const StartPose& start, double shift, const sim::GroundTruth& truth,
                    std::span<const RobotDescription> robots, std::vector<std::optional<Pose>>& starts) {
-  const auto refuse = [&text](const std::string& why) { throw BadInput("--pose: '" + text + "' " + why); };
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
+  const auto refuse = [&](const std::string& why) {
+    throw BadInput("--pose: " + quote(start.word) + " " + why);
+  };
   const auto robot = std::find_if(robots.begin(), robots.end(),
-                                  [&](const RobotDescription& r) { return r.robot.name == name; });
-  if (equals == std::string::npos || robot == robots.end()) {
+                                  [&](const RobotDescription& r) { return r.robot.name == start.robot; });
+  if (robot == robots.end()) {
     std::string names;
     for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
-    refuse("is no start; give NAME=x,y,z,yaw in metres and radians, with a name of " + names);
+    refuse("is for a robot that is not in the team; its robots are " + names);
   }
-  const std::string numbers = text.substr(equals + 1);
-  const std::size_t comma = numbers.rfind(',');
-  if (std::count(numbers.begin(), numbers.end(), ',') != 3)
-    refuse("is no start; give four numbers, x,y,z,yaw, in metres and radians");
-  Pose pose{parse_vector("--pose", numbers.substr(0, comma)).cast<double>(),
-            parse_number("--pose", numbers.substr(comma + 1))};
+  Pose pose = start.pose;
   pose.position.z() += shift;
+  std::optional<std::string> obstacle;
   try {
-    if (const auto why = sim::obstacle_at(truth, robot->robot, pose)) refuse("is no place for it: " + *why);
+    obstacle = sim::obstacle_at(truth, robot->robot, pose);
   } catch (const std::invalid_argument& error) {
-    refuse(std::string("is no place for it: ") + error.what());
+    obstacle = error.what();
   }
+  if (obstacle) refuse("is not a free place: " + *obstacle);
   starts[static_cast<std::size_t>(robot - robots.begin())] = pose;
 }
 
@@ -125,13 +98,13 @@ void find_starts(const ExploreOptions& options, const Eigen::Vector3d& around, E
   std::vector<planner::Robot> bodies;
   for (const RobotDescription& robot : robots) bodies.push_back(robot.robot);
   auto starts = sim::find_starts(*setup.truth, around, bodies);
-  for (const std::string& pose : options.poses)
+  for (const StartPose& pose : options.poses)
     place_by_hand(pose, setup.sourced.ground_shift, *setup.truth, robots, starts);
   std::optional<double> ground;
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (!starts[r])
       throw BadInput(setup.sourced.world.name + ": the robot '" + robots[r].robot.name +
-                     "' has no place within 15 m of the start; give another --start, or its --pose");
+                     "' does not fit within 15 m of the start; give another --start, or its --pose");
     if (robots[r].robot.travel.motion == Motion::kPlane)
       ground =
           std::max(ground.value_or(-1e300), starts[r]->position.z() - robots[r].robot.travel.sensor_height);
@@ -143,98 +116,69 @@ void find_starts(const ExploreOptions& options, const Eigen::Vector3d& around, E
   }
 }
 
-planner::ExplorationOptions exploration_options(const ExploreOptions& options, Method method,
+planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot) {
+  planner::GoalOptions goal = planner::goal_options(robot, options.mode);
+  goal.rule = options.goal.value_or(goal.rule);
+  goal.lambda = options.lambda.value_or(goal.lambda);
+  goal.advance = options.advance.value_or(goal.advance);
+  goal.min_distance = options.min_distance.value_or(goal.min_distance);
+  goal.rendering.renderer = options.renderer.value_or(goal.rendering.renderer);
+  goal.rendering.samples = options.samples.value_or(goal.rendering.samples);
+  goal.rendering.seed = options.seed;
+  goal.check();
+  return goal;
+}
+
+planner::ExplorationOptions exploration_options(const ExploreOptions& options,
                                                 std::span<const RobotDescription> robots) {
-  planner::ExplorationOptions exploration = planner::exploration_options(method);
-  exploration.seed = parse_seed(options.seed);
-  if (!options.epsilon.empty())
-    exploration.epsilon = parse_number("--epsilon", options.epsilon);
-  else if (options.goal == "nearest")
-    exploration.epsilon = 1.0;  // the nearest frontiers are few, and worth going to by this rule
+  planner::ExplorationOptions exploration = planner::exploration_options(options.mode);
+  exploration.seed = options.seed;
+  // With nearest goals each gain is small, so that small gains do not end the exploration.
+  if (options.goal == planner::GoalRule::kNearest) exploration.epsilon = 1.0;
+  exploration.epsilon = options.epsilon.value_or(exploration.epsilon);
   for (const RobotDescription& robot : robots) {
-    planner::GoalOptions goal = planner::goal_options(robot.robot, method);
-    goal.rendering.seed = exploration.seed;
-    if (!options.goal.empty())
-      goal.rule = chosen<planner::GoalRule>("--goal", options.goal,
-                                            {{"render", planner::GoalRule::kViewQuality},
-                                             {"cluster", planner::GoalRule::kClusters},
-                                             {"nearest", planner::GoalRule::kNearest}});
-    if (!options.renderer.empty())
-      goal.rendering.renderer = chosen<ViewQualityOptions::Renderer>(
-          "--renderer", options.renderer,
-          {{"exact", ViewQualityOptions::Renderer::kExact}, {"rays", ViewQualityOptions::Renderer::kRays}});
-    if (!options.lambda.empty()) goal.lambda = parse_number("--lambda", options.lambda);
-    if (!options.advance.empty()) goal.advance = parse_number("--advance", options.advance);
-    if (!options.min_distance.empty())
-      goal.min_distance = parse_number("--min-distance", options.min_distance);
-    if (!options.samples.empty()) goal.rendering.samples = parse_count("--samples", options.samples, 1);
-    try {
-      goal.check();
-    } catch (const std::invalid_argument& error) {
-      throw BadInput(error.what());
-    }
+    planner::GoalOptions goal = goal_options(options, robot.robot);
     // Steps are quiet only when there is no better goal.
-    if (method == Method::kDefault) goal.min_gain = exploration.epsilon;
+    if (options.mode == Method::kDefault) goal.min_gain = exploration.epsilon;
     exploration.team.push_back({robot.robot, goal});
   }
-  using planner::PathSearch;
-  if (!options.search.empty())
-    exploration.path.search = chosen<PathSearch>("--planner", options.search,
-                                                 {{"rrt", PathSearch::kRrt},
-                                                  {"rrt-connect", PathSearch::kRrtConnect},
-                                                  {"rrt-star", PathSearch::kRrtStar},
-                                                  {"corridor", PathSearch::kCorridor}});
+  exploration.path.search = options.search.value_or(exploration.path.search);
   constexpr int kOfRrtStar = 2000;
-  if (exploration.path.search == PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
-  exploration.assign = parse_switch("--distribute", options.distribute);
-  exploration.optimize = parse_switch("--optimize", options.optimize);
-  exploration.caster = chosen<planner::CasterKind>("--caster", options.caster,
-                                                   {{"embree", planner::CasterKind::kEmbree},
-                                                    {"grid", planner::CasterKind::kGrid},
-                                                    {"octomap", planner::CasterKind::kOctomap}});
-  exploration.max_steps = parse_count("--max-steps", options.max_steps, 0);
-  try {
-    exploration.check();
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(error.what());
-  }
+  if (exploration.path.search == planner::PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
+  exploration.assign = options.assign;
+  exploration.optimize = options.optimize;
+  exploration.caster = options.caster;
+  exploration.max_steps = options.max_steps;
+  exploration.check();
   return exploration;
 }
 
-sim::RangeErrors range_errors(const ExploreOptions& options) {
-  sim::RangeErrors errors{.sigma = parse_number("--noise", options.noise),
-                          .dropout = parse_number("--dropout", options.dropout)};
-  if (errors.sigma < 0.0)
-    throw BadInput("--noise: " + options.noise + " m is no standard deviation; give 0 or more");
-  if (!(errors.dropout >= 0.0 && errors.dropout <= 1.0))
-    throw BadInput("--dropout: " + options.dropout + " is no probability; give 0 to 1");
-  return errors;
+// The source with what the options leave open.
+WorldSource source_of(const ExploreOptions& options) {
+  WorldSource source = options.source;
+  if (is_built_in_world(source.world)) {
+    source.seed = options.seed;
+    return source;
+  }
+  // The floors of worlds that others have made may lie at any height.
+  if (!source.ground) source.ground = GroundAlignment{true};
+  std::error_code ignored;  // of a file that is missing make_world says so
+  if (std::filesystem::exists(source.world, ignored) && source.ground->align && !source.ground->height &&
+      !source.start)
+    throw BadInput(source.world + ": no start is known; give --start in free space, x,y,z in metres");
+  return source;
 }
 
 }  // namespace
 
 ExploreSetup make_setup(const ExploreOptions& options,
                         const std::optional<std::vector<RobotDescription>>& robots) {
-  const auto method =
-      chosen<Method>("--mode", options.mode, {{"default", Method::kDefault}, {"paper", Method::kPaper}});
   ExploreSetup setup;
-  setup.errors = range_errors(options);
-  try {
-    setup.head.robots = robots ? *robots : gather_robots(options, method);
-    setup.exploration = exploration_options(options, method, setup.head.robots);
-
-    WorldSource source = options.source;
-    source.resolution = parse_resolution(options.resolution);
-    const bool built_in = is_built_in_world(source.world);
-    if (built_in) source.seed = options.seed;
-    // The floors of worlds that others have made may lie at any height.
-    if (!built_in && !source.ground) source.ground = "auto";
-    if (source.ground == "off") source.ground.reset();
-    std::error_code ignored;
-    const bool is_there =
-        std::filesystem::exists(source.world, ignored);  // what is not, is told by make_world
-    if (!built_in && is_there && source.ground == "auto" && !source.start)
-      throw BadInput(source.world + ": no start is known; give --start in free space, x,y,z in metres");
+  setup.errors = options.errors;
+  work_on(options.source.world, "give a coarser --resolution", [&] {
+    setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
+    setup.exploration = exploration_options(options, setup.head.robots);
+    const WorldSource source = source_of(options);
     setup.sourced = make_world(source);
     const Eigen::Vector3d around =
         sim::free_start(setup.sourced.world, source.resolution, setup.sourced.kind != WorldKind::kMesh);
@@ -244,17 +188,11 @@ ExploreSetup make_setup(const ExploreOptions& options,
       setup.exploration.team[r].robot = setup.head.robots[r].robot;
     setup.head.world = setup.sourced.world.name;
     setup.head.resolution = source.resolution;
-  } catch (const BadInput&) {
-    throw;
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(options.source.world + ": " + error.what());
-  } catch (const std::runtime_error& error) {
-    throw BadInput(error.what());
-  }
+  });
   setup.head.bounds = setup.truth->bounds();
   setup.head.observable = setup.truth->observable_voxels();
   setup.head.bounding = setup.truth->bounding_voxels();
-  setup.head.options = to_json(options);
+  setup.head.options = json_text(options);
   return setup;
 }
 

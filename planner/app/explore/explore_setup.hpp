@@ -3,6 +3,7 @@
 #include "explore/explore_options.hpp"
 #include "world_source.hpp"
 
+#include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/ground_truth.hpp>
@@ -14,7 +15,7 @@
 
 namespace frontlux::app {
 
-/// Everything that a run begins with.
+/// Everything that a run starts with.
 struct ExploreSetup {
   SourcedWorld sourced;
   std::unique_ptr<const sim::GroundTruth> truth;
@@ -23,8 +24,8 @@ struct ExploreSetup {
   planner::RecordingHead head;  // with the robots and their starts
 };
 
-/// Makes or reads the world, puts the robots to their starts, and checks all options.
-/// @param robots  those of a run that goes on; nothing: those that the options name
+/// Makes or reads the world, puts the robots at their starts, and checks all options.
+/// @param robots  of a resumed run; nothing: those that the options name
 /// @throws BadInput
 [[nodiscard]] ExploreSetup make_setup(const ExploreOptions& options,
                                       const std::optional<std::vector<planner::RobotDescription>>& robots);

@@ -1,13 +1,11 @@
 #include "explore/run_files.hpp"
 
-#include "json.hpp"
 #include "text.hpp"
 
 #include <frontlux/sim/ground_truth.hpp>
 
 #include <algorithm>
 #include <cerrno>
-#include <numeric>
 #include <stdexcept>
 #include <system_error>
 
@@ -22,21 +20,26 @@ using planner::RobotStep;
 constexpr const char* kSteps = "steps.csv";
 constexpr const char* kPaths = "paths.csv";
 
-// A line of a table with commas, cell by cell.
+// A line of a table with commas.
 class Row {
  public:
-  Row& add(const std::string& text) {
-    (line_.empty() ? line_ : line_ += ',') += text;
+  template <class... Cells>
+  Row& add(const Cells&... cells) {
+    ((line_ += (line_.empty() ? "" : ",") + cell_text(cells)), ...);
     return *this;
-  }
-  Row& add(double number) { return add(to_text(number)); }
-  Row& add(std::uint64_t number) { return add(std::to_string(number)); }
-  Row& add(const Pose& pose) {
-    return add(pose.position.x()).add(pose.position.y()).add(pose.position.z()).add(pose.yaw);
   }
   [[nodiscard]] std::string line() const { return line_ + '\n'; }
 
  private:
+  static std::string cell_text(std::string_view text) { return std::string(text); }
+  static std::string cell_text(const Pose& pose) {
+    const Eigen::Vector3d& p = pose.position;
+    return Row().add(p.x(), p.y(), p.z(), pose.yaw).line_;
+  }
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  static std::string cell_text(Number number) { return to_text(number); }
+
   std::string line_;
 };
 
@@ -54,17 +57,14 @@ std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead
     const RobotStep& robot = recorded.step.robots[r];
     for (std::size_t i = 0; i < robot.planned.size(); ++i)
       rows += Row()
-                  .add(recorded.step.number)
-                  .add(quoted_cell(head.robots[r].robot.name))
-                  .add(std::uint64_t{i})
-                  .add(std::uint64_t{i < robot.travelled ? 1U : 0U})
-                  .add(robot.planned[i])
+                  .add(recorded.step.number, quoted_cell(head.robots[r].robot.name), i,
+                       i < robot.travelled ? 1 : 0, robot.planned[i])
                   .line();
   }
   return rows;
 }
 
-double share(std::uint64_t part, std::uint64_t whole) {
+double fraction(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
@@ -89,8 +89,8 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       head_(head),
       steps_file_(folder / kSteps, std::ios::binary | std::ios::trunc),
       paths_file_(folder / kPaths, std::ios::binary | std::ios::trunc),
-      travelled_(head.robots.size()),
-      seconds_(planner::kPhases) {
+      sums_{.seconds = std::vector<double>(planner::kPhases),
+            .travelled = std::vector<double>(head.robots.size())} {
   std::string header =
       "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
       "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
@@ -120,37 +120,34 @@ void RunFiles::add(const RecordedStep& recorded) {
     observable += known.observable;
     bounding += known.bounding;
   }
-  observable_ = share(observable, head_.observable);
-  bounding_ = share(bounding, head_.bounding);
-  collisions_ += recorded.collisions;
+  sums_.observable = fraction(observable, head_.observable);
+  sums_.bounding = fraction(bounding, head_.bounding);
+  sums_.collisions += recorded.collisions;
   if (step.number > 0) {
-    ++steps_;
-    planning_sum_ += step.planning_seconds();
-    planning_max_ = std::max(planning_max_, step.planning_seconds());
-    for (std::size_t phase = 0; phase < planner::kPhases; ++phase) seconds_[phase] += step.seconds[phase];
+    ++sums_.steps;
+    sums_.planning_total += step.planning_seconds();
+    sums_.planning_max = std::max(sums_.planning_max, step.planning_seconds());
+    for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
+      sums_.seconds[phase] += step.seconds[phase];
   }
   std::string rows;
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
     const RobotStep& robot = step.robots[r];
-    travelled_[r] += robot.length;
-    if (!robot.blocked.empty()) ++held_back_;
+    sums_.travelled[r] += robot.length;
+    if (!robot.blocked.empty()) ++sums_.held_back;
     Row row;
-    row.add(step.number).add(quoted_cell(head_.robots[r].robot.name)).add(observable_).add(bounding_);
-    row.add(share(recorded.known[r].observable, head_.observable));
-    row.add(share(recorded.known[r].bounding, head_.bounding));
-    row.add(std::uint64_t{step.frontiers}).add(std::uint64_t{step.unassigned});
-    row.add(std::uint64_t{step.abandoned});
-    row.add(step.number == 0 ? "start" : std::string(planner::name_of(robot.goal.state)));
-    row.add(std::uint64_t{robot.goal.assigned}).add(std::uint64_t{robot.goal.released});
-    row.add(std::uint64_t{robot.goal.received}).add(std::uint64_t{robot.goal.uncovered});
+    row.add(step.number, quoted_cell(head_.robots[r].robot.name), sums_.observable, sums_.bounding,
+            fraction(recorded.known[r].observable, head_.observable),
+            fraction(recorded.known[r].bounding, head_.bounding), step.frontiers, step.unassigned,
+            step.abandoned, step.number == 0 ? "start" : planner::name_of(robot.goal.state),
+            robot.goal.assigned, robot.goal.released, robot.goal.received, robot.goal.uncovered);
     if (robot.goal.pose)
-      row.add(*robot.goal.pose).add(robot.goal.gain);
+      row.add(*robot.goal.pose, robot.goal.gain);
     else
-      for (int i = 0; i < 5; ++i) row.add(std::string());
-    row.add(std::string(planner::name_of(robot.path)));
-    row.add(std::uint64_t{robot.planned.size()}).add(robot.length).add(travelled_[r]);
-    row.add(robot.gain_tangent).add(robot.gain_predicted).add(robot.gained);
-    row.add(std::uint64_t{robot.still_unknown.size()}).add(recorded.collisions).add(step.rays);
+      row.add("", "", "", "", "");
+    row.add(planner::name_of(robot.path), robot.planned.size(), robot.length, sums_.travelled[r],
+            robot.gain_tangent, robot.gain_predicted, robot.gained, robot.still_unknown.size(),
+            recorded.collisions, step.rays);
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
       if (planner::name_of(static_cast<planner::Phase>(phase)) == "moving") row.add(step.planning_seconds());
       row.add(step.seconds[phase]);
@@ -159,23 +156,6 @@ void RunFiles::add(const RecordedStep& recorded) {
   }
   write(steps_file_, kSteps, rows);
   write(paths_file_, kPaths, path_rows(recorded, head_));
-}
-
-double RunFiles::planning_mean() const {
-  return steps_ == 0 ? 0.0 : planning_sum_ / static_cast<double>(steps_);
-}
-
-void RunFiles::add_sums(JsonObject& json) const {
-  json.add("steps", steps_).add("coverage_observable", observable_).add("coverage_box", bounding_);
-  json.add("planning_mean_s", planning_mean()).add("planning_max_s", planning_max_);
-  JsonObject phases;
-  for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
-    phases.add(planner::name_of(static_cast<planner::Phase>(phase)), seconds_[phase]);
-  json.add("phases_s", phases).add("collisions", collisions_);
-  json.add("path_length_total_m", std::accumulate(travelled_.begin(), travelled_.end(), 0.0));
-  JsonObject lengths;
-  for (std::size_t r = 0; r < travelled_.size(); ++r) lengths.add(head_.robots[r].robot.name, travelled_[r]);
-  json.add("path_length_m", lengths).add("held_back", held_back_);
 }
 
 }  // namespace frontlux::app

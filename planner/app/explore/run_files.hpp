@@ -16,13 +16,26 @@ class GroundTruth;
 
 namespace frontlux::app {
 
-class JsonObject;
-
-/// A step with what it made known, as it is to be recorded.
+/// A step with the voxels that it made known, as it is recorded.
 /// @param before  the step before, or null for the first
 [[nodiscard]] planner::RecordedStep with_known_voxels(planner::ExplorationStep step,
                                                       const planner::RecordedStep* before,
                                                       const sim::GroundTruth& truth);
+
+/// What a run comes to, summed over its steps.
+struct RunSums {
+  double observable = 0.0, bounding = 0.0;  ///< mapped fractions, 0 to 1, at the end of the last step
+  std::uint64_t steps = 0;                  ///< without the look around at the start
+  std::uint64_t collisions = 0, held_back = 0;
+  double planning_max = 0.0;      ///< [s] of a step
+  std::vector<double> seconds;    ///< by planner::Phase
+  std::vector<double> travelled;  ///< [m] of each robot
+  double planning_total = 0.0;    ///< [s]
+
+  [[nodiscard]] double planning_mean() const {  ///< [s] of a step
+    return steps == 0 ? 0.0 : planning_total / static_cast<double>(steps);
+  }
+};
 
 /// The tables of a run, steps.csv and paths.csv, which grow with every step, and its sums.
 class RunFiles {
@@ -33,16 +46,7 @@ class RunFiles {
 
   void add(const planner::RecordedStep& step);
 
-  [[nodiscard]] double observable() const { return observable_; }  ///< 0 to 1, at the end of the last step
-  [[nodiscard]] double bounding() const { return bounding_; }
-  [[nodiscard]] std::uint64_t collisions() const { return collisions_; }
-  [[nodiscard]] const std::vector<double>& travelled() const { return travelled_; }  ///< [m] of each robot
-  [[nodiscard]] std::uint64_t steps() const { return steps_; }
-  [[nodiscard]] double planning_mean() const;  ///< [s] of a step
-  [[nodiscard]] double planning_max() const { return planning_max_; }
-
-  /// The members of run.json that tell what came out.
-  void add_sums(JsonObject& json) const;
+  [[nodiscard]] const RunSums& sums() const { return sums_; }
 
  private:
   void write(std::ofstream& file, const char* name, const std::string& rows);
@@ -50,9 +54,7 @@ class RunFiles {
   std::filesystem::path folder_;
   const planner::RecordingHead& head_;
   std::ofstream steps_file_, paths_file_;
-  double observable_ = 0.0, bounding_ = 0.0, planning_sum_ = 0.0, planning_max_ = 0.0;
-  std::uint64_t collisions_ = 0, held_back_ = 0, steps_ = 0;
-  std::vector<double> travelled_, seconds_;
+  RunSums sums_;
 };
 
 }  // namespace frontlux::app

@@ -9,7 +9,7 @@ namespace frontlux::app {
 /// The user stopped the work.
 class Interrupted : public std::exception {
  public:
-  explicit Interrupted(std::string what = "stopped; nothing is written") : what_(std::move(what)) {}
+  explicit Interrupted(std::string what = "stopped; nothing was written") : what_(std::move(what)) {}
   [[nodiscard]] const char* what() const noexcept override { return what_.c_str(); }
 
  private:

@@ -1,6 +1,7 @@
-#include "draw/color_scale.hpp"
+#include "draw/colors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -26,13 +27,18 @@ Color from_oklab(double lightness, double green_red, double blue_yellow) {
 
 }  // namespace
 
-Color color_of_share(double share) {
-  const double t = share > 0.0 ? std::min(share, 1.0) : 0.0;
+Color color_of(double fraction) {
+  const double t = fraction > 0.0 ? std::min(fraction, 1.0) : 0.0;
   // The hue turns from violet over blue and green to yellow; chroma stays within what screens show.
   const double lightness = 0.28 + 0.64 * t;
   const double hue = (302.0 - 197.0 * t) * std::numbers::pi / 180.0;
   const double chroma = t < 0.5 ? 0.150 - 0.10 * t : 0.100 + 0.16 * (t - 0.5);
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+}
+
+Color robot_color(std::size_t robot) {
+  constexpr std::array<Color, 4> kColors = {{{213, 94, 0}, {0, 114, 178}, {0, 158, 115}, {170, 68, 153}}};
+  return kColors.at(robot % kColors.size());
 }
 
 }  // namespace frontlux::app

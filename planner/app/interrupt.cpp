@@ -1,4 +1,4 @@
-#include "explore/interrupt.hpp"
+#include "interrupt.hpp"
 
 #include <csignal>
 
@@ -14,7 +14,7 @@ extern "C" void take_note(int) { note = 1; }
 InterruptNote::InterruptNote() {
   note = 0;
   before_ = std::signal(SIGINT, &take_note);
-  // A program started in the background with SIGINT ignored stays that way.
+  // A program started in the background ignores SIGINT, and continues to.
   if (before_ == SIG_IGN) std::signal(SIGINT, SIG_IGN);
 }
 

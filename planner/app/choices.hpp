@@ -1,0 +1,78 @@
+#pragma once
+
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+
+#include <array>
+#include <string_view>
+#include <type_traits>
+
+namespace frontlux::app {
+
+/// A value and its name in options, files and messages.
+template <class Value>
+struct Choice {
+  std::string_view name;
+  Value value;
+};
+
+/// The values that an option of this type takes.
+template <class Value>
+inline constexpr std::array<Choice<Value>, 0> kChoices{};
+
+template <>
+inline constexpr std::array<Choice<bool>, 2> kChoices<bool>{{{"on", true}, {"off", false}}};
+
+template <>
+inline constexpr std::array<Choice<UnknownPolicy>, 2> kChoices<UnknownPolicy>{
+    {{"block", UnknownPolicy::kBlock}, {"pass", UnknownPolicy::kPass}}};
+
+template <>
+inline constexpr std::array<Choice<ViewQualityOptions::Renderer>, 2> kChoices<ViewQualityOptions::Renderer>{
+    {{"exact", ViewQualityOptions::Renderer::kExact}, {"rays", ViewQualityOptions::Renderer::kRays}}};
+
+template <>
+inline constexpr std::array<Choice<sim::UpAxis>, 3> kChoices<sim::UpAxis>{
+    {{"x", sim::UpAxis::kX}, {"y", sim::UpAxis::kY}, {"z", sim::UpAxis::kZ}}};
+
+template <>
+inline constexpr std::array<Choice<planner::Method>, 2> kChoices<planner::Method>{
+    {{"default", planner::Method::kDefault}, {"paper", planner::Method::kPaper}}};
+
+template <>
+inline constexpr std::array<Choice<planner::GoalRule>, 3> kChoices<planner::GoalRule>{
+    {{"render", planner::GoalRule::kViewQuality},
+     {"cluster", planner::GoalRule::kClusters},
+     {"nearest", planner::GoalRule::kNearest}}};
+
+template <>
+inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::PathSearch>{
+    {{"corridor", planner::PathSearch::kCorridor},
+     {"rrt", planner::PathSearch::kRrt},
+     {"rrt-connect", planner::PathSearch::kRrtConnect},
+     {"rrt-star", planner::PathSearch::kRrtStar}}};
+
+template <>
+inline constexpr std::array<Choice<planner::CasterKind>, 3> kChoices<planner::CasterKind>{
+    {{"embree", planner::CasterKind::kEmbree},
+     {"grid", planner::CasterKind::kGrid},
+     {"octomap", planner::CasterKind::kOctomap}}};
+
+/// The paper's robots.
+enum class RobotKind { kUgv, kUav };
+template <>
+inline constexpr std::array<Choice<RobotKind>, 2> kChoices<RobotKind>{
+    {{"ugv", RobotKind::kUgv}, {"uav", RobotKind::kUav}}};
+
+/// Has a table of choices: an enumeration, or bool.
+template <class Value>
+concept Chosen = std::is_enum_v<Value> || std::is_same_v<Value, bool>;
+
+template <Chosen Value>
+[[nodiscard]] constexpr std::string_view choice_name(Value value) {
+  for (const Choice<Value>& choice : kChoices<Value>)
+    if (choice.value == value) return choice.name;
+  return {};
+}
+
+}  // namespace frontlux::app

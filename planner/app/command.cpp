@@ -1,0 +1,74 @@
+#include "command.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace frontlux::app {
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Command::Command(CLI::App& app, const char* name, const char* summary)
+    : app_(app.add_subcommand(name, summary)) {}
+
+Option Command::add_words(const char* name, const char* type, const char* what,
+                          const std::string& default_text, bool repeatable, ReadWord read_word) {
+  const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
+  CLI::Option* option = app_->add_option(
+      name,
+      [label, read_word = std::move(read_word)](const CLI::results_t& words) {
+        for (const std::string& word : words) try {
+            read_word(word);
+          } catch (const BadInput& error) {
+            throw BadInput(label + ": " + error.what());
+          }
+        return true;
+      },
+      what);
+  option->type_name(type)->default_str(default_text)->group(group_);
+  if (repeatable && option->get_positional())
+    option->expected(-1);  // at least one
+  else if (repeatable)
+    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return Option(option);
+}
+
+Option Command::add_flag(const char* name, bool& value, const char* what) {
+  return Option(app_->add_flag(name, value, what)->group(group_));
+}
+
+void Command::require_one(Option& one, Option& other) {
+  one.excludes(other);
+  checks_.push_back([one = one.option_, other = other.option_] {
+    if (one->count() + other->count() == 0)
+      throw BadInput("give " + one->get_name() + " or " + other->get_name());
+  });
+}
+
+void Command::allow_only(Option& option, std::initializer_list<std::string_view> others) {
+  const std::vector<std::string_view> allowed(others);
+  for (CLI::Option* other : app_->get_options([&](CLI::Option* candidate) {
+         return candidate != option.option_ && candidate != app_->get_help_ptr() &&
+                std::find(allowed.begin(), allowed.end(), candidate->get_name()) == allowed.end();
+       }))
+    option.option_->excludes(other);
+}
+
+void Command::examples(const char* text) { app_->footer(text); }
+
+void Command::run(std::function<void()> work) {
+  app_->callback([checks = checks_, work = std::move(work)] {
+    for (const auto& check : checks) check();
+    work();
+  });
+}
+
+}  // namespace frontlux::app
