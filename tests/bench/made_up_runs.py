@@ -38,8 +38,8 @@ def write_run(folder, world, seed, coverage, robots=("ugv", "uav"), uav_part=0.7
                          f"chosen,400,0,0,50,{goal},planned,{9 if step else 0},{length},{length * step},{gain},0,0,"
                          f"50000,{times}")
     (folder / "steps.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    total = {"version": "9.9", "world": world, "seed": seed, "mode": "default", "goal": "render", "distribute": True,
-             "optimize": True, "caster": "embree", "threads": 1, "resolution_m": 0.3, "robots": list(robots),
+    total = {"version": "9.9", "world": world, "seed": seed, "mode": "default", "goal": "render", "assign": True,
+             "optimize": True, "caster": "fast", "threads": 1, "resolution_m": 0.3, "robots": list(robots),
              "machine": "A|B <cpu>", "end": "quiet", "steps": len(coverage) - 1, "coverage_observable": coverage[-1],
              "coverage_box": coverage[-1] * 0.8, "planning_mean_s": sum(phases), "planning_max_s": 2 * sum(phases),
              "wall_s": 36.0, "memory_mb": 300.0, "collisions": 0,
@@ -59,7 +59,7 @@ def explore(arguments):
         team = given.get("--team", "uav+ugv")
         facts = {"world": arguments[1], "seed": int(given["--seed"]), "threads": int(given["--threads"]),
                  "caster": given["--caster"], "mode": given.get("--mode", "default"),
-                 "goal": given.get("--goal", "render"), "distribute": given.get("--distribute", "on") == "on",
+                 "goal": given.get("--goal", "render"), "assign": given.get("--assign", "on") == "on",
                  "optimize": given.get("--optimize", "on") == "on",
                  "robots": ["ugv", "uav"] if team == "uav+ugv" else [team]}
     world, seed = facts["world"], facts["seed"]
@@ -67,7 +67,7 @@ def explore(arguments):
     slow *= 1.6 if len(facts["robots"]) == 1 else 1.25 if facts["goal"] != "render" else 1.0
     limit = 0.55 if facts["robots"] == ["ugv"] else 0.975 - 0.004 * seed
     coverage = [round(limit * (1 - 0.93 * math.exp(-i / slow)), 6) for i in range(int(4.5 * slow))]
-    kept = {k: facts[k] for k in ("threads", "caster", "mode", "goal", "distribute", "optimize")}
+    kept = {k: facts[k] for k in ("threads", "caster", "mode", "goal", "assign", "optimize")}
     if folder.name in os.environ.get("MADE_UP_STOPS", "").split() and given is not None:
         kept["end"] = "stopped"
     write_run(folder, world, seed, coverage, tuple(facts["robots"]), 0.7 if facts["optimize"] else 0.6, **kept)
