@@ -1,44 +1,59 @@
 #pragma once
 
-#include "rays/trial.hpp"
+#include "options.hpp"
 
+#include <cstddef>
+#include <functional>
+#include <iosfwd>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace frontlux::bench {
 
-/// Google Benchmark's state, from its start to its end.
+/// Times rows with Google Benchmark: repetitions of all rows in random order, so that a slow moment of the
+/// machine does not affect one caster only.
 class GoogleBenchmark {
  public:
-  /// @throws std::runtime_error if it does not know one of the arguments
-  GoogleBenchmark(std::string program, std::vector<std::string> arguments);
+  /// Warns on stderr if the machine has fewer processors than threads are asked for.
+  /// @throws std::runtime_error if an option is unknown to Google Benchmark or the JSON file cannot be
+  /// written
+  GoogleBenchmark(const std::string& program, const Options& options);
   ~GoogleBenchmark();
   GoogleBenchmark(const GoogleBenchmark&) = delete;
   GoogleBenchmark& operator=(const GoogleBenchmark&) = delete;
 
+  /// Registers a row.
+  /// @param pass      what is timed, in an arena of so many threads
+  /// @param items     processed by a pass
+  /// @param counters  added to the row's JSON
+  void add(const std::string& name, int threads, std::size_t items, std::function<void()> pass,
+           std::map<std::string, double> counters);
+
+  /// Times all rows that pass the filter. The JSON file appears when all have been timed.
+  void run();
+
+  /// Median over the repetitions [items/s]; nothing if the row did not run.
+  [[nodiscard]] std::optional<double> rate(const std::string& row) const;
+
+  /// Median number of processors that the process kept busy; nothing if the row did not run.
+  [[nodiscard]] std::optional<double> busy_processors(const std::string& row) const;
+
+  /// Prints what lessens trust in the numbers: other work on the machine while the rows of most threads ran,
+  /// and differences between repetitions.
+  void print_cautions(std::ostream& out) const;
+
  private:
-  std::vector<std::string> arguments_;  // it keeps a pointer to the program's name
+  class Recorder;
+  std::vector<std::string> arguments_;  // Google Benchmark keeps a pointer to the program's name
+  std::filesystem::path json_, unfinished_;
+  std::map<std::string, int> threads_;  // of each row
+  std::unique_ptr<Recorder> recorder_;
 };
 
-/// A command line, the options for Google Benchmark apart from ours.
-struct SplitArguments {
-  explicit SplitArguments(int argc, char** argv);
-  std::vector<std::string> own;  ///< the last one first, as CLI11 takes them
-  std::vector<std::string> passed_on;
-};
-
-/// Registers the passes of one caster on so many threads, to be timed.
-/// @param trial, entry  must live until the rows have run
-/// @param counters      to stand in the JSON beside those that every row has
-void register_row(const std::string& name, const Trial& trial, const Entry& entry, int threads,
-                  const std::map<std::string, double>& counters = {});
-
-/// Says on stderr if the machine has fewer processors.
-void warn_of_too_many_threads(int threads);
-
-/// Google Benchmark finds out that it cannot write only after everything has been prepared.
-/// @throws std::runtime_error naming the file
-void check_writable(const std::string& file);
+/// Whether a row passes the option --benchmark_filter.
+/// @throws std::runtime_error if that is not an extended regular expression
+[[nodiscard]] bool passes_filter(const std::string& row);
 
 }  // namespace frontlux::bench

@@ -19,17 +19,19 @@ WHAT_IT_ASKS = {
     "visible_uav": "aerial robot to frontiers, 10 m",
     "cast_lidar": "32-beam lidar, 30 m",
     "cast_random": "all directions, 10 m",
-    "cast_single": "castRay drop-in, ray by ray",
+    "cast_single": "one castRay at a time",
 }
 
-# Okabe and Ito's colours, told apart with any colour vision; (light, dark) background.
+# Okabe and Ito's colours, for any colour vision; (light, dark) background.
 COLOURS = {
     "octomap": ("#6e7781", "#9aa4af"),
+    "fast": ("#0072b2", "#56b4e9"),
+    "embree": ("#cc79a7", "#cc79a7"),
     "grid": ("#e69f00", "#e69f00"),
-    "embree": ("#0072b2", "#56b4e9"),
     "nanovdb": ("#009e73", "#2cc29a"),
 }
-OTHER = ("#cc79a7", "#cc79a7")
+NAMES = {"fast": "fast (make_ray_caster)", "embree": "embree (BVH alone)", "grid": "grid (voxel by voxel)"}
+OTHER = ("#56b4e9", "#0072b2")
 
 LABELS, VALUES = 330, 140
 BAR, GAP, ROW_GAP, SECTION = 13, 2, 15, 34
@@ -37,7 +39,7 @@ BAR, GAP, ROW_GAP, SECTION = 13, 2, 15, 34
 
 def read_results(document):
     """By map, query, threads and caster, in the order of the file's families: median rays per second and the
-    share of answers that agree."""
+    fraction of answers that agree."""
     samples = defaultdict(list)
     runs = [r for r in document["benchmarks"] if r.get("run_type", "iteration") == "iteration"]
     for run in sorted(runs, key=lambda r: r.get("family_index", 0)):
@@ -73,7 +75,7 @@ def colours_of(casters):
 
 
 def compare(results, threads):
-    """[(map, [(query, castRay's rate, [(caster, rate, ratio, share of wrong answers)])])]"""
+    """[(map, [(query, castRay's rate, [(caster, rate, ratio, fraction of wrong answers)])])]"""
     charts = []
     for map_name, queries in results.items():
         rows = []
@@ -104,13 +106,13 @@ def draw(results, context):
     drawing = Drawing()
     drawing.text(MARGIN, 40, "How many times as fast as OctoMap's castRay", "title")
     facts = [context.get("cpu_name", ""), f"{threads} threads" if threads > 1 else "1 thread",
-             context.get("date", "")[:10], "the same rays for all, medians"]
+             context.get("date", "")[:10], "the same rays for all casters, medians"]
     drawing.text(MARGIN, 61, " · ".join(f for f in facts if f), "faint")
     x = MARGIN
     for caster in casters:
         drawing.bar(x, 76, 22, 11, caster)
-        drawing.text(x + 29, 86, caster)
-        x += 29 + 7 * len(caster) + 22
+        drawing.text(x + 29, 86, NAMES.get(caster, caster))
+        x += 29 + 6.4 * len(NAMES.get(caster, caster)) + 22
     drawing.line(x + 6, 74, x + 6, 89, "base")
     drawing.text(x + 14, 86, "castRay = 1×")
 

@@ -16,30 +16,30 @@ from svg_chart import MARGIN, WIDTH, Drawing, save, svg
 
 ROW = re.compile(r"(?P<axis>[^/]+)/(?P<query>[^/]+)/(?P<map>[^/]+)/(?P<label>[^/]+)/(?P<caster>[^/]+)/"
                  r"threads:(?P<threads>\d+)")
-BASELINE, CASTERS = "octomap", ("octomap", "grid", "embree")
-NAMES = {"octomap": "castRay", "grid": "grid", "embree": "embree"}
+BASELINE, FAST, CASTERS = "octomap", "fast", ("octomap", "fast", "embree", "grid")
+NAMES = {"octomap": "castRay", "fast": "fast", "embree": "embree", "grid": "grid"}
 COST_NAMES = {**NAMES, "octomap": "octree"}
 
 TITLES = {
     "resolution": "Voxels of the same building, finer and coarser",
     "length": "Rays of growing length",
-    "share": "Ever more occupied voxels",
-    "size": "Ever larger maps",
+    "density": "More and more occupied voxels",
+    "size": "Larger and larger maps",
     "order": "One thread and more, rays in order and shuffled",
     "cost": "What a caster costs",
 }
 SUBTITLES = {
-    "resolution": "Numbers: embree as a multiple of castRay",
-    "length": "Above a nearly empty box, below a building; numbers: embree as a multiple of castRay",
-    "share": "Random cubes in a box of free voxels, rays of 20 m; numbers: embree as a multiple of castRay",
-    "size": "Equal rooms side by side and on top of each other, rays of 5 m; numbers: embree as a multiple of castRay",
-    "order": "Hollow: 1 thread; filled: all threads; numbers: what the threads gain",
-    "cost": "Memory (embree's contains the grid's), and time from the octree to the caster",
+    "resolution": "Numbers: fast as a multiple of castRay",
+    "length": "Above a nearly empty box, below a building; numbers: fast as a multiple of castRay",
+    "density": "Random cubes in a box of free voxels, rays of 20 m; numbers: fast as a multiple of castRay",
+    "size": "Equal rooms side by side and on top of each other, rays of 5 m; numbers: fast as a multiple of castRay",
+    "order": "Hollow: 1 thread; filled: all threads; numbers: speed-up by threads, Mrays/s",
+    "cost": "Memory and time from the octree to the caster; every caster includes the grid",
 }
 X_TITLES = {
     "resolution": "edge of a voxel [m]",
     "length": "length of the rays [m]",
-    "share": "occupied share of the box [%]",
+    "density": "occupied fraction of the box [%]",
     "size": "known voxels [millions]",
 }
 QUERIES = {
@@ -120,14 +120,16 @@ def x_text(axis, value):
 
 
 class Chart(Drawing):
-    """What charts of lines need besides."""
+    """Markers, curves and heads of line charts."""
 
     def marker(self, caster, x, y, style=None):
-        """A shape of its own for every caster, so that colour is not needed to tell them apart."""
+        """A shape of its own for every caster, so that colour is not needed."""
         style = style or f"fill-{caster}"
         if caster == "grid":
             shape = f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8"'
         elif caster == "embree":
+            shape = f'<path d="M{x:.1f} {y - 5.5:.1f}l5 5.5l-5 5.5l-5 -5.5z"'
+        elif caster == FAST:
             shape = f'<path d="M{x:.1f} {y - 5.5:.1f}l5 9h-10z"'
         else:
             shape = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.2"'
@@ -156,7 +158,7 @@ class Panel(NamedTuple):
     title: str
     unit: str
     curves: dict
-    ratios: dict  # x to what stands above the embree curve
+    ratios: dict  # x to the number at the curve of the fast caster
 
 
 def panel_corner(index, pitch=PANEL_HEIGHT + 92):
@@ -166,14 +168,14 @@ def panel_corner(index, pitch=PANEL_HEIGHT + 92):
 
 
 def draw_ratios(chart, panel, x_scale, y_scale):
-    """Beside the points of embree, on the side where fewer curves are."""
+    """Beside the points of the fast caster, on the side with fewer curves."""
     pixels = {c: [(x_scale(x), y_scale(y)) for x, y in sorted(points)] for c, points in panel.curves.items()}
-    own = pixels.get("embree", [])
-    for i, (x, _) in enumerate(sorted(panel.curves.get("embree", []))):
+    own = pixels.get(FAST, [])
+    for i, (x, _) in enumerate(sorted(panel.curves.get(FAST, []))):
         if x not in panel.ratios:
             continue
         at, here = own[i]
-        others = [y - here for c, points in pixels.items() if c != "embree" for u, y in points if u == at]
+        others = [y - here for c, points in pixels.items() if c != FAST for u, y in points if u == at]
         # A steep line to a neighbour crosses the text, half of which reaches towards it.
         others += [(y - here) * 14 / abs(u - at) for u, y in own[max(i - 1, 0):i] + own[i + 1:i + 2]]
         above = sum(-22 < y < 0 for y in others) <= sum(0 <= y < 26 for y in others)
@@ -240,8 +242,8 @@ def rate_panels(axis, rows):
     for (_, query), group in groups.items():
         curves = {c: [(r.x, r.rate * 1e-6) for r in group if r.caster == c] for c in CASTERS}
         curves = {c: points for c, points in curves.items() if points}
-        base, embree = dict(curves.get(BASELINE, [])), dict(curves.get("embree", []))
-        ratios = {x: embree[x] / base[x] for x in embree if x in base}
+        base, fast = dict(curves.get(BASELINE, [])), dict(curves.get(FAST, []))
+        ratios = {x: fast[x] / base[x] for x in fast if x in base}
         where = f", {group[0].map}" if axis == "length" else ""
         panels.append(Panel(axis, QUERIES.get(query, query), f"million rays per second{where}", curves, ratios))
     return panels
@@ -250,7 +252,7 @@ def rate_panels(axis, rows):
 def cost_panels(rows):
     """Memory and build time of the maps of every axis that varies them."""
     panels = []
-    for axis in ("size", "share", "resolution"):
+    for axis in ("size", "density", "resolution"):
         memory, build = defaultdict(dict), defaultdict(dict)
         for row in rows:
             if row.axis != axis:
@@ -260,7 +262,7 @@ def cost_panels(rows):
             else:
                 memory[row.caster][row.x] = row.facts["memory_bytes"] / row.known
                 build[row.caster][row.x] = row.facts["build_seconds"] * 1e9 / row.known
-        what = {"size": "rooms", "share": "box of random cubes", "resolution": "building"}[axis]
+        what = {"size": "rooms", "density": "box of random cubes", "resolution": "building"}[axis]
         for kind, unit, curves in (("Memory", "bytes per known voxel", memory),
                                    ("Build time", "nanoseconds per known voxel", build)):
             if curves:
@@ -279,7 +281,7 @@ def draw_order(rows, facts):
     bottom = 0
     scale_values = [r.rate * 1e-6 for r in rows]
     for index, ((map_name, query), group) in enumerate(groups.items()):
-        left, top = panel_corner(index, pitch=254)
+        left, top = panel_corner(index, pitch=254 + 26 * 2)
         right = left + PANEL_WIDTH
         names = left + 68
         chart.text(left - AXIS_WIDTH, top - 22, QUERIES.get(query, query), "map")

@@ -19,7 +19,7 @@ COLOURS = {
     "exact": ("#b3427f", "#cc79a7"),
 }
 SAMPLINGS = {
-    "feasible": "drawn from what is in reach",
+    "feasible": "drawn from frontiers in reach",
     "buckets": "drawn from buckets",
     "paper": "hits as gain, as the paper has it",
 }
@@ -69,17 +69,17 @@ def curve(rows, name, column, factor=1.0):
     return Curve(name, sorted(points))
 
 
-def cpu_of_all(rows, way):
-    return next(float(r["cpu_ms"]) for r in rows if r["way"] == way and not r["samples"])
+def cpu_of_all(rows, method):
+    return next(float(r["cpu_ms"]) for r in rows if r["method"] == method and not r["samples"])
 
 
 def panels_of(robot, rows):
     where = ROBOTS.get(robot, robot)
-    count = int(next(r["viewpoints"] for r in rows if r["way"] == "exact"))
+    count = int(next(r["viewpoints"] for r in rows if r["method"] == "exact"))
     errors = [curve(rows, name, "rms_error", 100) for name in ("feasible", "buckets")]
     times = [curve(rows, name, "cpu_ms") for name in ("feasible", "buckets")]
     losses = [curve(rows, name, "place_loss", 100) for name in SAMPLINGS]
-    levels = [("exact", cpu_of_all(rows, "exact"), "line-exact"), ("all rays", cpu_of_all(rows, "embree"), "base")]
+    levels = [("exact", cpu_of_all(rows, "exact"), "line-exact"), ("all rays", cpu_of_all(rows, "fast"), "base")]
     return [
         Panel(f"Error, {where}", "root mean square, % of the mean gain", errors, [], errors[0].points[0][1], True),
         Panel(f"Time, {count:,} viewpoints", "milliseconds of one processor", times, levels, 0, True),
@@ -93,7 +93,7 @@ def values_of(panel):
 
 
 def label_ends(drawing, right, bottom, ends):
-    """The names beside the last points, moved apart where they would overlap, and up where they would stand
+    """The names beside the last points, moved apart where they would overlap, and up where they would be
     below the axis."""
     ends.sort()
     for previous, end in zip(ends, ends[1:]):

@@ -1,16 +1,26 @@
 #pragma once
 
-#include "paths/methods.hpp"
-
-#include <frontlux/planner/visible_pairs.hpp>
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace frontlux::bench {
+
+/// A method that chooses the yaws of a path.
+struct YawMethod {
+  std::string_view name;
+  std::optional<planner::PathOptimizerOptions> options;  ///< none: yaws along the path
+};
+
+/// From the plain tangent to the default.
+[[nodiscard]] std::vector<YawMethod> yaw_methods();
 
 /// One method on one path.
 struct YawTrial {
@@ -33,14 +43,11 @@ struct MapTrial {
   std::vector<PathTrial> paths;
 };
 
-/// The camera of the aerial robot: 90 x 72 degrees, 10 m.
-[[nodiscard]] FieldOfView camera_view();
-
 /// Every method on random paths of 12 viewpoints through a map.
 /// @throws std::runtime_error if the map has no room for such a path
 [[nodiscard]] MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds);
 
-/// Every method on a path of 12 viewpoints along a free box of 15 x 5.4 x 2.4 m, all around which is unknown:
+/// Every method on a path of 12 viewpoints along a free box of 15 x 5.4 x 2.4 m, surrounded by unknown space:
 /// more than 20,000 pairs.
 [[nodiscard]] PathTrial run_large_path();
 

@@ -61,16 +61,10 @@ class Walk {
 
   [[nodiscard]] bool is_clear(const Eigen::Vector3d& center) const {
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(options_.clearance / 2);
-    const auto min = grid_.lattice().key((center - half).cast<float>());
-    const auto max = grid_.lattice().key((center + half).cast<float>());
-    if (!min || !max) return false;
-    for (int x = min->x; x <= max->x; ++x)
-      for (int y = min->y; y <= max->y; ++y)
-        for (int z = min->z; z <= max->z; ++z)
-          if (grid_.at({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                        static_cast<std::uint16_t>(z)}) != Occupancy::kFree)
-            return false;
-    return true;
+    const auto min = grid_.lattice().key(Eigen::Vector3f((center - half).cast<float>()));
+    const auto max = grid_.lattice().key(Eigen::Vector3f((center + half).cast<float>()));
+    const auto is_free = [&](const VoxelKey& key) { return grid_.at(key) == Occupancy::kFree; };
+    return min && max && all_of(KeyBox{*min, *max}, is_free);
   }
 
   const VoxelGrid& grid_;

@@ -23,20 +23,6 @@ nanovdb::Vec3f center(const VoxelKey& key) {
           static_cast<float>(c.z()) + 0.5F};
 }
 
-/// The face neighbours of a voxel that are not free.
-template <class Visit>
-void for_each_blocking_neighbour(const VoxelGrid& grid, const VoxelKey& voxel, Visit&& visit) {
-  for (std::uint16_t VoxelKey::*axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
-    for (const int step : {-1, 1}) {
-      const int k = voxel.*axis + step;
-      if (k < 0 || k >= Lattice::kKeysPerAxis) continue;
-      VoxelKey neighbour = voxel;
-      neighbour.*axis = static_cast<std::uint16_t>(k);
-      if (grid.at(neighbour) != Occupancy::kFree) visit(neighbour);
-    }
-  }
-}
-
 nanovdb::GridHandle<> build(const VoxelGrid& grid) {
   nanovdb::GridBuilder<float> builder(0.0F);
   auto voxels = builder.getAccessor();
@@ -44,7 +30,9 @@ nanovdb::GridHandle<> build(const VoxelGrid& grid) {
   for (const Occupancy state : {Occupancy::kOccupied, Occupancy::kUnknown}) {
     for (const VoxelKey& key : voxels_beside_free(grid, state)) {
       activate(key);
-      for_each_blocking_neighbour(grid, key, activate);
+      for_each_neighbour(key, [&](const VoxelKey& behind) {
+        if (grid.at(behind) != Occupancy::kFree) activate(behind);
+      });
     }
   }
   return builder.getHandle<>();
@@ -59,7 +47,7 @@ bool visible(const KeySegment& segment, nanovdb::DefaultReadAccessor<float>& vox
   nanovdb::Ray<float> ray(from, direction, 1e-6F, length);
   nanovdb::Coord met;
   float time = 0;
-  // The march may step over the target into the voxel behind: that is taken for the target.
+  // The march may step over the target into the voxel behind; that counts as the target.
   return !nanovdb::firstActive(ray, voxels, met, time) || met == coord(segment.to) || time >= length;
 }
 
@@ -77,7 +65,7 @@ Peer make_nanovdb_peer(const VoxelGrid& grid) {
         answers[i] = visible(segments[i], accessor) ? 1 : 0;
     });
   };
-  return {"nanovdb", seconds.count(), static_cast<std::size_t>(handle->size()), query};
+  return {{"nanovdb", seconds.count(), static_cast<std::size_t>(handle->size())}, query};
 }
 
 }  // namespace frontlux::bench

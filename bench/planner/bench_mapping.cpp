@@ -1,18 +1,23 @@
-// What it costs to take in what two robots see in one step: a lidar's sweep and a depth camera's image into
-// the map, its mirror, the ray caster and the frontiers, on one core. OctoMap's own insertPointCloud takes in
-// the same scans, step for step, into a tree of its own.
+// The time to insert the scans of two robots in one step, a lidar scan and a depth image, into the map, its
+// mirror, the ray caster and the frontiers, on one core. OctoMap's own insertPointCloud inserts the same
+// scans, step by step, into another octree.
 
-#include "planner/hall.hpp"
+#include "random.hpp"
+#include "table.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/ray_caster.hpp>
+#include <frontlux/sim/sensor.hpp>
+#include <frontlux/sim/surface.hpp>
+#include <frontlux/sim/world.hpp>
 
 #include <benchmark/benchmark.h>
 #include <octomap/OcTree.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -27,6 +32,7 @@ using frontlux::KeyBox;
 using frontlux::Lattice;
 using frontlux::planner::FrontierSet;
 using frontlux::planner::Mapping;
+using frontlux::planner::Pose;
 using frontlux::planner::Scan;
 
 constexpr double kResolution = 0.3;  // [m]
@@ -50,26 +56,63 @@ struct Step {
   Scan lidar, camera;
 };
 
-// A ground robot drives along the hall, an aerial robot flies beside it and looks about.
-std::vector<Step> make_tour(const frontlux::bench::Hall& hall) {
+void add_box(frontlux::sim::TriangleMesh& mesh, float x, float y, float z, float dx, float dy, float dz) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back(x + dx * static_cast<float>(i & 1), y + dy * static_cast<float>(i >> 1 & 1),
+                               z + dz * static_cast<float>(i >> 2));
+  // Each face by its corners, in order around it.
+  for (const auto& [a, b, c, d] : {std::array<std::uint32_t, 4>{0, 2, 6, 4},
+                                   {1, 3, 7, 5},
+                                   {0, 1, 5, 4},
+                                   {2, 3, 7, 6},
+                                   {0, 1, 3, 2},
+                                   {4, 5, 7, 6}}) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+    mesh.triangles.push_back({first + a, first + c, first + d});
+  }
+}
+
+const Eigen::AlignedBox3d kHallBounds(Eigen::Vector3d(-0.3, -0.3, -0.3), Eigen::Vector3d(80.1, 40.2, 12.3));
+
+// A closed hall of 80 x 40 x 12 m with columns and crates.
+frontlux::sim::Surface make_hall() {
+  constexpr float kLength = 80.F, kWidth = 40.F, kHeight = 12.F, kFloor = -0.05F;  // [m]
+  frontlux::sim::TriangleMesh mesh;
+  add_box(mesh, 0, 0, kFloor, kLength, kWidth, kHeight - kFloor);
+  for (float x = 5.F; x < kLength; x += 6.F)
+    for (const float y : {3.F, 15.F, 37.F}) add_box(mesh, x, y, kFloor, 0.6F, 0.6F, kHeight);
+  for (std::uint64_t i = 0; i < 60; ++i) {  // crates on both sides of the ground robot's path
+    const auto draw = [&](std::uint64_t stream, float low, float high) {
+      return low + (high - low) * static_cast<float>(frontlux::bench::uniform(stream, i));
+    };
+    const float y = i % 2 == 0 ? draw(1, 0.3F, 2.5F) : draw(1, 13.F, 16.F);
+    add_box(mesh, draw(2, 0.F, kLength - 3.F), y, kFloor, draw(3, 0.5F, 2.5F), draw(4, 0.5F, 1.5F),
+            draw(5, 0.4F, 3.F));
+  }
+  return frontlux::sim::Surface(mesh);
+}
+
+// A ground robot drives along the hall, an aerial robot flies beside it and turns.
+std::vector<Step> make_tour() {
+  const auto hall = make_hall();
   std::vector<Step> tour;
   for (int i = 0; i < kSteps; ++i) {
-    const float along = static_cast<float>(i) / static_cast<float>(kSteps - 1);
-    const float turn = 40.F * along;
-    tour.push_back({hall.lidar_scan({4.F + 72.F * along, 8.F + 3.F * std::sin(9.F * along), 0.75F}),
-                    hall.camera_scan({4.F + 72.F * along, 26.F + 8.F * std::sin(7.F * along),
-                                      2.4F + 2.F * std::sin(turn / 5)},
-                                     turn)});
+    const double along = static_cast<double>(i) / (kSteps - 1), turn = 40 * along;
+    const Pose ground{{4 + 72 * along, 8 + 3 * std::sin(9 * along), 0.75}, 0.0};
+    const Pose air{{4 + 72 * along, 26 + 8 * std::sin(7 * along), 2.4 + 2 * std::sin(turn / 5)}, turn};
+    tour.push_back(
+        {sense(hall, frontlux::sim::lidar(), ground, 0), sense(hall, frontlux::sim::depth_camera(), air, 0)});
   }
   return tour;
 }
 
-// The map of one kind, as far as the tour has come.
+// The map, its mirror, the caster and the frontiers.
 class Ours {
  public:
   Ours(const KeyBox& bounds)
       : mapping_({.resolution = kResolution, .bounds = bounds}),
-        caster_(frontlux::make_embree_ray_caster(mapping_.grid())),
+        caster_(frontlux::make_ray_caster(mapping_.grid())),
         frontiers_(mapping_.grid(), bounds) {}
 
   struct Times {
@@ -77,7 +120,7 @@ class Ours {
     [[nodiscard]] double total() const { return rays + tree + mirror + caster + frontiers; }
   };
 
-  Times take_in(const Step& step) {
+  Times insert(const Step& step) {
     Times times;
     std::vector<frontlux::VoxelKey> changed;
     Stopwatch watch;
@@ -92,7 +135,7 @@ class Ours {
       times.frontiers += watch.lap();
       changed_ += change.keys.size();
     }
-    times.rays = insertion - times.tree - times.mirror;  // checks and end points with them
+    times.rays = insertion - times.tree - times.mirror;  // with checks and end points
     watch.lap();
     caster_->update(mapping_.grid());
     times.caster = watch.lap();
@@ -110,7 +153,7 @@ class Ours {
   std::size_t changed_ = 0;
 };
 
-// Points as OctoMap takes them: where nothing returned, beyond the range that it is told.
+// Points for OctoMap; those of rays without a return lie beyond the range.
 octomap::Pointcloud cloud_of(const Scan& scan) {
   octomap::Pointcloud cloud;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
@@ -123,7 +166,7 @@ octomap::Pointcloud cloud_of(const Scan& scan) {
   return cloud;
 }
 
-double take_in_by_octomap(octomap::OcTree& tree, const Step& step) {
+double insert_by_octomap(octomap::OcTree& tree, const Step& step) {
   double seconds = 0;
   for (const Scan* scan : {&step.lidar, &step.camera}) {
     const auto cloud = cloud_of(*scan);
@@ -135,7 +178,8 @@ double take_in_by_octomap(octomap::OcTree& tree, const Step& step) {
   return seconds;
 }
 
-// Both maps must say the same, but for rays without a return, whose ends the two clouds round differently.
+// Fraction of the leaves that differ. Only rays without a return may differ, whose ends the two clouds round
+// differently.
 double disagreement(const Mapping& mapping, const octomap::OcTree& tree) {
   const Lattice lattice(kResolution);
   std::size_t known = 0, different = 0;
@@ -148,17 +192,10 @@ double disagreement(const Mapping& mapping, const octomap::OcTree& tree) {
   return known == 0 ? 1.0 : static_cast<double>(different) / static_cast<double>(known);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// `laps` tours over the same map: in the first everything is new, in the second nothing is.
-void take_in_a_step(benchmark::State& state, int laps) {
-  const frontlux::bench::Hall hall;
-  const KeyBox bounds = frontlux::planner::voxels_of(Lattice(kResolution), hall.bounds());
-  const auto tour = make_tour(hall);
+// `laps` tours over the same map: the first in new space, the second in known space.
+void insert_a_step(benchmark::State& state, int laps) {
+  const KeyBox bounds = frontlux::planner::voxels_of(Lattice(kResolution), kHallBounds);
+  const auto tour = make_tour();
   std::vector<Ours::Times> times;
   std::vector<double> baseline, changed;
   std::unique_ptr<Ours> ours;
@@ -173,14 +210,14 @@ void take_in_a_step(benchmark::State& state, int laps) {
         ours = std::make_unique<Ours>(bounds);
         octomap_tree = std::make_unique<octomap::OcTree>(kResolution);
         for (at = 0; at < begin; ++at) {
-          ours->take_in(tour[static_cast<std::size_t>(at % kSteps)]);
-          take_in_by_octomap(*octomap_tree, tour[static_cast<std::size_t>(at % kSteps)]);
+          ours->insert(tour[static_cast<std::size_t>(at % kSteps)]);
+          insert_by_octomap(*octomap_tree, tour[static_cast<std::size_t>(at % kSteps)]);
         }
       }
       const Step& step = tour[static_cast<std::size_t>(at++ % kSteps)];
       const std::size_t changed_before = ours->changed();
-      baseline.push_back(take_in_by_octomap(*octomap_tree, step));
-      times.push_back(ours->take_in(step));
+      baseline.push_back(insert_by_octomap(*octomap_tree, step));
+      times.push_back(ours->insert(step));
       changed.push_back(static_cast<double>(ours->changed() - changed_before));
       state.SetIterationTime(times.back().total());
       frontiers = std::max(frontiers, static_cast<double>(ours->frontiers()));
@@ -189,11 +226,12 @@ void take_in_a_step(benchmark::State& state, int laps) {
   });
   if (different > 0.01)
     state.SkipWithError(
-        ("OctoMap has another map: " + std::to_string(different) + " of its leaves differ").c_str());
+        ("the map differs from OctoMap's: fraction of different leaves " + std::to_string(different))
+            .c_str());
   const auto report = [&](const char* name, auto part) {
     std::vector<double> values;
     for (const auto& t : times) values.push_back(1e3 * part(t));
-    state.counters[name] = median(std::move(values));
+    state.counters[name] = frontlux::bench::median(std::move(values));
   };
   report("a_rays_ms", [](const auto& t) { return t.rays; });
   report("b_tree_ms", [](const auto& t) { return t.tree; });
@@ -205,17 +243,17 @@ void take_in_a_step(benchmark::State& state, int laps) {
       1e3 * std::max_element(times.begin(), times.end(), [](const auto& a, const auto& b) {
               return a.total() < b.total();
             })->total();
-  state.counters["h_octomap_ms"] = 1e3 * median(baseline);
-  state.counters["i_changed"] = median(changed);
+  state.counters["h_octomap_ms"] = 1e3 * frontlux::bench::median(baseline);
+  state.counters["i_changed"] = frontlux::bench::median(changed);
   state.counters["j_frontiers"] = frontiers;
   state.counters["k_different"] = different;
 }
 
-BENCHMARK_CAPTURE(take_in_a_step, new_space, 1)
+BENCHMARK_CAPTURE(insert_a_step, new_space, 1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(2 * (kSteps - kWarmUp));
-BENCHMARK_CAPTURE(take_in_a_step, known_space, 2)
+BENCHMARK_CAPTURE(insert_a_step, known_space, 2)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(2 * kSteps);

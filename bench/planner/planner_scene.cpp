@@ -18,21 +18,13 @@ std::vector<VoxelKey> free_voxels(const VoxelGrid& grid, const KeyBox& box, int 
   for (int x = first(box.min.x); x <= box.max.x; x += stride)
     for (int y = first(box.min.y); y <= box.max.y; y += stride)
       for (int z = first(box.min.z); z <= box.max.z; z += stride) {
-        const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                           static_cast<std::uint16_t>(z)};
+        const VoxelKey key = make_key(x, y, z);
         if (grid.at(key) == Occupancy::kFree) voxels.push_back(key);
       }
   return voxels;
 }
 
-std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count) {
-  if (keys.size() <= count) return keys;
-  std::vector<VoxelKey> some;
-  for (std::size_t i = 0; i < count; ++i) some.push_back(keys[i * keys.size() / count]);
-  return some;
-}
-
-// From some of the cells that a robot could be in.
+// The largest of some corridors, each from a random cell.
 std::vector<VoxelKey> largest_corridor(const planner::TravelOptions& travel, const VoxelGrid& grid,
                                        const KeyBox& bounds, const std::vector<VoxelKey>& starts) {
   constexpr unsigned kTrials = 64, kEnough = 6;
@@ -48,7 +40,7 @@ std::vector<VoxelKey> largest_corridor(const planner::TravelOptions& travel, con
   return best;
 }
 
-// Frees what a camera would: all unknown voxels in view that no occupied one hides.
+// Frees all unknown voxels in view that no occupied voxel hides, as a camera would.
 std::vector<VoxelKey> scan(VoxelGrid& grid, const RayCaster& caster, const VoxelKey& from, double yaw,
                            const FieldOfView& view) {
   const int reach = static_cast<int>(view.max_range / grid.resolution());
@@ -57,9 +49,8 @@ std::vector<VoxelKey> scan(VoxelGrid& grid, const RayCaster& caster, const Voxel
     for (int y = -reach; y <= reach; ++y)
       for (int z = -reach; z <= reach; ++z) {
         if (!view.contains(Eigen::Vector3d(x, y, z) * grid.resolution(), yaw)) continue;
-        const VoxelKey to{static_cast<std::uint16_t>(from.x + x), static_cast<std::uint16_t>(from.y + y),
-                          static_cast<std::uint16_t>(from.z + z)};
-        if (grid.at(to) == Occupancy::kUnknown) segments.push_back({from, to});
+        const auto to = offset_key(from, x, y, z);
+        if (to && grid.at(*to) == Occupancy::kUnknown) segments.push_back({from, *to});
       }
   std::vector<std::uint8_t> visible(segments.size());
   caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kPass);
@@ -99,15 +90,17 @@ PlannerScene::PlannerScene(const Subject& map, planner::Adjacency adjacency, std
   aerial.travel.floor = (bounds->min.z + 1 - Lattice::kOrigin) * grid.resolution();
   aerial_cells = largest_corridor(aerial.travel, grid, *bounds, in_space);
 
-  // The scan is taken from where it tells most.
-  const RayCaster& caster = *subject.contender("embree").caster;
-  const auto image = render_view_quality(caster, grid.lattice(), aerial_viewpoints, frontiers, aerial.view,
-                                         aerial_rendering());
+  // The scan is taken from the viewpoint with the largest gain.
+  const RayCaster& caster = subject.caster(kFast);
+  ViewQualityOptions options;
+  options.sampling = ViewQualityOptions::Sampling::kBuckets;
+  options.azimuth_bins = kAzimuthBins;
+  const auto image =
+      render_view_quality(caster, grid.lattice(), aerial_viewpoints, frontiers, aerial.view, options);
   std::size_t best = 0;
-  AzimuthWindow window;
   for (std::size_t i = 0; i < image.size(); ++i)
     if (image.values()[i].gain >= image.values()[best].gain) best = i;
-  window = best_window(image.bin_hits(best), aerial.view.horizontal);
+  const AzimuthWindow window = best_window(image.bin_hits(best), aerial.view.horizontal);
   changed = scan(scanned, caster, image.viewpoints()[best], window.yaw, aerial.view);
   scanned_frontiers = frontiers_of(scanned, *bounds, adjacency);
 }
@@ -116,17 +109,26 @@ std::vector<planner::FrontierAgent> PlannerScene::agents() const {
   return {{ground_cells, ground.view}, {aerial_cells, aerial.view}};
 }
 
-ViewQualityOptions ground_rendering(int samples) {
+Rendering all_frontiers(const Subject& subject, const std::string& name, int azimuth_bins) {
   ViewQualityOptions options;
-  options.samples = samples;
-  return options;
+  options.azimuth_bins = azimuth_bins;
+  options.samples = ViewQualityOptions::kAll;
+  if (name == kExact) options.renderer = ViewQualityOptions::Renderer::kExact;
+  return {name, &subject.caster(name == kExact ? kGrid : name), options};
 }
 
-ViewQualityOptions aerial_rendering() {
-  ViewQualityOptions options;
-  options.sampling = ViewQualityOptions::Sampling::kBuckets;
-  options.azimuth_bins = 36;
-  return options;
+std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count) {
+  if (keys.size() <= count) return keys;
+  std::vector<VoxelKey> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(keys[i * keys.size() / count]);
+  return some;
+}
+
+std::size_t differing(const ViewQualityImage& a, const ViewQualityImage& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    count += a.values()[i] != b.values()[i] || !std::ranges::equal(a.bin_hits(i), b.bin_hits(i)) ? 1 : 0;
+  return count;
 }
 
 }  // namespace frontlux::bench

@@ -13,18 +13,18 @@
 
 namespace frontlux::bench {
 
-/// A map as a team's planner meets it. The ground robot's viewpoints are free voxels 0.75 m above the lowest
-/// floor, the aerial robot's every second free voxel along each axis; both evenly thinned out.
+/// What a team's planner needs of a map. The ground robot's viewpoints are free voxels 0.75 m above the
+/// lowest floor, the aerial robot's every second free voxel along each axis; both evenly thinned out.
 struct PlannerScene {
   const Subject& subject;
   planner::Robot ground, aerial;
-  std::vector<VoxelKey> frontiers;          ///< of the map, all
+  std::vector<VoxelKey> frontiers;          ///< all frontiers of the map
   std::vector<VoxelKey> ground_cells;       ///< the largest travel corridor that was found
-  std::vector<VoxelKey> aerial_cells;       ///< the same in space
+  std::vector<VoxelKey> aerial_cells;       ///< the same for the aerial robot
   std::vector<VoxelKey> ground_viewpoints;  ///< to render
   std::vector<VoxelKey> aerial_viewpoints;  ///< to render
   VoxelGrid scanned;                        ///< the map after one more scan of the aerial robot
-  std::vector<VoxelKey> scanned_frontiers;  ///< and its frontiers
+  std::vector<VoxelKey> scanned_frontiers;  ///< the frontiers of `scanned`
   std::vector<VoxelKey> changed;            ///< voxels that the scan changed, sorted
 
   /// @throws std::runtime_error if the map has no frontiers or no free space
@@ -34,8 +34,26 @@ struct PlannerScene {
   [[nodiscard]] std::vector<planner::FrontierAgent> agents() const;
 };
 
-/// How a robot's view quality is rendered.
-[[nodiscard]] ViewQualityOptions ground_rendering(int samples);
-[[nodiscard]] ViewQualityOptions aerial_rendering();
+/// A method to render view quality.
+struct Rendering {
+  std::string name;  ///< of a caster, or "exact"
+  const RayCaster* caster;
+  ViewQualityOptions options;
+};
+
+inline constexpr const char* kExact = "exact";
+
+/// All frontiers in view, by the rays of a caster or by the exact renderer.
+/// @param azimuth_bins  0: one value for all yaws
+[[nodiscard]] Rendering all_frontiers(const Subject& subject, const std::string& name, int azimuth_bins);
+
+/// The aerial robot's yaws.
+inline constexpr int kAzimuthBins = 36;
+
+/// At most `count` of these keys, evenly chosen.
+[[nodiscard]] std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count);
+
+/// Number of viewpoints with different values.
+[[nodiscard]] std::size_t differing(const ViewQualityImage& a, const ViewQualityImage& b);
 
 }  // namespace frontlux::bench

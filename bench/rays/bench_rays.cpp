@@ -1,27 +1,24 @@
-#include "rays/generated_map.hpp"
+// Rays per second of every ray caster on OctoMap maps: answers are checked first, then timed.
+
 #include "google_benchmark.hpp"
-#include "machine.hpp"
-#include "rays/options.hpp"
-#include "program.hpp"
-#include "report.hpp"
 #include "rays/subject.hpp"
 #include "rays/trial.hpp"
 #include "rays/workload.hpp"
+#include "table.hpp"
+
+#include <frontlux/machine.hpp>
 
 #ifdef FRONTLUX_BENCH_NANOVDB
 #include "peers/nanovdb_peer.hpp"
 #endif
 
-#include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
-#include <regex.h>
 #include <set>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace frontlux::bench {
@@ -34,74 +31,50 @@ struct Session {
   bool agreed = true;
 };
 
-/// Google Benchmark's own kind of filter: an extended regular expression of POSIX, after `-` for all others.
-/// By the C interface, because GCC 12 warns inside std::regex where sanitizers are on.
-class Filter {
- public:
-  explicit Filter(std::string text) {
-    if (text.empty() || text == "all") text.assign(1, '.');
-    negated_ = text.front() == '-';
-    if (negated_) text.erase(0, 1);
-    if (regcomp(&pattern_, text.c_str(), REG_EXTENDED | REG_NOSUB) != 0) {
-      throw std::runtime_error("--benchmark_filter is no regular expression: " + text);
-    }
-  }
-  ~Filter() { regfree(&pattern_); }
-  Filter(const Filter&) = delete;
-  Filter& operator=(const Filter&) = delete;
+std::string row_name(const std::string& workload, const std::string& map, const std::string& caster,
+                     int threads) {
+  return workload + "/" + map + "/" + caster + "/threads:" + std::to_string(threads);
+}
 
-  [[nodiscard]] bool passes(const std::string& row) const {
-    return (regexec(&pattern_, row.c_str(), 0, nullptr, 0) == 0) != negated_;
-  }
+std::string row_name(const Trial& trial, const std::string& caster, int threads) {
+  return row_name(trial.workload().name, trial.map(), caster, threads);
+}
 
- private:
-  regex_t pattern_{};
-  bool negated_ = false;
-};
-
-/// Whether the filter leaves any row of a workload, so that the others need not be prepared.
-bool wanted(const std::string& workload, const std::string& map, const Options& options) {
-  const Filter filter(benchmark::GetBenchmarkFilter());
-  for (const char* caster : {"octomap", "grid", "embree", "nanovdb"}) {
-    for (const int threads : options.threads) {
-      const std::string row =
-          workload + "/" + map + "/" + caster + "/threads:" + std::to_string(threads) + "/real_time";
-      if (filter.passes(row)) return true;
-    }
-  }
+/// Whether a row of the workload passes the filter, so that the others need not be prepared.
+bool wanted(const std::string& workload, const std::string& map, const std::vector<int>& threads) {
+  for (const char* caster : {kOctomap, kFast, kEmbree, kGrid, "nanovdb"})
+    for (const int count : threads)
+      if (passes_filter(row_name(workload, map, caster, count) + "/real_time")) return true;
   return false;
 }
 
 /// Reads a map, draws its workloads, and checks all answers on them.
-void prepare(const std::filesystem::path& file, const std::string& name, const Options& options,
+void prepare(const std::filesystem::path& file, const std::string& name, const RaysOptions& options,
              Session& session) {
-  tbb::task_arena arena(options.threads.back());
-  arena.execute([&] {
-    session.subjects.push_back(load_subject(file, name));
-    const Subject& subject = *session.subjects.back();
-    std::cout << describe(subject) << std::endl;
+  session.subjects.push_back(load_subject(file, name));
+  const Subject& subject = *session.subjects.back();
+  std::cout << describe(subject) << std::endl;
 
-    std::vector<Peer> peers;
+  std::vector<Peer> peers;
 #ifdef FRONTLUX_BENCH_NANOVDB
-    if (options.peers) peers.push_back(make_nanovdb_peer(subject.grid));
+  if (options.peers) peers.push_back(make_nanovdb_peer(subject.grid));
 #endif
-    WorkloadSource source(subject.grid, *subject.contender("grid").caster);
-    for (const std::string_view query : kWorkloads) {
-      if (!wanted(std::string(query), name, options)) continue;
-      Workload workload = source.make(query, options.rays);
-      if (workload.size() == 0) {
-        std::cout << "  " << query << " skipped: " << workload.skipped << std::endl;
-        continue;
-      }
-      auto trial = std::make_unique<Trial>(subject, std::move(workload), peers);
-      session.agreed = trial->check(options.threads, std::cout) && session.agreed;
-      std::cout.flush();
-      session.trials.push_back(std::move(trial));
+  WorkloadSource source(subject.grid, subject.caster(kGrid));
+  for (const std::string_view query : kWorkloads) {
+    if (!wanted(std::string(query), name, options.threads)) continue;
+    Workload workload = source.make(query, options.rays);
+    if (workload.size() == 0) {
+      std::cout << "  " << query << " skipped: " << workload.skipped << std::endl;
+      continue;
     }
-  });
+    auto trial = std::make_unique<Trial>(subject, std::move(workload), peers);
+    session.agreed = trial->check(options.threads, std::cout) && session.agreed;
+    std::cout.flush();
+    session.trials.push_back(std::move(trial));
+  }
 }
 
-/// A map's name is its file's stem; a number tells apart those that share one.
+/// A map's name is its file's stem, with a number if several have the same.
 std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken) {
   const std::string stem = file.stem().string();
   std::string name = stem;
@@ -109,21 +82,79 @@ std::string unique_name(const std::filesystem::path& file, std::set<std::string>
   return name;
 }
 
-int run(int argc, char** argv) {
-  int exit_code = 0;
-  const auto options = read_options(argc, argv, exit_code);
-  if (!options) return exit_code;
-  GoogleBenchmark google_benchmark(argv[0], options->benchmark_arguments);
-  add_context();
-  warn_of_too_many_threads(options->threads.back());
-  Session session;
-  std::set<std::string> names;
-  std::cout << cpu_name() << ". Answers are compared first, on the rays that are timed.\n";
-  for (const std::string& name : options->generated) {
-    names.insert(name);
-    prepare(generate_map(name, options->cache), name, *options, session);
+std::string ray_count(double count) {
+  if (count < 1e6) return format(count < 1e3 ? "%.0f" : "%.0f k", count < 1e3 ? count : count * 1e-3);
+  return format("%.1f M", count * 1e-6);
+}
+
+/// One line per workload and map: rates, speed-up over castRay, agreement, and from how many rays on a caster
+/// pays off.
+void print_table(const Session& session, const std::vector<int>& threads, const GoogleBenchmark& timed) {
+  std::vector<std::string> casters;
+  for (const auto& trial : session.trials)
+    for (const Entry& entry : trial->entries())
+      if (std::ranges::find(casters, entry.caster) == casters.end()) casters.push_back(entry.caster);
+  const std::vector<std::string> ours(casters.begin() + 1, casters.end());
+  Table table;
+  table.add_columns("", {"", "voxels", "hits"});
+  for (const int count : threads) table.add_columns("Mrays/s, " + thread_count(count), casters);
+  table.add_columns("times castRay", ours);
+  table.add_columns("agrees", ours);
+  table.add_columns("pays off after rays", ours);
+  for (const auto& trial : session.trials) {
+    std::vector<std::string> row{trial->workload().name + "/" + trial->map(),
+                                 format("%.1f", trial->mean_voxels()),
+                                 format("%.1f %%", 100 * trial->positive_fraction())};
+    const auto rate = [&](const std::string& caster, int count) {
+      return timed.rate(row_name(*trial, caster, count));
+    };
+    for (const int count : threads)
+      for (const std::string& caster : casters) {
+        const auto found = rate(caster, count);
+        row.push_back(found ? digits(*found * 1e-6) : "-");
+      }
+    const auto add = [&](auto text) {
+      for (const std::string& caster : ours) {
+        const auto entry = std::ranges::find(trial->entries(), caster, &Entry::caster);
+        row.push_back(entry == trial->entries().end() ? "-" : text(*entry));
+      }
+    };
+    const auto base = rate(kOctomap, threads.back());
+    add([&](const Entry& entry) -> std::string {
+      const auto own = rate(entry.caster, threads.back());
+      return own && base ? digits(*own / *base) : "-";
+    });
+    add([](const Entry& entry) { return percent(entry.agreement); });
+    add([&](const Entry& entry) -> std::string {
+      const auto own = rate(entry.caster, threads.back());
+      if (!own || !base) return "-";
+      return *own <= *base ? "never" : ray_count(entry.build_seconds / (1 / *base - 1 / *own));
+    });
+    table.add_row(std::move(row));
   }
-  for (const auto& file : options->maps) prepare(file, unique_name(file, names), *options, session);
+  std::cout << '\n'
+            << table.text() << R"(
+voxels: entered per ray. hits: visible, or stopped by an occupied voxel. times castRay: ratio of the medians on most
+threads. agrees: with castRay bit for bit, or between voxel keys with the integer rule. pays off: number of rays after
+which building and casting together is faster than castRay. The lines of the maps have build times and memory, from the
+octree to the caster, the grid included.
+)";
+  timed.print_cautions(std::cout);
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  const RaysOptions options = read_rays_options(argc, argv);
+  GoogleBenchmark google_benchmark(argv[0], options);
+  std::cout << processor_name() << ". All answers are compared before anything is timed.\n";
+  Session session;
+  tbb::task_arena(options.threads.back()).execute([&] {
+    std::set<std::string> names(options.generated.begin(), options.generated.end());
+    for (const std::string& name : options.generated)
+      prepare(generate_map(name, options.cache), name, options, session);
+    for (const auto& file : options.maps) prepare(file, unique_name(file, names), options, session);
+  });
   if (!session.agreed) {
     std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
     return 1;
@@ -132,23 +163,14 @@ int run(int argc, char** argv) {
     std::cout << "Nothing to measure.\n";
     return 0;
   }
-
-  for (const auto& trial : session.trials) {
-    for (const Entry& entry : trial->entries()) {
-      for (const int threads : options->threads)
-        register_row(row_name(*trial, entry, threads), *trial, entry, threads);
-    }
-  }
-  std::cout << "Timing, in random order of all repetitions ..." << std::endl;
-  Recorder recorder;
-  benchmark::RunSpecifiedBenchmarks(&recorder);
-  print_table(session.trials, options->threads, recorder, std::cout);
+  for (const auto& trial : session.trials)
+    for (const Entry& entry : trial->entries())
+      for (const int threads : options.threads)
+        google_benchmark.add(row_name(*trial, entry.caster, threads), threads, trial->workload().size(),
+                             entry.pass, trial->counters(entry));
+  google_benchmark.run();
+  print_table(session, options.threads, google_benchmark);
   return 0;
 }
 
-}  // namespace
 }  // namespace frontlux::bench
-
-int main(int argc, char** argv) {
-  return frontlux::bench::run_program("bench_rays", frontlux::bench::run, argc, argv);
-}

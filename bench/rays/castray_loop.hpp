@@ -10,7 +10,7 @@
 
 namespace frontlux::bench {
 
-/// What single calls of castRay answered. Sized once and written in place, so that no caster pays for memory.
+/// What single calls of castRay answered. Sized once and written in place, so that no allocation is timed.
 struct CastRayAnswers {
   /// What `end` holds before a call: castRay leaves some of them untouched.
   static inline const Eigen::Vector3f kUntouched{-1.5F, -2.5F, -3.5F};

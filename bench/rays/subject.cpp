@@ -1,11 +1,12 @@
 #include "rays/subject.hpp"
 
 #include "rays/castray_loop.hpp"
+#include "table.hpp"
 
-#include <algorithm>
-#include <array>
+#include <frontlux/synthetic/maps.hpp>
+
 #include <chrono>
-#include <cstdio>
+#include <iostream>
 #include <optional>
 #include <stdexcept>
 
@@ -15,14 +16,13 @@ namespace {
 template <class Build>
 double median_seconds(Build&& build) {
   // The first time pays for pages that the allocator keeps afterwards.
-  std::array<double, 3> seconds{};
+  std::vector<double> seconds(3);
   for (double& s : seconds) {
     const auto start = std::chrono::steady_clock::now();
     build();
     s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  std::sort(seconds.begin(), seconds.end());
-  return seconds[1];
+  return median(std::move(seconds));
 }
 
 VoxelGrid mirror(const Octree& tree) {
@@ -31,10 +31,9 @@ VoxelGrid mirror(const Octree& tree) {
 
 }  // namespace
 
-const Contender& Subject::contender(const std::string& caster) const {
-  for (const Contender& c : contenders) {
-    if (c.name == caster) return c;
-  }
+const RayCaster& Subject::caster(const std::string& caster) const {
+  for (const Contender& c : contenders)
+    if (c.caster == caster) return *c.rays;
   throw std::invalid_argument("no caster named " + caster);
 }
 
@@ -46,21 +45,23 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   });
   auto subject =
       std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, {}});
-
-  std::unique_ptr<RayCaster> caster =
+  auto& contenders = subject->contenders;
+  Contender octomap{{kOctomap}, nullptr};
+  octomap.rays =
       std::visit([](const auto& octree) { return make_octomap_ray_caster(*octree); }, subject->tree);
-  subject->contenders.push_back({"octomap", std::move(caster), 0, 0});
-
-  double seconds = median_seconds([&] { caster = make_grid_ray_caster(subject->grid); });
-  std::size_t bytes = subject->grid.memory_bytes() + caster->memory_bytes();
-  subject->contenders.push_back({"grid", std::move(caster), grid_seconds + seconds, bytes});
-
-  seconds = median_seconds([&] {
-    caster.reset();
-    caster = make_embree_ray_caster(subject->grid);
-  });
-  bytes = subject->grid.memory_bytes() + caster->memory_bytes();
-  subject->contenders.push_back({"embree", std::move(caster), grid_seconds + seconds, bytes});
+  contenders.push_back(std::move(octomap));
+  const auto add = [&](const char* caster, auto make) {
+    Contender contender{{caster}, nullptr};
+    contender.build_seconds = grid_seconds + median_seconds([&] {
+                                contender.rays.reset();
+                                contender.rays = make(subject->grid);
+                              });
+    contender.bytes = subject->grid.memory_bytes() + contender.rays->memory_bytes();
+    contenders.push_back(std::move(contender));
+  };
+  add(kFast, [](const VoxelGrid& map) { return make_ray_caster(map); });
+  add(kEmbree, [](const VoxelGrid& map) { return make_embree_ray_caster(map); });
+  add(kGrid, [](const VoxelGrid& map) { return make_grid_ray_caster(map); });
   return subject;
 }
 
@@ -72,20 +73,29 @@ std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::st
 }
 
 std::string describe(const Subject& subject) {
+  const auto millions = [](auto count) { return format("%.2f M", static_cast<double>(count) * 1e-6); };
+  const auto megabytes = [](std::size_t bytes) {
+    return format("%.1f MB", static_cast<double>(bytes) * 1e-6);
+  };
   const auto count = subject.grid.count();
-  std::array<char, 256> line{};
-  std::snprintf(line.data(), line.size(),
-                "%s: voxels of %.2f m, %.2f M free, %.2f M occupied, %.1f MB as OctoMap",
-                subject.name.c_str(), subject.grid.resolution(), static_cast<double>(count[1]) * 1e-6,
-                static_cast<double>(count[2]) * 1e-6, static_cast<double>(memory_bytes(subject.tree)) * 1e-6);
-  std::string text = line.data();
-  for (const Contender& c : subject.contenders) {
-    if (c.bytes == 0) continue;
-    std::snprintf(line.data(), line.size(), "; %s: built in %.1f ms, %.1f MB", c.name.c_str(),
-                  c.build_seconds * 1e3, static_cast<double>(c.bytes) * 1e-6);
-    text += line.data();
-  }
+  std::string text = subject.name + ": voxels of " + format("%.2f m, ", subject.grid.resolution()) +
+                     millions(count[1]) + " free, " + millions(count[2]) + " occupied, " +
+                     megabytes(memory_bytes(subject.tree)) + " as OctoMap";
+  for (const Contender& c : subject.contenders)
+    if (c.bytes != 0)
+      text +=
+          "; " + c.caster + ": built in " + format("%.1f ms, ", c.build_seconds * 1e3) + megabytes(c.bytes);
   return text;
+}
+
+std::filesystem::path generate_map(const std::string& name, const std::filesystem::path& cache) {
+  bool shown = false;
+  const auto file = synthetic::ensure_map(name, cache, [&](std::string_view text) {
+    std::cerr << '\r' << text << std::flush;
+    shown = true;
+  });
+  if (shown) std::cerr << std::endl;
+  return file;
 }
 
 }  // namespace frontlux::bench

@@ -12,12 +12,19 @@
 
 namespace frontlux::bench {
 
-/// A caster and what it costs to have one.
-struct Contender {
-  std::string name;
-  std::unique_ptr<RayCaster> caster;
-  double build_seconds = 0;  ///< from the tree to the caster, with all that lies between
-  std::size_t bytes = 0;     ///< beside the tree
+/// What is compared: castRay, the fast caster, Embree's BVH alone, and the walk over the grid.
+inline constexpr const char *kOctomap = "octomap", *kFast = "fast", *kEmbree = "embree", *kGrid = "grid";
+
+/// The name of a caster and what it costs.
+struct CasterCost {
+  std::string caster;
+  double build_seconds = 0;  ///< from the octree to the caster, the grid included
+  std::size_t bytes = 0;     ///< in addition to the octree
+};
+
+/// A caster on one map.
+struct Contender : CasterCost {
+  std::unique_ptr<RayCaster> rays;
 };
 
 /// A map with every caster that is compared on it.
@@ -25,10 +32,11 @@ struct Subject {
   std::string name;
   Octree tree;
   VoxelGrid grid;
-  std::vector<Contender> contenders;         ///< octomap, grid, embree
+  std::vector<Contender> contenders;         ///< octomap, fast, embree, grid
   std::unique_ptr<OctreeRayCaster> drop_in;  ///< null unless the map was loaded from a file
 
-  [[nodiscard]] const Contender& contender(const std::string& caster) const;
+  /// The caster of this name. @throws std::invalid_argument if there is none
+  [[nodiscard]] const RayCaster& caster(const std::string& name) const;
 };
 
 /// Builds the casters with as many threads as TBB's current arena has.
@@ -40,5 +48,11 @@ struct Subject {
 
 /// One paragraph: size of the map, time and memory of every caster.
 [[nodiscard]] std::string describe(const Subject& subject);
+
+/// Generates a map, unless it is in the folder already, and shows its progress.
+/// @return its file
+/// @throws std::invalid_argument if there is no such map
+/// @throws std::runtime_error naming the file, if it cannot be written
+[[nodiscard]] std::filesystem::path generate_map(const std::string& name, const std::filesystem::path& cache);
 
 }  // namespace frontlux::bench

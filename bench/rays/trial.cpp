@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <ostream>
 
 namespace frontlux::bench {
 namespace {
@@ -51,8 +52,8 @@ struct Trial::Buffers {
   std::vector<std::vector<Hit>> hits;
   std::vector<CastRayAnswers> castray;
 
-  /// Leaves nothing that could pass for an answer.
-  void spoil() {
+  /// Writes values that no caster answers.
+  void clear() {
     std::fill(visible.begin(), visible.end(), std::uint8_t{0xAA});
     const Eigen::Vector3f nowhere = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
     for (auto& batch : hits)
@@ -99,86 +100,91 @@ Trial::Trial(const Subject& subject, Workload workload, std::span<const Peer> pe
   } else {
     add_cast();
   }
-  const RayCaster& grid = *subject.contender("grid").caster;
-  mean_voxels_ = bench::mean_voxels(workload_, grid, subject.grid.lattice());
+  mean_voxels_ = bench::mean_voxels(workload_, subject.caster(kGrid), subject.grid.lattice());
 }
 
 Trial::~Trial() = default;
 
+std::map<std::string, double> Trial::counters(const Entry& entry) const {
+  return {{"rays", static_cast<double>(workload_.size())},
+          {"agreement", entry.agreement},
+          {"hit_fraction", positive_fraction_},
+          {"mean_voxels", mean_voxels_},
+          {"build_seconds", entry.build_seconds},
+          {"memory_bytes", static_cast<double>(entry.bytes)}};
+}
+
 void Trial::add_visible(std::span<const Peer> peers) {
   const auto read = [this] { return buffers_->read_visible(); };
   for (const Contender& c : subject_.contenders) {
-    const auto pass = [this, &c] {
-      c.caster->visible(workload_.segments, buffers_->visible, UnknownPolicy::kBlock);
+    const auto pass = [this, &rays = *c.rays] {
+      rays.visible(workload_.segments, buffers_->visible, UnknownPolicy::kBlock);
     };
-    // Between voxel centres castRay rounds, and may step either way through an edge or corner.
-    entries_.push_back({c.name, c.build_seconds, c.bytes, c.name != "octomap", pass, read});
-    if (c.name == "grid") reference_ = entries_.back();
+    // Between voxel centres castRay rounds, and may pass an edge or corner on either side.
+    entries_.push_back({c, c.caster != kOctomap, pass, read});
+    if (c.caster == kGrid) reference_ = entries_.back();
   }
   for (const Peer& peer : peers) {
     const auto pass = [this, visible = peer.visible] { visible(workload_.segments, buffers_->visible); };
-    entries_.push_back({peer.name, peer.build_seconds, peer.bytes, false, pass, read});
+    entries_.push_back({peer, false, pass, read});
   }
 }
 
 void Trial::add_cast() {
-  const auto read = [this] { return buffers_->read_hits(); };
-  for (const Contender& c : subject_.contenders) {
-    const auto pass = [this, &c] {
-      for (std::size_t b = 0; b < workload_.batches.size(); ++b) {
-        c.caster->cast(workload_.batches[b].rays, buffers_->hits[b], workload_.batches[b].unknown);
-      }
+  const auto cast = [this](auto each) {
+    return [this, each] {
+      for (std::size_t b = 0; b < workload_.batches.size(); ++b) each(workload_.batches[b], b);
     };
-    Entry entry{c.name, c.build_seconds, c.bytes, true, pass, read};
-    if (c.name == "octomap") {
-      // Its caster tells stop and key, so it is what the others are compared with. Timed is castRay alone,
-      // which spends nothing on them.
+  };
+  for (const Contender& c : subject_.contenders) {
+    const auto pass = cast([this, &rays = *c.rays](const RayBatch& batch, std::size_t b) {
+      rays.cast(batch.rays, buffers_->hits[b], batch.unknown);
+    });
+    Entry entry{c, true, pass, [this] { return buffers_->read_hits(); }};
+    if (c.caster == kOctomap) {
+      // Its caster gives stop and key, so the others are compared with it. What is timed is castRay alone,
+      // which does not compute them.
       reference_ = entry;
       entry.read = [this] { return buffers_->read_castray(); };
-      entry.pass = [this] {
-        for (std::size_t b = 0; b < workload_.batches.size(); ++b) {
-          cast_ray_loop(subject_.tree, workload_.batches[b].rays, workload_.batches[b].unknown,
-                        buffers_->castray[b]);
-        }
-      };
+      entry.pass = cast([this](const RayBatch& batch, std::size_t b) {
+        cast_ray_loop(subject_.tree, batch.rays, batch.unknown, buffers_->castray[b]);
+      });
     }
     entries_.push_back(std::move(entry));
   }
 }
 
 void Trial::add_cast_single() {
-  const auto read = [this] { return buffers_->read_castray(); };
   const RayBatch& batch = workload_.batches.front();
-  CastRayAnswers& answers = buffers_->castray.front();
-  entries_.push_back(
-      {"octomap", 0, 0, true,
-       [this, &batch, &answers] { cast_ray_loop(subject_.tree, batch.rays, batch.unknown, answers); }, read});
-  reference_ = entries_.back();
-  const Contender& grid = subject_.contender("grid");
-  entries_.push_back(
-      {"grid", grid.build_seconds, grid.bytes, true,
-       [&grid, &batch, &answers] { cast_ray_loop(*grid.caster, batch.rays, batch.unknown, answers); }, read});
-  const Contender& embree = subject_.contender("embree");
-  entries_.push_back(
-      {"embree", embree.build_seconds, embree.bytes, true,
-       [this, &batch, &answers] { cast_ray_loop(*subject_.drop_in, batch.rays, batch.unknown, answers); },
-       read});
+  for (const Contender& c : subject_.contenders) {
+    const auto pass = [this, &batch, &c] {
+      CastRayAnswers& answers = buffers_->castray.front();
+      if (c.caster == kOctomap)
+        cast_ray_loop(subject_.tree, batch.rays, batch.unknown, answers);
+      else if (c.caster == kFast)
+        cast_ray_loop(*subject_.drop_in, batch.rays, batch.unknown, answers);
+      else
+        cast_ray_loop(*c.rays, batch.rays, batch.unknown, answers);
+    };
+    entries_.push_back({c, true, pass, [this] { return buffers_->read_castray(); }});
+  }
+  reference_ = entries_.front();
 }
 
 bool Trial::check(std::span<const int> threads, std::ostream& out) {
   const std::size_t rays = workload_.size();
-  buffers_->spoil();
+  buffers_->clear();
   tbb::task_arena(threads.back()).execute(reference_.pass);
   const std::vector<Answer> expected = reference_.read();
   std::size_t positive = 0;
   for (const Answer& answer : expected) positive += answer.positive ? 1 : 0;
-  positive_share_ = static_cast<double>(positive) / static_cast<double>(rays);
+  positive_fraction_ = static_cast<double>(positive) / static_cast<double>(rays);
 
   std::string agreements, complaints;
   for (Entry& entry : entries_) {
     std::size_t differing = 0;
     for (const int count : threads) {
-      buffers_->spoil();
+      buffers_->clear();
       tbb::task_arena(count).execute(entry.pass);
       const std::vector<Answer> answers = entry.read();
       std::size_t differing_here = 0;
@@ -197,11 +203,11 @@ bool Trial::check(std::span<const int> threads, std::ostream& out) {
     agreements += format("; %s: %zu differ", entry.caster.c_str(), differing);
     if (!entry.must_agree) {
       agreements += format(" (%.3f %%%s)", 100 * (1 - entry.agreement),
-                           entry.caster == "octomap" ? ", by rounding" : "");
+                           entry.caster == kOctomap ? ", by rounding" : "");
     }
   }
   out << format("  %-12s %7zu rays, %.1f voxels each, %.1f %% %s", workload_.name.c_str(), rays, mean_voxels_,
-                100 * positive_share_, workload_.segments.empty() ? "hit" : "visible")
+                100 * positive_fraction_, workload_.segments.empty() ? "hit" : "visible")
       << agreements << '\n'
       << complaints;
   return complaints.empty();

@@ -8,8 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
+#include <map>
 #include <memory>
-#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,30 +21,24 @@ namespace frontlux::bench {
 struct Answer {
   bool positive = false;  ///< visible, or castRay's return value
   Eigen::Vector3f end = Eigen::Vector3f::Zero();
-  bool detailed = false;  ///< whether the caster tells `stop` and `key`
+  bool detailed = false;  ///< whether `stop` and `key` are known
   RayStop stop = RayStop::kInvalid;
   VoxelKey key;
 };
 
-/// Equal in every bit that both tell.
+/// Equal in every bit that both know.
 [[nodiscard]] bool same(const Answer& a, const Answer& b);
 
 /// One caster on one workload.
-struct Entry {
-  std::string caster;
-  double build_seconds = 0;
-  std::size_t bytes = 0;
+struct Entry : CasterCost {
   bool must_agree = true;
   std::function<void()> pass;                 ///< answers the whole workload once
   std::function<std::vector<Answer>()> read;  ///< the answers of the last pass of any entry
-  double agreement = 0;                       ///< share of rays answered as the reference does
+  double agreement = 0;                       ///< fraction of the rays with the answer of the reference
 };
 
-/// A foreign caster that takes part in the `visible` workloads without promising exact answers.
-struct Peer {
-  std::string name;
-  double build_seconds = 0;
-  std::size_t bytes = 0;
+/// A foreign caster that takes part in the `visible` workloads. Its answers need not be exact.
+struct Peer : CasterCost {
   std::function<void(std::span<const KeySegment>, std::span<std::uint8_t>)> visible;
 };
 
@@ -55,16 +50,18 @@ class Trial {
   ~Trial();
 
   /// Compares the answers of all entries with the reference: castRay for points; for keys the integer rule,
-  /// by the grid. Says what it found in one line, and in one more for every entry that should agree and
-  /// does not.
+  /// by the grid. Prints the result in one line, and one more for every entry that should agree and does not.
   /// @return false if there is such an entry
   bool check(std::span<const int> threads, std::ostream& out);
 
   [[nodiscard]] const std::string& map() const { return subject_.name; }
   [[nodiscard]] const Workload& workload() const { return workload_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  [[nodiscard]] double positive_share() const { return positive_share_; }
+  [[nodiscard]] double positive_fraction() const { return positive_fraction_; }
   [[nodiscard]] double mean_voxels() const { return mean_voxels_; }
+
+  /// Facts about a row for the JSON.
+  [[nodiscard]] std::map<std::string, double> counters(const Entry& entry) const;
 
  private:
   struct Buffers;
@@ -78,7 +75,7 @@ class Trial {
   std::unique_ptr<Buffers> buffers_;
   std::vector<Entry> entries_;
   Entry reference_;
-  double positive_share_ = 0, mean_voxels_ = 0;
+  double positive_fraction_ = 0, mean_voxels_ = 0;
 };
 
 }  // namespace frontlux::bench

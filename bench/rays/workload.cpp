@@ -1,7 +1,7 @@
 #include "rays/workload.hpp"
 
-#include "rays/free_voxels.hpp"
 #include "random.hpp"
+#include "rays/free_voxels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMinRays = 20'000, kMaxRays = 400'000, kPilotRays = 4'096;
 
-// Beyond it the surfaces of free space alone would fill the memory; such a file is no map of a place.
+// With more, the surfaces of free space alone would fill the memory; such a file is not the map of a place.
 constexpr std::uint64_t kMaxKnownVoxels = std::uint64_t{1} << 34U;
 
 constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
@@ -29,13 +29,13 @@ enum Stream : std::uint64_t {
   kDirection,
 };
 
-/// How far a sensor sees.
+/// The range and the opening of a sensor.
 struct Reach {
   double range;      ///< [m]
   double elevation;  ///< [rad] up and down from the horizon
 };
 
-/// Calls `visit` for every target that the sensor could see from a viewpoint if nothing stood between.
+/// Calls `visit` for every target in the field of view of a viewpoint.
 template <class Visit>
 void for_each_in_reach(const VoxelIndex& targets, const VoxelKey& viewpoint, const Reach& reach,
                        double resolution, Visit&& visit) {
@@ -75,8 +75,8 @@ Eigen::Vector3f point_in_voxel(const Lattice& lattice, const VoxelKey& key, doub
   return lattice.center(key) + Eigen::Vector3f(shift(0), shift(1), shift(2));
 }
 
-/// Scans of 32 beams by 720 azimuths between -20 and 20 degrees. Of every scan a sector in full density: that
-/// is how a lidar's rays follow each other, and it leaves rays for more positions.
+/// Scans of 32 beams by 720 azimuths between -20 and 20 degrees. Of every scan only a sector, in full
+/// density: the rays are in the order of a lidar, and there are enough for many positions.
 RayBatch lidar(const VoxelGrid& grid, std::size_t count, double range) {
   constexpr std::size_t kBeams = 32, kAzimuths = 720, kSector = 45, kMinScans = 16;
   const std::size_t scans = std::max(kMinScans, count / (kSector * kBeams));
@@ -102,8 +102,8 @@ RayBatch lidar(const VoxelGrid& grid, std::size_t count, double range) {
 
 /// Rays in all directions from anywhere in free space.
 RayBatch random_rays(const VoxelGrid& grid, std::size_t count, double range, UnknownPolicy unknown) {
-  // An unlimited ray that ignores unknown walks to the end of the key range, thousands of times the way of
-  // the others: more than these few and nothing else would be measured.
+  // An unlimited ray that ignores unknown walks to the end of the key range, thousands of times as far as
+  // the others: with more than these few, nothing else would be measured.
   constexpr std::size_t kUnlimitedEvery = 16'384;
   const Stream stream = unknown == UnknownPolicy::kBlock ? kBlockOrigin : kPassOrigin;
   RayBatch batch{{}, unknown};

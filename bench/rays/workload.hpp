@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rays/shell.hpp"
+#include "rays/free_voxels.hpp"
 
 #include <frontlux/ray.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -24,7 +24,7 @@ struct RayBatch {
 /// Queries taken from a map. Either segments or batches of rays.
 struct Workload {
   std::string name;
-  std::vector<KeySegment> segments;  ///< asked with `UnknownPolicy::kBlock`
+  std::vector<KeySegment> segments;  ///< for `UnknownPolicy::kBlock`
   std::vector<RayBatch> batches;
   std::string skipped;  ///< why there are none, if there are none
 
@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, 5> kWorkloads{"visible_ugv", "visi
                                                             "cast_random", "cast_single"};
 
 /// Draws workloads from one map. What it draws depends on the map and the arguments alone. Rays are in
-/// spatial order of their origins, as a planner or a sensor model asks them.
+/// spatial order of their origins, as those of a planner or a sensor model.
 class WorkloadSource {
  public:
   /// @param caster  measures how long the rays are; both must outlive this object
@@ -45,7 +45,7 @@ class WorkloadSource {
   /// @param rays  how many, about; if not given, as many as cross `kVoxelsPerPass` voxels
   [[nodiscard]] Workload make(std::string_view name, std::optional<std::size_t> rays);
 
-  /// So many that castRay takes some tenths of a second, on long rays as on short ones.
+  /// castRay takes some tenths of a second for them, on long rays as on short ones.
   static constexpr double kVoxelsPerPass = 6e6;
 
  private:

@@ -1,4 +1,4 @@
-"""What the reproduction must hold, measured on the runs: holds, or falls short and by how much."""
+"""What the reproduction must hold, measured on the runs, and by how much a run falls short."""
 
 import paper
 from markdown import NOTHING, percent, plain, table, value
@@ -21,8 +21,8 @@ def verdict(measured, limit, unit="", digits=1, at_most=False, below=False):
 
 
 def savings(results, variant, other, worlds, coverage=0.9):
-    """Share of the other variant's steps to that coverage that the first does without, by pair of runs; and the
-    same of the pairs that both got there."""
+    """The fraction of the other variant's steps to that coverage that the first variant saves, by pair of runs; and
+    the same for the pairs in which both reached it."""
     pairs = results.pairs(variant, other, worlds)
     counted = [1 - a.steps_or_limit(coverage) / b.steps_or_limit(coverage) for a, b in pairs
                if b.steps_or_limit(coverage)]
@@ -56,8 +56,8 @@ def team_lines(results):
     counted, reached = savings(results, "team", "uav", WORLDS)
     team, alone = means(results.pairs("team", "uav", WORLDS), lambda run: run.steps_or_limit(0.9))
     said = counted and (f"{percent(counted.mean)} (counting limits), {percent(reached and reached.mean)} over the "
-                        f"{reached.count if reached else 0} of {counted.count} pairs that both got there; of the mean "
-                        f"steps, {team:,.1f} and {alone:,.1f}, it is {percent(1 - team / alone) if alone else NOTHING}")
+                        f"{reached.count if reached else 0} of {counted.count} pairs in which both reached it; of the "
+                        f"mean steps, {team:,.1f} and {alone:,.1f}, it is {percent(1 - team / alone) if alone else NOTHING}")
     yield ("Steps to 90 % that the team saves against the UAV alone, mean over worlds and seeds: at least 30 %", said,
            verdict(counted and 100 * counted.mean, 30, " points"))
     team, alone = means(results.pairs("team", "uav", WORLDS), lambda run: run.travelled("uav")[-1])
@@ -105,7 +105,8 @@ def sameness_lines(results):
     for what, partner in (
             ("Same rows, times aside, on 1 and 2 threads",
              lambda w: next((r for r in results.of(w, "team") if r.run.seed == 1), None)),
-            ("The embree and the grid caster give the same run", lambda w: results.timed(w, "grid"))):
+            ("The fast caster and the BVH alone give the same run", lambda w: results.timed(w, "embree")),
+            ("The fast and the grid caster give the same run", lambda w: results.timed(w, "grid"))):
         said, differ, compared = [], 0, 0
         for world in WORLDS:
             one, other = results.timed(world), partner(world)

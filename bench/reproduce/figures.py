@@ -10,7 +10,7 @@ from recorded import PHASES
 from runs import VARIANTS, WORLDS
 from svg_chart import MARGIN, WIDTH, Drawing, svg
 
-# Okabe and Ito's colours, told apart with any colour vision; (light, dark) background.
+# Okabe and Ito's colours, for any colour vision; (light, dark) background.
 COLOURS = {
     "team": ("#0072b2", "#56b4e9"),
     "uav": ("#d55e00", "#f0813c"),
@@ -116,8 +116,8 @@ def finish(drawing, title, names, rows=1):
 
 def progress(results, names, title, measure, x_title):
     """Coverage against what `measure` gives by step: thin lines by seed, a thick one for their mean."""
-    drawing = chart(title, "Thin: each seed; thick: their mean, a run that is over counting with its end; cut at three "
-                    "times the team's longest run", names, {n: VARIANTS[n].title for n in names})
+    drawing = chart(title, "Thin: each seed; thick: their mean, where a finished run keeps its last value; cut at three "
+                    "times the longest run of the team", names, {n: VARIANTS[n].title for n in names})
     for column, world in enumerate(WORLDS):
         runs = {name: results.of(world, name) for name in names}
         ends = [(name, measure(run)[-1]) for name in names for run in runs[name]]
@@ -138,8 +138,8 @@ def steps_of(run):
 
 
 def contributions(results):
-    names, title = ("ugv", "uav"), "What each robot made known first"
-    drawing = chart(title, "Means over seeds, a run that is over counting with its end", names, TITLES, False)
+    names, title = ("ugv", "uav"), "What each robot observed first"
+    drawing = chart(title, "Means over seeds; a finished run keeps its last value", names, TITLES, False)
     for row, variant in enumerate(("team", "unoptimised")):
         for column, world in enumerate(WORLDS):
             runs = results.of(world, variant)

@@ -1,4 +1,4 @@
-"""Text and tables of a Markdown file, whatever the names in them hold."""
+"""Text and tables of a Markdown file; names may hold any characters."""
 
 import re
 
@@ -6,7 +6,7 @@ NOTHING = "–"
 
 
 def plain(text):
-    """Text that neither Markdown nor HTML takes for anything else, on one line."""
+    """Text without any meaning in Markdown or HTML, on one line."""
     text = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return re.sub(r"([\\`*_\[\]|!#~$@])", r"\\\1", text)

@@ -1,4 +1,4 @@
-"""A run as it was recorded, checked, and the numbers that the tables are made of."""
+"""A recorded run, checked, and the numbers for the tables."""
 
 import csv
 import math
@@ -8,11 +8,11 @@ from typing import NamedTuple
 from runs import STEP_LIMIT, is_finished, kind_of, read_facts
 
 PHASES = ("frontiers", "caster", "goals", "paths", "optimization")
-SHARES = ("coverage_observable", "coverage_box", "robot_observable", "robot_box")
+FRACTIONS = ("coverage_observable", "coverage_box", "robot_observable", "robot_box")
 TIMES = tuple(f"{phase}_s" for phase in PHASES) + ("planning_s", "moving_s")
 COUNTS = ("viewpoints", "collisions", "gain_tangent", "gain_predicted", "gained")
 LENGTHS = ("length_m", "travelled_m")
-LARGEST = 1e15  # more than anything that is counted or measured
+LARGEST = 1e15  # no count and no measurement is larger
 
 
 def number(value, what, high=LARGEST):
@@ -29,10 +29,10 @@ def number(value, what, high=LARGEST):
 
 
 class Recorded:
-    """Steps are counted from 0, where robots only look around; lists are by step."""
+    """Steps are counted from 0, the scan at the start; lists are by step."""
 
     def __init__(self, run, folder):
-        """Raises OSError or ValueError if the run is not there, not finished or not whole."""
+        """Raises OSError or ValueError if the run is missing, not finished or incomplete."""
         self.run = run
         self.facts = read_facts(folder)
         if not is_finished(self.facts):
@@ -45,13 +45,13 @@ class Recorded:
         self.collisions = number(self.facts.get("collisions"), "collisions")
         self.read_steps(folder / "steps.csv")
         if number(self.facts.get("steps"), "steps") not in (self.steps, self.steps + 1):
-            raise ValueError(f"run.json tells of {self.facts['steps']} steps, steps.csv of {self.steps}")
+            raise ValueError(f"run.json has {self.facts['steps']} steps, steps.csv {self.steps}")
 
     def read_steps(self, file):
         with open(file, encoding="utf-8", newline="") as stream:
             reader = csv.reader(stream)
             header = next(reader, [])
-            absent = [c for c in ("step", "robot", *SHARES, *TIMES, *COUNTS, *LENGTHS) if c not in header]
+            absent = [c for c in ("step", "robot", *FRACTIONS, *TIMES, *COUNTS, *LENGTHS) if c not in header]
             if absent:
                 raise ValueError(f"steps.csv has no column {absent[0]}")
             self.cells = []
@@ -70,7 +70,7 @@ class Recorded:
     @staticmethod
     def checked(row):
         result = {"robot": row["robot"], "step": number(row["step"], "step")}
-        result.update((c, number(row[c], c, 1.0)) for c in SHARES)
+        result.update((c, number(row[c], c, 1.0)) for c in FRACTIONS)
         result.update((c, number(row[c] or "0", c)) for c in (*TIMES, *COUNTS, *LENGTHS))
         return result
 
@@ -89,8 +89,8 @@ class Recorded:
     def known_by(self, kind):
         return [sum(row["robot_observable"] for row in rows) for rows in self.of_kind(kind)]
 
-    def share_of(self, kind):
-        """Of what was made known in the whole run."""
+    def fraction_of(self, kind):
+        """The fraction of the known space of the whole run that robots of a kind observed first."""
         everything = sum(row["robot_observable"] for row in self.by_step[-1])
         return self.known_by(kind)[-1] / everything if everything else math.nan
 
@@ -112,7 +112,7 @@ class Recorded:
         return self.travelled()[found] if found is not None else None
 
     def seconds(self, column):
-        """[s] of the planned steps: without the start."""
+        """[s] of the planned steps, without step 0."""
         return [rows[0][column] for rows in self.by_step[1:]]
 
     def gains(self, kind, column):
@@ -141,7 +141,7 @@ class Spread(NamedTuple):
 
 
 def spread(values):
-    """None of no values."""
+    """None if there are no values."""
     values = [v for v in values if v is not None and not math.isnan(v)]
     if not values:
         return None
@@ -150,7 +150,7 @@ def spread(values):
 
 
 class Results:
-    """All runs that could be read, and what is wrong with the others."""
+    """All runs that could be read, and the errors of the others."""
 
     def __init__(self, runs, folder, failures):
         self.runs, self.broken = {}, {}
@@ -168,7 +168,7 @@ class Results:
     def of(self, world, variant):
         return [r for r in self.runs.values() if (r.run.world, r.run.variant, r.run.timed) == (world, variant, False)]
 
-    def timed(self, world, caster="embree"):
+    def timed(self, world, caster="fast"):
         return next((r for r in self.runs.values() if r.run.timed and (r.run.world, r.run.caster) == (world, caster)),
                     None)
 

@@ -1,4 +1,4 @@
-"""Which runs the reproduction consists of, and running those that are not there yet."""
+"""The runs of the reproduction, and a runner for those that are missing."""
 
 import json
 import signal
@@ -9,19 +9,19 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from typing import NamedTuple
 
 WORLDS = ("maze", "factory", "station")
-CASTERS = ("embree", "grid", "octomap")
+CASTERS = ("fast", "embree", "grid", "octomap")
 STEP_LIMIT = 1000
 COMPARED, COMPARED_SEEDS = ("team", "uav"), 5  # with at least so many seeds
 LONGEST_RUN = 3600  # [s], after which a run counts as hanging
 
-DEFAULTS = {"mode": "default", "goal": "render", "assign": "on", "optimize": "on", "caster": "embree",
+DEFAULTS = {"mode": "default", "goal": "render", "assign": "on", "optimize": "on", "caster": "fast",
             "robots": {"uav", "ugv"}}
 
 
 class Variant(NamedTuple):
     title: str
     arguments: tuple = ()
-    differs: dict = {}  # from DEFAULTS in run.json; None: whatever it says
+    differs: dict = {}  # from DEFAULTS in run.json; None: any value
 
 
 VARIANTS = {
@@ -32,7 +32,7 @@ VARIANTS = {
     "unassigned": Variant("no assignment", ("--assign", "off"), {"assign": "off"}),
     "paper": Variant("paper mode", ("--mode", "paper"), {"mode": "paper", "goal": None}),
     "cluster": Variant("cluster goals", ("--goal", "cluster"), {"goal": "cluster"}),
-    # The nearest place of all is always beside the robot: by steps of 0.6 m most runs would not end.
+    # The nearest cell is always next to the robot. With steps of 0.6 m most runs would not end.
     "nearest": Variant("nearest goals", ("--goal", "nearest", "--min-distance", "3"), {"goal": "nearest"}),
 }
 
@@ -41,7 +41,7 @@ class Run(NamedTuple):
     world: str
     variant: str
     seed: int
-    caster: str = "embree"
+    caster: str = "fast"
     threads: int = 1
     timed: bool = False  # alone on the machine
 
@@ -56,14 +56,14 @@ class Run(NamedTuple):
 
 
 def wanted_runs(seeds):
-    """Those of one seed before the next, so that an early end leaves something to compare; the timed ones last."""
+    """Seed by seed, so that an early end leaves runs to compare; the timed runs last."""
     runs = [Run(w, v, s) for s in range(1, max(seeds, COMPARED_SEEDS) + 1) for w in reversed(WORLDS)
             for v in (VARIANTS if s <= seeds else COMPARED)]
     return runs + [Run(w, "team", 1, c, 2, True) for c in CASTERS for w in WORLDS]
 
 
 def refuse_constant(name):
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")
 
 
 def read_facts(folder):
@@ -73,7 +73,7 @@ def read_facts(folder):
     except RecursionError as error:
         raise ValueError("run.json is nested too deeply") from error
     if not isinstance(facts, dict):
-        raise ValueError("run.json holds no object")
+        raise ValueError("run.json is not a JSON object")
     return facts
 
 
@@ -83,7 +83,7 @@ def kind_of(robot):
 
 
 def mismatch(run, facts, version):
-    """The first thing that run.json tells of another run than this one; empty if there is none."""
+    """The first value in run.json that belongs to another run than this one; empty if there is none."""
     expected = {**DEFAULTS, "caster": run.caster, **VARIANTS[run.variant].differs, "world": run.world,
                 "seed": run.seed, "threads": run.threads, "version": version}
     for key, value in expected.items():
@@ -101,8 +101,8 @@ def is_finished(facts):
     return isinstance(facts.get("end"), str) and facts["end"] not in ("", "stopped")
 
 
-def how_to_go_on(run, folder, version):
-    """What the folder asks for: "keep", "resume", "force" (another run, or the remains of one) or "start"."""
+def next_action(run, folder, version):
+    """What to do with the folder: "keep", "resume", "force" (overwrite another run, or an incomplete one) or "start"."""
     if not folder.is_dir() or not any(folder.iterdir()):
         return "start"
     try:
@@ -124,7 +124,7 @@ def last_line(text):
 
 
 class Runner:
-    """Runs `frontlux explore`, so many at a time; what it has started ends with it."""
+    """Runs `frontlux explore`, several at a time; ends the processes that it has started."""
 
     def __init__(self, command, folder, version, say=print):
         self.command, self.folder, self.version, self.say = str(command), folder, version, say
@@ -132,7 +132,7 @@ class Runner:
         self.started, self.stopping, self.lock = set(), False, threading.Lock()
 
     def call(self, run, arguments):
-        """Exit code and what the command said, which is also kept beside the runs."""
+        """Exit code and output of the command; the output is also kept beside the runs."""
         log = self.folder / "logs" / f"{run.name}.log"
         with open(log, "w", encoding="utf-8") as output:
             with self.lock:
@@ -154,21 +154,21 @@ class Runner:
         return code, last_line(log.read_text(encoding="utf-8", errors="replace"))
 
     def execute(self, run):
-        """Seconds that it took."""
+        """Executes a run; returns the seconds that it took."""
         begin, folder = time.monotonic(), self.folder / run.name
-        todo = how_to_go_on(run, folder, self.version)
+        todo = next_action(run, folder, self.version)
         code = 1
         if todo == "resume":
             code, said = self.call(run, ["explore", "--resume", str(folder), "--report", "off"])
-            if code == 0 and how_to_go_on(run, folder, self.version) != "keep":
-                code = 1  # it went on with another run
+            if code == 0 and next_action(run, folder, self.version) != "keep":
+                code = 1  # it continued another run
             todo = "force"
         if code != 0 and not self.stopping:
             code, said = self.call(run, run.arguments(folder) + (["--force"] if todo == "force" else []))
         if code != 0:
             self.failures[run.name] = f"exit code {code}: {said}" if code > 0 else f"ended by signal {-code}: {said}"
-        elif how_to_go_on(run, folder, self.version) != "keep":
-            self.failures[run.name] = "exit code 0, but it left no finished run of these options"
+        elif next_action(run, folder, self.version) != "keep":
+            self.failures[run.name] = "exit code 0, but no finished run with these options was left"
         return time.monotonic() - begin
 
     def stop(self):
@@ -186,8 +186,8 @@ class Runner:
 
     def run_all(self, runs, jobs):
         (self.folder / "logs").mkdir(parents=True, exist_ok=True)
-        left = [run for run in runs if how_to_go_on(run, self.folder / run.name, self.version) != "keep"]
-        self.say(f"{len(runs) - len(left)} of {len(runs)} runs are there already, {len(left)} to go")
+        left = [run for run in runs if next_action(run, self.folder / run.name, self.version) != "keep"]
+        self.say(f"{len(runs) - len(left)} of {len(runs)} runs are finished already, {len(left)} to do")
         done, seconds = 0, []
         for group, at_once in ((False, jobs), (True, 1)):
             with ThreadPoolExecutor(at_once) as pool:
@@ -212,14 +212,14 @@ class Runner:
             facts = read_facts(self.folder / run.name)
             outcome = f"{facts.get('end')} after {facts.get('steps')} steps"
         timed = sum(other.timed for other in left[done:])
-        # As long as those so far in the mean; the timed ones one after the other.
+        # Estimated from the mean so far; the timed runs are done one after the other.
         minutes = sum(seconds) / len(seconds) * ((len(left) - done - timed) / jobs + timed) / 60
         self.say(f"[{done}/{len(left)}] {run.name}: {outcome}, {seconds[-1]:.0f} s; about {minutes:.0f} min left")
 
 
 def version_of(command):
-    """What `frontlux --version` says, without the name."""
+    """The version that `frontlux --version` prints."""
     if not command.is_file():
-        raise OSError(f"{command} is not there: build it with ./dev build")
+        raise OSError(f"{command} does not exist: build it with ./dev build")
     said = subprocess.run([command, "--version"], capture_output=True, text=True, timeout=60, check=True)
     return said.stdout.strip().removeprefix("frontlux ").strip()

@@ -1,4 +1,4 @@
-"""docs/results.md: the paper's tables with ours beside."""
+"""docs/results.md: the tables of the paper beside ours."""
 
 import paper
 from checklist import checklist, same, savings
@@ -7,28 +7,28 @@ from recorded import PHASES, spread
 from runs import CASTERS, STEP_LIMIT, VARIANTS, WORLDS
 
 NOT_COMPARABLE = f"""\
-- The paper's worlds are not published. Ours bear the same names and are generated from a seed, with other sizes and
-  contents, so that metres and steps of one table's row are of different places.
-- The paper does not say what coverage is a share of. Ours is of the observable space: what is free and connected to
-  the start, and the surface around it; for the box see the table of all variants.
-- A step ends where its path ends, so the number of steps depends on how long paths are; and the paper prints one run
-  each, without a spread.
-- Sensors here are simulated from the worlds' meshes without noise, and poses are exact.
-- Planning times are of another processor than the paper's, which it does not name. It prints them by robot, we
-  measure by phase, both robots together.
-- Where the paper leaves a choice open, the default mode takes what works best and paper mode what is printed.
-- A run that never has 90 % counts its step limit, {STEP_LIMIT:,} steps; the means of those that got there stand
-  beside."""
+- The paper's worlds are not published. Ours have the same names and are generated from a seed, with other sizes and
+  contents: metres and steps in one row of a table belong to different worlds.
+- The paper does not define coverage. Ours is the known fraction of the observable space, which is the free space
+  connected with the start and the surfaces around it. The table of all variants also has the coverage of the box.
+- A step ends where its path ends, so the number of steps depends on the length of the paths. The paper prints one run
+  of each kind, without a spread.
+- Our sensors are simulated from the meshes of the worlds without noise, and poses are exact.
+- The paper does not name the processor of its planning times. It prints them by robot; we measure by phase, both
+  robots together.
+- Where the paper leaves a choice open, the default mode uses what works best, and paper mode what is printed.
+- A run that never reaches 90 % counts with its step limit, {STEP_LIMIT:,} steps; the means of the runs that reached it
+  are beside."""
 
 
 def steps_to_90(runs):
-    """Mean with the step limit for runs that did not get there, of the others alone, and how many did."""
+    """Mean with the step limit for runs that did not reach it, mean of the others alone, and their number."""
     reached = [run.steps_to(0.9) for run in runs if run.steps_to(0.9) is not None]
     counted = mean_of(spread(run.steps_or_limit(0.9) for run in runs), 1)
     if not runs or len(reached) == len(runs):
         return counted
     there = mean_of(spread(reached), 1) + " in " if reached else ""
-    return f"{counted} ({there}{len(reached)} of {len(runs)} that got there)"
+    return f"{counted} ({there}{len(reached)} of {len(runs)} that reached it)"
 
 
 def coverage_table(results):
@@ -58,7 +58,7 @@ def team_table(results):
         pairs = f" ({reached.count if reached else 0} of {counted.count if counted else 0})"
         rows.append([world, *(steps_to_90(runs) for runs in (team, uav, ugv)), spread_of(counted, 1, 100, " %"),
                      mean_of(reached, 1, 100, " %") + pairs, uav_path(uav), uav_path(team)])
-    return table(["world", "steps to 90 %: team", "UAV alone", "UGV alone", "saved by the team", "where both got there",
+    return table(["world", "steps to 90 %: team", "UAV alone", "UGV alone", "saved by the team", "if both reached it",
                   "UAV's path alone", "in the team"], rows)
 
 
@@ -72,9 +72,9 @@ def contribution_table(results):
     for world in WORLDS:
         before, after, mixed = (results.of(world, v) for v in ("unoptimised", "team", "unassigned"))
         rows.append([world, "{} / {} %".format(*paper.UAV_SHARE[world]),
-                     *(spread_of(spread(r.share_of("uav") for r in runs), 0, 100, " %") for runs in (before, after)),
+                     *(spread_of(spread(r.fraction_of("uav") for r in runs), 0, 100, " %") for runs in (before, after)),
                      *(mean_of(uav_efficiency(runs), 2) for runs in (mixed, after, results.of(world, "uav")))])
-    return table(["world", "UAV's share, paper, before / after", "ours, before", "ours, after",
+    return table(["world", "UAV's fraction, paper, before / after", "ours, before", "ours, after",
                   "% per 100 m: no assignment", "team", "UAV alone"], rows)
 
 
@@ -112,15 +112,15 @@ def planning_table(results):
 def engine_table(results):
     rows = []
     for world in WORLDS:
-        embree = results.timed(world)
+        fast = results.timed(world)
         for caster in CASTERS:
             run = results.timed(world, caster)
             if run:
-                ratio = run.planning_mean / embree.planning_mean if embree and embree.planning_mean else None
-                rows.append([world, caster, same(embree, run) if embree else NOTHING, str(run.steps),
+                ratio = run.planning_mean / fast.planning_mean if fast and fast.planning_mean else None
+                rows.append([world, caster, same(fast, run) if fast else NOTHING, str(run.steps),
                              percent(run.coverage[-1]), value(1e3 * run.planning_mean, 1),
                              value(1e3 * run.planning_max, 1), value(ratio, 2, "×"), value(run.wall, 0, " s")])
-    return table(["world", "caster", "run", "steps", "coverage", "planning, mean [ms]", "max", "mean / embree's",
+    return table(["world", "caster", "run", "steps", "coverage", "planning, mean [ms]", "max", "mean / fast's",
                   "whole run"], rows, texts=3)
 
 
@@ -175,12 +175,13 @@ def document(results, images):
         return f"![{title}]({images}/{name}.svg)\n"
 
     return f"""\
-# Results: the paper's figures, and ours beside
+# Results: the figures of the paper and ours
 
 Written by `./dev reproduce`: {origin(results)}
-Means over seeds, which are more for the team and the UAV alone than for what they are compared with elsewhere; in
-brackets the smallest and largest value and the standard deviation. Coverage is of the observable space. Times in the
-tables of planning are of one run for each world, alone on the machine, with 2 threads; all other times are of runs side by side, one for each core, with 1 thread.
+Values are means over seeds; the team and the UAV alone have more seeds than the other variants. The smallest value, the
+largest value and the standard deviation are in brackets. Coverage is of the observable space. Planning times are those
+of one run in each world, alone on the machine, with 2 threads; all other times are those of runs with 1 thread, one run
+on each core.
 
 ## What is not comparable
 
@@ -203,27 +204,27 @@ The paper: 30 to 54 % fewer steps than the UAV alone; the UAV flies 1,147 m alon
 {figure("coverage_by_path", "Coverage against the length of all robots' paths")}
 ## Contributions
 
-A voxel is the robot's that made it known first. Before: without optimisation. The paper has the UAV's efficiency
-grow by 24 % with assignment, in the factory; per 100 m is one reading of that.
+A voxel belongs to the robot that observed it first. Before: without optimisation. In the paper, assignment of
+frontiers raises the efficiency of the UAV by 24 % in the factory; coverage per 100 m is one reading of that.
 
 {contribution_table(results)}
-{figure("contributions", "What each robot made known, against steps")}
+{figure("contributions", "What each robot observed first, against steps")}
 ## Path optimisation
 
-The frontiers that the UAV's path of a step has in view, looking where it goes and as optimised, and those that
-its scans made known; means over steps with a path.
+Frontiers in view of the UAV's path in a step, with yaws along the path (before) and optimised yaws (after), and
+frontiers that its scans made known. Means over steps with a path.
 
 {optimisation_table(results)}
 ## Planning time
 
-Mean by phase, in ms per step, both robots.
+Mean of each phase, in ms per step, both robots.
 
 {planning_table(results)}
 {figure("planning_time", "Planning time of each step, by phase")}
-## What the engine is worth
+## The ray casters
 
-The same runs with other casters. Planning is compared per step, also where the octomap caster's rounding
-led the robots elsewhere.
+The same runs with other casters. The rounding of the octomap caster leads to other decisions; planning times are
+compared per step.
 
 {engine_table(results)}
 ## Goals

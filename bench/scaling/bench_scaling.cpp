@@ -1,74 +1,110 @@
+// How the rays per second of every ray caster change with the map, the rays and the threads.
+
 #include "google_benchmark.hpp"
-#include "machine.hpp"
-#include "program.hpp"
-#include "report.hpp"
-#include "scaling/options.hpp"
 #include "scaling/sweep.hpp"
-#include "scaling/table.hpp"
+#include "table.hpp"
 
-#include <benchmark/benchmark.h>
+#include <frontlux/machine.hpp>
 
-#include <filesystem>
 #include <iostream>
-#include <system_error>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace frontlux::bench {
 namespace {
 
-/// Removes results that never became complete.
-class Unfinished {
- public:
-  explicit Unfinished(const ScalingOptions& options) : options_(options) {}
-  ~Unfinished() {
-    std::error_code ignored;
-    if (!options_.unfinished.empty()) std::filesystem::remove(options_.unfinished, ignored);
-  }
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
+/// `<axis>/<query>/<map>/<value>/<caster>/threads:<n>`
+std::string row_name(const Point& point, const Entry& entry, int threads) {
+  return point.name() + "/" + entry.caster + "/threads:" + std::to_string(threads);
+}
 
-  void finish() const {
-    if (!options_.json.empty()) std::filesystem::rename(options_.unfinished, options_.json);
+/// One line per point and number of threads: rates, speed-up over castRay and agreement.
+void print_rates(const std::vector<Point>& points, const GoogleBenchmark& timed) {
+  Table table;
+  table.add_columns("", {"", "threads", "voxels", "hits"});
+  table.add_columns("Mrays/s", {kOctomap, kFast, kEmbree, kGrid});
+  table.add_columns("times castRay", {kFast, kEmbree, kGrid});
+  table.add_columns("agrees", {kOctomap, kFast, kEmbree, kGrid});
+  std::string axis;
+  for (const Point& point : points) {
+    if (std::exchange(axis, point.axis) != point.axis && axis != points.front().axis) table.add_line();
+    for (const int threads : point.threads) {
+      std::vector<std::string> row{point.name(), std::to_string(threads),
+                                   format("%.1f", point.trial->mean_voxels()),
+                                   format("%.1f %%", 100 * point.trial->positive_fraction())};
+      std::vector<std::string> ratios, agreements;
+      const auto base = timed.rate(row_name(point, point.trial->entries().front(), threads));
+      for (const Entry& entry : point.trial->entries()) {
+        const auto rate = timed.rate(row_name(point, entry, threads));
+        row.push_back(rate ? digits(*rate * 1e-6) : "-");
+        if (entry.caster != kOctomap) ratios.push_back(rate && base ? digits(*rate / *base) : "-");
+        agreements.push_back(percent(entry.agreement));
+      }
+      row.insert(row.end(), ratios.begin(), ratios.end());
+      row.insert(row.end(), agreements.begin(), agreements.end());
+      table.add_row(std::move(row));
+    }
   }
+  std::cout << '\n' << table.text();
+}
 
- private:
-  const ScalingOptions& options_;
-};
+/// One line per map: memory and build time per known voxel.
+void print_costs(const std::vector<Point>& points) {
+  Table table;
+  table.add_columns("Memory and build time", {"", "M known", "M occupied"});
+  table.add_columns("bytes/voxel", {"octree", kFast, kEmbree, kGrid});
+  table.add_columns("ns/voxel", {kFast, kEmbree, kGrid});
+  std::set<std::string> listed;
+  for (const Point& point : points) {
+    if (!listed.insert(point.trial->map()).second) continue;
+    const double occupied = point.counters.at("occupied_voxels"),
+                 known = point.counters.at("free_voxels") + occupied;
+    std::vector<std::string> row{point.trial->map(), format("%.2f", known * 1e-6),
+                                 format("%.2f", occupied * 1e-6),
+                                 digits(point.counters.at("octree_bytes") / known)};
+    std::vector<std::string> times;
+    for (const Entry& entry : point.trial->entries()) {
+      if (entry.caster == kOctomap) continue;
+      row.push_back(digits(static_cast<double>(entry.bytes) / known));
+      times.push_back(digits(entry.build_seconds * 1e9 / known));
+    }
+    row.insert(row.end(), times.begin(), times.end());
+    table.add_row(std::move(row));
+  }
+  std::cout << '\n'
+            << table.text() << R"(
+voxels: entered per ray. hits: visible, or stopped by an occupied voxel. agrees: with castRay bit for bit, or between
+voxel keys with the integer rule, from which castRay itself differs by rounding. bytes and ns per known voxel: from the
+octree to the caster; every caster includes the grid.
+)";
+}
+
+}  // namespace
 
 int run(int argc, char** argv) {
-  int exit_code = 0;
-  const auto options = read_scaling_options(argc, argv, exit_code);
-  if (!options) return exit_code;
-  const Unfinished results(*options);
-  GoogleBenchmark google_benchmark(argv[0], options->benchmark_arguments);
-  add_context();
-  warn_of_too_many_threads(options->threads.back());
-
-  std::cout << cpu_name() << ". Answers are compared first, on the rays that are timed." << std::endl;
-  Sweep sweep(*options, std::cout);
+  const ScalingOptions options = read_scaling_options(argc, argv);
+  GoogleBenchmark google_benchmark(argv[0], options);
+  std::cout << processor_name() << ". All answers are compared before anything is timed." << std::endl;
+  Sweep sweep(options, std::cout);
   if (!sweep.prepare()) {
     std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
     return 1;
   }
-  std::size_t rows = 0;
-  for (const Point& point : sweep.points()) {
-    for (const Entry& entry : point.trial->entries()) {
+  for (const Point& point : sweep.points())
+    for (const Entry& entry : point.trial->entries())
       for (const int threads : point.threads) {
-        register_row(row_name(point, entry, threads), *point.trial, entry, threads, point.counters);
-        ++rows;
+        auto counters = point.trial->counters(entry);
+        counters.insert(point.counters.begin(), point.counters.end());
+        google_benchmark.add(row_name(point, entry, threads), threads, point.trial->workload().size(),
+                             entry.pass, std::move(counters));
       }
-    }
-  }
-  std::cout << "Timing " << rows << " rows, in random order of all repetitions ..." << std::endl;
-  Recorder recorder;
-  benchmark::RunSpecifiedBenchmarks(&recorder);
-  results.finish();
-  print_scaling_table(sweep.points(), recorder, std::cout);
+  google_benchmark.run();
+  print_rates(sweep.points(), google_benchmark);
+  print_costs(sweep.points());
+  google_benchmark.print_cautions(std::cout);
   return 0;
 }
 
-}  // namespace
 }  // namespace frontlux::bench
-
-int main(int argc, char** argv) {
-  return frontlux::bench::run_program("bench_scaling", frontlux::bench::run, argc, argv);
-}

@@ -15,8 +15,8 @@ enum Stream : std::uint64_t { kBlock = 101, kDoor, kFurniture };
 
 /// A box by its lowest voxel and its edges, counted from the middle of the key range.
 KeyBox box_at(int x, int y, int z, int width, int depth, int height) {
-  const auto key = [](int i) { return static_cast<std::uint16_t>(Lattice::kOrigin + i); };
-  return {{key(x), key(y), key(z)}, {key(x + width - 1), key(y + depth - 1), key(z + height - 1)}};
+  constexpr int k = Lattice::kOrigin;
+  return {make_key(k + x, k + y, k + z), make_key(k + x + width - 1, k + y + depth - 1, k + z + height - 1)};
 }
 
 /// Numbers for one purpose, drawn one after the other.
@@ -32,29 +32,19 @@ class Draws {
   std::uint64_t stream_, next_;
 };
 
-bool meets(const KeyBox& a, const KeyBox& b) {
-  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-         a.min.z <= b.max.z && b.min.z <= a.max.z;
-}
-
 void fill_part(VoxelGrid& grid, const KeyBox& box, Occupancy state, const Block& block) {
-  const auto last = static_cast<std::uint16_t>((1U << block.log2_edge) - 1);
-  const auto plus = [](std::uint16_t key, std::uint16_t step) {
-    return static_cast<std::uint16_t>(key + step);
-  };
-  const KeyBox extent{block.corner,
-                      {plus(block.corner.x, last), plus(block.corner.y, last), plus(block.corner.z, last)}};
-  if (!meets(extent, box)) return;
-  if (box.contains(extent.min) && box.contains(extent.max)) {
+  const KeyBox extent = cube(block.corner, 1 << block.log2_edge);
+  const auto common = intersection(extent, box);
+  if (common == extent) {
     grid.fill(block, state);
-    return;
-  }
-  const auto half = static_cast<std::uint16_t>(1U << (block.log2_edge - 1));
-  for (unsigned i = 0; i < 8; ++i) {
-    const auto step = [&](unsigned bit) { return ((i >> bit) & 1U) != 0 ? half : std::uint16_t{0}; };
-    const VoxelKey corner{plus(block.corner.x, step(0)), plus(block.corner.y, step(1)),
-                          plus(block.corner.z, step(2))};
-    fill_part(grid, box, state, {corner, block.log2_edge - 1});
+  } else if (common) {
+    const int half = 1 << (block.log2_edge - 1);
+    for (int i = 0; i < 8; ++i) {
+      const auto step = [&](int bit) { return (i >> bit & 1) * half; };
+      const VoxelKey corner =
+          make_key(block.corner.x + step(0), block.corner.y + step(1), block.corner.z + step(2));
+      fill_part(grid, box, state, {corner, block.log2_edge - 1});
+    }
   }
 }
 
@@ -72,18 +62,16 @@ class Builder {
       fill(box_at(0, j * kEdge, 0, width + 1, 1, height + 1), Occupancy::kOccupied);
     for (int k = 0; k <= rooms_.z; ++k)
       fill(box_at(0, 0, k * kHeight, width + 1, depth + 1, 1), Occupancy::kOccupied);
-    for (int k = 0; k < rooms_.z; ++k) {
-      for (int j = 0; j < rooms_.y; ++j) {
+    for (int k = 0; k < rooms_.z; ++k)
+      for (int j = 0; j < rooms_.y; ++j)
         for (int i = 0; i < rooms_.x; ++i) open_and_furnish(i, j, k);
-      }
-    }
     return grid_;
   }
 
  private:
   static constexpr int kEdge = Rooms::kEdge, kHeight = Rooms::kHeight;
   static constexpr int kDoorWidth = 10, kDoorHeight = 21, kHatch = 8;
-  static constexpr int kAisle = 12;  // free along the walls, so that nothing stands before a door
+  static constexpr int kAisle = 12;  // free along the walls, so that doors are not blocked
   static constexpr int kBoxes = 4, kDrawsPerBox = 5;
 
   void fill(const KeyBox& box, Occupancy state) { fill_box(grid_, box, state); }
@@ -116,37 +104,34 @@ class Builder {
 
 void fill_box(VoxelGrid& grid, const KeyBox& box, Occupancy state) { fill_part(grid, box, state, {{}, 16}); }
 
-VoxelGrid make_blocks(double share) {
-  if (!(share >= 0.0 && share <= 0.5)) {
-    throw std::invalid_argument("make_blocks: share is " + std::to_string(share) + ", must be from 0 to 0.5");
+VoxelGrid make_blocks(double fraction) {
+  if (!(fraction >= 0.0 && fraction <= 0.5)) {
+    throw std::invalid_argument("make_blocks: the occupied fraction is " + std::to_string(fraction) +
+                                ", must be from 0 to 0.5");
   }
   VoxelGrid grid(kBlocksResolution);
   const KeyBox room = box_at(0, 0, 0, kBlocksEdge, kBlocksEdge, kBlocksHeight);
   fill_box(grid, room, Occupancy::kFree);
   const auto wanted = static_cast<std::uint64_t>(
-      std::ceil(share * static_cast<double>(kBlocksEdge * kBlocksEdge * kBlocksHeight)));
+      std::ceil(fraction * static_cast<double>(kBlocksEdge * kBlocksEdge * kBlocksHeight)));
   Draws draws(kBlock, 0);
   for (std::uint64_t occupied = 0; occupied < wanted;) {
     const int edge = draws.whole(1, 4);
     const int x = draws.whole(0, kBlocksEdge - edge), y = draws.whole(0, kBlocksEdge - edge),
               z = draws.whole(0, kBlocksHeight - edge);
-    const KeyBox cube = box_at(x, y, z, edge, edge, edge);
-    for (int i = 0; i < edge * edge * edge; ++i) {
-      const VoxelKey key{static_cast<std::uint16_t>(cube.min.x + i % edge),
-                         static_cast<std::uint16_t>(cube.min.y + i / edge % edge),
-                         static_cast<std::uint16_t>(cube.min.z + i / edge / edge)};
-      if (grid.at(key) == Occupancy::kOccupied) continue;
+    for_each_key(box_at(x, y, z, edge, edge, edge), [&](const VoxelKey& key) {
+      if (grid.at(key) == Occupancy::kOccupied) return;
       grid.set(key, Occupancy::kOccupied);
       ++occupied;
-    }
+    });
   }
   return grid;
 }
 
 VoxelGrid make_rooms(const Rooms& rooms) {
-  const int room_in_range = Lattice::kKeysPerAxis - Lattice::kOrigin - 1;
-  if (rooms.x < 1 || rooms.y < 1 || rooms.z < 1 || rooms.x > room_in_range / Rooms::kEdge ||
-      rooms.y > room_in_range / Rooms::kEdge || rooms.z > room_in_range / Rooms::kHeight) {
+  constexpr int kKeys = Lattice::kKeysPerAxis - Lattice::kOrigin - 1;
+  if (rooms.x < 1 || rooms.y < 1 || rooms.z < 1 || rooms.x > kKeys / Rooms::kEdge ||
+      rooms.y > kKeys / Rooms::kEdge || rooms.z > kKeys / Rooms::kHeight) {
     throw std::invalid_argument("make_rooms: no map of " + std::to_string(rooms.x) + " x " +
                                 std::to_string(rooms.y) + " x " + std::to_string(rooms.z) + " rooms");
   }

@@ -6,22 +6,21 @@
 
 namespace frontlux::bench {
 
-/// Sets every voxel of a box, in time that grows with its surface.
+/// Sets every voxel of a box. The time grows with its surface, not its volume.
 void fill_box(VoxelGrid& grid, const KeyBox& box, Occupancy state);
 
 /// The box of `make_blocks`: 96 x 96 x 6.4 m in voxels of 0.2 m.
 inline constexpr int kBlocksEdge = 480, kBlocksHeight = 32;
 inline constexpr double kBlocksResolution = 0.2;
 
-/// A box of free voxels with occupied cubes of one to four voxels' edge at random places in it, as many as
-/// make up a share of its voxels; the last cube may be more than needed.
-/// @param share  of the occupied voxels
-/// @throws std::invalid_argument unless the share is from 0 to 0.5
-[[nodiscard]] VoxelGrid make_blocks(double share);
+/// A box of free voxels with occupied cubes of one to four voxels' edge at random places in it, until at
+/// least a fraction of its voxels is occupied.
+/// @throws std::invalid_argument unless the fraction is from 0 to 0.5
+[[nodiscard]] VoxelGrid make_blocks(double fraction);
 
 /// Storeys of equal rooms, 6.4 x 6.4 x 3.2 m each, in voxels of 0.1 m: walls, floors and ceilings one voxel
 /// thick, doors in all inner walls, a hatch to the room below, and four solid boxes in every room, no two
-/// rooms alike. All is known but the inside of the boxes.
+/// rooms alike. Everything is known except the inside of the boxes.
 struct Rooms {
   int x = 1, y = 1, z = 1;  ///< number along each axis
 

@@ -32,7 +32,7 @@ class Grower {
 
   octomap::OcTreeNode* descend(const Block& block) {
     if (tree_.getRoot() == nullptr) {
-      // OctoMap has no other way to make a root without children than to read one.
+      // OctoMap can make a root without children only by reading one.
       std::istringstream no_children(std::string(2, '\0'));
       tree_.readBinaryData(no_children);
     }
@@ -52,14 +52,8 @@ class Grower {
   /// The state of all voxels of a block within a brick; nothing if it is mixed.
   static std::optional<Occupancy> uniform_state(const Block& block, const Brick& brick) {
     const Occupancy first = brick.at(block.corner);
-    const int edge = 1 << block.log2_edge;
-    for (int i = 1; i < edge * edge * edge; ++i) {
-      const VoxelKey key{static_cast<std::uint16_t>(block.corner.x + i % edge),
-                         static_cast<std::uint16_t>(block.corner.y + i / edge % edge),
-                         static_cast<std::uint16_t>(block.corner.z + i / edge / edge)};
-      if (brick.at(key) != first) return std::nullopt;
-    }
-    return first;
+    const auto is_first = [&](const VoxelKey& key) { return brick.at(key) == first; };
+    return all_of(cube(block.corner, 1 << block.log2_edge), is_first) ? std::optional(first) : std::nullopt;
   }
 
   /// @pre not all of the block is unknown
@@ -70,10 +64,8 @@ class Grower {
     }
     const int log2_edge = block.log2_edge - 1;
     for (unsigned i = 0; i < 8; ++i) {
-      const auto along = [&](std::uint16_t base, unsigned bit) {
-        return static_cast<std::uint16_t>(base + (((i >> bit) & 1U) << log2_edge));
-      };
-      const Block part{{along(block.corner.x, 0), along(block.corner.y, 1), along(block.corner.z, 2)},
+      const auto step = [&](unsigned bit) { return ((i >> bit) & 1U) << log2_edge; };
+      const Block part{make_key(block.corner.x + step(0), block.corner.y + step(1), block.corner.z + step(2)),
                        log2_edge};
       if (uniform_state(part, brick) != Occupancy::kUnknown) grow_within(child(node, i), part, brick);
     }
@@ -82,8 +74,8 @@ class Grower {
   octomap::OcTree& tree_;
 };
 
-/// From the leaves up. Not by the tree's own `prune`, which gives up at the first depth where nothing can be
-/// pruned: the smallest voxels of a brick are pruned already.
+/// From the leaves up. The tree's own `prune` stops at the first depth where nothing can be
+/// pruned: here the smallest voxels of a brick are pruned already.
 void prune(octomap::OcTree& tree, octomap::OcTreeNode* node) {
   if (!tree.nodeHasChildren(node)) return;
   for (unsigned i = 0; i < 8; ++i) {

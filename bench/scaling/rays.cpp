@@ -1,7 +1,7 @@
 #include "scaling/rays.hpp"
 
-#include "rays/free_voxels.hpp"
 #include "random.hpp"
+#include "rays/free_voxels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,17 +19,6 @@ enum Stream : std::uint64_t { kViewpoint = 201, kDirection, kPoint, kOrder };
 constexpr std::size_t kTries = 256 * kTargetsPerViewpoint;
 constexpr double kSteepest = 0.3420201433;  // sine of 20 degrees
 
-std::optional<VoxelKey> offset(const VoxelKey& from, const Eigen::Vector3d& voxels) {
-  const int base[3] = {from.x, from.y, from.z};
-  std::uint16_t key[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double k = base[axis] + std::round(voxels[axis]);
-    if (!(k >= 0 && k < Lattice::kKeysPerAxis)) return std::nullopt;
-    key[axis] = static_cast<std::uint16_t>(k);
-  }
-  return VoxelKey{key[0], key[1], key[2]};
-}
-
 /// Free voxels around one viewpoint, each once.
 std::vector<VoxelKey> draw_targets(const VoxelGrid& grid, const VoxelKey& from, std::size_t number,
                                    double voxels, std::size_t count) {
@@ -39,8 +28,9 @@ std::vector<VoxelKey> draw_targets(const VoxelGrid& grid, const VoxelKey& from, 
     const double azimuth = 2 * std::numbers::pi * uniform(kDirection, draw);
     const double z = kSteepest * (2 * uniform(kDirection, draw + 1) - 1);
     const double horizontal = std::sqrt(1 - z * z);
-    const auto to = offset(
-        from, voxels * Eigen::Vector3d(horizontal * std::cos(azimuth), horizontal * std::sin(azimuth), z));
+    const auto along = [voxels](double part) { return static_cast<int>(std::round(voxels * part)); };
+    const auto to = offset_key(from, along(horizontal * std::cos(azimuth)),
+                               along(horizontal * std::sin(azimuth)), along(z));
     if (to && grid.at(*to) == Occupancy::kFree) targets.push_back(*to);
   }
   std::sort(targets.begin(), targets.end());
@@ -59,8 +49,8 @@ void shuffle(std::vector<Item>& items, std::uint64_t stream) {
 }  // namespace
 
 std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length, std::size_t count) {
-  const double voxels = length / grid.resolution();
-  if (!(voxels >= 2 && std::isfinite(voxels))) {
+  const double voxels = std::min(length / grid.resolution(), 2.0 * Lattice::kKeysPerAxis);
+  if (!(voxels >= 2 && std::isfinite(length))) {
     throw std::invalid_argument("segments_of_length: length is " + std::to_string(length) +
                                 " m, must be two voxels of " + std::to_string(grid.resolution()) +
                                 " m at least");

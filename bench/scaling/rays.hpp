@@ -11,11 +11,11 @@
 
 namespace frontlux::bench {
 
-/// Targets of one viewpoint, which follow each other in the order of their keys.
+/// Targets of one viewpoint; they are sorted by key.
 inline constexpr std::size_t kTargetsPerViewpoint = 64;
 
 /// Pairs of free voxels whose centres are `length` apart, to within a voxel, and about 20 degrees off the
-/// horizon at most. Viewpoints are in spatial order. Whether anything stands between the two is not asked.
+/// horizon at most. Viewpoints are in spatial order. Other voxels may block the line between them.
 /// @param length  [m]
 /// @return `count` pairs, or fewer where viewpoints find too few free voxels at that distance
 /// @throws std::invalid_argument if the length is not finite or below two voxels

@@ -1,11 +1,9 @@
 #include "scaling/sweep.hpp"
 
 #include "rays/castray_loop.hpp"
-#include "rays/generated_map.hpp"
-#include "scaling/maps.hpp"
 #include "scaling/octree.hpp"
 #include "scaling/rays.hpp"
-#include "text.hpp"
+#include "table.hpp"
 
 #include <tbb/task_arena.h>
 
@@ -17,26 +15,18 @@ namespace {
 
 constexpr std::size_t kPilotRays = 2'048, kMinRays = 5'000, kMaxRays = 100'000;
 
-// castRay takes some hundredths of a second for them: short, because there are many rows.
+// castRay takes some hundredths of a second for them. That is short because there are many rows.
 constexpr double kVoxelsPerPass = 2e6, kVoxelsPerQuickPass = 2e5;
 
-// So many on every map that the rays of the largest one start in all of its rooms.
+// As many on every map as it takes to start rays in all rooms of the largest one.
 constexpr std::size_t kRaysOfSize = 65'536;
 
 constexpr double kNearlyEmpty = 1e-4;
-
-struct RoomCount {
-  int x, y, z;
-};
 
 }  // namespace
 
 std::string Point::name() const {
   return axis + "/" + trial->workload().name + "/" + trial->map() + "/" + label;
-}
-
-std::string row_name(const Point& point, const Entry& entry, int threads) {
-  return point.name() + "/" + entry.caster + "/threads:" + std::to_string(threads);
 }
 
 Sweep::Sweep(const ScalingOptions& options, std::ostream& out) : options_(options), out_(out) {}
@@ -47,7 +37,7 @@ bool Sweep::prepare() {
       if (std::find(options_.axes.begin(), options_.axes.end(), axis) == options_.axes.end()) continue;
       if (axis == "resolution") vary_resolution();
       if (axis == "length") vary_length();
-      if (axis == "share") vary_share();
+      if (axis == "density") vary_density();
       if (axis == "size") vary_size();
       if (axis == "order") vary_order();
     }
@@ -61,7 +51,7 @@ void Sweep::vary_resolution() {
   for (const double resolution : resolutions) {
     const Subject& subject = building(resolution);
     for (const std::string_view query : {"visible_uav", "cast_lidar"})
-      add("resolution", resolution, cell("%g", resolution) + "m", subject, planned(subject, query));
+      add("resolution", resolution, format("%g", resolution) + "m", subject, planned(subject, query));
   }
 }
 
@@ -70,26 +60,27 @@ void Sweep::vary_length() {
       options_.quick ? std::vector{2.0, 10.0, 60.0} : std::vector{2.0, 5.0, 10.0, 20.0, 40.0, 60.0};
   for (const Subject* subject : {&blocks(kNearlyEmpty), &building(options_.quick ? 0.3 : 0.2)}) {
     for (const double length : lengths)
-      add_lines("length", length, cell("%g", length) + "m", *subject, length, std::nullopt);
+      add_lines("length", length, format("%g", length) + "m", *subject, length, std::nullopt);
   }
 }
 
-void Sweep::vary_share() {
-  const std::vector<double> shares = options_.quick
-                                         ? std::vector{kNearlyEmpty, 0.01, 0.2}
-                                         : std::vector{kNearlyEmpty, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.2};
-  for (const double share : shares)
-    add_lines("share", 100 * share, cell("%g", 100 * share) + "pct", blocks(share), 20.0, std::nullopt);
+void Sweep::vary_density() {
+  const std::vector<double> fractions =
+      options_.quick ? std::vector{kNearlyEmpty, 0.01, 0.2}
+                     : std::vector{kNearlyEmpty, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.2};
+  for (const double fraction : fractions)
+    add_lines("density", 100 * fraction, format("%g", 100 * fraction) + "pct", blocks(fraction), 20.0,
+              std::nullopt);
 }
 
 void Sweep::vary_size() {
   // 1, 3, 10, 30 and 100 million voxels, as nearly as whole storeys of rooms allow.
-  std::vector<RoomCount> counts{{2, 2, 2}, {3, 3, 3}, {5, 5, 3}};
-  if (!options_.quick) counts.insert(counts.end(), {{8, 8, 4}, {12, 11, 6}});
-  for (const RoomCount& count : counts) {
-    const Subject& subject = rooms(count.x, count.y, count.z);
+  std::vector<Rooms> sizes{{2, 2, 2}, {3, 3, 3}, {5, 5, 3}};
+  if (!options_.quick) sizes.insert(sizes.end(), {{8, 8, 4}, {12, 11, 6}});
+  for (const Rooms& size : sizes) {
+    const Subject& subject = rooms(size);
     const auto known = static_cast<double>(count_known(subject.grid));
-    add_lines("size", known, cell("%.1f", known * 1e-6) + "M", subject, 5.0,
+    add_lines("size", known, format("%.1f", known * 1e-6) + "M", subject, 5.0,
               options_.quick ? kRaysOfSize / 16 : kRaysOfSize);
   }
 }
@@ -110,39 +101,33 @@ void Sweep::vary_order() {
 }
 
 const Subject& Sweep::building(double resolution) {
-  const std::string name = "building_" + cell("%g", resolution) + "m";
-  if (const Subject* known = find(name)) return *known;
-  return keep(make_subject(read_octree(generate_map(name, options_.cache)), name));
+  const std::string name = "building_" + format("%g", resolution) + "m";
+  return subject(name, [&] { return read_octree(generate_map(name, options_.cache)); });
 }
 
-const Subject& Sweep::blocks(double share) {
-  const std::string name = "blocks_" + cell("%g", 100 * share) + "pct";
-  if (const Subject* known = find(name)) return *known;
-  return keep(make_subject(make_octree(make_blocks(share)), name));
+const Subject& Sweep::blocks(double fraction) {
+  return subject("blocks_" + format("%g", 100 * fraction) + "pct",
+                 [&] { return make_octree(make_blocks(fraction)); });
 }
 
-const Subject& Sweep::rooms(int x, int y, int z) {
-  const std::string name = "rooms_" + std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z);
-  if (const Subject* known = find(name)) return *known;
-  return keep(make_subject(make_octree(make_rooms({x, y, z})), name));
+const Subject& Sweep::rooms(const Rooms& rooms) {
+  const auto [x, y, z] = rooms;
+  return subject("rooms_" + std::to_string(x) + "x" + std::to_string(y) + "x" + std::to_string(z),
+                 [&] { return make_octree(make_rooms(rooms)); });
 }
 
-const Subject& Sweep::keep(std::unique_ptr<Subject> subject) {
-  out_ << describe(*subject) << std::endl;
-  const auto count = subject->grid.count();
-  facts_[subject.get()] = {{"resolution", subject->grid.resolution()},
-                           {"free_voxels", static_cast<double>(count[1])},
-                           {"occupied_voxels", static_cast<double>(count[2])},
-                           {"octree_bytes", static_cast<double>(memory_bytes(subject->tree))}};
-  subjects_.push_back(std::move(subject));
-  return *subjects_.back();
-}
-
-const Subject* Sweep::find(const std::string& name) const {
-  for (const auto& subject : subjects_) {
-    if (subject->name == name) return subject.get();
-  }
-  return nullptr;
+const Subject& Sweep::subject(const std::string& name, const std::function<Octree()>& make) {
+  for (const auto& made : subjects_)
+    if (made->name == name) return *made;
+  subjects_.push_back(make_subject(make(), name));
+  const Subject& subject = *subjects_.back();
+  out_ << describe(subject) << std::endl;
+  const auto count = subject.grid.count();
+  facts_[&subject] = {{"resolution", subject.grid.resolution()},
+                      {"free_voxels", static_cast<double>(count[1])},
+                      {"occupied_voxels", static_cast<double>(count[2])},
+                      {"octree_bytes", static_cast<double>(memory_bytes(subject.tree))}};
+  return subject;
 }
 
 void Sweep::add(std::string axis, double x, std::string label, const Subject& subject, Workload workload) {
@@ -188,12 +173,12 @@ void Sweep::add_lines(const std::string& axis, double x, const std::string& labe
 }
 
 Workload Sweep::planned(const Subject& subject, std::string_view query) const {
-  WorkloadSource source(subject.grid, *subject.contender("grid").caster);
+  WorkloadSource source(subject.grid, subject.caster(kGrid));
   return source.make(query, rays_for(source.make(query, kPilotRays), subject));
 }
 
 std::size_t Sweep::rays_for(const Workload& pilot, const Subject& subject) const {
-  const double length = mean_voxels(pilot, *subject.contender("grid").caster, subject.grid.lattice());
+  const double length = mean_voxels(pilot, subject.caster(kGrid), subject.grid.lattice());
   const double voxels = options_.quick ? kVoxelsPerQuickPass : kVoxelsPerPass;
   return std::clamp(static_cast<std::size_t>(voxels / std::max(length, 1.0)), kMinRays, kMaxRays);
 }

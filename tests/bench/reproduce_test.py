@@ -24,7 +24,7 @@ from checklist import means, savings, verdict
 from figures import figures, mean_curve, round_step, value_at
 from markdown import plain, spread_of
 from recorded import Recorded, Results, first_difference, spread
-from runs import Run, how_to_go_on, wanted_runs
+from runs import Run, next_action, wanted_runs
 from tables import document
 
 CURVE = [0.1, 0.5, 0.9, 0.95]
@@ -70,7 +70,7 @@ class Numbers(Made):
         self.assertEqual(recorded.steps_or_limit(0.96), 1000)
         self.assertEqual(recorded.length_to(0.9), 2 * (4 + 8))
         self.assertEqual(recorded.travelled("uav"), [0, 8, 16, 24])
-        self.assertAlmostEqual(recorded.share_of("uav"), 0.75)
+        self.assertAlmostEqual(recorded.fraction_of("uav"), 0.75)
         self.assertEqual(recorded.gains("uav", "gain_predicted"), [150] * 3)
         self.assertEqual(recorded.seconds("optimization_s"), [0.010] * 3)
 
@@ -137,7 +137,7 @@ class Document(Made):
                 self.make(Run("maze", "team", 2), reaching(8, 0.965)),
                 self.make(Run("maze", "uav", 1), reaching(12)), self.make(Run("maze", "uav", 2), [0.1, 0.8]),
                 self.make(Run("maze", "unoptimised", 1), CURVE, uav_part=0.6, optimize=False),
-                self.make(Run("maze", "team", 1, "embree", 2, True), reaching(6, 0.975), threads=2),
+                self.make(Run("maze", "team", 1, "fast", 2, True), reaching(6, 0.975), threads=2),
                 self.make(Run("maze", "team", 1, "grid", 2, True), reaching(7, 0.975), threads=2,
                           phases=(0.001, 0.002, 0.023, 0.004, 0.010))]
         text = document(self.results(runs), "images")
@@ -145,13 +145,13 @@ class Document(Made):
                          ["maze", "97.2 %", "97.0 % (96.5..97.5, sd 0.7)", "69", "9.0 (8.0..10.0, sd 1.4)",
                           "8.0, 1 of 2 runs", "7.0"])
         row = self.row(text, "The team and each robot alone", "maze")
-        self.assertEqual(row[1:4], ["7.0", "506.0 (12.0 in 1 of 2 that got there)", "–"])
+        self.assertEqual(row[1:4], ["7.0", "506.0 (12.0 in 1 of 2 that reached it)", "–"])
         self.assertEqual(row[4:6], ["74.6 % (50.0..99.2, sd 34.8)", "50.0 % (1 of 2)"])
         self.assertEqual(row[6:], ["60 m (8..112, sd 74)", "72 m (64..80, sd 11)"])
         self.assertEqual(self.row(text, "Contributions", "maze")[2:4], ["60 %", "75 % (75..75, sd 0)"])
         self.assertEqual(self.row(text, "Planning time", "maze")[1:9],
                          ["1.0", "2.0", "3.0", "4.0", "10.0", "20.0", "40.0", "2.26 s"])
-        self.assertEqual(self.row(text, "What the engine is worth", "maze | grid")[2:8],
+        self.assertEqual(self.row(text, "The ray casters", "maze | grid")[2:8],
                          ["**not the same** from step 6 on", "9", "97.5 %", "40.0", "80.0", "2.00×"])
         self.assertIn("| lowest 96.5 %, mean 97.0 %; seeds 1, 2 | **falls short by 0.70 points** |", text)
         self.assertIn("| maze: **not the same** from step 6 on | **falls short in 1 worlds** |", text)
@@ -183,7 +183,7 @@ class Document(Made):
         self.assertEqual(len(results.broken), len(bad))
         reasons = list(results.broken.values())
         for reason, part in zip(reasons, ("cells, not", "every robot in every step", "not within", "not within 0 and 1",
-                                          "no column planning_s", "no column", "3 steps, steps.csv of 1",
+                                          "no column planning_s", "no column", "3 steps, steps.csv 1",
                                           "NaN is no number", "wall_s is inf", "not finished", "too deeply")):
             self.assertIn(part, reason)
         text = document(results, "images")
@@ -260,7 +260,7 @@ class Running(Made):
         calls = sorted(self.reproduce(0))
         self.assertEqual(len(calls), 3)
         self.assertEqual(calls[0], f"explore --resume {self.runs / 'factory_ugv_1'} --report off")
-        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --seed 1 --threads 1 --caster embree "
+        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --seed 1 --threads 1 --caster fast "
                          "--max-steps 1000 --team uav --report off")
         self.assertRegex(calls[2], r"^explore station .*--mode paper.* --force$")
         self.assertIn("None.", (self.folder / "docs/results.md").read_text())
@@ -278,7 +278,7 @@ class Running(Made):
         self.assertIn("stopped", errors)
         calls = self.log.read_text().splitlines()
         self.assertEqual(calls[-1], "interrupted")
-        finished = [run for run in wanted_runs(1) if how_to_go_on(run, self.runs / run.name, "9.9") == "keep"]
+        finished = [run for run in wanted_runs(1) if next_action(run, self.runs / run.name, "9.9") == "keep"]
         self.assertEqual(len(finished), len(calls) - 2)
         self.assertGreater(len(finished), 0)
         self.assertFalse((self.folder / "docs").exists())
@@ -293,12 +293,12 @@ class Running(Made):
                                 ({"goal": "nearest", "end": None}, "resume")):
             with self.subTest(facts):
                 write_run(self.runs / run.name, "maze", facts.pop("seed", 1), CURVE, **facts)
-                self.assertEqual(how_to_go_on(run, self.runs / run.name, "9.9"), expected)
+                self.assertEqual(next_action(run, self.runs / run.name, "9.9"), expected)
         (self.runs / run.name / "run.json").write_text("{")
-        self.assertEqual(how_to_go_on(run, self.runs / run.name, "9.9"), "force")
+        self.assertEqual(next_action(run, self.runs / run.name, "9.9"), "force")
         (self.runs / run.name / "run.json").unlink()
-        self.assertEqual(how_to_go_on(run, self.runs / run.name, "9.9"), "resume")
-        self.assertEqual(how_to_go_on(run, self.runs / "none", "9.9"), "start")
+        self.assertEqual(next_action(run, self.runs / run.name, "9.9"), "resume")
+        self.assertEqual(next_action(run, self.runs / "none", "9.9"), "start")
 
     def test_bad_calls(self):
         self.reproduce(2, "--seeds", "0")

@@ -1,12 +1,12 @@
 #include "explore/run_json.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/machine.hpp>
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <fstream>
 #include <numeric>
 #include <ostream>
 #include <thread>
@@ -26,14 +26,7 @@ std::string goal_rules(const std::vector<planner::TeamMember>& team) {
 
 // The processor's name and the number of its threads, for people.
 std::string machine_name() {
-  std::string name = "unknown processor";
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
-      name = line.substr(line.find(": ") + 2);
-      break;
-    }
-  return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
+  return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
 }
 
 // Most memory that this process has held so far [MB].
