@@ -82,7 +82,7 @@ class Table {
       heads += " |";
       for (const std::string& caster : casters_) heads += pad(caster, kCell);
     }
-    groups += " |" + centered("times castRay", block - kCell) + " |" + centered("embree", 36);
+    groups += " |" + centered("times castRay", block - kCell) + " |" + centered("fast", 36);
     heads += " |";
     for (const std::string& caster : casters_) heads += caster == kBaseline ? "" : pad(caster, kCell);
     heads += " |" + pad("agrees", 8) + pad("build ms", 9) + pad("MB", 7) + pad("pays after", 12);
@@ -109,9 +109,9 @@ class Table {
       const Entry* entry = find_entry(trial, caster);
       line += value(entry == nullptr ? std::nullopt : speed.ratio(*entry));
     }
-    if (const Entry* embree = find_entry(trial, "embree"); embree != nullptr) {
-      line += " |" + pad(percent(embree->agreement), 8) + pad(digits(embree->build_seconds * 1e3), 9) +
-              pad(digits(static_cast<double>(embree->bytes) * 1e-6), 7) + pad(speed.pays_back(*embree), 12);
+    if (const Entry* fast = find_entry(trial, "fast"); fast != nullptr) {
+      line += " |" + pad(percent(fast->agreement), 8) + pad(digits(fast->build_seconds * 1e3), 9) +
+              pad(digits(static_cast<double>(fast->bytes) * 1e-6), 7) + pad(speed.pays_back(*fast), 12);
     }
     return line + '\n';
   }

@@ -72,7 +72,7 @@ MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds)
   const planner::FrontierSet set(grid, grown(*bounds));
   const std::span<const VoxelKey> frontiers = set.keys();
   const auto targets = planner::centers(grid.lattice(), frontiers);
-  const auto caster = make_embree_ray_caster(grid);
+  const auto caster = make_ray_caster(grid);
   map.frontiers = frontiers.size();
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto path = random_path(grid, static_cast<std::uint64_t>(seed));
@@ -98,7 +98,7 @@ PathTrial run_large_path() {
     for (int y = 0; y < kWidth; ++y)
       for (int z = 0; z < kHeight; ++z) grid.set(key(x, y, z), Occupancy::kFree);
   const planner::FrontierSet set(grid, {key(-1, -1, -1), key(kLength, kWidth, kHeight)});
-  const auto caster = make_embree_ray_caster(grid);
+  const auto caster = make_ray_caster(grid);
   std::vector<planner::Pose> path(12);
   for (std::size_t i = 0; i < path.size(); ++i)
     path[i].position = {2.4 + 1.2 * static_cast<double>(i), 0.1 * kWidth, 0.1 * kHeight};

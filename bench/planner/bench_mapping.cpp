@@ -69,7 +69,7 @@ class Ours {
  public:
   Ours(const KeyBox& bounds)
       : mapping_({.resolution = kResolution, .bounds = bounds}),
-        caster_(frontlux::make_embree_ray_caster(mapping_.grid())),
+        caster_(frontlux::make_ray_caster(mapping_.grid())),
         frontiers_(mapping_.grid(), bounds) {}
 
   struct Times {

@@ -1,13 +1,13 @@
 // What it costs to choose goals: rendering view quality and distributing frontiers, by every caster on the
 // same map. Answers are compared before anything is timed.
 
-#include "rays/generated_map.hpp"
 #include "google_benchmark.hpp"
 #include "machine.hpp"
 #include "planner/planner_scene.hpp"
 #include "program.hpp"
-#include "report.hpp"
+#include "rays/generated_map.hpp"
 #include "rays/subject.hpp"
+#include "report.hpp"
 
 #include <CLI/CLI.hpp>
 #include <benchmark/benchmark.h>
@@ -96,7 +96,7 @@ void add_renderings(const PlannerScene& scene, const Options& options, Session& 
   };
   for (const int samples : options.samples) {
     const ViewQualityImage truth = render("grid", samples);
-    for (const char* caster : {"octomap", "grid", "embree"}) {
+    for (const char* caster : {"octomap", "grid", "embree", "fast"}) {
       const std::string name = caster;
       const std::size_t different = name == "grid" ? 0 : differing(truth, render(name, samples));
       if (name != "grid") tell(std::to_string(samples) + " samples", name, different, truth.size(), session);
@@ -148,7 +148,7 @@ std::vector<std::pair<std::string, double>> count_pairs(const ViewQualityImage& 
 // All frontiers in view of the ground robot's viewpoints; everything made anew in each pass.
 void add_all_on_ground(const PlannerScene& scene, const Options& options, Session& session) {
   std::optional<ViewQualityImage> truth;
-  for (const Looking& way : ways_to_look(scene, {"grid", "octomap", "embree"}, 0)) {
+  for (const Looking& way : ways_to_look(scene, {"grid", "octomap", "embree", "fast"}, 0)) {
     const auto render = [&scene, way] {
       return render_view_quality(*way.caster, scene.subject.grid.lattice(), scene.ground_viewpoints,
                                  scene.frontiers, scene.ground.view, way.options);
@@ -175,9 +175,9 @@ void add_all_on_ground(const PlannerScene& scene, const Options& options, Sessio
 // The same for the aerial robot's corridor, by azimuth, and after one scan.
 void add_all_in_space(const PlannerScene& scene, const Options& options, Session& session) {
   std::optional<ViewQualityImage> truth;
-  for (const Looking& way : ways_to_look(scene, {"embree"}, 36)) {
+  for (const Looking& way : ways_to_look(scene, {"fast"}, 36)) {
     const std::shared_ptr<RayCaster> after =
-        way.name == "exact" ? make_grid_ray_caster(scene.scanned) : make_embree_ray_caster(scene.scanned);
+        way.name == "exact" ? make_grid_ray_caster(scene.scanned) : make_ray_caster(scene.scanned);
     ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, way.options);
     const auto render = [&scene, way](ViewQualityImage& into) {
       into.render(*way.caster, scene.aerial_viewpoints, scene.frontiers);
@@ -215,10 +215,10 @@ void add_all_in_space(const PlannerScene& scene, const Options& options, Session
 void add_distributions(const PlannerScene& scene, const Options& options, Session& session) {
   const auto distribute = [&scene](const std::string& caster) {
     return planner::assign_frontiers(*scene.subject.contender(caster).caster, scene.subject.grid,
-                                         scene.frontiers, scene.agents());
+                                     scene.frontiers, scene.agents());
   };
   const auto truth = distribute("grid");
-  for (const char* caster : {"octomap", "grid", "embree"}) {
+  for (const char* caster : {"octomap", "grid", "embree", "fast"}) {
     const std::string name = caster;
     const auto mine = distribute(name);
     const std::size_t different = differing(truth, mine, scene.frontiers.size());
@@ -245,12 +245,12 @@ void add_distributions(const PlannerScene& scene, const Options& options, Sessio
 void add_space(const PlannerScene& scene, const Options& options, Session& session) {
   const VoxelGrid& grid = scene.subject.grid;
   std::optional<ViewQualityImage> truth;
-  for (const char* caster : {"grid", "embree"}) {
+  for (const char* caster : {"grid", "fast"}) {
     const std::string name = caster;
     const RayCaster& before = *scene.subject.contender(name).caster;
     // A caster of its own for the map after the scan, so that only rendering is timed.
     const std::shared_ptr<RayCaster> after =
-        name == "grid" ? make_grid_ray_caster(scene.scanned) : make_embree_ray_caster(scene.scanned);
+        name == "grid" ? make_grid_ray_caster(scene.scanned) : make_ray_caster(scene.scanned);
     ViewQualityImage image(grid.lattice(), scene.aerial.view, aerial_rendering());
     const auto render = [&scene, &before](ViewQualityImage& into) {
       into.render(before, scene.aerial_viewpoints, scene.frontiers);

@@ -100,7 +100,7 @@ PlannerScene::PlannerScene(const Subject& map, planner::Adjacency adjacency, std
   aerial_cells = largest_corridor(aerial.travel, grid, *bounds, in_space);
 
   // The scan is taken from where it tells most.
-  const RayCaster& caster = *subject.contender("embree").caster;
+  const RayCaster& caster = *subject.contender("fast").caster;
   const auto image = render_view_quality(caster, grid.lattice(), aerial_viewpoints, frontiers, aerial.view,
                                          aerial_rendering());
   std::size_t best = 0;

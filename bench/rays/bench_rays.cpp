@@ -1,12 +1,12 @@
-#include "rays/generated_map.hpp"
 #include "google_benchmark.hpp"
 #include "machine.hpp"
-#include "rays/options.hpp"
 #include "program.hpp"
-#include "report.hpp"
+#include "rays/generated_map.hpp"
+#include "rays/options.hpp"
 #include "rays/subject.hpp"
 #include "rays/trial.hpp"
 #include "rays/workload.hpp"
+#include "report.hpp"
 
 #ifdef FRONTLUX_BENCH_NANOVDB
 #include "peers/nanovdb_peer.hpp"
@@ -62,7 +62,7 @@ class Filter {
 /// Whether the filter leaves any row of a workload, so that the others need not be prepared.
 bool wanted(const std::string& workload, const std::string& map, const Options& options) {
   const Filter filter(benchmark::GetBenchmarkFilter());
-  for (const char* caster : {"octomap", "grid", "embree", "nanovdb"}) {
+  for (const char* caster : {"octomap", "grid", "embree", "fast", "nanovdb"}) {
     for (const int threads : options.threads) {
       const std::string row =
           workload + "/" + map + "/" + caster + "/threads:" + std::to_string(threads) + "/real_time";

@@ -2,6 +2,8 @@
 
 #include "rays/castray_loop.hpp"
 
+#include <frontlux/caster_kind.hpp>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -47,20 +49,21 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   auto subject =
       std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, {}});
 
-  std::unique_ptr<RayCaster> caster =
-      std::visit([](const auto& octree) { return make_octomap_ray_caster(*octree); }, subject->tree);
-  subject->contenders.push_back({"octomap", std::move(caster), 0, 0});
-
-  double seconds = median_seconds([&] { caster = make_grid_ray_caster(subject->grid); });
-  std::size_t bytes = subject->grid.memory_bytes() + caster->memory_bytes();
-  subject->contenders.push_back({"grid", std::move(caster), grid_seconds + seconds, bytes});
-
-  seconds = median_seconds([&] {
-    caster.reset();
-    caster = make_embree_ray_caster(subject->grid);
-  });
-  bytes = subject->grid.memory_bytes() + caster->memory_bytes();
-  subject->contenders.push_back({"embree", std::move(caster), grid_seconds + seconds, bytes});
+  // The baseline first: the others are compared with it.
+  for (const CasterKind kind :
+       {CasterKind::kOctomap, CasterKind::kGrid, CasterKind::kEmbree, CasterKind::kFast}) {
+    Contender contender{std::string(name_of(kind)), nullptr};
+    const double seconds = median_seconds([&] {
+      contender.caster.reset();
+      contender.caster = std::visit(
+          [&](const auto& octree) { return make_ray_caster(kind, subject->grid, *octree); }, subject->tree);
+    });
+    if (kind != CasterKind::kOctomap) {
+      contender.build_seconds = grid_seconds + seconds;
+      contender.bytes = subject->grid.memory_bytes() + contender.caster->memory_bytes();
+    }
+    subject->contenders.push_back(std::move(contender));
+  }
   return subject;
 }
 

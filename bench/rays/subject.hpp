@@ -25,7 +25,7 @@ struct Subject {
   std::string name;
   Octree tree;
   VoxelGrid grid;
-  std::vector<Contender> contenders;         ///< octomap, grid, embree
+  std::vector<Contender> contenders;         ///< octomap, grid, embree, fast
   std::unique_ptr<OctreeRayCaster> drop_in;  ///< null unless the map was loaded from a file
 
   [[nodiscard]] const Contender& contender(const std::string& caster) const;

@@ -64,23 +64,23 @@ void print_scaling_table(std::span<const Point> points, const Recorder& recorder
   const auto columns = [](auto... names) { return (pad(names, kCell) + ...); };
 
   out << '\n'
-      << pad("", name_width + 8 + 2 * kCell) << " |" << centered("Mrays/s", 3 * kCell) << " |"
-      << centered("times castRay", 2 * kCell) << " |" << centered("agrees", 3 * kCell) << '\n'
+      << pad("", name_width + 8 + 2 * kCell) << " |" << centered("Mrays/s", 4 * kCell) << " |"
+      << centered("times castRay", 3 * kCell) << " |" << centered("agrees", 4 * kCell) << '\n'
       << pad("", name_width) << pad("threads", 8) << columns("voxels", "hits") << " |"
-      << columns("octomap", "grid", "embree") << " |" << columns("grid", "embree") << " |"
-      << columns("octomap", "grid", "embree") << '\n';
+      << columns("octomap", "grid", "embree", "fast") << " |" << columns("grid", "embree", "fast") << " |"
+      << columns("octomap", "grid", "embree", "fast") << '\n';
   std::string axis;
   for (const Point& point : points) {
     if (point.axis != std::exchange(axis, point.axis))
-      out << std::string(name_width + 14 + 10 * kCell, '-') << '\n';
+      out << std::string(name_width + 14 + 13 * kCell, '-') << '\n';
     for (const int threads : point.threads) out << rate_line(point, threads, recorder, name_width);
   }
 
   out << "\nMemory and build time\n"
-      << pad("", name_width) << columns("M known", "M occup.") << " |" << centered("bytes/voxel", 3 * kCell)
-      << " |" << centered("ns/voxel", 2 * kCell) << '\n'
-      << pad("", name_width + 2 * kCell) << " |" << columns("octree", "grid", "embree") << " |"
-      << columns("grid", "embree") << '\n';
+      << pad("", name_width) << columns("M known", "M occup.") << " |" << centered("bytes/voxel", 4 * kCell)
+      << " |" << centered("ns/voxel", 3 * kCell) << '\n'
+      << pad("", name_width + 2 * kCell) << " |" << columns("octree", "grid", "embree", "fast") << " |"
+      << columns("grid", "embree", "fast") << '\n';
   std::vector<std::string> listed;
   for (const Point& point : points) {
     if (std::find(listed.begin(), listed.end(), point.trial->map()) != listed.end()) continue;
@@ -90,7 +90,8 @@ void print_scaling_table(std::span<const Point> points, const Recorder& recorder
   out << "\nvoxels: entered per ray. hits: visible, or stopped by an occupied voxel. agrees: with castRay "
          "bit "
          "for\nbit, or between voxel keys with the integer rule, from which castRay itself may round away. "
-         "bytes and ns\nper known voxel; embree's contain the grid's; from the octree to the caster.\n";
+         "bytes and ns\nper known voxel; embree's and fast's contain the grid's; from the octree to the "
+         "caster.\n";
   std::vector<std::string> rows;
   int threads = 1;
   for (const Point& point : points) {

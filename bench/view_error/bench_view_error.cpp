@@ -1,10 +1,10 @@
 // How far drawn view quality lies from the exact one, and what both cost: the exact image is the truth. Exact
 // answers are compared with rays to all frontiers before anything is measured.
 
-#include "rays/generated_map.hpp"
 #include "machine.hpp"
 #include "planner/planner_scene.hpp"
 #include "program.hpp"
+#include "rays/generated_map.hpp"
 #include "rays/subject.hpp"
 #include "view_error/error.hpp"
 
@@ -107,7 +107,7 @@ std::size_t differing(const ViewQualityImage& a, const ViewQualityImage& b) {
 bool agrees(const Case& scene, const ViewQualityImage& truth, const std::vector<VoxelKey>& sample) {
   const auto exact = rendered(scene, looking_at_all(scene, "exact", sample));
   bool equal = true;
-  for (const char* caster : {"grid", "embree", "octomap"}) {
+  for (const char* caster : {"grid", "embree", "fast", "octomap"}) {
     const std::string name = caster;
     const ViewQualityImage image = rendered(scene, looking_at_all(scene, name, sample));
     const std::size_t different = differing(exact, image);
@@ -129,11 +129,11 @@ bool agrees(const Case& scene, const ViewQualityImage& truth, const std::vector<
 std::vector<Way> ways_of(const Case& scene, const Options& options, const ViewQualityImage& truth,
                          const std::vector<VoxelKey>& sample) {
   std::vector<Way> ways = {looking_at_all(scene, "exact", scene.viewpoints),
-                           looking_at_all(scene, "embree", scene.viewpoints),
+                           looking_at_all(scene, "fast", scene.viewpoints),
                            looking_at_all(scene, "grid", sample), looking_at_all(scene, "octomap", sample)};
   for (const char* sampling : {"feasible", "buckets", "paper"})
     for (const int samples : options.samples) {
-      Way way = looking_at_all(scene, "embree", scene.viewpoints);
+      Way way = looking_at_all(scene, "fast", scene.viewpoints);
       way.sampling = sampling;
       way.options.samples = samples;
       if (way.sampling == "buckets") way.options.sampling = Sampling::kBuckets;

@@ -217,7 +217,7 @@ TEST_F(AppTest, InfoStaysQuickOnHugeBlocks) {
 }
 
 TEST_F(AppTest, CastSeesTheWall) {
-  for (const std::string caster : {"embree", "grid", "octomap"}) {
+  for (const std::string caster : {"fast", "embree", "grid", "octomap"}) {
     SCOPED_TRACE(caster);
     expect_answer(cast({"--from", "0.05,0.05,0.55", "--direction", "2,0,0", "--caster", caster}),
                   {"hit an occupied voxel", "key 32772, 32768, 32773, occupied", "0.45, 0.05, 0.55 m"});
@@ -252,7 +252,7 @@ TEST_F(AppTest, CastCountsWhatItCrosses) {
     all.insert(all.end(), words.begin(), words.end());
     return run(all);
   };
-  for (const std::string caster : {"embree", "grid", "octomap"}) {
+  for (const std::string caster : {"fast", "embree", "grid", "octomap"}) {
     SCOPED_TRACE(caster);
     expect_answer(count({"--unknown", "pass", "--direction", "1,0,0", "--caster", caster}),
                   {"crossed      3 unknown, 3 free, 0 occupied voxels (before this one)\n"});

@@ -1,8 +1,9 @@
 #include "embree/blocker_boxes.hpp"
 
-#include "parallel/batch.hpp"
 #include "embree/unit_boxes.hpp"
 #include "walk/walk.hpp"
+
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <array>
@@ -210,7 +211,7 @@ Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* 
   finish(survey.whole_nodes);
   blockers.groups.resize(1 + corners.size());
   blockers.groups[0] = std::make_shared<BoxGroup>(std::move(survey.whole_nodes));
-  for_each_piece(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::shared_ptr<const BoxGroup> known;
       if (old != nullptr) {
@@ -232,7 +233,7 @@ Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown) {
   return assemble(grid, unknown, nullptr, nullptr);
 }
 
-Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
+Blockers update_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
                          UnknownPolicy unknown) {
   const StaleUnits stale(before, after);
   return stale.everything() ? make_blockers(after, unknown) : assemble(after, unknown, &blockers, &stale);

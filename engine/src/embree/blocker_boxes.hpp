@@ -61,7 +61,7 @@ struct Blockers {
 
 /// The same as `make_blockers(after, unknown)`, from those of an earlier grid: only stale units are made
 /// anew.
-[[nodiscard]] Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before,
+[[nodiscard]] Blockers update_blockers(const Blockers& blockers, const VoxelGrid& before,
                                        const VoxelGrid& after, UnknownPolicy unknown);
 
 }  // namespace frontlux::detail

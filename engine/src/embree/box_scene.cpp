@@ -186,7 +186,7 @@ BoxScene::BoxScene(std::shared_ptr<BoxSceneDevice> device)
     : embree_(std::make_unique<Embree>(std::move(device))) {}
 BoxScene::~BoxScene() = default;
 
-void BoxScene::follow(const Blockers& blockers) {
+void BoxScene::update(const Blockers& blockers) {
   Eigen::AlignedBox3d keys;  // bounds, in keys
   std::unordered_map<const BoxGroup*, bool> wanted;
   for (const auto& group : blockers.groups) {

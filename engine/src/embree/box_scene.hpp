@@ -40,7 +40,7 @@ class BoxSceneDevice;
 /// Boxes of voxels in a BVH, in single precision, with its error bounded. This is the seam behind which
 /// Embree lives: another version or query mode changes only the .cpp.
 ///
-/// Thread safety: const members may run at the same time as each other, not as `follow`.
+/// Thread safety: const members may run at the same time as each other, not as `update`.
 class BoxScene {
  public:
   static constexpr std::size_t kMaxBatch = 256;  ///< most probes in a call
@@ -52,7 +52,7 @@ class BoxScene {
 
   /// Makes the scene hold these boxes. Groups that it holds already cost nothing.
   /// @throws std::runtime_error if Embree cannot build the scene
-  void follow(const Blockers& blockers);
+  void update(const Blockers& blockers);
 
   /// Key of the voxel whose lower corner is the origin of the scene's frame.
   [[nodiscard]] const VoxelKey& origin() const { return origin_; }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "embree/box_scene.hpp"
-#include "embree/snapshot.hpp"
+#include "embree/box_snapshot.hpp"
 
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
@@ -19,7 +19,7 @@ namespace frontlux::detail {
 /// walk.
 class SceneQuery {
  public:
-  SceneQuery(const Snapshot& snapshot, UnknownPolicy unknown)
+  SceneQuery(const BoxSnapshot& snapshot, UnknownPolicy unknown)
       : grid_(snapshot.grid()),
         lattice_(grid_.lattice()),
         scene_(snapshot.scene(unknown)),

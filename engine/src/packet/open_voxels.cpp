@@ -1,6 +1,6 @@
 #include "packet/open_voxels.hpp"
 
-#include "parallel/batch.hpp"
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -47,7 +47,7 @@ OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) {
   words_.reset(static_cast<std::uint64_t*>(std::calloc(word_count_, sizeof(std::uint64_t))));
   if (!words_) throw std::bad_alloc();
   const std::size_t layers = z_bricks - 2;
-  for_each_piece(layers, 1, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(layers, 1, [&](std::size_t begin, std::size_t end) {
     for (auto z = bounds_.min.z + 8 * begin; z < bounds_.min.z + 8 * end; z += 8)
       for (std::uint32_t y = bounds_.min.y; y <= bounds_.max.y; y += 8)
         for (std::uint32_t x = bounds_.min.x; x <= bounds_.max.x; x += 8) {

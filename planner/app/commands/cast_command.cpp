@@ -1,11 +1,10 @@
 #include "commands/cast_command.hpp"
 
 #include "bad_input.hpp"
+#include "caster_option.hpp"
 #include "json.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
-
-#include <frontlux/ray_caster.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -24,7 +23,8 @@ namespace {
 struct Options {
   std::string map;
   std::string from, to, direction, range;  // as written; empty if not given
-  std::string unknown = "block", caster = "embree";
+  std::string unknown = "block";
+  CasterKind caster = CasterKind::kFast;
   bool count = false, json = false;
 };
 
@@ -42,13 +42,6 @@ void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Ve
       throw BadInput(std::string(name) + ": " + kAxes[static_cast<std::size_t>(i)] + " = " +
                      to_text(point[i]) + " m lies outside the map's key range; give a value from " +
                      rounded(-edge) + " m to below " + rounded(edge) + " m");
-}
-
-std::unique_ptr<RayCaster> make_caster(const MapFile& map, const std::string& name) {
-  if (name == "octomap")
-    return std::visit([](const auto& tree) { return make_octomap_ray_caster(*tree); }, map.tree);
-  const VoxelGrid grid = make_voxel_grid(map);
-  return name == "grid" ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
 }
 
 Answer cast(const Options& options) {
@@ -80,7 +73,9 @@ Answer cast(const Options& options) {
   if (to && *to == ray.origin)
     throw BadInput("--to: " + options.to + " is the point of --from; give another, or a --direction");
 
-  const auto caster = make_caster(map, options.caster);
+  const auto caster = std::visit(
+      [&](const auto& tree) { return make_ray_caster(options.caster, make_voxel_grid(map), *tree); },
+      map.tree);
   Answer answer{caster->cast(ray, unknown), {}, {}, {}};
   if (answer.hit.stop == RayStop::kInvalid)
     throw BadInput((to ? "--to: " + options.to : "--direction: " + options.direction) +
@@ -179,9 +174,7 @@ void add_cast_command(CLI::App& app) {
   command->add_option("--unknown", options->unknown, "Whether unknown voxels block the ray or let it pass")
       ->check(CLI::IsMember({"block", "pass"}))
       ->capture_default_str();
-  command->add_option("--caster", options->caster, "What casts it; all give the same answer")
-      ->check(CLI::IsMember({"embree", "grid", "octomap"}))
-      ->capture_default_str();
+  add_caster_option(*command, options->caster, "What casts it; all give the same answer");
   command->add_flag("--count", options->count,
                     "Also count the voxels crossed: by the ray, and with --to on the way there");
   command->add_flag("--json", options->json, "Print one JSON object");

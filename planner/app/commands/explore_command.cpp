@@ -107,7 +107,7 @@ void add_explore_command(CLI::App& app) {
       "ON|OFF");
   add("--optimize", options.optimize,
       "Turn robots along their paths so that they see more (on), or not (off)", "ON|OFF");
-  add("--caster", options.caster, "What answers visibility: embree, grid or octomap", "NAME");
+  add("--caster", options.caster, "What answers visibility: fast, embree, grid or octomap", "NAME");
   add("--seed", options.seed,
       "Which of a built-in world's layouts, which random numbers, which errors of the sensors; 1 if not "
       "given",

@@ -5,8 +5,8 @@
 #include "text.hpp"
 
 #include <frontlux/field_of_view.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/io/path_file.hpp>
+#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/position_refinement.hpp>
@@ -242,7 +242,7 @@ Turned turn(const Options& options, const planner::PositionOptions& position, co
             std::vector<Pose>& viewpoints) {
   const bool move = options.move == "on";
   const FieldOfView view = view_of(options.robot);
-  const auto caster = make_embree_ray_caster(grid);
+  const auto caster = make_ray_caster(grid);
   const double range = view.max_range + (move ? position.max_shift : 0.0);
   const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
   auto before = std::chrono::steady_clock::now();

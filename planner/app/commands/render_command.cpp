@@ -1,12 +1,13 @@
 #include "commands/render_command.hpp"
 
 #include "bad_input.hpp"
+#include "caster_option.hpp"
 #include "cell_table.hpp"
+#include "draw/png_file.hpp"
+#include "draw/view_picture.hpp"
 #include "frontier_count.hpp"
 #include "map_file.hpp"
-#include "draw/png_file.hpp"
 #include "text.hpp"
-#include "draw/view_picture.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/goal_selection.hpp>
@@ -45,7 +46,8 @@ constexpr std::uint64_t kMaxSurfaceBricks = std::uint64_t{1} << 22;  // of large
 struct Options {
   std::string map, robot, at, output;
   std::string samples, floor, seed = "1";  // as written; empty if not given
-  std::string mode = "default", caster = "embree", show = "best";
+  std::string mode = "default", show = "best";
+  CasterKind caster = CasterKind::kFast;
   bool any_ground = false;
 };
 
@@ -104,12 +106,6 @@ TeamMember make_member(const Options& options) {
             : static_cast<int>(parse_count("--samples", options.samples, 1, ViewQualityOptions::kAll));
   rendering.seed = parse_count("--seed", options.seed, 0, UINT64_MAX);
   return member;
-}
-
-std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, const std::string& name) {
-  if (name == "octomap")
-    return std::visit([](const auto& tree) { return make_octomap_ray_caster(*tree); }, map.tree);
-  return name == "grid" ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
 }
 
 // What the drawing and the tables are made of.
@@ -183,7 +179,8 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
 
   const planner::FrontierSet frontiers(grid, *bounds);
   const Stopwatch building;
-  const auto caster = make_caster(map, grid, options.caster);
+  const auto caster =
+      std::visit([&](const auto& tree) { return make_ray_caster(options.caster, grid, *tree); }, map.tree);
   view.caster_ms = building.read();
   GoalSelection selection({view.member}, lattice, *bounds);
   const Stopwatch selecting;
@@ -317,9 +314,7 @@ void add_render_command(CLI::App& app) {
   command->add_option("--mode", options->mode, "As the paper has it, or what works best")
       ->check(CLI::IsMember({"default", "paper"}))
       ->capture_default_str();
-  command->add_option("--caster", options->caster, "What casts the rays")
-      ->check(CLI::IsMember({"embree", "grid", "octomap"}))
-      ->capture_default_str();
+  add_caster_option(*command, options->caster, "What casts the rays");
   command->add_option("--seed", options->seed, "Of the draws")->type_name("N")->capture_default_str();
   command
       ->add_option("--show", options->show,

@@ -14,7 +14,7 @@ struct ExploreOptions {
   std::vector<std::string> robot_files;  ///< more robots
   std::vector<std::string> poses;        ///< NAME=x,y,z,yaw of sensors that are not to start near the start
   std::string mode = "default", goal, search, renderer;  ///< the last three: by the mode if empty
-  std::string distribute = "on", optimize = "on", caster = "embree";
+  std::string distribute = "on", optimize = "on", caster = "fast";
   std::string seed = "1", max_steps = "1000", resolution = "0.3";
   std::string epsilon, lambda, advance, min_distance, samples;  ///< by mode and goal if empty
   std::string noise = "0", dropout = "0";

@@ -27,9 +27,8 @@ using planner::RobotDescription;
 
 constexpr std::size_t kMaxRobots = 32;
 
-template <class Value>
-Value chosen(const char* option, const std::string& text,
-             std::initializer_list<std::pair<std::string_view, Value>> choices) {
+template <class Value, class Choices = std::initializer_list<std::pair<std::string_view, Value>>>
+Value chosen(const char* option, const std::string& text, const Choices& choices) {
   std::string names;
   for (const auto& [name, value] : choices) {
     if (text == name) return value;
@@ -187,10 +186,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options, M
   if (exploration.path.search == PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
   exploration.distribute = parse_switch("--distribute", options.distribute);
   exploration.optimize = parse_switch("--optimize", options.optimize);
-  exploration.caster = chosen<planner::CasterKind>("--caster", options.caster,
-                                                   {{"embree", planner::CasterKind::kEmbree},
-                                                    {"grid", planner::CasterKind::kGrid},
-                                                    {"octomap", planner::CasterKind::kOctomap}});
+  exploration.caster = chosen<CasterKind>("--caster", options.caster, kCasterNames);
   exploration.max_steps = parse_count("--max-steps", options.max_steps, 0);
   try {
     exploration.check();

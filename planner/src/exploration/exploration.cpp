@@ -1,9 +1,8 @@
-#include "goal/counting_ray_caster.hpp"
 #include "exploration/exploration_state.hpp"
 #include "exploration/path_execution.hpp"
 #include "exploration/phase_clock.hpp"
+#include "goal/counting_ray_caster.hpp"
 
-#include <frontlux/octomap.hpp>
 #include <frontlux/planner/look_around.hpp>
 
 #include <algorithm>
@@ -17,18 +16,6 @@ namespace frontlux::planner {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("exploration: " + what); }
-
-std::unique_ptr<RayCaster> make_caster(CasterKind kind, const Mapping& mapping) {
-  switch (kind) {
-    case CasterKind::kGrid:
-      return make_grid_ray_caster(mapping.grid());
-    case CasterKind::kOctomap:
-      return make_octomap_ray_caster(mapping.tree());
-    case CasterKind::kEmbree:
-      break;
-  }
-  return make_embree_ray_caster(mapping.grid());
-}
 
 std::optional<KeyBox> box_around(std::span<const VoxelKey> keys) {
   if (keys.empty()) return std::nullopt;
@@ -46,7 +33,7 @@ Exploration::State::State(ExplorationOptions given, Mapping map)
     : options(std::move(given)),
       mapping(std::move(map)),
       frontiers(mapping.grid(), mapping.bounds()),
-      caster(make_caster(options.caster, mapping)),
+      caster(make_ray_caster(options.caster, mapping.grid(), mapping.tree())),
       abandoned(options.max_visits) {}
 
 void Exploration::State::select_from(std::span<const ExplorationStart> starts) {

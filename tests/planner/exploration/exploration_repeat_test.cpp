@@ -46,8 +46,9 @@ TEST(ExplorationSteps, AreTheSameByEveryCasterAndNumberOfThreads) {
   std::string expected_map;
   std::vector<ExplorationStep> expected;
   tbb::task_arena(2).execute([&] { expected = steps_of(team, options, 8, &expected_map); });
-  using Way = std::pair<CasterKind, int>;
-  for (const auto& [caster, threads] : {Way{CasterKind::kEmbree, 1}, Way{CasterKind::kGrid, 2}}) {
+  using Run = std::pair<CasterKind, int>;
+  for (const auto& [caster, threads] :
+       {Run{CasterKind::kFast, 1}, Run{CasterKind::kEmbree, 2}, Run{CasterKind::kGrid, 2}}) {
     options.caster = caster;
     std::string map;
     std::vector<ExplorationStep> steps;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
@@ -20,18 +21,11 @@
 
 namespace frontlux::planner {
 
-/// What answers the planner's visibility queries.
-enum class CasterKind : std::uint8_t {
-  kEmbree,   ///< `make_embree_ray_caster`
-  kGrid,     ///< `make_grid_ray_caster`; the same answers
-  kOctomap,  ///< `make_octomap_ray_caster`, the baseline; in rare cases it rounds to another answer
-};
-
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
-  CasterKind caster = CasterKind::kEmbree;
-  bool distribute = true;  ///< off: every robot goes for all frontiers that it can see
-  bool optimize = true;    ///< off: robots look where they go
+  CasterKind caster = CasterKind::kFast;  ///< answers the visibility queries
+  bool distribute = true;                 ///< off: every robot goes for all frontiers that it can see
+  bool optimize = true;                   ///< off: robots look where they go
   PathOptions path;
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
@@ -72,12 +66,12 @@ struct RobotStep {
   /// Distinct frontiers of its own that the path has in view, with the robot looking where it goes and as
   /// optimised.
   std::uint64_t gain_tangent = 0, gain_predicted = 0;
-  std::size_t travelled = 0;         ///< viewpoints of `planned` that it came to, the first included
-  double length = 0.0;               ///< [m] that it travelled
-  std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans made known
-  std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
-  std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
-  std::vector<VoxelKey> still_unknown;    ///< in view of its viewpoints, and still unknown; sorted
+  std::size_t travelled = 0;            ///< viewpoints of `planned` that it came to, the first included
+  double length = 0.0;                  ///< [m] that it travelled
+  std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans made known
+  std::vector<VoxelChange> changed;     ///< by its scans, sorted by key
+  std::vector<VoxelKey> blocked;        ///< cells that it could not go through; sorted
+  std::vector<VoxelKey> still_unknown;  ///< in view of its viewpoints, and still unknown; sorted
 };
 
 /// What a step spends its time on. Planning is all but the last.
@@ -90,7 +84,7 @@ struct ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   std::size_t frontiers = 0;      ///< in the map when the step was planned
   std::size_t unassigned = 0;     ///< of them, those that no robot could make anything of
-  std::size_t abandoned = 0;        ///< of them, those no longer tried, since they stay unknown when looked at
+  std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
   std::uint64_t rays = 0;         ///< cast to plan the step
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
@@ -121,7 +115,7 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 ///     while (!exploration.end()) exploration.step(drive);
 ///
 /// Depends on the options, the starts and the scans only: not on time, not on the number of threads, not on
-/// the choice between the embree and the grid caster. Works in TBB's current arena.
+/// the choice among the fast, the embree and the grid caster. Works in TBB's current arena.
 /// Thread safety: as a standard container.
 class Exploration {
  public:
