@@ -24,8 +24,8 @@ class OctomapRayCaster final : public RayCaster {
   explicit OctomapRayCaster(const Tree& tree) : RayCaster(Lattice(tree.getResolution())), tree_(tree) {}
 
  private:
-  // Flattened, so that what is compiled here, with this project's flags, is what runs: castRay is a weak
-  // template symbol and a call could end in anybody's copy.
+  // Flattened, so that the code compiled here, with this project's flags, is what runs: castRay is a weak
+  // template symbol, and the linker could choose another copy.
   [[gnu::flatten]] bool cast_ray(const octomap::point3d& origin, const octomap::point3d& direction,
                                  octomap::point3d& end, UnknownPolicy unknown, double max_range) const {
     return tree_.Tree::castRay(origin, direction, end, unknown == UnknownPolicy::kPass, max_range);
@@ -54,7 +54,7 @@ class OctomapRayCaster final : public RayCaster {
                             key);
   }
 
-  // True if castRay from `from` stops in the voxel of `to`, or passes its distance unblocked.
+  // True if castRay from `from` stops in the voxel of `to`, or gets further without a blocker.
   bool visible_one(const Eigen::Vector3f& from, const Eigen::Vector3f& to, UnknownPolicy unknown) const {
     const auto start = lattice().key(from), target = lattice().key(to);
     if (!start || !target) return false;
@@ -100,25 +100,25 @@ class OctomapRayCaster final : public RayCaster {
     if (!start) return {};
     const Occupancy state = state_at(*start);
     if (detail::blocks(state, unknown)) return {0, 0, 0, detail::stop_in(state)};
-    const auto course =
-        detail::course_along(lattice(), ray.origin, *start, detail::normalized_as_octomap(ray.direction));
-    if (!course) return {};
+    const auto path =
+        detail::path_along(lattice(), ray.origin, *start, detail::normalized_as_octomap(ray.direction));
+    if (!path) return {};
     const auto in_range = [&](const VoxelKey& key) {
       return !(ray.max_range > 0.0 && detail::out_of_range(ray.origin, lattice().center(key), ray.max_range));
     };
-    return detail::count_plainly(*course, unknown, states(), in_range, RayStop::kLeftMap);
+    return detail::count_plainly(*path, unknown, states(), in_range, RayStop::kLeftMap);
   }
   PathCount count_one(const Segment& segment, UnknownPolicy unknown) const {
     const auto from = lattice().key(segment.from), to = lattice().key(segment.to);
     if (!from || !to) return {};
     if (*from == *to) return {0, 0, 0, RayStop::kReached};
-    const auto course = detail::course_between(lattice(), segment, *from, *to);
-    if (!course) return {};
-    return detail::count_plainly(*course, unknown, states(), anywhere, RayStop::kOutOfRange);
+    const auto path = detail::path_between(lattice(), segment, *from, *to);
+    if (!path) return {};
+    return detail::count_plainly(*path, unknown, states(), anywhere, RayStop::kOutOfRange);
   }
   PathCount count_one(const KeySegment& segment, UnknownPolicy unknown) const {
     if (segment.from == segment.to) return {0, 0, 0, RayStop::kReached};
-    return detail::count_plainly(detail::course_between(segment), unknown, states(), anywhere,
+    return detail::count_plainly(detail::path_between(segment), unknown, states(), anywhere,
                                  RayStop::kOutOfRange);
   }
 
