@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
@@ -53,10 +54,11 @@ inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::Pa
      {"rrt-star", planner::PathSearch::kRrtStar}}};
 
 template <>
-inline constexpr std::array<Choice<planner::CasterKind>, 3> kChoices<planner::CasterKind>{
-    {{"embree", planner::CasterKind::kEmbree},
-     {"grid", planner::CasterKind::kGrid},
-     {"octomap", planner::CasterKind::kOctomap}}};
+inline constexpr auto kChoices<CasterKind> = [] {
+  std::array<Choice<CasterKind>, kCasterNames.size()> choices{};
+  for (std::size_t i = 0; i < choices.size(); ++i) choices[i] = {kCasterNames[i].first, kCasterNames[i].second};
+  return choices;
+}();
 
 /// The paper's robots.
 enum class RobotKind { kUgv, kUav };

@@ -45,10 +45,8 @@ VoxelGrid make_voxel_grid(const MapFile& map) {
   return std::visit([](const auto& tree) { return frontlux::make_voxel_grid(*tree); }, map.tree);
 }
 
-std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, planner::CasterKind kind) {
-  if (kind == planner::CasterKind::kOctomap)
-    return std::visit([](const auto& tree) { return make_octomap_ray_caster(*tree); }, map.tree);
-  return kind == planner::CasterKind::kGrid ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
+std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, CasterKind kind) {
+  return std::visit([&](const auto& tree) { return make_ray_caster(kind, grid, *tree); }, map.tree);
 }
 
 std::uint64_t volume(const KeyBox& box) {

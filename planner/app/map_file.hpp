@@ -39,7 +39,7 @@ struct TreeSize {
 /// @param map   outlives the caster
 /// @param grid  of the map
 [[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,
-                                                     planner::CasterKind kind);
+                                                     CasterKind kind);
 
 /// Number of voxels in a box.
 [[nodiscard]] std::uint64_t volume(const KeyBox& box);

@@ -113,7 +113,7 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   EXPECT_EQ(json.at("world"), "room");
   EXPECT_EQ(json.at("seed"), 1);
   EXPECT_EQ(json.at("mode"), "default");
-  EXPECT_EQ(json.at("caster"), "embree");
+  EXPECT_EQ(json.at("caster"), "fast");
   EXPECT_EQ(json.at("assign"), true);
   EXPECT_EQ(json.at("robots"), (std::vector<std::string>{"ugv", "uav"}));
   EXPECT_EQ(json.at("end"), "step_limit");
@@ -160,7 +160,7 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
                            "ugv=nan,1,1,0", "ugv=-5,-5,0.75,0", "uav=1e300,1,1,0", "=1,1,1,0", ""})
     expect_refused(with({"--pose", pose}), {"--pose"});
   expect_refused(with({"--goal", "best"}), {"--goal", "'best'", "render, cluster, nearest"});
-  expect_refused(with({"--caster", "gpu"}), {"--caster", "'gpu'", "embree, grid, octomap"});
+  expect_refused(with({"--caster", "gpu"}), {"--caster", "'gpu'", "fast, embree, grid, octomap"});
   expect_refused(with({"--mode", "fast"}), {"--mode", "'fast'"});
   expect_refused(with({"--planner", "prm"}), {"--planner", "'prm'"});
   expect_refused(with({"--assign", "yes"}), {"--assign: 'yes' is none of on, off"});

@@ -77,7 +77,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
   ASSERT_GT(share.size(), 10U);
 
   std::string first;
-  for (const char* used : {"grid", "embree"}) {
+  for (const char* used : {"grid", "embree", "fast"}) {
     const Answer answer =
         render("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"});
     ASSERT_EQ(answer.code, 0) << answer.err;

@@ -14,7 +14,7 @@ namespace frontlux {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
 }
 
-/// The key at an offset [voxels]; nothing outside the key range.
+/// The key at an offset [voxels]; none outside the key range.
 [[nodiscard]] constexpr std::optional<VoxelKey> offset_key(const VoxelKey& key, int dx, int dy, int dz) {
   const int x = key.x + dx, y = key.y + dy, z = key.z + dz;
   if ((x | y | z) & ~0xFFFF) return std::nullopt;
@@ -58,7 +58,7 @@ inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
   return box;
 }
 
-/// What two boxes have in common; nothing if they have no voxel in common.
+/// What two boxes have in common; none if that is no voxel.
 [[nodiscard]] constexpr std::optional<KeyBox> intersection(const KeyBox& a, const KeyBox& b) {
   const KeyBox box{greatest(a.min, b.min), least(a.max, b.max)};
   if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z) return std::nullopt;
@@ -74,7 +74,7 @@ inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
 }
 [[nodiscard]] constexpr KeyBox grown(const KeyBox& box, int by) { return grown(box, by, by, by); }
 
-/// Whether `holds(key)` for every voxel of a box; asks no further after the first for which it does not.
+/// Whether `holds(key)` for every voxel of a box; stops at the first for which it does not hold.
 template <class Holds>
 [[nodiscard]] constexpr bool all_of(const KeyBox& box, const Holds& holds) {
   for (int z = box.min.z; z <= box.max.z; ++z)

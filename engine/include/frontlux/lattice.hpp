@@ -23,15 +23,15 @@ class Lattice {
 
   [[nodiscard]] double resolution() const { return resolution_; }
 
-  /// Key along one axis of a coordinate [m]; nothing outside the key range or if it is not finite.
+  /// Key along one axis of a coordinate [m]; none outside the key range or if it is not finite.
   [[nodiscard]] std::optional<std::uint16_t> key(double coordinate) const {
     const double cell = std::floor(factor_ * coordinate);
     if (!(cell >= -kOrigin && cell < kKeysPerAxis - kOrigin)) return std::nullopt;
     return static_cast<std::uint16_t>(static_cast<int>(cell) + kOrigin);
   }
 
-  /// Key of the voxel that holds a point [m], of floats or doubles. Cells are half-open: a point on a face belongs to the upper
-  /// one.
+  /// Key of the voxel that holds a point [m], of floats or doubles. Cells are half-open: a point on a face
+  /// belongs to the upper one.
   template <class Point>
   [[nodiscard]] std::optional<VoxelKey> key(const Eigen::MatrixBase<Point>& point) const {
     const auto x = key(static_cast<double>(point.x())), y = key(static_cast<double>(point.y())),

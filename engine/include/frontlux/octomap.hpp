@@ -29,8 +29,8 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 /// @throws std::runtime_error naming the file, what is wrong with it and where
 [[nodiscard]] Octree read_octree(const std::filesystem::path& file);
 
-/// The ternary mirror of a tree: occupied, free and unknown as the tree's own `search` and `isNodeOccupied`
-/// tell. A pruned leaf is one entry, however large.
+/// The ternary mirror of a tree: occupied, free and unknown by the tree's own `search` and `isNodeOccupied`.
+/// A pruned leaf is one entry, however large.
 [[nodiscard]] VoxelGrid make_voxel_grid(const octomap::OcTree& tree);
 [[nodiscard]] VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
 
@@ -52,8 +52,8 @@ class OctreeMirror {
   [[nodiscard]] const VoxelGrid& grid() const;
 
   /// Reads the keys that the tree reports as changed; call `tree.resetChangeDetection()` afterwards. Rebuilds
-  /// instead where those keys cannot be complete: change detection was off at the last look, or the tree has
-  /// been cleared or replaced, or its occupancy threshold has changed since.
+  /// if those keys may be incomplete: change detection was off at the last update, or since then the tree has
+  /// been cleared or replaced, or its occupancy threshold has changed.
   /// @return true if it was incremental, false if it rebuilt
   bool update();
 
@@ -65,7 +65,7 @@ class OctreeMirror {
   std::unique_ptr<Watch> watch_;
 };
 
-/// OctoMap's own castRay, unchanged, behind the common interface: the baseline. `visible` asks castRay for
+/// OctoMap's own castRay, unchanged, behind the common interface: the baseline. `visible` calls castRay for
 /// the ray between the two points; between voxel centres its answer depends on rounding, so that in rare
 /// cases it differs from the other casters' integer rule.
 /// @param tree  queried by reference: must outlive the caster and not change during a query. `update` does
@@ -95,11 +95,11 @@ class OctreeRayCaster {
   bool castRay(const octomap::point3d& origin, const octomap::point3d& direction, octomap::point3d& end,
                bool ignoreUnknownCells = false, double maxRange = -1.0) const;
 
-  /// The same for many rays, spread over all cores: `hits[i]` belongs to `rays[i]`.
+  /// The same for many rays, on all cores: `hits[i]` belongs to `rays[i]`.
   /// @throws std::invalid_argument if the spans differ in size
   void castRays(std::span<const Ray> rays, std::span<Hit> hits, bool ignoreUnknownCells = false) const;
 
-  /// Takes a new snapshot after the tree has changed, in whatever way. Not while another thread casts.
+  /// Takes a new snapshot, after any change of the tree. Not while another thread casts.
   void refresh();
 
   /// The queries beyond castRay's: visibility between points and between voxels.

@@ -28,13 +28,13 @@ struct Ray {
       -1.0;  ///< [m] limit on the distance from origin to voxel *centres*; <= 0 or NaN: no limit
 };
 
-/// The straight way from one point to another, in metres, in the frame of the map.
+/// A straight line from one point to another, in metres, in the frame of the map.
 struct Segment {
   Eigen::Vector3f from = Eigen::Vector3f::Zero();  ///< [m]
   Eigen::Vector3f to = Eigen::Vector3f::Zero();    ///< [m]
 };
 
-/// The straight way from the centre of one voxel to the centre of another.
+/// A straight line from the centre of one voxel to the centre of another.
 struct KeySegment {
   VoxelKey from, to;
 };
@@ -67,8 +67,8 @@ struct Hit {
 /// the voxel that stopped it, excluded. Excluded are thus a blocker, the first voxel out of range and the
 /// voxel of a segment's `to`; a ray that leaves the key range crosses its last voxel, which counts.
 ///
-/// `occupied` is 0 of a ray, which no occupied voxel lets pass, and at most 1 of a segment, whose first voxel
-/// never blocks.
+/// `occupied` is 0 for a ray, which every occupied voxel stops, and at most 1 for a segment, whose first
+/// voxel never blocks.
 struct PathCount {
   std::uint32_t unknown = 0, free = 0, occupied = 0;  ///< [voxels]
   RayStop stop = RayStop::kInvalid;                   ///< with `kInvalid` nothing is counted

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,9 +15,9 @@ namespace frontlux {
 /// Answers ray queries on a snapshot of a map, exactly as `octomap::OcTree::castRay` would
 /// (docs/ray_contract.md).
 ///
-/// Every query is a batch: spans in, spans out, `results[i]` belongs to input `i` and depends on nothing
-/// else, not on its neighbours, not on the number of threads. Batches are spread over TBB's current arena:
-/// call inside a `tbb::task_arena` to choose the number of threads.
+/// Every query is a batch: spans in, spans out. `results[i]` belongs to input `i` and depends on nothing
+/// else, not on the other inputs, not on the number of threads. Batches run on the threads of TBB's current
+/// arena: call inside a `tbb::task_arena` to choose how many.
 ///
 /// Rays that cannot be cast (not finite, outside the key range, without direction) are answered, not thrown:
 /// `RayStop::kInvalid`, or not visible.
@@ -49,14 +50,14 @@ class RayCaster {
   void visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                UnknownPolicy unknown) const;
 
-  /// How many unknown, free and occupied voxels each ray crosses before it stops where `cast` says. With
-  /// `UnknownPolicy::kPass` and a range, `unknown` is what a sensor beam would uncover at most.
+  /// How many unknown, free and occupied voxels each ray crosses before it stops where `cast` stops it. With
+  /// `UnknownPolicy::kPass` and a range, `unknown` is the most that a sensor beam could uncover.
   /// @throws std::invalid_argument if the spans differ in size
   void count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
-  /// The same from the voxel of `from`, included, to that of `to`, excluded, on the path that `visible`
-  /// follows: `kReached` where it says 1. The voxel of `from` never blocks. Of a segment within one voxel
-  /// nothing is counted.
+  /// The same from the voxel of `from`, included, to that of `to`, excluded, on the path of `visible`:
+  /// `kReached` where that answers 1. The voxel of `from` never blocks. If both are one voxel, nothing is
+  /// counted.
   /// @throws std::invalid_argument if the spans differ in size
   void count(std::span<const Segment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
@@ -64,16 +65,16 @@ class RayCaster {
   /// @throws std::invalid_argument if the spans differ in size
   void count(std::span<const KeySegment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
-  /// Follows a map that has changed. What changed is found by comparing `grid` with the snapshot held, which
-  /// passes over the parts they share: cheap for an edited copy, right for any grid.
+  /// Answers from `grid` from now on. What changed is found by comparing `grid` with the snapshot held; parts
+  /// that both share are not read. So an edited copy costs little, and any grid is right.
   /// @throws std::invalid_argument if the resolution differs from the one this caster was made with
   void update(const VoxelGrid& grid);
 
-  /// The map from which it answers at the moment; nothing of a caster that keeps no grid (OctoMap's).
+  /// The map from which it answers at present; none for OctoMap's caster, which keeps no grid.
   [[nodiscard]] std::optional<VoxelGrid> grid() const { return do_grid(); }
 
   /// Bytes this caster holds beside the grid's own (acceleration structure; 0 for a caster without one).
-  [[nodiscard]] virtual std::size_t memory_bytes() const { return 0; }
+  [[nodiscard]] std::size_t memory_bytes() const { return do_memory_bytes(); }
 
  protected:
   explicit RayCaster(const Lattice& lattice) : lattice_(lattice) {}
@@ -94,25 +95,31 @@ class RayCaster {
                         UnknownPolicy unknown) const = 0;
   virtual void do_update(const VoxelGrid& grid) = 0;
   [[nodiscard]] virtual std::optional<VoxelGrid> do_grid() const { return std::nullopt; }
+  [[nodiscard]] virtual std::size_t do_memory_bytes() const { return 0; }
 
   Lattice lattice_;
 };
 
-/// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The oracle.
-/// Costs nothing to build, and shares the grid's memory.
-[[nodiscard]] std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
+/// The default of `make_ray_caster`: so many rays that building the fast caster pays.
+inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::max();
 
-/// The fast one. Keeps two things beside the grid: a table of open voxels, through which rays are walked in
-/// packets, and a BVH of boxes in Embree for the rays that are too long for that, or outside the table. What
-/// rounding could decide either way is settled by the grid's walk.
+/// The fast caster. It keeps two things beside the grid: a table of open voxels, through which packets of
+/// rays walk, and Embree's BVH of boxes. Rays longer than 400 voxels, segments between voxels further apart
+/// than 1000, segments between points, and whatever lies outside the table go to the BVH. Where rounding
+/// could change an answer, the grid's walk decides.
+/// @param expected_rays  how many rays will be cast, about, before most of the map changes. If they are too
+/// few to
+///                       pay for building, the result is `make_grid_ray_caster(grid)`
+/// @throws std::runtime_error if Embree cannot make its device
+[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid,
+                                                         std::uint64_t expected_rays = kManyRays);
+
+/// Embree's BVH of boxes alone. Where its rounding could change an answer, the grid's walk decides.
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
 
-/// The one of the two that is sooner done: the grid's walk for a few rays, Embree once they repay its
-/// building.
-/// @param expected_rays  how many rays will be cast, about, before the map changes everywhere or the caster
-/// goes
-/// @throws std::runtime_error if Embree cannot make its device
-[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid, std::uint64_t expected_rays);
+/// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The
+/// reference. Costs nothing to build, and shares the grid's memory.
+[[nodiscard]] std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
 
 }  // namespace frontlux

@@ -23,8 +23,8 @@ struct Block {
 };
 
 /// Which voxels of a map are unknown, free and occupied: a sparse, ternary mirror of an octree in bricks of 8
-/// x 8 x 8 voxels, over the whole key range. Large uniform regions are one entry, so memory follows what is
-/// mapped in detail.
+/// x 8 x 8 voxels, over the whole key range. Large uniform regions are one entry, so memory grows with
+/// what is mapped in detail.
 ///
 /// A copy costs nothing and is a snapshot: copies share their bricks until one of them is written to.
 ///
@@ -56,7 +56,7 @@ class VoxelGrid {
   /// order of storage.
   void for_each_block(const std::function<void(const Block&, const Brick*, Occupancy)>& visit) const;
 
-  /// The smallest box that holds every voxel that is free or occupied; nothing if there is none.
+  /// The smallest box that holds every voxel that is free or occupied; none if all are unknown.
   [[nodiscard]] std::optional<KeyBox> known_bounds() const;
 
   /// Number of voxels by state, indexed by `Occupancy`, over the whole key range.
@@ -83,8 +83,8 @@ class VoxelGrid {
 };
 
 /// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
-/// became or were uniform. Parts that two grids share are passed over unread, so between a grid and its
-/// edited copy this costs as much as the edit did.
+/// became or were uniform. Parts that both grids share are not read, so between a grid and its edited
+/// copy this costs as much as the edit did.
 void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
                      const std::function<void(const Block&)>& visit);
 

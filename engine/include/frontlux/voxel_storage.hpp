@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,7 +14,7 @@
 /// interface.
 namespace frontlux::detail {
 
-/// A pointer to a value that is shared until somebody wants to write to it.
+/// A pointer to a shared value, which is copied before one of its owners writes to it.
 template <class T>
 class Shared {
  public:
@@ -33,7 +34,7 @@ class Shared {
   const T& operator*() const { return block_->value; }
   const T* operator->() const { return &block_->value; }
 
-  /// The value for writing; first copied if anybody else looks at it.
+  /// The value for writing; copied first if it has other owners.
   T& own() {
     if (block_->owners.load(std::memory_order_acquire) != 1) *this = Shared(block_->value);
     return block_->value;
@@ -83,8 +84,8 @@ template <int kChildLog2, int kBits>
           along(corner.z, index >> (2 * kBits))};
 }
 
-/// 8 x 8 x 8 bricks. A slot below 3 names one of the three uniform bricks, which every tile keeps in front,
-/// so that a look-up needs no branch.
+/// 8 x 8 x 8 bricks. A slot below 3 is that of one of the three uniform bricks, which every tile keeps in
+/// front, so that a look-up needs no branch.
 struct Tile {
   static constexpr int kLog2 = 6;
   std::array<std::uint16_t, 512> slots{};
@@ -124,10 +125,19 @@ using Region = Branch<Tile, 3>;    // 512 voxels a side
 using Sector = Branch<Region, 3>;  // 4096
 using World = Branch<Sector, 4>;   // 65536: the whole key range
 
-/// The one node of its kind in which every voxel is `state`. Comparing with it is how a node is known to be
-/// uniform.
+inline constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
+
+/// The one node of its kind in which every voxel is `state`.
 template <class Node>
 const Shared<Node>& uniform_node(Occupancy state);
+
+/// The state of all voxels of a node, if it is one of the uniform ones.
+template <class Node>
+std::optional<Occupancy> uniform_state(const Shared<Node>& node) {
+  for (const Occupancy state : kStates)
+    if (node == uniform_node<Node>(state)) return state;
+  return std::nullopt;
+}
 
 extern template const Shared<Tile>& uniform_node<Tile>(Occupancy);
 extern template const Shared<Region>& uniform_node<Region>(Occupancy);

@@ -1,8 +1,9 @@
 #include "embree/blocker_boxes.hpp"
 
-#include "parallel/batch.hpp"
 #include "embree/unit_boxes.hpp"
 #include "walk/walk.hpp"
+
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <array>
@@ -91,8 +92,8 @@ class Survey {
   UnknownPolicy unknown_;
 };
 
-// The units at and beside the changes between two grids, by their lower corners; nothing if it is simpler to
-// start anew.
+// The units at and beside the changes between two grids, by their lower corners; everything after changes of
+// large blocks.
 class StaleUnits {
  public:
   StaleUnits(const VoxelGrid& before, const VoxelGrid& after) {
@@ -139,15 +140,12 @@ class StaleUnits {
   std::vector<VoxelKey> units_;  // sorted
 };
 
-// Sets what follows from a group's boxes.
+// Derives bounds and area from a group's boxes.
 void finish(BoxGroup& group) {
   group.boxes.shrink_to_fit();
-  group.bounds = {{0xFFFF, 0xFFFF, 0xFFFF}, {0, 0, 0}};
   for (std::size_t i = 0; i < group.boxes.size(); ++i) {
     const KeyBox box = group.box(i);
-    auto& [min, max] = group.bounds;
-    min = {std::min(min.x, box.min.x), std::min(min.y, box.min.y), std::min(min.z, box.min.z)};
-    max = {std::max(max.x, box.max.x), std::max(max.y, box.max.y), std::max(max.z, box.max.z)};
+    group.bounds = i == 0 ? box : hull(group.bounds, box);
     std::array<std::uint64_t, 3> edges{};
     for (std::size_t axis = 0; axis < 3; ++axis)
       edges[axis] = static_cast<std::uint64_t>(as_array(box.max)[axis] - as_array(box.min)[axis] + 1);
@@ -180,14 +178,12 @@ std::shared_ptr<const BoxGroup> make_group(const VoxelGrid& grid, UnknownPolicy 
 }  // namespace
 
 KeyBox BoxGroup::box(std::size_t index) const {
-  const auto key = [&](int cell, std::uint16_t base, int last) {
-    return static_cast<std::uint16_t>(base + ((cell + last) << log2_cell) - last);
-  };
   const PackedBox b = boxes[index];
-  return {{key(first_cell(b, 0), corner.x, 0), key(first_cell(b, 1), corner.y, 0),
-           key(first_cell(b, 2), corner.z, 0)},
-          {key(last_cell(b, 0), corner.x, 1), key(last_cell(b, 1), corner.y, 1),
-           key(last_cell(b, 2), corner.z, 1)}};
+  const int edge = 1 << log2_cell;
+  return {make_key(corner.x + first_cell(b, 0) * edge, corner.y + first_cell(b, 1) * edge,
+                   corner.z + first_cell(b, 2) * edge),
+          make_key(corner.x + (last_cell(b, 0) + 1) * edge - 1, corner.y + (last_cell(b, 1) + 1) * edge - 1,
+                   corner.z + (last_cell(b, 2) + 1) * edge - 1)};
 }
 
 std::size_t Blockers::box_count() const {
@@ -210,7 +206,7 @@ Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* 
   finish(survey.whole_nodes);
   blockers.groups.resize(1 + corners.size());
   blockers.groups[0] = std::make_shared<BoxGroup>(std::move(survey.whole_nodes));
-  for_each_piece(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::shared_ptr<const BoxGroup> known;
       if (old != nullptr) {
@@ -232,7 +228,7 @@ Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown) {
   return assemble(grid, unknown, nullptr, nullptr);
 }
 
-Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
+Blockers update_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
                          UnknownPolicy unknown) {
   const StaleUnits stale(before, after);
   return stale.everything() ? make_blockers(after, unknown) : assemble(after, unknown, &blockers, &stale);

@@ -26,8 +26,7 @@ enum class PackedBox : std::uint64_t {};
   return static_cast<int>((static_cast<std::uint64_t>(box) >> (20 * axis + 10)) & 1023);
 }
 
-/// The boxes of one storage tile, or of all storage nodes in which every voxel blocks. Never changed once
-/// made.
+/// The boxes of one cube of kEdge voxels, or of all storage nodes in which every voxel blocks. Immutable.
 struct BoxGroup {
   static constexpr int kEdge = 32;
   static constexpr int kUnitEdge = 16;
@@ -43,13 +42,12 @@ struct BoxGroup {
   [[nodiscard]] KeyBox box(std::size_t index) const;
 };
 
-/// Boxes that contain nothing but blockers and together cover every blocker that a ray from free space can
-/// meet first: the shell, which is every blocker with a face neighbour that does not block. A box is entered
-/// where a blocker is entered, so the box that a ray enters first gives the first blocker.
+/// Boxes of blockers that together cover the shell: every blocker with a face neighbour that does not block.
+/// A ray from free space meets the shell first. It enters a box where it enters a blocker, so the box that it
+/// enters first gives the first blocker.
 ///
-/// Boxes may overlap, and each keeps inside its unit: a cube of BoxGroup::kUnitEdge voxels, or a whole
-/// storage node. So a change makes only the units at and beside it stale, and all other groups go on being
-/// shared.
+/// Boxes may overlap, and each lies inside its unit: a cube of BoxGroup::kUnitEdge voxels, or a whole storage
+/// node. So a change makes only the units at and beside it stale, and all other groups remain shared.
 struct Blockers {
   std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes first, then cubes by corner
 
@@ -59,9 +57,9 @@ struct Blockers {
 /// @param unknown whether unknown voxels are blockers
 [[nodiscard]] Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown);
 
-/// The same as `make_blockers(after, unknown)`, from those of an earlier grid: only stale units are made
-/// anew.
-[[nodiscard]] Blockers follow_blockers(const Blockers& blockers, const VoxelGrid& before,
+/// The same as `make_blockers(after, unknown)`, from those of an earlier grid: only stale units are built
+/// again.
+[[nodiscard]] Blockers update_blockers(const Blockers& blockers, const VoxelGrid& before,
                                        const VoxelGrid& after, UnknownPolicy unknown);
 
 }  // namespace frontlux::detail

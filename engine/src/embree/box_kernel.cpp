@@ -1,7 +1,8 @@
 #include "embree/box_kernel.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace frontlux::detail {
@@ -128,21 +129,28 @@ FRONTLUX_BOX_KERNEL(avx512, [[gnu::target("avx512f,avx512vl,avx512dq,avx512bw,pr
 #endif
 #undef FRONTLUX_BOX_KERNEL
 
-BoxKernel choose() {
+constexpr BoxKernel kBaseline{"baseline", &baseline_occluded, &baseline_intersect};
 #if defined(__x86_64__) && defined(__GNUC__)
+constexpr std::array<BoxKernel, 3> kKernels{
+    {{"AVX-512", &avx512_occluded, &avx512_intersect}, {"AVX2", &avx2_occluded, &avx2_intersect}, kBaseline}};
+
+std::size_t first_to_run() {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return {&avx512_occluded, &avx512_intersect};
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return {&avx2_occluded, &avx2_intersect};
-#endif
-  return {&baseline_occluded, &baseline_intersect};
+    return 0;
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? 1 : 2;
 }
+#else
+constexpr std::array<BoxKernel, 1> kKernels{{kBaseline}};
+std::size_t first_to_run() { return 0; }
+#endif
 
 }  // namespace
 
+std::span<const BoxKernel> box_kernels() { return std::span(kKernels).subspan(first_to_run()); }
+
 const BoxKernel& box_kernel() {
-  static const BoxKernel kernel = choose();
+  static const BoxKernel& kernel = box_kernels().front();
   return kernel;
 }
 

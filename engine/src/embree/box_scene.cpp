@@ -164,9 +164,9 @@ struct BoxScene::Embree {
     if (id >= views.size()) views.resize(id + 1);
     views[id] = std::move(view);
   }
-  // Embree's packets of sixteen neighbouring rays pay while such rays mostly meet the same boxes, its single
-  // rays do where they part. Rays from one place part with their length; boxes keep them together by their
-  // size. The factor was measured (docs/benchmarking.md). The answer is the same either way.
+  // Embree's packets of sixteen neighbouring rays are faster while such rays mostly meet the same boxes;
+  // where they diverge, single rays are. Rays from one place diverge with their length, and large boxes keep
+  // them together. The factor was measured (docs/benchmarking.md). The answers are the same in both modes.
   [[nodiscard]] QueryContext make_context(const ProbeOrder& order) const {
     constexpr float kTogether = 8.0F;
     QueryContext context;
@@ -186,7 +186,7 @@ BoxScene::BoxScene(std::shared_ptr<BoxSceneDevice> device)
     : embree_(std::make_unique<Embree>(std::move(device))) {}
 BoxScene::~BoxScene() = default;
 
-void BoxScene::follow(const Blockers& blockers) {
+void BoxScene::update(const Blockers& blockers) {
   Eigen::AlignedBox3d keys;  // bounds, in keys
   std::unordered_map<const BoxGroup*, bool> wanted;
   for (const auto& group : blockers.groups) {
@@ -210,8 +210,7 @@ void BoxScene::follow(const Blockers& blockers) {
       for (std::size_t id = 0; id < embree_->views.size(); ++id)
         if (embree_->views[id]) embree_->detach(id);
       const Eigen::Vector3i middle = keys.center().cast<int>();
-      origin_ = {static_cast<std::uint16_t>(middle.x()), static_cast<std::uint16_t>(middle.y()),
-                 static_cast<std::uint16_t>(middle.z())};
+      origin_ = make_key(middle.x(), middle.y(), middle.z());
       reach_ = std::exp2(std::ceil(std::log2(keys.sizes().maxCoeff() * 0.5 + 2.0)));
       // A coordinate of at most `reach` voxels is off by reach * 2^-24. The dozen operations between a probe
       // and its answer each add a few of those; 2^-19 leaves room for 32. The constant covers castRay's own
@@ -265,9 +264,7 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
   }
   for (std::size_t i = 0; i < size; ++i) {
     const bool hit = rays[i].tfar == -std::numeric_limits<float>::infinity();
-    sights[order[i]] = hit                        ? Sight::kBlocked
-                       : too_close[order[i]] != 0 ? Sight::kTooCloseToTell
-                                                  : Sight::kClear;
+    sights[order[i]] = hit ? Sight::kBlocked : too_close[order[i]] != 0 ? Sight::kTooClose : Sight::kClear;
   }
 }
 

@@ -14,33 +14,32 @@
 
 namespace frontlux::detail {
 
-/// A piece of a straight line, in a scene's own frame: voxels as the unit of length, origin at
-/// `BoxScene::origin()`.
+/// A part of a straight line, in a scene's own frame: lengths in voxels, origin at `BoxScene::origin()`.
 struct Probe {
   float origin[3];
   float t_near;
   float direction[3];  ///< finite, any length but zero
-  float t_far;         ///< probes with t_far < t_near meet nothing
+  float t_far;         ///< probes with t_far < t_near meet no box
 };
 
 /// Whether a probe meets a box.
 enum class Sight : std::uint8_t {
   kClear,
   kBlocked,
-  kTooCloseToTell,  ///< it meets none for sure, but passes within the tolerance of one
+  kTooClose,  ///< it passes so close to a box, within the tolerance, that rounding may decide
 };
 
-/// What the scenes of one caster share of Embree.
+/// Embree's device, which all scenes of one caster share.
 class BoxSceneDevice;
 /// @throws std::runtime_error if Embree cannot make a device
 [[nodiscard]] std::shared_ptr<BoxSceneDevice> make_box_scene_device();
 /// Bytes that Embree holds for all scenes of a device.
 [[nodiscard]] std::size_t memory_bytes(const BoxSceneDevice& device);
 
-/// Boxes of voxels in a BVH, in single precision, with its error bounded. This is the seam behind which
-/// Embree lives: another version or query mode changes only the .cpp.
+/// Boxes of voxels in a BVH, in single precision, with a bounded error. Only its .cpp includes Embree:
+/// another version or query mode changes that file alone.
 ///
-/// Thread safety: const members may run at the same time as each other, not as `follow`.
+/// Thread safety: const members may run at the same time as each other, not as `update`.
 class BoxScene {
  public:
   static constexpr std::size_t kMaxBatch = 256;  ///< most probes in a call
@@ -50,9 +49,9 @@ class BoxScene {
   BoxScene(const BoxScene&) = delete;
   BoxScene& operator=(const BoxScene&) = delete;
 
-  /// Makes the scene hold these boxes. Groups that it holds already cost nothing.
+  /// Makes the scene hold these boxes, and no others. Groups that it holds already are free.
   /// @throws std::runtime_error if Embree cannot build the scene
-  void follow(const Blockers& blockers);
+  void update(const Blockers& blockers);
 
   /// Key of the voxel whose lower corner is the origin of the scene's frame.
   [[nodiscard]] const VoxelKey& origin() const { return origin_; }

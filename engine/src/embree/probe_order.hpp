@@ -11,8 +11,8 @@
 
 namespace frontlux::detail {
 
-/// The order in which probes are cast: of those that start at one point, the ones that point the same way
-/// after each other, whatever the caller's order.
+/// The order in which probes are cast: among those that start at one point, similar directions come after
+/// each other, whatever the caller's order.
 class ProbeOrder {
  public:
   explicit ProbeOrder(std::span<const Probe> probes) {

@@ -11,14 +11,13 @@
 namespace frontlux::detail {
 namespace {
 
-// A component of a direction that moves a ray by less than the tolerance on its whole way through the key
-// range.
+// Such a component of a direction moves a ray by less than the tolerance all through the key range.
 constexpr double kParallel = 1e-12;
 
 }  // namespace
 
 // The part of a line that can meet a box, from at most a voxel outside the scene's bounds: coordinates there
-// are small enough for the scene's tolerance. Nothing if there is no such part.
+// are small enough for the scene's tolerance. None if there is no such part.
 std::optional<Probe> SceneQuery::probe(const Line& line, double t_far) const {
   if (reach_.isEmpty()) return std::nullopt;
   double t_near = 0.0;
@@ -110,7 +109,7 @@ void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
       continue;
     }
     const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
-    // Directions that castRay cannot normalise, and origins that end the ray at once, are the walk's.
+    // Directions that castRay cannot normalise, and origins that end the ray at once, go to the walk.
     if (!is_unit(direction) || blocks(grid_.at(*start), unknown_)) {
       hits[i] = walk_ray(grid_, ray, unknown_);
       continue;
@@ -149,19 +148,19 @@ SceneQuery::Prepared SceneQuery::prepare(const KeySegment& segment) const {
   const float longest = length.maxCoeff(), inverse = 1.0F / longest;
   const auto tolerance = static_cast<float>(scene_.tolerance());
   const float t_far = 1.0F - 0.5F * inverse - 3.0F * tolerance * inverse;
-  Sighting sighting{
+  SegmentProbe sight{
       {{origin[0], origin[1], origin[2]}, 0.0F, {difference[0], difference[1], difference[2]}, t_far}, false};
   // At its entry the line is this far from the target's other faces; twice the axis itself makes zero.
   int grazed = 0;
   for (int i = 0; i < 3; ++i)
     grazed += static_cast<int>(0.5F * (longest - length[i]) * inverse < 4.0F * tolerance);
-  sighting.target_is_grazed = grazed > 1;
+  sight.target_is_grazed = grazed > 1;
   if (!reach_.contains(origin.matrix().cast<double>())) {
     const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, static_cast<double>(t_far));
-    if (!probed) return sighting.target_is_grazed ? Prepared{} : Prepared{true, {}};
-    sighting.probe = *probed;
+    if (!probed) return sight.target_is_grazed ? Prepared{} : Prepared{true, {}};
+    sight.probe = *probed;
   }
-  return {{}, sighting};
+  return {{}, sight};
 }
 
 SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
@@ -188,15 +187,15 @@ SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
     error[a] = 4.0 * scene_.tolerance() / std::fabs(d);
   }
   const auto axis = static_cast<std::size_t>(std::max_element(enter.begin(), enter.end()) - enter.begin());
-  Sighting sighting;
+  SegmentProbe sight;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (i != axis && enter[i] + error[i] > enter[axis] - error[axis]) sighting.target_is_grazed = true;
-    if (leave[i] - error[i] < enter[axis] + error[axis]) sighting.target_is_grazed = true;
+    if (i != axis && enter[i] + error[i] > enter[axis] - error[axis]) sight.target_is_grazed = true;
+    if (leave[i] - error[i] < enter[axis] + error[axis]) sight.target_is_grazed = true;
   }
   const auto probed = probe(line, enter[axis] - error[axis]);
-  if (!probed) return sighting.target_is_grazed ? Prepared{} : Prepared{true, {}};
-  sighting.probe = *probed;
-  return {{}, sighting};
+  if (!probed) return sight.target_is_grazed ? Prepared{} : Prepared{true, {}};
+  sight.probe = *probed;
+  return {{}, sight};
 }
 
 template <class Segment>
@@ -213,9 +212,9 @@ void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8
     const Prepared prepared = prepare(segments[i]);
     if (prepared.answer) {
       visible[i] = static_cast<std::uint8_t>(*prepared.answer);
-    } else if (prepared.sighting) {
-      probes[size] = prepared.sighting->probe;
-      target_is_grazed[size] = prepared.sighting->target_is_grazed;
+    } else if (prepared.segment) {
+      probes[size] = prepared.segment->probe;
+      target_is_grazed[size] = prepared.segment->target_is_grazed;
       index[size++] = i;
     } else {
       walk(i);
@@ -225,7 +224,7 @@ void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8
   for (std::size_t i = 0; i < size; ++i) {
     if (sights[i] == Sight::kBlocked)
       visible[index[i]] = 0;
-    else if (sights[i] == Sight::kTooCloseToTell || target_is_grazed[i])
+    else if (sights[i] == Sight::kTooClose || target_is_grazed[i])
       walk(index[i]);
     else
       visible[index[i]] = 1;

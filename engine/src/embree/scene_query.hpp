@@ -1,7 +1,7 @@
 #pragma once
 
 #include "embree/box_scene.hpp"
-#include "embree/snapshot.hpp"
+#include "embree/box_snapshot.hpp"
 
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
@@ -15,11 +15,10 @@
 
 namespace frontlux::detail {
 
-/// Answers queries about one map under one policy: what surely holds by the scene, everything else by the
-/// walk.
+/// Answers queries about one map under one policy: by the scene where its answer is sure, else by the walk.
 class SceneQuery {
  public:
-  SceneQuery(const Snapshot& snapshot, UnknownPolicy unknown)
+  SceneQuery(const BoxSnapshot& snapshot, UnknownPolicy unknown)
       : grid_(snapshot.grid()),
         lattice_(grid_.lattice()),
         scene_(snapshot.scene(unknown)),
@@ -51,15 +50,14 @@ class SceneQuery {
   [[nodiscard]] Hit finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
                            const std::optional<KeyBox>& box) const;
 
-  struct Sighting {
+  struct SegmentProbe {
     Probe probe;
     bool target_is_grazed = false;  // it enters the target's voxel so close to an edge that it may miss it
   };
-  // What settles a segment at once (true, false), or what there is to look at, or nothing if only the walk
-  // knows.
+  // Either the answer, or the probe that gives it. Without both the walk must answer.
   struct Prepared {
     std::optional<bool> answer;
-    std::optional<Sighting> sighting;
+    std::optional<SegmentProbe> segment;
   };
   [[nodiscard]] Prepared prepare(const KeySegment& segment) const;
   [[nodiscard]] Prepared prepare(const Segment& segment) const;

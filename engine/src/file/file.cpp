@@ -1,16 +1,15 @@
 #include <frontlux/file.hpp>
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <unistd.h>
 
 namespace frontlux {
 namespace {
 
-// Removed on every way out but the good one.
+// Removed, unless the file got its name.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& file) : path_(file) {
@@ -39,7 +38,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes
   const auto status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found)
     fail(file, "there is no such file", "check the path");
-  if (error) fail(file, "cannot be looked at: " + error.message(), "check the path and its permissions");
+  if (error) fail(file, "cannot be inspected: " + error.message(), "check the path and its permissions");
   if (std::filesystem::is_directory(status)) fail(file, "is a directory", "name a file in it");
   if (!std::filesystem::is_regular_file(status)) fail(file, "is not a regular file", "name a file");
   errno = 0;

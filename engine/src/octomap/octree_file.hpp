@@ -17,14 +17,14 @@ struct OctreeFile {
   OctreeFormat format = OctreeFormat::kBinary;
   std::string tree_type;        ///< "OcTree" or "ColorOcTree"
   double resolution = 0.0;      ///< [m]
-  std::size_t node_count = 0;   ///< nodes in the stream, the root included; 0 if the tree is empty, and then
-                                ///< there is nothing that `readData` or `readBinaryData` could read
+  std::size_t node_count = 0;   ///< nodes in the stream, the root included; 0 if the tree is empty, which
+                                ///< `readData` and `readBinaryData` cannot read
   std::size_t data_offset = 0;  ///< where the node stream begins in `bytes`
   std::string bytes;            ///< the whole file
 };
 
 /// Reads a file into memory and checks it from end to end, because OctoMap's readers recurse as deep as the
-/// file tells them to and take missing bytes for nodes.
+/// file goes and take missing bytes for nodes.
 ///
 /// Accepted, as OctoMap does: bytes after the last node; an `.ot` whose `size` is wrong but whose nodes end
 /// exactly where the file ends; log-odds of NaN in an `.ot`, which OctoMap holds for free.

@@ -1,6 +1,6 @@
 #include "packet/open_voxels.hpp"
 
-#include "parallel/batch.hpp"
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -21,10 +21,8 @@ void OpenVoxels::Release::operator()(std::uint64_t* words) const { std::free(wor
 OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) {
   const auto known = grid.known_bounds();
   if (!known) return;
-  const auto down = [](std::uint16_t key) { return static_cast<std::uint16_t>(key & ~7U); };
-  const auto up = [](std::uint16_t key) { return static_cast<std::uint16_t>(key | 7U); };
-  bounds_ = {{down(known->min.x), down(known->min.y), down(known->min.z)},
-             {up(known->max.x), up(known->max.y), up(known->max.z)}};
+  bounds_ = {make_key(known->min.x & ~7, known->min.y & ~7, known->min.z & ~7),
+             make_key(known->max.x | 7, known->max.y | 7, known->max.z | 7)};
   layout_.corner = {bounds_.min.x - 8, bounds_.min.y - 8, bounds_.min.z - 8};
 
   // Bricks with the border: rounded up to powers of two along x and y, so that each axis has bits of its own.
@@ -47,12 +45,11 @@ OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) {
   words_.reset(static_cast<std::uint64_t*>(std::calloc(word_count_, sizeof(std::uint64_t))));
   if (!words_) throw std::bad_alloc();
   const std::size_t layers = z_bricks - 2;
-  for_each_piece(layers, 1, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(layers, 1, [&](std::size_t begin, std::size_t end) {
     for (auto z = bounds_.min.z + 8 * begin; z < bounds_.min.z + 8 * end; z += 8)
       for (std::uint32_t y = bounds_.min.y; y <= bounds_.max.y; y += 8)
         for (std::uint32_t x = bounds_.min.x; x <= bounds_.max.x; x += 8) {
-          const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                             static_cast<std::uint16_t>(z)};
+          const VoxelKey key = make_key(x, y, static_cast<std::int64_t>(z));
           const Brick& brick = grid.brick(key);
           std::uint64_t* out = &words_[layout_.index(key) / 64];
           for (std::size_t w = 0; w < kWords; ++w) {

@@ -10,20 +10,20 @@
 
 namespace frontlux::detail {
 
-/// Which voxels let rays pass, one bit each, in a flat table around everything that a map knows: what packets
-/// of rays walk through (packet_walk.hpp).
+/// The voxels that do not block, one bit each, in a flat table around all known voxels of a map: packets of
+/// rays walk through it (packet_walk.hpp).
 ///
 /// The bits lie brick by brick, so that a walk in any direction stays in a cache line for some steps. The
 /// place of a voxel's bit is its index: 3 bits each of x, y and z in the brick, then the rest of x, y and z.
 /// To step along an axis is to add one to that axis' bits of the index. The table ends with a border of
-/// closed bricks, which stops every walk, and in which a walk of up to seven steps too many still is.
+/// closed bricks: it stops every walk, and is wide enough for seven steps too many.
 class OpenVoxels {
  public:
-  /// Of a grid. Empty if nothing is known, or if the table would be larger than it is worth.
+  /// Empty if no voxel is known, or if the table would be larger than it is worth.
   OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown);
 
   [[nodiscard]] bool empty() const { return words_ == nullptr; }
-  /// True for what is known and the rest of its bricks.
+  /// True for all known voxels and the rest of their bricks.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return words_ && bounds_.contains(key); }
 
   /// How an index is put together.

@@ -16,19 +16,19 @@
 namespace frontlux::detail {
 namespace {
 
-// Where a BVH is about as fast as the walk (docs/benchmarking.md).
+// Where a BVH becomes about as fast as the walk (docs/benchmarking.md).
 constexpr int kLongSegment = 1000;  // voxels along the longest axis
-constexpr double kLongRay = 400.0;  // voxels of way
+constexpr double kLongRay = 400.0;  // [voxels]
 static_assert(kLongSegment <= PacketWalk::kMaxOffset);
 
-// A ray on its way into the table.
+// A ray that starts in an open voxel of the table.
 struct Entrance {
   VoxelKey key;  // of the origin
   Eigen::Vector3f direction;
   Crossings<double> line;
   std::uint32_t index, flip;  // as PacketLines has them
   double end;
-  bool whole;  // the walk goes as far as the ray's range
+  bool whole;  // the walk goes as far as the ray may
 };
 
 std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
@@ -48,7 +48,7 @@ std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, c
   return e;
 }
 
-// The walk of a packet, for one ray: a packet would leave all lanes but one empty. Neither step nor look-up
+// The walk of a packet, for one ray, where a packet would have one lane in use. Neither step nor look-up
 // branches on which axis is next, and times stay in vector registers.
 std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray) {
   const auto& bits = table.layout().bits;
@@ -169,7 +169,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
   return left_size;
 }
 
-// Nothing if the walk ended before the ray did.
+// None if the walk ended before the ray did.
 std::optional<Hit> TableQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
                                       std::uint32_t stopped_at, bool whole) const {
   if (stopped_at == PacketWalk::kWentThrough) {
@@ -180,7 +180,7 @@ std::optional<Hit> TableQuery::finish(const Ray& ray, const VoxelKey& start, con
   const bool is_key =
       std::all_of(cell.begin(), cell.end(), [](int k) { return k >= 0 && k < Lattice::kKeysPerAxis; });
   const bool in_border = !is_key || !table_.contains(as_key(cell));
-  // The border stops every walk, but voxels there block no more than other unknown ones.
+  // The border stops every walk, but its voxels are unknown ones like others: under kPass they do not block.
   if (in_border && unknown_ == UnknownPolicy::kPass)
     return end_ray(grid_, ray, start, direction, unknown_, std::nullopt);
   if (!is_key) return walk_ray(grid_, ray, unknown_);

@@ -13,13 +13,13 @@
 
 namespace frontlux::detail {
 
-/// Answers the queries that a walk through the table of open voxels answers sooner than a BVH: those that lie
-/// in the table and are not too long. All others are left to somebody else.
+/// Answers the queries for which a walk through the table of open voxels is faster than a BVH: those that lie
+/// in the table and are not too long.
 class TableQuery {
  public:
   static constexpr std::size_t kMaxBatch = PacketLines<double>::kMaxSize;  ///< most queries in a call
 
-  /// @param walk  null leaves everything to somebody else
+  /// @param walk  null: no query is answered
   TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
              const PacketWalk* walk = packet_walk())
       : grid_(grid), table_(table), walk_(table.empty() ? nullptr : walk), unknown_(unknown) {}

@@ -9,11 +9,11 @@ namespace frontlux {
 namespace {
 
 using detail::child_corner;
+using detail::kStates;
 using detail::Shared;
 using detail::Tile;
 using detail::uniform_node;
-
-constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
+using detail::uniform_state;
 
 template <class Visit>
 void visit_blocks(const Tile& tile, const VoxelKey& corner, const Visit& visit) {
@@ -35,10 +35,8 @@ void visit_blocks(const Node& node, const VoxelKey& corner, const Visit& visit) 
     const Shared<Child>& child = node.children[static_cast<std::size_t>(i)];
     if (child == uniform_node<Child>(Occupancy::kUnknown)) continue;
     const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
-    const auto uniform = std::find_if(kStates.begin() + 1, kStates.end(),
-                                      [&](Occupancy s) { return child == uniform_node<Child>(s); });
-    if (uniform != kStates.end())
-      visit(Block{at, Child::kLog2}, nullptr, *uniform);
+    if (const auto state = uniform_state(child))
+      visit(Block{at, Child::kLog2}, nullptr, *state);
     else
       visit_blocks(*child, at, visit);
   }
@@ -57,16 +55,12 @@ void visit_changes(const Tile& before, const Tile& after, const VoxelKey& corner
 template <class Node, class Visit>
 void visit_changes(const Node& before, const Node& after, const VoxelKey& corner, const Visit& visit) {
   using Child = typename Node::Child;
-  const auto is_uniform = [](const Shared<Child>& node) {
-    return std::any_of(kStates.begin(), kStates.end(),
-                       [&](Occupancy s) { return node == uniform_node<Child>(s); });
-  };
   for (int i = 0; i < Node::kChildren; ++i) {
     const auto &a = before.children[static_cast<std::size_t>(i)],
                &b = after.children[static_cast<std::size_t>(i)];
     if (a == b) continue;
     const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
-    if (is_uniform(a) && is_uniform(b))
+    if (uniform_state(a) && uniform_state(b))
       visit(Block{at, Child::kLog2});
     else
       visit_changes(*a, *b, at, visit);
@@ -81,11 +75,8 @@ std::size_t bytes(const Tile& tile) {
 template <class Node>
 std::size_t bytes(const Node& node) {
   std::size_t sum = sizeof(Node) + node.children.capacity() * sizeof(node.children[0]);
-  using Child = typename Node::Child;
   for (const auto& child : node.children)
-    if (std::none_of(kStates.begin(), kStates.end(),
-                     [&](Occupancy s) { return child == uniform_node<Child>(s); }))
-      sum += bytes(*child);
+    if (!uniform_state(child)) sum += bytes(*child);
   return sum;
 }
 
@@ -116,33 +107,25 @@ void VoxelGrid::for_each_block(
 }
 
 std::optional<KeyBox> VoxelGrid::known_bounds() const {
-  KeyBox box{{0xFFFF, 0xFFFF, 0xFFFF}, {0, 0, 0}};
-  bool any = false;
-  const auto grow = [&](const VoxelKey& corner, int x0, int y0, int z0, int x1, int y1, int z1) {
-    const auto along = [](std::uint16_t base, int i) { return static_cast<std::uint16_t>(base + i); };
-    any = true;
-    box.min = {std::min(box.min.x, along(corner.x, x0)), std::min(box.min.y, along(corner.y, y0)),
-               std::min(box.min.z, along(corner.z, z0))};
-    box.max = {std::max(box.max.x, along(corner.x, x1)), std::max(box.max.y, along(corner.y, y1)),
-               std::max(box.max.z, along(corner.z, z1))};
-  };
+  std::optional<KeyBox> box;
+  const auto add = [&box](const KeyBox& known) { box = box ? hull(*box, known) : known; };
   for_each_block([&](const Block& block, const Brick* brick, Occupancy) {
+    const VoxelKey& at = block.corner;
     if (brick == nullptr) {
-      const int last = (1 << block.log2_edge) - 1;
-      grow(block.corner, 0, 0, 0, last, last, last);
+      add(cube(at, 1 << block.log2_edge));
       return;
     }
-    std::uint64_t square = 0, layers = 0,
-                  row = 0;  // what is known, projected along z, on z, and along z and y
+    // What is known, projected along z, on z, and along z and y.
+    std::uint64_t square = 0, layers = 0, row = 0;
     for (std::size_t z = 0; z < 8; ++z) {
       const std::uint64_t known = brick->free[z] | brick->occupied[z];
       square |= known;
       if (known != 0) layers |= std::uint64_t{1} << z;
     }
     for (int y = 0; y < 8; ++y) row |= (square >> (8 * y)) & 0xFF;
-    grow(block.corner, low(row), low(square) / 8, low(layers), high(row), high(square) / 8, high(layers));
+    add({make_key(at.x + low(row), at.y + low(square) / 8, at.z + low(layers)),
+         make_key(at.x + high(row), at.y + high(square) / 8, at.z + high(layers))});
   });
-  if (!any) return std::nullopt;
   return box;
 }
 

@@ -5,8 +5,6 @@
 namespace frontlux::detail {
 namespace {
 
-constexpr std::array kStates = {Occupancy::kUnknown, Occupancy::kFree, Occupancy::kOccupied};
-
 Brick uniform_brick(Occupancy state) {
   Brick brick;
   if (state == Occupancy::kFree) brick.free.fill(~std::uint64_t{0});

@@ -9,14 +9,15 @@
 #include <limits>
 #include <optional>
 
-/// Steps of a path by the thousand: where it stands after them, without taking each. Exact to the last bit of
-/// every time, so that a walk can go on from there.
+/// Skips cubes of one state: where a path is after thousands of steps, without taking each step. Every time
+/// is exact to the last bit, so that a walk can go on from there.
 namespace frontlux::detail {
 
 /// `t` after `count` additions of `delta`, each rounded as a loop would round it. Between two powers of two
-/// all results are multiples of one unit, and every addition there adds the same multiple: what `delta`
-/// rounds to. (If it lies in the middle between two, the even result is taken, and from an even one the same
-/// step always leads to an even one; hence the increment of a *second* addition is the one that lasts.)
+/// all results are multiples of one unit, and every addition there adds the same multiple: `delta` rounded to
+/// one. (If `delta` lies in the middle between two, the even result is taken, and from an even result the
+/// same step always leads to an even one. So the increment of the *second* addition is the one that all later
+/// ones have.)
 /// @param delta  not negative
 inline double after_additions(double t, double delta, int count) {
   while (count > 0) {
@@ -44,30 +45,30 @@ inline std::int64_t after_additions(std::int64_t t, std::int64_t delta, int coun
   return t + count * delta;
 }
 
-/// Where a path stands: its voxel, the crossings to come, and per axis how many steps it may take.
+/// Where a path is: its voxel, the crossings to come, and per axis how many more steps it may take.
 template <class Time>
-struct Standing {
+struct PathState {
   VoxelKey key;
   Crossings<Time> line;
   std::array<int, 3> steps_left;
 };
 
-/// What a leap arrives at.
+/// What `skip_cube` did.
 enum class CubeSkip : std::uint8_t {
-  kNone,     ///< nothing was done
-  kInside,   ///< the path stands in the first voxel outside of the cube
-  kOverstep  ///< its last step was one more than it may take along an axis: that axis has -1 left
+  kNone,     ///< nothing: walk on voxel by voxel
+  kSkipped,  ///< the path is in the first voxel outside the cube
+  kOverstep  ///< the last step was one more than the path may take along an axis: that axis has -1 left
 };
 
-/// Goes on to the first voxel outside of the cube of 2^log2_edge voxels a side that holds `at.key`, or to the
+/// Moves on to the first voxel outside the cube of 2^log2_edge voxels a side that holds `at.key`, or to the
 /// first step too many.
-/// @param until  no leap is done that would end at this time or later
+/// @param until  does nothing if the last step would come at this time or later
 template <class Time>
-CubeSkip skip_cube(Standing<Time>& at, int log2_edge, Time until) {
+CubeSkip skip_cube(PathState<Time>& at, int log2_edge, Time until) {
   Crossings<Time>& line = at.line;
   auto key = as_array(at.key);
   const int edge = 1 << log2_edge;
-  // Of the three ends of the path in the cube the first. Ties go to z before y before x (rule 5).
+  // The path leaves the cube along the axis that ends first. Ties go to z before y before x (rule 5).
   std::array<int, 3> steps_to_end{};
   std::size_t axis = 3;
   Time end{};
@@ -114,7 +115,7 @@ CubeSkip skip_cube(Standing<Time>& at, int log2_edge, Time until) {
   }
   if (at.steps_left[axis] < 0) return CubeSkip::kOverstep;  // `key` may lie beyond the key range
   at.key = as_key(key);
-  return CubeSkip::kInside;
+  return CubeSkip::kSkipped;
 }
 
 }  // namespace frontlux::detail

@@ -13,12 +13,11 @@ struct FreeEnd {
   VoxelKey key;
 };
 
-/// The end of a ray, if nothing stops it on its way: the first voxel out of range or the last one of the key
-/// range. Goes there by arithmetic instead of voxel by voxel, which castRay needs 0.5 ms for on an unlimited
-/// ray.
+/// The end of a ray that no voxel stops: the first voxel out of range or the last one of the key range. Found
+/// by arithmetic instead of voxel by voxel, for which castRay needs 0.5 ms on an unlimited ray.
 /// @param key        voxel of the ray's origin
 /// @param direction  as castRay normalises it, of unit length
-/// @return nothing where rounding in castRay's own traversal could decide: then only the walk knows
+/// @return none where rounding in castRay's own traversal could decide: then the walk must
 std::optional<FreeEnd> find_free_end(const Lattice& lattice, const Ray& ray, const VoxelKey& key,
                                      const Eigen::Vector3f& direction);
 

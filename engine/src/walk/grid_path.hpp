@@ -15,9 +15,9 @@
 
 namespace frontlux::detail {
 
-/// A line's path through a grid, voxel by voxel: the inner loop of every walk. Which axis is next is a coin
-/// toss to the processor's branch predictor, so a step takes no branch on it: all three axes move, two of
-/// them by zero. Counters share a word, one field an axis.
+/// A line's path through a grid, voxel by voxel: the inner loop of every walk. The processor cannot predict
+/// which axis is next, so a step takes no branch on it: all three axes move, two of them by zero. The
+/// counters of the three axes are fields of one word.
 template <class Time>
 class GridPath {
  public:
@@ -72,7 +72,7 @@ class GridPath {
 
   /// Fetches the brick that the last step led into; to be called after each step that did not overstep.
   /// @return whether it lies in another tile
-  [[gnu::always_inline]] bool follow() {
+  [[gnu::always_inline]] bool fetch_brick() {
     return (in_brick_ & kNotNegative) != kNotNegative && enter_next_brick();
   }
 

@@ -14,35 +14,32 @@
 
 namespace frontlux::detail {
 
-/// The beginning of a ray's path, which may go on to the end of the key range.
-/// @param direction  as `normalized_as_octomap` leaves it
-/// @return nothing without a direction
-inline std::optional<Standing<double>> course_along(const Lattice& lattice, const Eigen::Vector3f& origin,
-                                                    const VoxelKey& start, const Eigen::Vector3f& direction) {
+/// The start of a ray's path, which may go on to the end of the key range.
+/// @param direction  as `normalized_as_octomap` returns it
+/// @return none without a direction
+inline std::optional<PathState<double>> path_along(const Lattice& lattice, const Eigen::Vector3f& origin,
+                                                   const VoxelKey& start, const Eigen::Vector3f& direction) {
   const Crossings<double> line = crossings_of(lattice, origin, start, direction);
   if (line.none()) return std::nullopt;
-  std::array<int, 3> to_border = as_array(start);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (line.step[i] > 0) to_border[i] = Lattice::kKeysPerAxis - 1 - to_border[i];
-  return Standing<double>{start, line, to_border};
+  return PathState<double>{start, line, steps_to_border(line, start)};
 }
 
 inline std::array<int, 3> steps_between(const VoxelKey& a, const VoxelKey& b) {
   return {std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)};
 }
 
-/// The beginning of a segment's path, which may not go beyond `to` along any axis. Where rounding left the
-/// line no component along an axis, its steps stay untaken and the path oversteps along another.
-/// @return nothing if rounding left it no direction at all
-inline std::optional<Standing<double>> course_between(const Lattice& lattice, const Segment& segment,
-                                                      const VoxelKey& from, const VoxelKey& to) {
+/// The start of a segment's path, which may not go beyond `to` along any axis. If rounding made a component
+/// of the line zero, the steps along that axis are never taken, and the path oversteps along another.
+/// @return none if rounding made all components zero
+inline std::optional<PathState<double>> path_between(const Lattice& lattice, const Segment& segment,
+                                                     const VoxelKey& from, const VoxelKey& to) {
   const Eigen::Vector3f direction = normalized_as_octomap(segment.to - segment.from);
   const Crossings<double> line = crossings_of(lattice, segment.from, from, direction);
   if (line.none()) return std::nullopt;
-  return Standing<double>{from, line, steps_between(from, to)};
+  return PathState<double>{from, line, steps_between(from, to)};
 }
 /// @pre its ends differ
-inline Standing<std::int64_t> course_between(const KeySegment& segment) {
+inline PathState<std::int64_t> path_between(const KeySegment& segment) {
   return {segment.from, crossings_of(segment.from, segment.to), steps_between(segment.from, segment.to)};
 }
 

@@ -10,14 +10,15 @@
 
 namespace frontlux::detail {
 
-/// Counts step by step and asks for the state of each voxel: what is written over a tree without a grid, and
-/// the baseline of `count_path`.
+/// Counts step by step, looking up the state of each voxel: how a tree without a grid is counted, and the
+/// baseline of `count_path`.
 /// @param state_at     the state of a voxel
 /// @param in_range     whether the path may enter a voxel
-/// @param at_overstep  why the path ends if it takes a step too many: `kLeftMap` of a ray; `kOutOfRange` of a
-///                     segment, which ends where all steps are taken
+/// @param at_overstep  why the path ends if it takes a step too many: `kLeftMap` for a ray, `kOutOfRange` for
+/// a
+///                     segment, which also ends where all steps are taken
 template <class Time, class StateAt, class InRange>
-PathCount count_plainly(const Standing<Time>& start, UnknownPolicy unknown, const StateAt& state_at,
+PathCount count_plainly(const PathState<Time>& start, UnknownPolicy unknown, const StateAt& state_at,
                         const InRange& in_range, RayStop at_overstep) {
   const bool to_target = at_overstep == RayStop::kOutOfRange;
   Crossings<Time> line = start.line;

@@ -57,18 +57,9 @@ void RayCaster::count(std::span<const KeySegment> segments, std::span<PathCount>
 void RayCaster::update(const VoxelGrid& grid) {
   if (grid.resolution() != lattice_.resolution())
     throw std::invalid_argument("a caster of resolution " + std::to_string(lattice_.resolution()) +
-                                " m cannot follow a grid of " + std::to_string(grid.resolution()) + " m");
+                                " m cannot be updated to a grid of " + std::to_string(grid.resolution()) +
+                                " m");
   do_update(grid);
-}
-
-std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid, std::uint64_t expected_rays) {
-  // Building takes time by the bricks of mixed states; each ray then saves a tenth to a third of a
-  // microsecond (docs/benchmarking.md).
-  constexpr std::uint64_t kRaysPerBrick = 12;
-  std::uint64_t bricks = 0;
-  grid.for_each_block(
-      [&](const Block&, const Brick* brick, Occupancy) { bricks += brick != nullptr ? 1 : 0; });
-  return expected_rays < kRaysPerBrick * bricks ? make_grid_ray_caster(grid) : make_embree_ray_caster(grid);
 }
 
 }  // namespace frontlux

@@ -8,10 +8,10 @@
 namespace frontlux::detail {
 
 /// The hit of a ray whose first blocker is known: that blocker if it is in range, else where the range, or
-/// the key range, ends the ray before.
+/// the key range, ends the ray.
 /// @param start      voxel of the origin, which does not block
-/// @param direction  as `normalized_as_octomap` leaves it, of unit length
-/// @param blocker    the first blocker on the ray's path, or nothing if there is none in range
+/// @param direction  as `normalized_as_octomap` returns it, of unit length
+/// @param blocker    the first blocker on the ray's path, or none if there is none in range
 Hit end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
             UnknownPolicy unknown, const std::optional<VoxelKey>& blocker);
 

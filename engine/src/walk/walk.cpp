@@ -9,8 +9,8 @@
 namespace frontlux::detail {
 namespace {
 
-// Of a direction as castRay walks along it: what is not a number acts as 0, and beside an infinite component
-// the others do too.
+// A direction as castRay walks along it: a component that is not a number acts as 0, and so does every finite
+// one beside an infinite one.
 Eigen::Vector3d unit_vector(const Eigen::Vector3f& direction) {
   Eigen::Array3d d = direction.cast<double>().array();
   d = d.isNaN().select(0.0, d);
@@ -53,15 +53,12 @@ Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
   const Crossings<double> line = crossings_of(lattice, ray.origin, *start, direction);
   if (line.none()) return {};
 
-  std::array<int, 3> to_border = as_array(*start);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (line.step[i] > 0) to_border[i] = Lattice::kKeysPerAxis - 1 - to_border[i];
-  GridPath<double> path(grid, unknown, *start, line, to_border);
+  GridPath<double> path(grid, unknown, *start, line, steps_to_border(line, *start));
   const double range_matters_from = time_surely_in_range(ray.max_range, lattice.resolution(), direction);
   while (true) {
     const double t = path.advance();
     if (path.overstepped()) break;
-    path.follow();
+    path.fetch_brick();
     if (t >= range_matters_from && out_of_range(ray.origin, lattice.center(path.key()), ray.max_range))
       return end_in(RayStop::kOutOfRange, path.state(), path.key());
     if (path.blocked()) return end_in(stop_in(path.state()), path.state(), path.key());
@@ -72,7 +69,7 @@ Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
 
 namespace {
 
-// How far `to` lies along a line from `from`, per axis; nothing if it lies behind.
+// How many steps `to` lies ahead of `from` on a line, per axis; none if it lies behind.
 template <class Time>
 std::optional<std::array<int, 3>> steps_to(const Crossings<Time>& line, const VoxelKey& from,
                                            const VoxelKey& to) {
@@ -85,7 +82,7 @@ std::optional<std::array<int, 3>> steps_to(const Crossings<Time>& line, const Vo
   return steps;
 }
 
-// Whether the path reaches `to` before it meets a blocker or passes `to` by.
+// Whether the path reaches `to` before it meets a blocker or misses `to`.
 template <class Time>
 bool reaches(const VoxelGrid& grid, UnknownPolicy unknown, const Crossings<Time>& line, const VoxelKey& from,
              const VoxelKey& to) {
@@ -97,7 +94,7 @@ bool reaches(const VoxelGrid& grid, UnknownPolicy unknown, const Crossings<Time>
     if (path.exhausted()) return true;
     if constexpr (std::is_same_v<Time, double>)
       if (path.overstepped()) return false;
-    path.follow();
+    path.fetch_brick();
     if (path.blocked()) return false;
   }
 }

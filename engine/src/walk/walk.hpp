@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -11,8 +12,7 @@
 #include <cstdlib>
 #include <limits>
 
-/// castRay's traversal (ray contract, rules 3 to 7), voxel by voxel, over anything that tells a voxel's
-/// state.
+/// castRay's traversal (ray contract, rules 3 to 7), voxel by voxel.
 namespace frontlux::detail {
 
 /// A direction as castRay normalises it (rule 3): in float, and not at all if it has no length or is not a
@@ -32,10 +32,7 @@ inline bool is_unit(const Eigen::Vector3f& direction) {
 }
 
 inline std::array<int, 3> as_array(const VoxelKey& key) { return {key.x, key.y, key.z}; }
-inline VoxelKey as_key(const std::array<int, 3>& key) {
-  return {static_cast<std::uint16_t>(key[0]), static_cast<std::uint16_t>(key[1]),
-          static_cast<std::uint16_t>(key[2])};
-}
+inline VoxelKey as_key(const std::array<int, 3>& key) { return make_key(key[0], key[1], key[2]); }
 
 /// The crossings of a line with the planes between voxels: Amanatides and Woo's state. `Time` is double along
 /// castRay's rays, and a 64-bit integer between voxel centres, where it counts in units of 1 / (2 dx dy dz)
@@ -50,7 +47,7 @@ struct Crossings {
 };
 
 /// Rule 4, operation by operation.
-/// @param direction as `normalized_as_octomap` leaves it
+/// @param direction as `normalized_as_octomap` returns it
 inline Crossings<double> crossings_of(const Lattice& lattice, const Eigen::Vector3f& origin,
                                       const VoxelKey& key, const Eigen::Vector3f& direction) {
   Crossings<double> line{};
@@ -68,6 +65,14 @@ inline Crossings<double> crossings_of(const Lattice& lattice, const Eigen::Vecto
     line.t_delta[i] = lattice.resolution() / std::fabs(d);
   }
   return line;
+}
+
+/// How many steps a line can take along each axis before the key range ends.
+inline std::array<int, 3> steps_to_border(const Crossings<double>& line, const VoxelKey& from) {
+  std::array<int, 3> steps = as_array(from);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (line.step[i] > 0) steps[i] = Lattice::kKeysPerAxis - 1 - steps[i];
+  return steps;
 }
 
 /// The line between two voxel centres. With time scaled by 2 dx dy dz the n-th crossing along x comes at
@@ -101,20 +106,20 @@ inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& e
   return distance_sq > max_range * max_range;
 }
 
-/// The part of a ray, by time of entry into a voxel, in which no voxel can be out of range: a voxel's centre
-/// is less than 0.87 of its edge further away than the point of entry. Never trusts a direction that is not
-/// of unit length.
+/// No voxel that a ray enters before this time is out of range: a voxel's centre is less than 0.87 of its
+/// edge further away than the point of entry. There is no such time if the direction is not of unit length.
 inline double time_surely_in_range(double max_range, double resolution, const Eigen::Vector3f& direction) {
   if (!(max_range > 0.0)) return std::numeric_limits<double>::infinity();
   if (!is_unit(direction)) return -std::numeric_limits<double>::infinity();
-  // An origin on a face can make the first crossings come at times far below zero: then time tells nothing.
+  // If the origin lies on a face, the first crossings may come at times far below zero: such times mean
+  // nothing.
   const double time = (max_range - resolution) * 0.999;
   return time > 0.0 ? time : -std::numeric_limits<double>::infinity();
 }
 
-/// Completes a hit with what follows from the voxel it ended in. One function for all casters, so that entry
-/// and distance are equal wherever the voxel is.
-/// @param direction as `normalized_as_octomap` leaves it, not zero unless the ray ended where it began
+/// The hit of a ray that ended in a known voxel. One function for all casters, so that entry and distance are
+/// equal wherever the voxel is.
+/// @param direction as `normalized_as_octomap` returns it, not zero unless the ray ended where it began
 Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
              const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key);
 

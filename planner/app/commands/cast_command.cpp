@@ -27,7 +27,7 @@ struct Options {
   std::optional<Eigen::Vector3f> to, direction;
   std::optional<double> range;
   UnknownPolicy unknown = UnknownPolicy::kBlock;
-  planner::CasterKind caster = planner::CasterKind::kEmbree;
+  CasterKind caster = CasterKind::kFast;
   bool count = false, json = false;
 };
 

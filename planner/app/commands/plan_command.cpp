@@ -183,7 +183,7 @@ Optimized optimize(const Options& options, const planner::Robot& robot, const Vo
   position.spacing = path_options(options).spacing;
   std::vector<Pose>& viewpoints = path.viewpoints;
   const double first_yaw = viewpoints.front().yaw, last_yaw = viewpoints.back().yaw;
-  const auto caster = make_embree_ray_caster(grid);
+  const auto caster = make_ray_caster(grid);
   const double range = robot.view.max_range + (options.move ? position.max_shift : 0.0);
   const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
 

@@ -60,7 +60,7 @@ struct Options {
   Method mode = Method::kDefault;
   std::optional<Samples> samples;
   std::uint64_t seed = 1;
-  planner::CasterKind caster = planner::CasterKind::kEmbree;
+  CasterKind caster = CasterKind::kFast;
   std::optional<Shown> show;
 };
 

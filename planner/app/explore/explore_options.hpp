@@ -37,7 +37,7 @@ struct ExploreOptions {
   std::optional<planner::PathSearch> search;
   std::optional<ViewQualityOptions::Renderer> renderer;
   bool assign = true, optimize = true;
-  planner::CasterKind caster = planner::CasterKind::kEmbree;
+  CasterKind caster = CasterKind::kFast;
   std::uint64_t seed = 1;
   int max_steps = 1000;
   std::optional<double> epsilon, lambda, advance, min_distance;

@@ -32,18 +32,6 @@ class PhaseClock {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-std::unique_ptr<RayCaster> make_caster(CasterKind kind, const Mapping& mapping) {
-  switch (kind) {
-    case CasterKind::kGrid:
-      return make_grid_ray_caster(mapping.grid());
-    case CasterKind::kOctomap:
-      return make_octomap_ray_caster(mapping.tree());
-    case CasterKind::kEmbree:
-      break;
-  }
-  return make_embree_ray_caster(mapping.grid());
-}
-
 // Targets that are in view from where the robot has been, the first viewpoint left out, and are unknown
 // still.
 std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const InformationGain& gain,
@@ -70,7 +58,7 @@ Exploration::State::State(ExplorationOptions given, Mapping map)
     : options(std::move(given)),
       mapping(std::move(map)),
       frontiers(mapping.grid(), mapping.bounds()),
-      caster(make_caster(options.caster, mapping)),
+      caster(make_ray_caster(options.caster, mapping.grid(), mapping.tree())),
       abandoned(options.max_visits) {}
 
 ExplorationStep Exploration::State::new_step() const {

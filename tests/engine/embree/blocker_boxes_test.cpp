@@ -125,7 +125,7 @@ TEST(BlockerBoxes, FollowingEqualsMakingAnew) {
           };
           grid.fill({{along(), along(), along()}, log2_edge}, static_cast<Occupancy>(random.below(3)));
         }
-        followed = detail::follow_blockers(followed, before, grid, unknown);
+        followed = detail::update_blockers(followed, before, grid, unknown);
         ASSERT_EQ(boxes_of(followed), boxes_of(make_blockers(grid, unknown)));
       }
     }
@@ -133,7 +133,7 @@ TEST(BlockerBoxes, FollowingEqualsMakingAnew) {
   const Blockers blockers = make_blockers(grid, UnknownPolicy::kBlock);
   const VoxelGrid before = grid;
   grid.set({32768 + 20, 32768 + 20, 32768 + 20}, Occupancy::kOccupied);
-  const Blockers after = detail::follow_blockers(blockers, before, grid, UnknownPolicy::kBlock);
+  const Blockers after = detail::update_blockers(blockers, before, grid, UnknownPolicy::kBlock);
   std::size_t shared = 0;
   for (const auto& group : after.groups)
     shared += static_cast<std::size_t>(std::count(blockers.groups.begin(), blockers.groups.end(), group));

@@ -204,7 +204,7 @@ TEST_F(OctreeFileTest, RefusesWhatIsNoReadableFile) {
   std::filesystem::remove(path());
   std::filesystem::create_symlink(path(), path());
   EXPECT_FALSE(read());
-  says({"cannot be looked at"});
+  says({"cannot be inspected"});
 }
 
 TEST_F(OctreeFileTest, RefusesWhatItMayNotRead) {

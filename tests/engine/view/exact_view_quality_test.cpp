@@ -193,7 +193,7 @@ TEST(ExactViewQuality, IsWhatRaysToAllTargetsSay) {
     Case some = random_case(seed);
     some.view.max_range = 15 * kResolution;
     SCOPED_TRACE(some.name);
-    for (const auto& caster : {make_grid_ray_caster(some.grid), make_embree_ray_caster(some.grid)}) {
+    for (const auto& caster : {make_grid_ray_caster(some.grid), make_ray_caster(some.grid)}) {
       ViewQualityOptions options = exact(36);
       // What is drawn, and how, means nothing.
       options.samples = 3;
@@ -284,7 +284,7 @@ TEST(ExactViewQuality, AfterUpdatesEqualsRenderingAgain) {
     Case some = hall(3, bins == 0 ? 1 : 2);
     ASSERT_GT(some.viewpoints.size(), 4000U);
     Random random(5);
-    const auto caster = make_embree_ray_caster(some.grid);
+    const auto caster = make_ray_caster(some.grid);
     ViewQualityImage updated(some.grid.lattice(), some.view, exact(bins));
     updated.render(*caster, some.viewpoints, some.targets);
     std::size_t rendered = 0, all = 0;

@@ -215,7 +215,7 @@ Errors errors_of(const RayCaster& caster, const Hall& hall, const VoxelKey& view
 
 TEST(ViewQuality, UnbiasedEstimatorIsUnbiasedAndItsErrorIsHonest) {
   const Hall hall(3);
-  const auto caster = make_embree_ray_caster(hall.grid);
+  const auto caster = make_ray_caster(hall.grid);
   const VoxelKey m = hall.middle();
   for (const Sampling sampling : kSamplings)
     for (const int shift : {-9, 0, 7}) {
@@ -239,7 +239,7 @@ TEST(ViewQuality, UnbiasedEstimatorIsUnbiasedAndItsErrorIsHonest) {
 
 TEST(ViewQuality, ErrorFallsWithTheRootOfTheSamples) {
   const Hall hall(4);
-  const auto caster = make_embree_ray_caster(hall.grid);
+  const auto caster = make_ray_caster(hall.grid);
   const VoxelKey viewpoint = hall.middle();
   for (const Sampling sampling : kSamplings) {
     std::vector<double> spread;
@@ -258,14 +258,14 @@ TEST(ViewQuality, ErrorFallsWithTheRootOfTheSamples) {
 
 TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
   const Hall hall(5);
-  const auto embree = make_embree_ray_caster(hall.grid);
+  const auto fast = make_ray_caster(hall.grid);
   const auto grid = make_grid_ray_caster(hall.grid);
   for (const Sampling sampling : kSamplings) {
     const ViewQualityOptions options{.sampling = sampling, .azimuth_bins = 8};
-    const auto image = render(*embree, hall, hall.viewpoints, camera(), options);
+    const auto image = render(*fast, hall, hall.viewpoints, camera(), options);
     for (const int threads : {1, 2})
       tbb::task_arena(threads).execute(
-          [&] { expect_equal(image, render(*embree, hall, hall.viewpoints, camera(), options)); });
+          [&] { expect_equal(image, render(*fast, hall, hall.viewpoints, camera(), options)); });
     expect_equal(image, render(*grid, hall, hall.viewpoints, camera(), options));
 
     std::vector<std::size_t> order(hall.viewpoints.size());
@@ -278,7 +278,7 @@ TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
     shuffled.viewpoints.push_back(shuffled.viewpoints.front());
     std::reverse(shuffled.targets.begin(), shuffled.targets.end());
     shuffled.targets.push_back(shuffled.targets.front());
-    const auto other = render(*embree, shuffled, shuffled.viewpoints, camera(), options);
+    const auto other = render(*fast, shuffled, shuffled.viewpoints, camera(), options);
     for (std::size_t i = 0; i < order.size(); ++i) {
       ASSERT_EQ(other.values()[i], image.values()[order[i]]);
       ASSERT_TRUE(std::ranges::equal(other.bin_hits(i), image.bin_hits(order[i])));
@@ -287,7 +287,7 @@ TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
 
     ViewQualityOptions reseeded = options;
     reseeded.seed = 2;
-    const auto redrawn = render(*embree, hall, hall.viewpoints, camera(), reseeded);
+    const auto redrawn = render(*fast, hall, hall.viewpoints, camera(), reseeded);
     std::size_t differing = 0;
     for (std::size_t i = 0; i < image.size(); ++i)
       differing += redrawn.values()[i] == image.values()[i] ? 0 : 1;
@@ -355,7 +355,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
     for (const bool exactly : {false, true}) {
       Hall hall(7);
       Random random(exactly ? 8 : 9);
-      const auto caster = make_embree_ray_caster(hall.grid);
+      const auto caster = make_ray_caster(hall.grid);
       const ViewQualityOptions options{.samples = 24, .sampling = sampling, .azimuth_bins = 12};
       ViewQualityImage image(hall.grid.lattice(), camera(), options);
       image.render(*caster, hall.viewpoints, hall.targets);

@@ -1,4 +1,4 @@
-// CubeSkips against the loops that they stand for: additions one by one, steps one by one.
+// skip_cube against the loops that it replaces: additions one by one, steps one by one.
 
 #include "walk/cube_skip.hpp"
 
@@ -77,14 +77,14 @@ TEST(CubeSkip, AdditionsAtTheLimitsOfDouble) {
 
 template <class Time>
 struct Stepped {
-  detail::Standing<Time> at;
+  detail::PathState<Time> at;
   bool overstepped = false;
   Time last{};
 };
 
 // The same way by single steps, with rule 5 written out.
 template <class Time>
-Stepped<Time> step_out_of_cube(detail::Standing<Time> at, int log2_edge) {
+Stepped<Time> step_out_of_cube(detail::PathState<Time> at, int log2_edge) {
   const auto cube = [&](const std::array<int, 3>& key) {
     return std::array{key[0] >> log2_edge, key[1] >> log2_edge, key[2] >> log2_edge};
   };
@@ -103,11 +103,11 @@ Stepped<Time> step_out_of_cube(detail::Standing<Time> at, int log2_edge) {
 }
 
 template <class Time>
-void expect_same_leap(const detail::Standing<Time>& from, int log2_edge) {
+void expect_same_skip(const detail::PathState<Time>& from, int log2_edge) {
   const Stepped<Time> expected = step_out_of_cube(from, log2_edge);
-  detail::Standing<Time> at = from;
-  const detail::CubeSkip leap = detail::skip_cube(at, log2_edge, std::numeric_limits<Time>::max());
-  ASSERT_EQ(leap, expected.overstepped ? detail::CubeSkip::kOverstep : detail::CubeSkip::kInside);
+  detail::PathState<Time> at = from;
+  const detail::CubeSkip skip = detail::skip_cube(at, log2_edge, std::numeric_limits<Time>::max());
+  ASSERT_EQ(skip, expected.overstepped ? detail::CubeSkip::kOverstep : detail::CubeSkip::kSkipped);
   ASSERT_EQ(at.steps_left, expected.at.steps_left);
   if (!expected.overstepped) {
     ASSERT_EQ(at.key, expected.at.key);
@@ -147,7 +147,7 @@ TEST(CubeSkip, EndsWhereSingleStepsEnd) {
       if (line.step[i] > 0) steps[i] = Lattice::kKeysPerAxis - 1 - steps[i];
       if (random.one_in(5)) steps[i] = std::min(steps[i], random.below(100));
     }
-    expect_same_leap(detail::Standing<double>{start, line, steps}, 6 + 3 * random.below(3));
+    expect_same_skip(detail::PathState<double>{start, line, steps}, 6 + 3 * random.below(3));
   }
 }
 
@@ -164,8 +164,8 @@ TEST(CubeSkip, EndsWhereSingleStepsEndBetweenVoxelCentres) {
         from.z >> log2_edge == to.z >> log2_edge)
       continue;
     const auto line = detail::crossings_of(from, to);
-    expect_same_leap(
-        detail::Standing<std::int64_t>{
+    expect_same_skip(
+        detail::PathState<std::int64_t>{
             from, line, {std::abs(from.x - to.x), std::abs(from.y - to.y), std::abs(from.z - to.z)}},
         log2_edge);
   }

@@ -5,6 +5,7 @@
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/ray_caster.hpp>
 
@@ -169,9 +170,7 @@ PathCount expected_count(const octomap::OcTree& tree, const KeySegment& segment,
 
 struct Casters {
   explicit Casters(const octomap::OcTree& tree) : grid(make_voxel_grid(tree)) {
-    all.emplace_back("octomap", make_octomap_ray_caster(tree));
-    all.emplace_back("grid", make_grid_ray_caster(grid));
-    all.emplace_back("embree", make_embree_ray_caster(grid));
+    for (const auto& [name, kind] : kCasterNames) all.emplace_back(name, make_ray_caster(kind, grid, tree));
   }
   VoxelGrid grid;
   std::vector<std::pair<std::string, std::unique_ptr<RayCaster>>> all;
@@ -364,10 +363,11 @@ TEST(PathCount, SpansOfDifferentSizesThrow) {
   EXPECT_EQ(counts, std::vector<PathCount>(2, kNotWritten));
 }
 
-// A caster that followed edits counts as a new one does.
-TEST(PathCount, FollowsAnUpdate) {
+// An updated caster counts as a new one does.
+TEST(PathCount, AfterAnUpdate) {
   VoxelGrid grid = make_voxel_grid(*make_random_tree(6, 0.3));
-  const auto walk = make_grid_ray_caster(grid), embree = make_embree_ray_caster(grid);
+  const std::array casters = {make_grid_ray_caster(grid), make_embree_ray_caster(grid),
+                              make_ray_caster(grid)};
   const auto rays = adversarial_rays(grid, 3'000, 41);
   Random random(42);
   for (int i = 0; i < 400; ++i) {
@@ -375,10 +375,10 @@ TEST(PathCount, FollowsAnUpdate) {
     grid.set({along(), along(), along()}, static_cast<Occupancy>(random.below(3)));
   }
   std::vector<PathCount> before(rays.size()), expected(rays.size()), counts(rays.size());
-  walk->count(rays, before, UnknownPolicy::kPass);
+  casters[0]->count(rays, before, UnknownPolicy::kPass);
   make_grid_ray_caster(grid)->count(rays, expected, UnknownPolicy::kPass);
   ASSERT_NE(before, expected);
-  for (RayCaster* caster : {walk.get(), embree.get()}) {
+  for (const auto& caster : casters) {
     caster->update(grid);
     caster->count(rays, counts, UnknownPolicy::kPass);
     EXPECT_EQ(counts, expected);

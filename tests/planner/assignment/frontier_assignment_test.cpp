@@ -108,7 +108,7 @@ TEST(FrontierAssignment, EqualsTheAlgorithmAsPrinted) {
   std::size_t taken = 0, unseen = 0;
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     const Scene scene = random_scene(seed);
-    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_embree_ray_caster(scene.grid);
+    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_ray_caster(scene.grid);
     SCOPED_TRACE(seed);
     expect_as_printed(scene, some_view(seed), *caster, taken, unseen);
     if (HasFatalFailure()) return;
@@ -121,7 +121,7 @@ TEST(FrontierAssignment, EqualsTheAlgorithmAsPrintedInDeepCorridors) {
   std::size_t taken = 0, unseen = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const Scene scene = random_scene(100 + seed, true);
-    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_embree_ray_caster(scene.grid);
+    const auto caster = seed % 2 == 0 ? make_grid_ray_caster(scene.grid) : make_ray_caster(scene.grid);
     // The last ones reach higher than a word has bits.
     const FieldOfView view = seed <= 12 ? some_view(seed) : camera(30.0);
     SCOPED_TRACE(seed);
@@ -137,7 +137,7 @@ TEST(FrontierAssignment, PreviousViewpointsChangeNoAnswer) {
     SCOPED_TRACE(seed);
     const Scene scene = random_scene(200 + seed, seed % 2 == 0);
     const FieldOfView view = some_view(seed);
-    const auto caster = make_embree_ray_caster(scene.grid);
+    const auto caster = make_ray_caster(scene.grid);
     const AssignedFrontiers plain =
         find_visible_frontiers(*caster, scene.grid, scene.frontiers, {scene.cells, view});
     std::vector<FrontierViewpoint> viewpoints;
@@ -167,7 +167,7 @@ TEST(FrontierAssignment, GivesTheSecondAgentWhatTheFirstDoesNotSee) {
   std::erase_if(low.cells, [](const VoxelKey& k) { return k.z != 32768 - 5; });
   std::erase_if(high.cells, [](const VoxelKey& k) { return k.z < 32768 + 1; });
   const std::vector<FrontierAgent> agents = {{low.cells, lidar(6.0)}, {high.cells, camera(10.0)}};
-  const auto caster = make_embree_ray_caster(scene.grid);
+  const auto caster = make_ray_caster(scene.grid);
   const auto assigned = assign_frontiers(*caster, scene.grid, scene.frontiers, agents);
   const auto ugv = naive(low, lidar(6.0)), alone = naive(high, camera(10.0));
   std::vector<std::uint32_t> uav, unassigned;
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(DenseOrNot, FrontierAssignmentThreads, testing::Bool())
 
 TEST_P(FrontierAssignmentThreads, AnyNumberGivesTheSame) {
   const Scene scene = random_scene(9, GetParam());
-  const auto caster = make_embree_ray_caster(scene.grid);
+  const auto caster = make_ray_caster(scene.grid);
   std::vector<AssignedFrontiers> assigned;
   for (const int threads : {1, 2, 3}) {
     tbb::task_arena arena(threads);

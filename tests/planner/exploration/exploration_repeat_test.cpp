@@ -47,7 +47,8 @@ TEST(ExplorationSteps, AreTheSameByEveryCasterAndNumberOfThreads) {
   std::vector<ExplorationStep> expected;
   tbb::task_arena(2).execute([&] { expected = steps_of(team, options, 8, &expected_map); });
   using Setting = std::pair<CasterKind, int>;
-  for (const auto& [caster, threads] : {Setting{CasterKind::kEmbree, 1}, Setting{CasterKind::kGrid, 2}}) {
+  for (const auto& [caster, threads] :
+       {Setting{CasterKind::kFast, 1}, Setting{CasterKind::kEmbree, 2}, Setting{CasterKind::kGrid, 2}}) {
     options.caster = caster;
     std::string map;
     std::vector<ExplorationStep> steps;

@@ -290,7 +290,7 @@ TEST(Exploration, RefusesWrongOptions) {
   };
   using O = ExplorationOptions;
   expect_refusal([](O& o) { o.team.clear(); }, "no robot");
-  expect_refusal([](O& o) { o.caster = static_cast<CasterKind>(3); }, "caster");
+  expect_refusal([](O& o) { o.caster = static_cast<CasterKind>(4); }, "caster");
   expect_refusal([](O& o) { o.epsilon = -1.0; }, "epsilon is -1");
   expect_refusal([](O& o) { o.epsilon = std::nan(""); }, "epsilon is nan");
   expect_refusal([](O& o) { o.epsilon = HUGE_VAL; }, "epsilon is inf");

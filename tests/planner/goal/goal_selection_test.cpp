@@ -199,12 +199,12 @@ TEST(GoalSelection, SameGoalOnOneAndTwoThreadsAndWithEveryExactCaster) {
           return selection.select(caster, {room.grid}, frontiers, poses);
         });
       };
-      const auto grid = make_grid_ray_caster(room.grid), embree = make_embree_ray_caster(room.grid);
+      const auto grid = make_grid_ray_caster(room.grid), fast = make_ray_caster(room.grid);
       const TeamGoals one = decide(*grid, 1);
       EXPECT_TRUE(one.goals[0].pose);
       expect_same(one, decide(*grid, 2));
-      expect_same(one, decide(*embree, 1));
-      expect_same(one, decide(*embree, 2));
+      expect_same(one, decide(*fast, 1));
+      expect_same(one, decide(*fast, 2));
     }
   }
 }
@@ -213,7 +213,7 @@ TEST(GoalSelection, FollowsAMapAsIfItHadNotSeenItBefore) {
   for (const auto& team : teams()) {
     GoalRoom room(40, 9, 7);
     Random random(11);
-    auto caster = make_embree_ray_caster(room.grid);
+    auto caster = make_ray_caster(room.grid);
     GoalSelection kept(team, room.grid.lattice(), room.bounds());
     for (int step = 0; step < 6; ++step) {
       const VoxelGrid before = room.grid;

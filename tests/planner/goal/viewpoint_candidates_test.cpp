@@ -138,7 +138,7 @@ TEST_P(PossibleGoals, AFewCountedCellsLeadToNoWorseAGoal) {
       SCOPED_TRACE(seed);
       GoalRoom room(50, 7, seed);
       room.clear(4, 4, 3);
-      const auto caster = make_embree_ray_caster(room.grid);
+      const auto caster = make_ray_caster(room.grid);
       TeamMember member = robot_in_space(GetParam());
       member.options.refined = refined;
       const Goal pruned = choose(room, *caster, member).goal;

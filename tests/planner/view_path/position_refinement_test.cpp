@@ -130,14 +130,14 @@ TEST(PositionRefinement, NeverSeesFewerAndStaysFree) {
       const PathPlan plan = plan_path(corridor, hall.grid.lattice(), start, goal, {seed, 0, 0});
       if (!plan.found()) continue;
       const FrontierSet frontiers(hall.grid, hall.bounds);
-      const auto embree = make_embree_ray_caster(hall.grid), walk = make_grid_ray_caster(hall.grid);
-      const auto pairs = visible_pairs(*embree, hall.grid, plan.viewpoints, frontiers.keys(), robot.view);
+      const auto fast = make_ray_caster(hall.grid), walk = make_grid_ray_caster(hall.grid);
+      const auto pairs = visible_pairs(*fast, hall.grid, plan.viewpoints, frontiers.keys(), robot.view);
       auto path = plan.viewpoints;
       const auto turned =
           optimize_path(path, centers(hall.grid.lattice(), frontiers.keys()), pairs, robot.view);
       for (std::size_t i = 1; i + 1 < path.size(); ++i) path[i].yaw = turned.yaws[i];
 
-      const auto refined = refine_positions(path, frontiers.keys(), *embree, hall.grid, corridor, robot);
+      const auto refined = refine_positions(path, frontiers.keys(), *fast, hall.grid, corridor, robot);
       expect_sound(hall, path, refined, frontiers.keys(), robot);
       if (HasFatalFailure()) return;
       EXPECT_EQ(same(path, refined.viewpoints), refined.outer_iterations == 0);
@@ -168,7 +168,7 @@ struct OutOfRange {
     robot.view = {FieldOfView::Shape::kSpinning, 0.0, 0.7, 3.0};
   }
   [[nodiscard]] RefinedPath refine(const PositionOptions& options = {}) const {
-    const auto caster = make_embree_ray_caster(hall.grid);
+    const auto caster = make_ray_caster(hall.grid);
     return refine_positions(path, frontiers, *caster, hall.grid, hall.corridor(robot, path[0]), robot,
                             options);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
@@ -21,16 +22,9 @@
 
 namespace frontlux::planner {
 
-/// What answers the planner's visibility queries.
-enum class CasterKind : std::uint8_t {
-  kEmbree,   ///< `make_embree_ray_caster`
-  kGrid,     ///< `make_grid_ray_caster`; the same answers
-  kOctomap,  ///< `make_octomap_ray_caster`, the baseline; in rare cases it rounds to another answer
-};
-
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
-  CasterKind caster = CasterKind::kEmbree;
+  CasterKind caster = CasterKind::kFast;
   bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;  ///< off: robots look ahead along their paths
   PathOptions path;
@@ -120,7 +114,7 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 ///     while (!exploration.end()) exploration.step(drive);
 ///
 /// The result depends on the options, the starts and the scans only: not on time, not on the number of
-/// threads, not on the choice between the embree and the grid caster. Works in TBB's current arena. Thread
+/// threads, not on the choice among the fast, the embree and the grid caster. Works in TBB's current arena. Thread
 /// safety: as a standard container.
 class Exploration {
  public:

@@ -5,29 +5,29 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace frontlux::detail {
 
-/// A value that readers take snapshots of while a writer replaces it. Nobody waits longer than a pointer
-/// takes to copy. Each stripe has its own lock and its own reference count, so that threads that cast ray by
-/// ray do not pull the same cache line to and fro.
+/// The latest of the values that a writer sets. Readers keep the one that they got for as long as they need
+/// it. Readers and writer wait for each other no longer than it takes to copy a pointer. Each stripe has its
+/// own lock and its own reference count, so that threads that cast single rays do not compete for one cache
+/// line.
 template <class T>
-class Published {
+class Latest {
  public:
-  using Snapshot = std::shared_ptr<const T>;
+  explicit Latest(std::shared_ptr<const T> value) { set(std::move(value)); }
 
-  explicit Published(Snapshot value) { replace(std::move(value)); }
-
-  [[nodiscard]] Snapshot snapshot() const {
+  [[nodiscard]] std::shared_ptr<const T> get() const {
     Stripe& stripe = stripes_[stripe_of_this_thread()];
     const std::lock_guard lock(stripe.mutex);
     return stripe.value;
   }
 
-  void replace(Snapshot value) {
+  void set(std::shared_ptr<const T> value) {
     for (Stripe& stripe : stripes_) {
       // A second owner with a count of its own keeps the first alive.
-      Snapshot copy(value.get(), [value](const T*) {});
+      std::shared_ptr<const T> copy(value.get(), [value](const T*) {});
       const std::lock_guard lock(stripe.mutex);
       stripe.value.swap(copy);
     }
@@ -37,7 +37,7 @@ class Published {
   static constexpr std::size_t kStripes = 16;
   struct alignas(64) Stripe {
     std::mutex mutex;
-    Snapshot value;
+    std::shared_ptr<const T> value;
   };
 
   static std::size_t stripe_of_this_thread() {

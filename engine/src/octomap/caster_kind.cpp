@@ -1,0 +1,32 @@
+#include <frontlux/caster_kind.hpp>
+
+namespace frontlux {
+namespace {
+
+template <class Tree>
+std::unique_ptr<RayCaster> make(CasterKind kind, const VoxelGrid& grid, const Tree& tree) {
+  switch (kind) {
+    case CasterKind::kEmbree:
+      return make_embree_ray_caster(grid);
+    case CasterKind::kGrid:
+      return make_grid_ray_caster(grid);
+    case CasterKind::kOctomap:
+      return make_octomap_ray_caster(tree);
+    case CasterKind::kFast:
+      break;
+  }
+  return make_ray_caster(grid);
+}
+
+}  // namespace
+
+std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
+                                           const octomap::OcTree& tree) {
+  return make(kind, grid, tree);
+}
+std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
+                                           const octomap::ColorOcTree& tree) {
+  return make(kind, grid, tree);
+}
+
+}  // namespace frontlux

@@ -1,0 +1,45 @@
+#pragma once
+
+// OctoMap reports rays that leave its key range on stderr, from inside the header that holds castRay. A
+// library must not print. So in all files that include OctoMap, and they include it from here, its macros
+// print nothing.
+#include <octomap/octomap_types.h>
+#undef OCTOMAP_WARNING
+#undef OCTOMAP_ERROR
+#undef OCTOMAP_WARNING_STR
+#undef OCTOMAP_ERROR_STR
+#define OCTOMAP_WARNING(...) ((void)0)
+#define OCTOMAP_ERROR(...) ((void)0)
+#define OCTOMAP_WARNING_STR(args) ((void)0)
+#define OCTOMAP_ERROR_STR(args) ((void)0)
+#include <frontlux/octomap.hpp>
+#include <frontlux/ray.hpp>
+
+#include <Eigen/Core>
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <variant>
+
+namespace frontlux::detail {
+
+inline octomap::point3d to_octomap(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+inline Eigen::Vector3f from_octomap(const octomap::point3d& p) { return {p.x(), p.y(), p.z()}; }
+inline octomap::OcTreeKey to_octomap(const VoxelKey& key) { return {key.x, key.y, key.z}; }
+inline VoxelKey from_octomap(const octomap::OcTreeKey& key) { return {key[0], key[1], key[2]}; }
+
+/// @param node  of that tree; null for a voxel that has none
+template <class Tree>
+Occupancy state_of(const Tree& tree, const typename Tree::NodeType* node) {
+  if (node == nullptr) return Occupancy::kUnknown;
+  return tree.isNodeOccupied(node) ? Occupancy::kOccupied : Occupancy::kFree;
+}
+template <class Tree>
+Occupancy state_at(const Tree& tree, const VoxelKey& key) {
+  return state_of(tree, tree.search(to_octomap(key)));
+}
+
+/// A tree of either kind that somebody else owns.
+using OctreePointer = std::variant<const octomap::OcTree*, const octomap::ColorOcTree*>;
+
+}  // namespace frontlux::detail

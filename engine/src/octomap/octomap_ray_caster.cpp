@@ -1,0 +1,152 @@
+#include "octomap/octomap_adapter.hpp"
+#include "parallel/answer_each.hpp"
+#include "walk/path_count.hpp"
+#include "walk/plain_count.hpp"
+#include "walk/walk.hpp"
+
+#include <frontlux/octomap.hpp>
+#include <frontlux/ray_caster.hpp>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace frontlux {
+namespace {
+
+using detail::answer_each;
+using detail::from_octomap;
+using detail::to_octomap;
+
+template <class Tree>
+class OctomapRayCaster final : public RayCaster {
+ public:
+  explicit OctomapRayCaster(const Tree& tree) : RayCaster(Lattice(tree.getResolution())), tree_(tree) {}
+
+ private:
+  // Flattened, so that the code compiled here, with this project's flags, is what runs: castRay is a weak
+  // template symbol, and the linker could choose another copy.
+  [[gnu::flatten]] bool cast_ray(const octomap::point3d& origin, const octomap::point3d& direction,
+                                 octomap::point3d& end, UnknownPolicy unknown, double max_range) const {
+    return tree_.Tree::castRay(origin, direction, end, unknown == UnknownPolicy::kPass, max_range);
+  }
+
+  Hit cast_one(const Ray& ray, UnknownPolicy unknown) const {
+    const auto start = lattice().key(ray.origin);
+    if (!start) return {};
+    octomap::point3d end(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
+    const bool hit = cast_ray(to_octomap(ray.origin), to_octomap(ray.direction), end, unknown, ray.max_range);
+    if (!(end.x() == end.x())) return {};  // castRay left it untouched
+
+    // castRay answers no more than "hit" or "no hit", and the last voxel. The rest follows from its rules 6
+    // to 8.
+    const Eigen::Vector3f center = from_octomap(end);
+    const VoxelKey key = lattice().key(center).value();
+    const Occupancy state = state_at(key);
+    RayStop stop = RayStop::kLeftMap;
+    if (hit)
+      stop = RayStop::kOccupied;
+    else if (key != *start && ray.max_range > 0.0 && detail::out_of_range(ray.origin, center, ray.max_range))
+      stop = RayStop::kOutOfRange;
+    else if (state == Occupancy::kUnknown && unknown == UnknownPolicy::kBlock)
+      stop = RayStop::kUnknown;
+    return detail::make_hit(lattice(), ray, *start, detail::normalized_as_octomap(ray.direction), stop, state,
+                            key);
+  }
+
+  // True if castRay from `from` stops in the voxel of `to`, or gets further without a blocker.
+  bool visible_one(const Eigen::Vector3f& from, const Eigen::Vector3f& to, UnknownPolicy unknown) const {
+    const auto start = lattice().key(from), target = lattice().key(to);
+    if (!start || !target) return false;
+    if (*start == *target) return true;
+    const octomap::point3d origin = to_octomap(from);
+    const octomap::point3d target_center = to_octomap(lattice().center(*target));
+    double distance_sq = 0.0;  // as castRay sums it, so that the target itself is never out of range
+    for (unsigned i = 0; i < 3; ++i) {
+      const float squared = (target_center(i) - origin(i)) * (target_center(i) - origin(i));
+      distance_sq += static_cast<double>(squared);
+    }
+    const double range = std::sqrt(distance_sq) * (1.0 + 1e-12);
+    octomap::point3d end = origin;
+    if (cast_ray(origin, to_octomap(to) - origin, end, unknown, range))
+      return lattice().key(from_octomap(end)) == target;
+    const auto last = lattice().key(from_octomap(end));
+    if (last == target) return true;
+    return detail::out_of_range(from, from_octomap(end), range);
+  }
+
+  void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
+    answer_each(rays, hits, [&](const Ray& ray) { return cast_one(ray, unknown); });
+  }
+  void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
+                  UnknownPolicy unknown) const override {
+    answer_each(segments, visible, [&](const Segment& s) { return visible_one(s.from, s.to, unknown); });
+  }
+  void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
+                  UnknownPolicy unknown) const override {
+    answer_each(segments, visible, [&](const KeySegment& s) {
+      return visible_one(lattice().center(s.from), lattice().center(s.to), unknown);
+    });
+  }
+
+  Occupancy state_at(const VoxelKey& key) const { return detail::state_at(tree_, key); }
+  [[nodiscard]] auto states() const {
+    return [this](const VoxelKey& key) { return state_at(key); };
+  }
+  static bool anywhere(const VoxelKey&) { return true; }
+
+  PathCount count_one(const Ray& ray, UnknownPolicy unknown) const {
+    const auto start = lattice().key(ray.origin);
+    if (!start) return {};
+    const Occupancy state = state_at(*start);
+    if (detail::blocks(state, unknown)) return {0, 0, 0, detail::stop_in(state)};
+    const auto path =
+        detail::path_along(lattice(), ray.origin, *start, detail::normalized_as_octomap(ray.direction));
+    if (!path) return {};
+    const auto in_range = [&](const VoxelKey& key) {
+      return !(ray.max_range > 0.0 && detail::out_of_range(ray.origin, lattice().center(key), ray.max_range));
+    };
+    return detail::count_plainly(*path, unknown, states(), in_range, RayStop::kLeftMap);
+  }
+  PathCount count_one(const Segment& segment, UnknownPolicy unknown) const {
+    const auto from = lattice().key(segment.from), to = lattice().key(segment.to);
+    if (!from || !to) return {};
+    if (*from == *to) return {0, 0, 0, RayStop::kReached};
+    const auto path = detail::path_between(lattice(), segment, *from, *to);
+    if (!path) return {};
+    return detail::count_plainly(*path, unknown, states(), anywhere, RayStop::kOutOfRange);
+  }
+  PathCount count_one(const KeySegment& segment, UnknownPolicy unknown) const {
+    if (segment.from == segment.to) return {0, 0, 0, RayStop::kReached};
+    return detail::count_plainly(detail::path_between(segment), unknown, states(), anywhere,
+                                 RayStop::kOutOfRange);
+  }
+
+  void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    answer_each(rays, counts, [&](const Ray& ray) { return count_one(ray, unknown); });
+  }
+  void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    answer_each(segments, counts, [&](const Segment& segment) { return count_one(segment, unknown); });
+  }
+  void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
+                UnknownPolicy unknown) const override {
+    answer_each(segments, counts, [&](const KeySegment& segment) { return count_one(segment, unknown); });
+  }
+
+  void do_update(const VoxelGrid&) override {}
+
+  const Tree& tree_;
+};
+
+}  // namespace
+
+std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree) {
+  return std::make_unique<OctomapRayCaster<octomap::OcTree>>(tree);
+}
+std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree) {
+  return std::make_unique<OctomapRayCaster<octomap::ColorOcTree>>(tree);
+}
+
+}  // namespace frontlux

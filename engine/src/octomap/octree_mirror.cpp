@@ -1,0 +1,128 @@
+#include "octomap/octomap_adapter.hpp"
+
+#include <frontlux/key_box.hpp>
+#include <frontlux/octomap.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontlux {
+namespace {
+
+using detail::state_at;
+using detail::state_of;
+
+template <class Tree>
+void mirror_node(const Tree& tree, const typename Tree::NodeType* node, const Block& block, VoxelGrid& grid) {
+  if (block.log2_edge == 0 || !tree.nodeHasChildren(node)) {
+    grid.fill(block, state_of(tree, node));
+    return;
+  }
+  const int log2_edge = block.log2_edge - 1;
+  for (unsigned i = 0; i < 8; ++i) {
+    if (!tree.nodeChildExists(node, i)) continue;
+    const int half = 1 << log2_edge;
+    const VoxelKey& low = block.corner;
+    const VoxelKey corner =
+        make_key(low.x + (i & 1U ? half : 0), low.y + (i & 2U ? half : 0), low.z + (i & 4U ? half : 0));
+    mirror_node(tree, tree.getNodeChild(node, i), {corner, log2_edge}, grid);
+  }
+}
+
+template <class Tree>
+VoxelGrid mirror(const Tree& tree) {
+  if (tree.getTreeDepth() != 16)
+    throw std::invalid_argument(
+        "only trees of OctoMap's standard depth 16 are supported, this one has depth " +
+        std::to_string(tree.getTreeDepth()));
+  VoxelGrid grid(tree.getResolution());
+  if (tree.getRoot() != nullptr) mirror_node(tree, tree.getRoot(), {{}, 16}, grid);
+  return grid;
+}
+
+VoxelGrid mirror(const detail::OctreePointer& tree) {
+  return std::visit([](const auto* t) { return mirror(*t); }, tree);
+}
+
+}  // namespace
+
+VoxelGrid make_voxel_grid(const octomap::OcTree& tree) { return mirror(tree); }
+VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree) { return mirror(tree); }
+
+struct OctreeMirror::Watch {
+  detail::OctreePointer tree;
+  VoxelGrid grid;
+  bool detecting = false;
+  const void* root = nullptr;
+  double occupancy_threshold = 0.0;
+  // Keys that changed before: one that changes back leaves the tree's list of changes, so all are read once
+  // more.
+  std::vector<VoxelKey> reported{};
+
+  explicit Watch(detail::OctreePointer watched) : tree(watched), grid(mirror(watched)) { remember(); }
+
+  void remember() {
+    std::visit(
+        [this](const auto* t) {
+          detecting = t->isChangeDetectionEnabled();
+          root = t->getRoot();
+          occupancy_threshold = static_cast<double>(t->getOccupancyThresLog());
+        },
+        tree);
+  }
+
+  [[nodiscard]] bool changes_are_complete() const {
+    return std::visit(
+        [this](const auto* t) {
+          return detecting && t->isChangeDetectionEnabled() && root != nullptr && root == t->getRoot() &&
+                 occupancy_threshold == static_cast<double>(t->getOccupancyThresLog()) &&
+                 grid.resolution() == t->getResolution();
+        },
+        tree);
+  }
+
+  void rebuild() {
+    grid = mirror(tree);
+    reported.clear();
+    remember();
+  }
+
+  void update() {
+    std::visit(
+        [this](const auto* t) {
+          const auto refresh = [&](const VoxelKey& key) { grid.set(key, state_at(*t, key)); };
+          for (const VoxelKey& key : reported) refresh(key);
+          reported.clear();
+          for (auto it = t->changedKeysBegin(); it != t->changedKeysEnd(); ++it)
+            reported.push_back(detail::from_octomap(it->first));
+          std::sort(reported.begin(), reported.end());
+          for (const VoxelKey& key : reported) refresh(key);
+        },
+        tree);
+    remember();
+  }
+};
+
+OctreeMirror::OctreeMirror(const octomap::OcTree& tree) : watch_(std::make_unique<Watch>(&tree)) {}
+OctreeMirror::OctreeMirror(const octomap::ColorOcTree& tree) : watch_(std::make_unique<Watch>(&tree)) {}
+OctreeMirror::~OctreeMirror() = default;
+OctreeMirror::OctreeMirror(OctreeMirror&&) noexcept = default;
+OctreeMirror& OctreeMirror::operator=(OctreeMirror&&) noexcept = default;
+
+const VoxelGrid& OctreeMirror::grid() const { return watch_->grid; }
+
+bool OctreeMirror::update() {
+  const bool incremental = watch_->changes_are_complete();
+  if (incremental)
+    watch_->update();
+  else
+    watch_->rebuild();
+  return incremental;
+}
+
+void OctreeMirror::rebuild() { watch_->rebuild(); }
+
+}  // namespace frontlux

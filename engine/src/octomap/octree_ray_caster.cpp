@@ -1,0 +1,50 @@
+#include "octomap/octomap_adapter.hpp"
+
+#include <frontlux/octomap.hpp>
+
+#include <memory>
+
+namespace frontlux {
+namespace {
+
+UnknownPolicy policy(bool ignore_unknown_cells) {
+  return ignore_unknown_cells ? UnknownPolicy::kPass : UnknownPolicy::kBlock;
+}
+
+}  // namespace
+
+struct OctreeRayCaster::Snapshot {
+  detail::OctreePointer tree;
+  std::unique_ptr<RayCaster> caster;
+
+  explicit Snapshot(detail::OctreePointer read_from)
+      : tree(read_from),
+        caster(make_ray_caster(std::visit([](const auto* t) { return make_voxel_grid(*t); }, read_from))) {}
+};
+
+OctreeRayCaster::OctreeRayCaster(const octomap::OcTree& tree)
+    : snapshot_(std::make_unique<Snapshot>(&tree)) {}
+OctreeRayCaster::OctreeRayCaster(const octomap::ColorOcTree& tree)
+    : snapshot_(std::make_unique<Snapshot>(&tree)) {}
+OctreeRayCaster::~OctreeRayCaster() = default;
+OctreeRayCaster::OctreeRayCaster(OctreeRayCaster&&) noexcept = default;
+OctreeRayCaster& OctreeRayCaster::operator=(OctreeRayCaster&&) noexcept = default;
+
+bool OctreeRayCaster::castRay(const octomap::point3d& origin, const octomap::point3d& direction,
+                              octomap::point3d& end, bool ignoreUnknownCells, double maxRange) const {
+  const Ray ray{detail::from_octomap(origin), detail::from_octomap(direction), maxRange};
+  const Hit hit = snapshot_->caster->cast(ray, policy(ignoreUnknownCells));
+  if (hit.stop != RayStop::kInvalid) end = detail::to_octomap(hit.end);
+  return hit.occupied();
+}
+
+void OctreeRayCaster::castRays(std::span<const Ray> rays, std::span<Hit> hits,
+                               bool ignoreUnknownCells) const {
+  snapshot_->caster->cast(rays, hits, policy(ignoreUnknownCells));
+}
+
+void OctreeRayCaster::refresh() { *snapshot_ = Snapshot(snapshot_->tree); }
+
+const RayCaster& OctreeRayCaster::caster() const { return *snapshot_->caster; }
+
+}  // namespace frontlux
