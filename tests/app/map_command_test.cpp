@@ -2,10 +2,9 @@
 #include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 
-#include <frontlux/io/recorded_scan.hpp>
+#include <frontlux/io/scan_graph.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
-#include <frontlux/io/scan_graph.hpp>
 
 #include <gtest/gtest.h>
 #include <octomap/ScanGraph.h>

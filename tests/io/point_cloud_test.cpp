@@ -47,8 +47,8 @@ TEST_F(PointCloud, ReadsClouds) {
   EXPECT_EQ(read_point_cloud(save("a.Ply", ply())), kPoints);
   EXPECT_TRUE(read_point_cloud(save("a.pcd", pcd_header("binary", "0"))).empty());
   const auto strange = read_point_cloud(
-      save("a.pcd", "FIELDS x y z\nSIZE 8 1 2\nTYPE F I I\nPOINTS 1\nDATA binary\n" + bytes_of(-1e300) +
-                        bytes_of<std::int8_t>(-3) + bytes_of<std::int16_t>(-300)));
+      save("a.pcd", std::string("FIELDS x y z\nSIZE 8 1 2\nTYPE F I I\nPOINTS 1\nDATA binary\n") +
+                        bytes_of(-1e300) + bytes_of<std::int8_t>(-3) + bytes_of<std::int16_t>(-300)));
   ASSERT_EQ(strange.size(), 1U);
   EXPECT_EQ(strange[0], Eigen::Vector3f(-std::numeric_limits<float>::infinity(), -3.F, -300.F));
   const auto nothing = read_point_cloud(

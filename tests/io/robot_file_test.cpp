@@ -54,7 +54,7 @@ const std::filesystem::path kRobots = std::filesystem::path(FRONTLUX_DATA_DIR) /
 TEST_F(RobotFile, ThoseOfThePaperAreTheBuiltInOnesToTheLastBit) {
   expect_equal(read_robot(kRobots / "ugv.json"), planner::ugv_description());
   expect_equal(read_robot(kRobots / "uav.json"), planner::uav_description());
-  EXPECT_EQ(ugv_description().columns * planner::ugv_description().rows, 32U * 720U);
+  EXPECT_EQ(planner::ugv_description().columns * planner::ugv_description().rows, 32U * 720U);
   EXPECT_EQ(planner::uav_description().columns, 160U);
 }
 

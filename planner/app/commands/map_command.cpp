@@ -25,9 +25,9 @@
 namespace frontlux::app {
 namespace {
 
+using io::RecordedScan;
 using planner::Mapping;
 using planner::MappingOptions;
-using io::RecordedScan;
 
 struct Options {
   std::string scans, output, poses;

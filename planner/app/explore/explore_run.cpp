@@ -236,7 +236,8 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
       print_summary(run, setup, exploring.files().sums(),
-                    reason ? end + ": " + planner::describe(*reason, exploring.exploration().options()) : end, watch.seconds());
+                    reason ? end + ": " + planner::describe(*reason, exploring.exploration().options()) : end,
+                    watch.seconds());
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {

@@ -58,7 +58,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"robots", names},
       {"mode", choice_name(options.mode)},
       {"goal", goal_rules(exploration.team)},
-      {"assign", exploration.distribute},
+      {"assign", exploration.assign},
       {"optimize", exploration.optimize},
       {"caster", choice_name(options.caster)},
       {"planner", planner::name_of(exploration.path.search)},

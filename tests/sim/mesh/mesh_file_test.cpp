@@ -78,7 +78,7 @@ std::string house_ply(const std::string& newline = "\n") {
 
 std::string house_obj() {
   std::string text;
-  for (const auto& v : kHouse) text += "v " + text_of(v) + "\n";
+  for (const auto& v : kHouse) text.append("v ").append(text_of(v)).append("\n");
   for (const auto& s : kSides) {
     text += "f";
     for (const int i : s) text += " " + std::to_string(i + 1);
