@@ -96,13 +96,14 @@ frontlux::sim::Surface make_hall() {
 // A ground robot drives along the hall, an aerial robot flies beside it and turns.
 std::vector<Step> make_tour() {
   const auto hall = make_hall();
+  const frontlux::sim::Sensor lidar = frontlux::sim::sensor_of(frontlux::planner::ugv_description()),
+                              depth_camera = frontlux::sim::sensor_of(frontlux::planner::uav_description());
   std::vector<Step> tour;
   for (int i = 0; i < kSteps; ++i) {
     const double along = static_cast<double>(i) / (kSteps - 1), turn = 40 * along;
     const Pose ground{{4 + 72 * along, 8 + 3 * std::sin(9 * along), 0.75}, 0.0};
     const Pose air{{4 + 72 * along, 26 + 8 * std::sin(7 * along), 2.4 + 2 * std::sin(turn / 5)}, turn};
-    tour.push_back(
-        {sense(hall, frontlux::sim::lidar(), ground, 0), sense(hall, frontlux::sim::depth_camera(), air, 0)});
+    tour.push_back({sense(hall, lidar, ground, 0), sense(hall, depth_camera, air, 0)});
   }
   return tour;
 }

@@ -1,3 +1,6 @@
+#include "mapping/brick_table.hpp"
+#include "mapping/octree_order.hpp"
+
 #include <frontlux/planner/recorded_map.hpp>
 
 #include <array>
@@ -6,7 +9,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 namespace frontlux::planner {
@@ -15,13 +17,11 @@ namespace {
 using RobotNumber = std::uint16_t;
 constexpr RobotNumber kNobody = std::numeric_limits<RobotNumber>::max();
 
-// Who saw each voxel of a brick first.
-using SeenBrick = std::array<RobotNumber, 512>;
-
-std::uint64_t brick_of(const VoxelKey& key) {
-  return (static_cast<std::uint64_t>(key.x >> 3U) << 26U) | (static_cast<std::uint64_t>(key.y >> 3U) << 13U) |
-         static_cast<std::uint64_t>(key.z >> 3U);
-}
+// Who mapped each voxel of a brick first.
+struct FirstRobots {
+  FirstRobots() { robots.fill(kNobody); }
+  std::array<RobotNumber, 512> robots;
+};
 
 std::size_t in_brick(const VoxelKey& key) {
   return (static_cast<std::size_t>(key.x & 7U) << 6U) | (static_cast<std::size_t>(key.y & 7U) << 3U) |
@@ -47,7 +47,7 @@ std::string_view name_of(Occupancy state) {
 struct RecordedMap::State {
   explicit State(double resolution) : grid(resolution) {}
   VoxelGrid grid;
-  std::unordered_map<std::uint64_t, SeenBrick> seen;
+  detail::BrickTable<FirstRobots> first;
 };
 
 RecordedMap::RecordedMap(double resolution) : state_(std::make_unique<State>(resolution)) {}
@@ -68,9 +68,7 @@ void RecordedMap::apply(const RecordedStep& step) {
   for (std::size_t robot = 0; robot < robots.size(); ++robot)
     for (const VoxelChange& change : robots[robot].changed) {
       if (change.before != Occupancy::kUnknown) continue;
-      const auto [entry, is_new] = state_->seen.try_emplace(brick_of(change.key));
-      if (is_new) entry->second.fill(kNobody);
-      RobotNumber& first = entry->second[in_brick(change.key)];
+      RobotNumber& first = state_->first[detail::brick_number(change.key)].robots[in_brick(change.key)];
       if (first == kNobody) first = static_cast<RobotNumber>(robot);
     }
   state_->grid = std::move(after);
@@ -79,9 +77,8 @@ void RecordedMap::apply(const RecordedStep& step) {
 const VoxelGrid& RecordedMap::grid() const { return state_->grid; }
 
 std::optional<std::size_t> RecordedMap::first_seen_by(const VoxelKey& key) const {
-  const auto entry = state_->seen.find(brick_of(key));
-  if (entry == state_->seen.end()) return std::nullopt;
-  const RobotNumber robot = entry->second[in_brick(key)];
+  const FirstRobots* brick = state_->first.find(detail::brick_number(key));
+  const RobotNumber robot = brick == nullptr ? kNobody : brick->robots[in_brick(key)];
   if (robot == kNobody) return std::nullopt;
   return robot;
 }

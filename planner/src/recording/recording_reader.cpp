@@ -22,8 +22,8 @@ std::size_t check_title(const std::filesystem::path& file, std::string_view byte
          "name the file run.frontlux of a folder that `frontlux explore` wrote");
   };
   const auto too_short = [&] { fail(file, "ends in its first line, before the run began", "explore anew"); };
-  if (!bytes.starts_with(kRecordingTitle))
-    !bytes.empty() && kRecordingTitle.starts_with(bytes) ? too_short() : foreign();
+  if (!bytes.empty() && kRecordingTitle.starts_with(bytes)) too_short();
+  if (!bytes.starts_with(kRecordingTitle)) foreign();
   const std::string_view rest = bytes.substr(kRecordingTitle.size(), kMostDigits + 1);
   const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
   if (digits == rest.size() && digits <= kMostDigits) too_short();

@@ -54,7 +54,7 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
     head.robots.push_back(robot);
     planner::ExplorationStart start{random_pose(random), {}};
     for (int k = random.below(9); k > 0; --k)
-      start.known_free.push_back(random_key(random, planner::kAllVoxels));
+      start.known_free.push_back(random_key(random, kAllVoxels));
     head.starts.push_back(start);
   }
   return head;
@@ -94,7 +94,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     robot.path = static_cast<planner::PathOutcome>(random.below(7));
     robot.goal.state = static_cast<planner::GoalState>(random.below(7));
     if (robot.goal.state <= planner::GoalState::kUncovered) robot.goal.pose = random_pose(random);
-    robot.goal.cell = random_key(random, planner::kAllVoxels);
+    robot.goal.cell = random_key(random, kAllVoxels);
     robot.goal.reason = "goal " + std::to_string(random.bits());
     robot.goal.distance = random.uniform(0, 50);
     robot.goal.gain = random.uniform(0, 500);
@@ -109,12 +109,12 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
       robot.travelled = random.bits() % (robot.planned.size() + 1);
       robot.changed = random_changes(random, head.bounds, random.below(size));
       for (int i = random.below(size); i > 0; --i)
-        robot.still_unknown.push_back(random_key(random, planner::kAllVoxels));
+        robot.still_unknown.push_back(random_key(random, kAllVoxels));
       if (!robot.still_unknown.empty()) robot.blocked = {robot.still_unknown.front()};
       std::sort(robot.still_unknown.begin(), robot.still_unknown.end());
       robot.still_unknown.erase(std::unique(robot.still_unknown.begin(), robot.still_unknown.end()), robot.still_unknown.end());
       for (int i = random.below(size); i > 0; --i)
-        robot.image.push_back({random_key(random, planner::kAllVoxels), random.uniform(0, 9),
+        robot.image.push_back({random_key(random, kAllVoxels), random.uniform(0, 9),
                                random.uniform(0, 9), random.uniform(0, 9), random.uniform(0, 9),
                                random.uniform(-4, 4), static_cast<std::uint32_t>(random.bits())});
     }

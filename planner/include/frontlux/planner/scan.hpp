@@ -6,13 +6,13 @@
 
 namespace frontlux::planner {
 
-/// One sweep of a range sensor, in the world frame. All that a robot, real or simulated, tells the mapping.
+/// One sweep of a range sensor, in the world frame: what a robot, real or simulated, gives to the mapping.
 struct Scan {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< [m] the sensor's position
   double max_range = 0.0;                            ///< [m] how far the sensor measures
   std::vector<Eigen::Vector3f> directions;           ///< of unit length
-  /// [m] one for each direction, up to `max_range`. Infinity: nothing within `max_range`, so the way there is
-  /// free. NaN: no measurement, which tells nothing.
+  /// [m] one for each direction, up to `max_range`. Infinity: nothing within `max_range`, so all voxels up to
+  /// there are free. NaN: no measurement.
   std::vector<float> ranges;
 };
 
