@@ -25,7 +25,7 @@ class Row {
  public:
   template <class... Cells>
   Row& add(const Cells&... cells) {
-    ((line_ += (line_.empty() ? "" : ",") + cell_text(cells)), ...);
+    (line_.append(line_.empty() ? "" : ",").append(cell_text(cells)), ...);
     return *this;
   }
   [[nodiscard]] std::string line() const { return line_ + '\n'; }
