@@ -270,7 +270,7 @@ TEST_F(InfoCastCommand, CastTakesNegativeNumbers) {
 }
 
 TEST_F(InfoCastCommand, RefusesWrongWords) {
-  expect_refused({}, {"subcommand", "see frontlux --help"});
+  expect_refused({}, {"give a command; see frontlux --help"});
   expect_refused({"fly"}, {"unknown command 'fly'; see frontlux --help"});
   expect_refused({"--fast"}, {"unknown option '--fast'; see frontlux --help"});
   expect_refused({"info"}, {"MAP", "see frontlux info --help"});

@@ -187,7 +187,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("uav", "5.25,5.25,0.45", {}, {"--at", "below its minimum height"});
   refuse("ugv", "5.25,5.25,-0.15", {}, {"--at", "occupied voxel"});
   refuse("ugv", "50,5,0.75", {}, {"--at", "outside the bounds"});
-  for (const std::string file : {path("none.bt"), write("broken.bt", "# Octomap OcTree binary file\n")})
+  for (const std::string& file : {path("none.bt"), write("broken.bt", "# Octomap OcTree binary file\n")})
     expect_refused({file, "--robot", "ugv", "--at", kStart, "-o", out}, {file});
   octomap::OcTree full(0.3);
   for (int x = 0; x < 8; ++x)
