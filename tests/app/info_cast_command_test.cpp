@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kResolution = 0.1;
 constexpr int kOrigin = 32768;
-constexpr std::array kCasters = {"embree", "grid", "octomap"};
+constexpr std::array kCasters = {"fast", "embree", "grid", "octomap"};
 
 octomap::OcTreeKey key(int x, int y, int z) {
   const auto along = [](int i) { return static_cast<octomap::key_type>(kOrigin + i); };
