@@ -43,6 +43,7 @@ int complain(const std::string& message, int code) {
 std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   const auto strays = app.remaining(true);
   const auto commands = app.get_subcommands();
+  if (strays.empty() && commands.empty()) return "give a command";
   if (strays.empty()) {
     const bool both = dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;
     return error.what() + std::string(both ? "; give only one of them" : "");

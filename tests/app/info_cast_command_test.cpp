@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kResolution = 0.1;
 constexpr int kOrigin = 32768;
-constexpr std::array kCasters = {"embree", "grid", "octomap"};
+constexpr std::array kCasters = {"fast", "embree", "grid", "octomap"};
 
 octomap::OcTreeKey key(int x, int y, int z) {
   const auto along = [](int i) { return static_cast<octomap::key_type>(kOrigin + i); };
@@ -270,7 +270,7 @@ TEST_F(InfoCastCommand, CastTakesNegativeNumbers) {
 }
 
 TEST_F(InfoCastCommand, RefusesWrongWords) {
-  expect_refused({}, {"subcommand", "see frontlux --help"});
+  expect_refused({}, {"give a command; see frontlux --help"});
   expect_refused({"fly"}, {"unknown command 'fly'; see frontlux --help"});
   expect_refused({"--fast"}, {"unknown option '--fast'; see frontlux --help"});
   expect_refused({"info"}, {"MAP", "see frontlux info --help"});

@@ -73,8 +73,8 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
   corridor.update({room_.grid}, room_.key(17, 17, 2));
   const planner::FrontierSet set(room_.grid, bounds);
   const std::vector<VoxelKey> frontiers(set.keys().begin(), set.keys().end());
-  const auto share = naive_share(*caster, 0.3, frontiers, corridor.cells(), robot.view);
-  ASSERT_GT(share.size(), 10U);
+  const auto assigned = naive_assigned(*caster, 0.3, frontiers, corridor.cells(), robot.view);
+  ASSERT_GT(assigned.size(), 10U);
 
   std::string first;
   for (const char* used : {"grid", "embree", "fast"}) {
@@ -85,7 +85,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
     const std::string csv = content_of(path("room.csv"));
     if (first.empty()) first = csv;
     EXPECT_EQ(csv, first);
-    EXPECT_NE(answer.out.find(std::to_string(frontiers.size()) + ", " + std::to_string(share.size()) +
+    EXPECT_NE(answer.out.find(std::to_string(frontiers.size()) + ", " + std::to_string(assigned.size()) +
                               " of them assigned to the ugv"),
               std::string::npos)
         << answer.out;
@@ -101,7 +101,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
     EXPECT_EQ(row[2], cell.z);
     EXPECT_NEAR(row[3], room_.grid.lattice().center(cell.x), 1e-6);
     EXPECT_EQ(row[6], corridor.distance(cell).value());
-    const auto gain = static_cast<double>(naive_seen(*caster, 0.3, cell, share, robot.view).size());
+    const auto gain = static_cast<double>(naive_seen(*caster, 0.3, cell, assigned, robot.view).size());
     EXPECT_EQ(row[7], gain);
     EXPECT_EQ(row[8], 0.0);
     // Eq. 1, and less in proportion for what is nearer than 4 m.
@@ -187,7 +187,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("uav", "5.25,5.25,0.45", {}, {"--at", "below its minimum height"});
   refuse("ugv", "5.25,5.25,-0.15", {}, {"--at", "occupied voxel"});
   refuse("ugv", "50,5,0.75", {}, {"--at", "outside the bounds"});
-  for (const std::string file : {path("none.bt"), write("broken.bt", "# Octomap OcTree binary file\n")})
+  for (const std::string& file : {path("none.bt"), write("broken.bt", "# Octomap OcTree binary file\n")})
     expect_refused({file, "--robot", "ugv", "--at", kStart, "-o", out}, {file});
   octomap::OcTree full(0.3);
   for (int x = 0; x < 8; ++x)

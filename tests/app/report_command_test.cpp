@@ -32,7 +32,7 @@ class ReportCommandTest : public test::CommandTest {
     return CommandTest::run(words, in_folder_);
   }
   void expect_refused(const std::vector<std::string>& words, const std::string& part) const {
-    CommandTest::expect_refused(words, {part}, in_folder_);
+    CommandTest::expect_refused(words, std::vector<std::string>{part}, in_folder_);
   }
 
   std::string in_folder_ = "cd " + test::quoted(folder_.string()) + " &&";

@@ -105,8 +105,8 @@ TEST_F(Ply, SaysWhatIsWrong) {
             "line 4: the element does not have a name and a number");
   refused("vertex 5", "vertex 18446744073709551615",
           "announces 18446744073709551615 of the element 'vertex'");
-  refused("vertex 5", "vertex 4", "has fewer numbers than the header says");
-  refused("vertex 5", "vertex 6", "has fewer numbers than the header says");
+  refused("vertex 5", "vertex 4", "line 19: has more numbers than the header says");
+  refused("vertex 5", "vertex 6", "line 21: has more numbers than the header says");
   refused("face 2", "face 3", "the file ends too early");
   refused("face 2", "face 99", "announces 99 of the element 'face'");
   refused("element face", "element nothing 9\nelement face", "announces 9 of the element 'nothing'");

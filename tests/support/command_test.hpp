@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <concepts>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -69,7 +70,8 @@ class CommandTest : public testing::Test {
     expect_parts(answer.err, parts);
     EXPECT_TRUE(files() == files_before) << "something was written: " << answer.err;
   }
-  void expect_refused(const std::vector<std::string>& words, const std::string& part) const {
+  template <std::convertible_to<std::string> Text>
+  void expect_refused(const std::vector<std::string>& words, const Text& part) const {
     expect_refused(words, std::vector<std::string>{part});
   }
 

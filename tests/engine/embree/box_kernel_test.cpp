@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -100,8 +101,11 @@ RayOfPacket random_ray(Random& random, const LocalBox& box) {
       ray.direction[i] = 0.0F;
     }
   }
+  if (std::fabs(ray.direction[0]) + std::fabs(ray.direction[1]) + std::fabs(ray.direction[2]) < 0.1F)
+    ray.direction[2] = 1.0F;  // a probe's direction is not zero
   if (random.one_in(3)) ray.t_far = static_cast<float>(random.uniform(0.0, 2.0));
   if (random.one_in(4)) ray.t_near = static_cast<float>(random.uniform(0.0, 1.5));
+  ray.t_far = std::max(ray.t_near, ray.t_far);
   return ray;
 }
 

@@ -245,7 +245,7 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
   refuses("outcome of the path search is 7",
           [](RecordedStep& s) { s.step.robots[0].path = static_cast<PathOutcome>(7); });
   refuses("there is a goal, but", [](RecordedStep& s) {
-    s.step.robots[0].goal.state = GoalState::kOwn;
+    s.step.robots[0].goal.state = GoalState::kAssigned;
     s.step.robots[0].goal.pose.reset();
   });
   refuses("unassigned", [](RecordedStep& s) { s.step.unassigned = s.step.frontiers + 1; });

@@ -72,7 +72,7 @@ std::string house_ply(const std::string& newline = "\n") {
   line("property list uint8 int32 vertex_index");
   line("end_header");
   for (const auto& v : kHouse) line(text_of(v.head<2>()) + "7 " + text_of(v.tail<1>()));
-  for (const auto& s : kSides) line("4 " + text_of(s));
+  for (const auto& s : kSides) line(std::string("4 ").append(text_of(s)));
   return text;
 }
 
@@ -81,7 +81,7 @@ std::string house_obj() {
   for (const auto& v : kHouse) text.append("v ").append(text_of(v)).append("\n");
   for (const auto& s : kSides) {
     text += "f";
-    for (const int i : s) text += " " + std::to_string(i + 1);
+    for (const int i : s) text.append(" ").append(std::to_string(i + 1));
     text += "\n";
   }
   return text;
@@ -94,7 +94,7 @@ std::string house_stl() {
       text += "facet normal 0 0 0\nouter loop\n";
       for (const int corner : {a, b, c}) {
         const auto& v = kHouse[static_cast<std::size_t>(s[static_cast<std::size_t>(corner)])];
-        text += "vertex " + text_of(v) + "\n";
+        text.append("vertex ").append(text_of(v)).append("\n");
       }
       text += "endloop\nendfacet\n";
     }

@@ -9,7 +9,7 @@
 
 namespace frontlux::planner {
 
-/// The map of a recorded run, step by step, and which robot made each voxel known first.
+/// The map of a recorded run, step by step, and which robot mapped each voxel first.
 ///
 ///     RecordedMap map(recording.head.resolution);
 ///     for (const RecordedStep& step : recording.steps) map.apply(step);
@@ -17,7 +17,7 @@ namespace frontlux::planner {
 /// Takes some megabytes for a map of a million known voxels. Thread safety: as a standard container.
 class RecordedMap {
  public:
-  /// Before step 0: all is unknown.
+  /// The map before step 0: all is unknown.
   /// @param resolution [m]
   /// @throws std::invalid_argument if it is no length
   explicit RecordedMap(double resolution);
@@ -25,16 +25,16 @@ class RecordedMap {
   RecordedMap(RecordedMap&&) noexcept;
   RecordedMap& operator=(RecordedMap&&) noexcept;
 
-  /// The next step; what its robots changed, in their order. Step 0 also says what they knew to be free
-  /// where they began.
+  /// Applies the next step: what its robots changed, in their order. Step 0 includes what they knew to be
+  /// free at their starts.
   /// @throws std::invalid_argument naming a voxel that was not what the step says it was; the map stays as it
   /// is
   void apply(const RecordedStep& step);
 
-  /// After the steps applied; a copy is a snapshot.
+  /// The map after the steps applied so far; a copy is a snapshot.
   [[nodiscard]] const VoxelGrid& grid() const;
 
-  /// The robot that made a voxel known first, by its place in the team; nothing if none did.
+  /// The robot that mapped a voxel first, by its place in the team; nothing if none did.
   [[nodiscard]] std::optional<std::size_t> first_seen_by(const VoxelKey& key) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace frontlux::planner {
 
-/// What a recording says once, at its beginning.
+/// The head of a recording: what holds for the whole run.
 struct RecordingHead {
   std::string world;                     ///< for people
   double resolution = 0.3;               ///< [m]
@@ -21,21 +21,21 @@ struct RecordingHead {
   std::vector<RobotDescription> robots;  ///< in the team's order
   std::vector<ExplorationStart> starts;  ///< of each of them
   std::uint64_t observable = 0,
-                bounding = 0;  ///< voxels that can be known, and within the bounds; 0: unknown
+                bounding = 0;  ///< voxels that can be observed, and within the bounds; 0: unknown
   std::string options;         ///< JSON object of the run's options, as its maker writes it
 };
 
-/// What of a world one robot made known up to the end of a step, alone.
+/// How many voxels of a world one robot has mapped first, up to the end of a step.
 struct KnownVoxels {
   std::uint64_t observable = 0;  ///< of the observable voxels
   std::uint64_t bounding = 0;    ///< of all within the bounds
   friend bool operator==(const KnownVoxels&, const KnownVoxels&) = default;
 };
 
-/// A step, and what is known at its end.
+/// A step, and what is mapped at its end.
 struct RecordedStep {
   ExplorationStep step;
-  std::vector<KnownVoxels> known;  ///< by each robot; a voxel is the first one's that made it known
+  std::vector<KnownVoxels> known;  ///< of each robot; a voxel counts for the robot that mapped it first
   std::uint64_t collisions = 0;    ///< of robots with the true world, in this step
 };
 
@@ -43,18 +43,19 @@ struct RecordedStep {
 struct Recording {
   RecordingHead head;
   std::vector<RecordedStep> steps;  ///< from step 0
-  std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing: it was cut off
+  std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
   bool truncated = false;           ///< an unfinished step at the end of the file was left out
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 
-/// Writes a recording step by step: after each call the file holds all steps so far, whatever happens next.
+/// Writes a recording step by step. After each call the file holds all steps so far, even if the process is
+/// killed.
 class RecordingWriter {
  public:
   /// A new recording; a file of that name is replaced.
   /// @throws std::runtime_error naming the file, if it cannot be written; so do the others
   RecordingWriter(const std::filesystem::path& file, const RecordingHead& head);
-  /// Goes on with a recording: cuts the file after its last finished step (and takes away its end).
+  /// Goes on with a recording: cuts the file after its last finished step, and removes its end.
   RecordingWriter(const std::filesystem::path& file, const Recording& recording);
   ~RecordingWriter();
   RecordingWriter(RecordingWriter&&) noexcept;
@@ -68,9 +69,9 @@ class RecordingWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads a whole recording. The file is checked from end to end: lengths, checksums, ranges of all values.
-/// @throws std::runtime_error naming the file, what is wrong, where, and what to do: not a recording, one of
-/// another version, damaged before its end
+/// Reads a whole recording. Everything in the file is checked: lengths, checksums, ranges of all values.
+/// @throws std::runtime_error naming the file, what is wrong, where, and what to do: it is not a recording,
+/// it has another format, or it is damaged
 [[nodiscard]] Recording read_recording(const std::filesystem::path& file);
 
 }  // namespace frontlux::planner
