@@ -5,24 +5,6 @@
 #include <iterator>
 
 namespace frontlux::detail {
-namespace {
-
-// The smallest box around each run of ascending codes within a cube of 8 voxels a side.
-template <class Add>
-void for_each_cube(std::span<const std::uint64_t> codes, const Add& add) {
-  for (std::size_t begin = 0, end = 0; begin < codes.size(); begin = end) {
-    const VoxelKey first = cell_of_code(codes[begin]);
-    KeyBox box{first, first};
-    for (end = begin + 1; end < codes.size() && codes[end] >> kBlockCode == codes[begin] >> kBlockCode;
-         ++end) {
-      const VoxelKey key = cell_of_code(codes[end]);
-      box = hull(box, {key, key});
-    }
-    add(box, codes[begin]);
-  }
-}
-
-}  // namespace
 
 std::vector<KeyBox> changed_boxes(std::span<const VoxelKey> changed, const TargetIndex& before,
                                   const TargetIndex& now, bool whole_cubes) {
@@ -42,9 +24,15 @@ std::vector<KeyBox> changed_boxes(std::span<const VoxelKey> changed, const Targe
   codes.clear();
   std::set_symmetric_difference(before.codes().begin(), before.codes().end(), now.codes().begin(),
                                 now.codes().end(), std::back_inserter(codes));
-  for_each_cube(codes, [&](const KeyBox& box, std::uint64_t code) {
-    boxes.push_back(whole_cubes ? cube_of_code(code) : box);
-  });
+  for (std::size_t begin = 0, end = 0; begin < codes.size(); begin = end) {
+    const KeyBox cube = cube_of_code(codes[begin]);
+    KeyBox box{cube.max, cube.min};  // around the targets of this cube
+    for (end = begin; end < codes.size() && codes[end] >> kBlockCode == codes[begin] >> kBlockCode; ++end) {
+      const VoxelKey key = cell_of_code(codes[end]);
+      box = hull(box, {key, key});
+    }
+    boxes.push_back(whole_cubes ? cube : box);
+  }
   return boxes;
 }
 

@@ -71,21 +71,17 @@ ViewQualityOptions effective(ViewQualityOptions options) {
 }  // namespace
 
 void ViewQualityOptions::check() const {
-  if (renderer > Renderer::kExact)
-    throw std::invalid_argument("view quality: renderer is " + std::to_string(static_cast<int>(renderer)) +
-                                ", which is none of the values of Renderer");
-  if (samples < 1)
-    throw std::invalid_argument("view quality: samples is " + std::to_string(samples) +
-                                ", but has to be at least 1");
+  const auto refuse = [](const std::string& name, auto value, const std::string& reason) {
+    throw std::invalid_argument("view quality: " + name + " is " + std::to_string(static_cast<int>(value)) +
+                                ", " + reason);
+  };
+  if (renderer > Renderer::kExact) refuse("renderer", renderer, "which is none of the values of Renderer");
+  if (samples < 1) refuse("samples", samples, "but has to be at least 1");
   if (azimuth_bins < 0 || azimuth_bins > kMaxAzimuthBins)
-    throw std::invalid_argument("view quality: azimuth_bins is " + std::to_string(azimuth_bins) +
-                                ", but has to lie between 0 and " + std::to_string(kMaxAzimuthBins));
-  if (sampling > Sampling::kBuckets)
-    throw std::invalid_argument("view quality: sampling is " + std::to_string(static_cast<int>(sampling)) +
-                                ", which is none of the values of Sampling");
+    refuse("azimuth_bins", azimuth_bins, "but has to lie between 0 and " + std::to_string(kMaxAzimuthBins));
+  if (sampling > Sampling::kBuckets) refuse("sampling", sampling, "which is none of the values of Sampling");
   if (estimator > Estimator::kPaper)
-    throw std::invalid_argument("view quality: estimator is " + std::to_string(static_cast<int>(estimator)) +
-                                ", which is none of the values of Estimator");
+    refuse("estimator", estimator, "which is none of the values of Estimator");
   if (estimator == Estimator::kPaper && sampling != Sampling::kFeasible)
     throw std::invalid_argument(
         "view quality: the paper's estimator counts hits among feasible targets; take Sampling::kFeasible");

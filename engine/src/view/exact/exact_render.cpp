@@ -155,23 +155,17 @@ class ColumnRenderer {
 }  // namespace
 
 std::shared_ptr<const RayTrie> RayTries::get(const ViewRegion& view, int azimuth_bins, int stride_x,
-                                             int stride_y) {
+                                             int stride_y, bool make) {
   const std::lock_guard lock(mutex_);
   for (const Known& known : known_)
     if (known.stride_x == stride_x && known.stride_y == stride_y) return known.trie;
+  if (!make) return nullptr;
   std::optional<RayTrie> trie;
   // Without isolation this thread could meet its own lock in a task it takes up while it waits.
   tbb::this_task_arena::isolate(
       [&] { trie = RayTrie::make(view, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
   known_.push_back({stride_x, stride_y, trie ? std::make_shared<const RayTrie>(std::move(*trie)) : nullptr});
   return known_.back().trie;
-}
-
-bool RayTries::knows(int stride_x, int stride_y) const {
-  const std::lock_guard lock(mutex_);
-  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) {
-    return known.stride_x == stride_x && known.stride_y == stride_y;
-  });
 }
 
 std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
@@ -193,9 +187,9 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
   for (std::size_t t = 0; t + 1 < tiles.size(); ++t)
     if (tiles[t + 1] - tiles[t] >= scene.thresholds.tile)
       for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) dense.push_back(placed[i]);
-  const bool worth =
-      !dense.empty() && (dense.size() >= scene.thresholds.trie || scene.tries.knows(stride_x, stride_y));
-  const auto trie = worth ? scene.tries.get(scene.view, scene.azimuth_bins, stride_x, stride_y) : nullptr;
+  const auto trie = dense.empty() ? nullptr
+                                  : scene.tries.get(scene.view, scene.azimuth_bins, stride_x, stride_y,
+                                                    dense.size() >= scene.thresholds.trie);
   if (trie) {
     const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {

@@ -20,17 +20,16 @@ namespace frontlux::detail {
 /// time. Thread safety: full.
 class RayTries {
  public:
-  /// Null if the rays are too many for a trie.
+  /// Null if the rays are too many for a trie, or if there is none yet and `make` is false.
   [[nodiscard]] std::shared_ptr<const RayTrie> get(const ViewRegion& view, int azimuth_bins, int stride_x,
-                                                   int stride_y);
-  [[nodiscard]] bool knows(int stride_x, int stride_y) const;
+                                                   int stride_y, bool make);
 
  private:
   struct Known {
     int stride_x, stride_y;
     std::shared_ptr<const RayTrie> trie;
   };
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::vector<Known> known_;
 };
 
