@@ -60,8 +60,9 @@ class Session {
   bool agreed_ = true;
 };
 
-std::size_t differing(const planner::FrontierAssignment& a, const planner::FrontierAssignment& b,
-                      std::size_t frontiers) {
+/// Number of frontiers with different robots.
+std::size_t differing_owners(const planner::FrontierAssignment& a, const planner::FrontierAssignment& b,
+                             std::size_t frontiers) {
   const auto owners = [&](const planner::FrontierAssignment& assignment) {
     std::vector<int> owner(frontiers, -1);
     for (std::size_t r = 0; r < assignment.assigned.size(); ++r)
@@ -168,7 +169,7 @@ void Session::add_assignments(const PlannerScene& scene) {
     };
     const auto assignment = assign();
     if (!truth) truth = assignment;
-    const std::size_t different = differing(*truth, assignment, scene.frontiers.size());
+    const std::size_t different = differing_owners(*truth, assignment, scene.frontiers.size());
     compare("assign_frontiers", caster, different, scene.frontiers.size());
     double rays = 0;
     for (const auto& assigned : assignment.assigned) rays += static_cast<double>(assigned.rays);

@@ -3,6 +3,7 @@
 #include "rays/castray_loop.hpp"
 #include "table.hpp"
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/synthetic/maps.hpp>
 
 #include <chrono>
@@ -45,23 +46,21 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   });
   auto subject =
       std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, {}});
-  auto& contenders = subject->contenders;
-  Contender octomap{{kOctomap}, nullptr};
-  octomap.rays =
-      std::visit([](const auto& octree) { return make_octomap_ray_caster(*octree); }, subject->tree);
-  contenders.push_back(std::move(octomap));
-  const auto add = [&](const char* caster, auto make) {
-    Contender contender{{caster}, nullptr};
-    contender.build_seconds = grid_seconds + median_seconds([&] {
-                                contender.rays.reset();
-                                contender.rays = make(subject->grid);
-                              });
-    contender.bytes = subject->grid.memory_bytes() + contender.rays->memory_bytes();
-    contenders.push_back(std::move(contender));
-  };
-  add(kFast, [](const VoxelGrid& map) { return make_ray_caster(map); });
-  add(kEmbree, [](const VoxelGrid& map) { return make_embree_ray_caster(map); });
-  add(kGrid, [](const VoxelGrid& map) { return make_grid_ray_caster(map); });
+  // The baseline first: the others are compared with it.
+  for (const CasterKind kind :
+       {CasterKind::kOctomap, CasterKind::kFast, CasterKind::kEmbree, CasterKind::kGrid}) {
+    Contender contender{{std::string(name_of(kind))}, nullptr};
+    const double seconds = median_seconds([&] {
+      contender.rays.reset();
+      contender.rays = std::visit(
+          [&](const auto& octree) { return make_ray_caster(kind, subject->grid, *octree); }, subject->tree);
+    });
+    if (kind != CasterKind::kOctomap) {
+      contender.build_seconds = grid_seconds + seconds;
+      contender.bytes = subject->grid.memory_bytes() + contender.rays->memory_bytes();
+    }
+    subject->contenders.push_back(std::move(contender));
+  }
   return subject;
 }
 

@@ -9,43 +9,43 @@
 
 namespace frontlux::bench {
 
-/// What a robot that chooses by an image gets: at each viewpoint the targets it sees at its best yaw.
+/// The score of each viewpoint by an image: the targets in view at its best yaw.
 struct Scores {
   std::vector<double> value;
-  std::vector<double> yaw;  ///< [rad]; empty if the image has no azimuth bins, as all yaws are one then
+  std::vector<double> yaw;  ///< [rad]; empty if the image has no azimuth bins
 
-  /// @param opening  [rad] of the camera; without azimuth bins it does not matter
+  /// @param opening  [rad] of the camera; not used without azimuth bins
   Scores(const ViewQualityImage& image, double opening);
 };
 
-/// How many of the true targets a viewpoint sees at this yaw [rad]; at any without azimuth bins.
+/// How many targets a viewpoint truly sees at this yaw [rad]; at any yaw without azimuth bins.
 /// @param truth  an exact image
 [[nodiscard]] double true_score(const ViewQualityImage& truth, std::size_t viewpoint, double yaw,
                                 double opening);
 
-/// How far estimates lie from the truth. Relative to the mean true gain, but for shares.
+/// The error of estimates. `rms` to `bias` are relative to the mean true gain, the others are fractions.
 struct ViewError {
   double rms = 0;             ///< root of the mean square
-  double predicted = 0;       ///< the same of the standard errors that the estimates come with
+  double predicted = 0;       ///< the same of the estimates' own standard errors
   double absolute = 0;        ///< mean absolute
   double bias = 0;            ///< mean
-  double missed = 0;          ///< of the viewpoints that see something, those for which the estimate is 0
-  double best_loss = 0;       ///< 1 - what the best by the estimate sees / what the truly best sees
+  double missed = 0;          ///< of the viewpoints with a true gain, those with an estimate of 0
+  double best_loss = 0;       ///< 1 - true score of the best viewpoint by the estimate / the best true score
   double place_loss = 0;      ///< the same for eq. 1, gain * exp(-lambda * distance), mean over places
-  double recounted_loss = 0;  ///< of that, if the `kRecounted` best by the estimate are looked at exactly
+  double recounted_loss = 0;  ///< the same, if the `kRecounted` best by the estimate are counted exactly
 };
 
-/// As many cells as goal selection in space counts exactly, of those that seem best.
+/// The number of best cells that goal selection in space counts exactly.
 inline constexpr std::size_t kRecounted = 64;
 
-/// Compares estimates with an exact image and takes the mean over all.
+/// Compares estimates with an exact image; the result is the mean over all estimates.
 class ErrorSum {
  public:
   /// @param truth    must outlive this object
   /// @param opening  [rad] of the camera
   /// @param lambda   [1/m] of eq. 1
-  /// @param places   how many viewpoints, evenly chosen, stand for places where a robot may be
-  /// @throws std::invalid_argument if nothing is seen from anywhere, as nothing is relative to that
+  /// @param places   number of viewpoints, evenly chosen, that stand for the places of a robot
+  /// @throws std::invalid_argument if no viewpoint has a true gain
   ErrorSum(const ViewQualityImage& truth, const Lattice& lattice, double opening, double lambda,
            std::size_t places);
 
@@ -68,7 +68,7 @@ class ErrorSum {
   Scores true_scores_;
   std::vector<std::size_t> places_;
   double mean_gain_ = 0;
-  std::size_t seeing_ = 0;  // viewpoints that see something
+  std::size_t seeing_ = 0;  // viewpoints with a true gain
   std::size_t count_ = 0;   // of images
   ViewError sum_;           // of squares where a root is to be taken
 };

@@ -40,7 +40,7 @@ def write_run(folder, world, seed, coverage, robots=("ugv", "uav"), uav_part=0.7
     (folder / "steps.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     total = {"version": "9.9", "world": world, "seed": seed, "mode": "default", "goal": "render", "assign": True,
              "optimize": True, "caster": "fast", "threads": 1, "resolution_m": 0.3, "robots": list(robots),
-             "machine": "A|B <cpu>", "end": "quiet", "steps": len(coverage) - 1, "coverage_observable": coverage[-1],
+             "machine": "A|B <cpu>", "end": "low_gain", "steps": len(coverage) - 1, "coverage_observable": coverage[-1],
              "coverage_box": coverage[-1] * 0.8, "planning_mean_s": sum(phases), "planning_max_s": 2 * sum(phases),
              "wall_s": 36.0, "memory_mb": 300.0, "collisions": 0,
              "path_length_m": {r: metres[r] * (len(coverage) - 1) for r in robots}, **facts}

@@ -174,7 +174,7 @@ class Document(Made):
         change(bad[6], "steps.csv", lambda t: t[:t.index("\n2,ugv")] + "\n")
         change(bad[7], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": NaN'))
         change(bad[8], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": 1e999'))
-        change(bad[9], "run.json", lambda t: t.replace('"quiet"', '"stopped"'))
+        change(bad[9], "run.json", lambda t: t.replace('"low_gain"', '"stopped"'))
         change(bad[10], "run.json", lambda t: "[" * 100000)
         (self.folder / bad[11].name / "run.json").write_bytes(b"\xff\xfe\x00{")
         (self.folder / bad[12].name / "steps.csv").unlink()
