@@ -1,9 +1,9 @@
-// Explores with scans that come from files: all that it takes to put a real robot in the simulator's place.
+// Explores with scans that come from files: how a real robot takes the place of the simulator.
 //
 //     explore_recorded ROBOT.json FOLDER X Y Z YAW SECONDS
 //
 // The robot's sensor begins at X, Y, Z [m], YAW [rad]. Where it has to go next is in FOLDER/next.csv, which
-// the robot takes away. It answers with a scan, the .ply or .pcd file of its points in the sensor's frame
+// the robot removes. It answers with a scan, the .ply or .pcd file of its points in the sensor's frame
 // [m], and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where the scan was taken; rays that
 // met nothing are points beyond the sensor's range. The scan has to be complete before the line is there, and
 // poses.csv to be replaced as a whole. A robot that could not go there answers from where it is, or not at

@@ -184,7 +184,7 @@ class Document(Made):
         reasons = list(results.broken.values())
         for reason, part in zip(reasons, ("cells, not", "every robot in every step", "not within", "not within 0 and 1",
                                           "no column planning_s", "no column", "3 steps, steps.csv 1",
-                                          "NaN is no number", "wall_s is inf", "not finished", "too deeply")):
+                                          "NaN is not a number", "wall_s is inf", "not finished", "too deeply")):
             self.assertIn(part, reason)
         text = document(results, "images")
         for run, reason in zip(bad, reasons):

@@ -26,7 +26,9 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
   if (state.selection) refuse("it has begun already");
   if (starts.size() != state.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.size()) + " robots");
-  for (const ExplorationStart& start : starts) check_finite({&start.pose, 1});
+  std::vector<Pose> poses;
+  for (const ExplorationStart& start : starts) poses.push_back(start.pose);
+  check_finite(poses);
 
   state.start_from(starts);
   ExplorationStep step = state.new_step();

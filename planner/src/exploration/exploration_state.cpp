@@ -224,7 +224,7 @@ void Exploration::State::execute_paths(const Gains& gains, const Drive& drive, E
   }
 }
 
-// Goes through recorded paths. False if the robots do not learn what they learnt then.
+// Repeats recorded paths. False if the robots do not map what they mapped then.
 bool Exploration::State::execute_again(const ExplorationStep& recorded, const Drive& drive,
                                        ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {

@@ -179,7 +179,7 @@ void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds) {
   bytes.whole(robot.path, "outcome of the path search", 6);
   code_goal(bytes, robot.goal);
   bytes.length(robot.planned, 4 * sizeof(double));
-  bytes.require(robot.travelled <= robot.planned.size(), "it came to more viewpoints than were planned");
+  bytes.require(robot.travelled <= robot.planned.size(), "it reached more viewpoints than were planned");
   for (Pose& pose : robot.planned) code_pose(bytes, pose);
   code_changes(bytes, robot.changed, bounds);
   code_sorted_keys(bytes, robot.still_unknown, "the voxels still unknown are not sorted, each once");

@@ -194,8 +194,8 @@ TEST(Exploration, AbandonsFrontiersThatStayUnknown) {
   }
 }
 
-// At the end of its first way it finds something within its box, 0.35 m ahead: there it is in no corridor,
-// and has to go back the way it came.
+// At the end of its first path it finds something within its box, 0.35 m ahead: there it is in no corridor,
+// and has to retreat on that path.
 TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   Lone lone;
   lone.options.epsilon = 1e9;  // all steps have low gain but that in which it backs off
@@ -203,12 +203,12 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   Exploration exploration = lone.begun(see_nothing);
   const Drive find = [](std::size_t, const Pose& to) { return one_ray(to, 0.35F); };
 
-  std::vector<Pose> way;
+  std::vector<Pose> path;
   const ExplorationStep first = exploration.step([&](std::size_t robot, const Pose& to) {
-    way.push_back(to);
+    path.push_back(to);
     return see_nothing(robot, to);
   });
-  ASSERT_GE(way.size(), 1U);
+  ASSERT_GE(path.size(), 1U);
   const ExplorationStep second = exploration.step(find);
   ASSERT_TRUE(second.robots[0].goal.pose.has_value());
   ASSERT_GE(second.robots[0].travelled, 2U);
@@ -225,7 +225,7 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   ASSERT_GT(third.robots[0].travelled, 1U);
   EXPECT_EQ(third.robots[0].travelled, third.robots[0].planned.size());
   std::vector<Pose> trail = {lone.start.pose};
-  trail.insert(trail.end(), way.begin(), way.end());
+  trail.insert(trail.end(), path.begin(), path.end());
   for (std::size_t i = 1; i < second.robots[0].travelled; ++i) trail.push_back(second.robots[0].planned[i]);
   for (std::size_t i = 0; i < third.robots[0].planned.size(); ++i)
     EXPECT_TRUE(same(third.robots[0].planned[i], trail[trail.size() - 1 - i])) << i;

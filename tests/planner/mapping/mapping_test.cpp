@@ -268,9 +268,9 @@ TEST(Mapping, SurfaceOnAVoxelFaceFallsBehindIt) {
   scan.max_range = 10.0;
   for (int i = -40; i <= 40; ++i) {
     const Eigen::Vector3f on_wall(3.6F, 0.05F * static_cast<float>(i) + 0.013F, 0.1F);
-    const Eigen::Vector3f way = on_wall - scan.origin;
-    scan.directions.push_back(way.normalized());
-    scan.ranges.push_back(way.norm());
+    const Eigen::Vector3f ray = on_wall - scan.origin;
+    scan.directions.push_back(ray.normalized());
+    scan.ranges.push_back(ray.norm());
   }
   mapping.insert(scan);
   const Lattice lattice(0.3);

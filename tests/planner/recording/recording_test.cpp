@@ -234,7 +234,7 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
   refuses("one number for each robot", [](RecordedStep& s) { s.known.pop_back(); });
   refuses("more voxels than can be known",
           [&](RecordedStep& s) { s.known[1].observable = head_.observable; });
-  refuses("robot 1: it came to more viewpoints",
+  refuses("robot 1: it reached more viewpoints",
           [](RecordedStep& s) { s.step.robots[1].travelled = s.step.robots[1].planned.size() + 1; });
   refuses("a pose is not finite", [&](RecordedStep& s) {
     s.step.robots[0].planned.resize(s.step.robots[0].planned.size() + 1);
