@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -253,11 +254,16 @@ void Exploration::State::remember(std::size_t robot, const RobotStep& step) {
 
 void Exploration::State::update_frontiers(ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kFrontiers);
-  changed.clear();
+  std::vector<VoxelChange> all;
   for (const RobotStep& robot : step.robots)
-    for (const VoxelChange& voxel : robot.changed) changed.push_back(voxel.key);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    all.insert(all.end(), robot.changed.begin(), robot.changed.end());
+  std::ranges::stable_sort(all, {}, &VoxelChange::key);
+  changed.clear();
+  for (auto first = all.begin(), next = first; first != all.end(); first = next) {
+    while (next != all.end() && next->key == first->key) ++next;
+    // A robot may undo what another has changed.
+    if (std::prev(next)->after != first->before) changed.push_back(first->key);
+  }
   frontiers.update(change());
 }
 
