@@ -107,9 +107,8 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 /// rays walk, and Embree's BVH of boxes. Rays longer than 400 voxels, segments between voxels further apart
 /// than 1000, segments between points, and whatever lies outside the table go to the BVH. Where rounding
 /// could change an answer, the grid's walk decides.
-/// @param expected_rays  how many rays will be cast, about, before most of the map changes. If they are too
-/// few to
-///                       pay for building, the result is `make_grid_ray_caster(grid)`
+/// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
+///                       building: `make_grid_ray_caster(grid)`
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid,
                                                          std::uint64_t expected_rays = kManyRays);

@@ -3,10 +3,9 @@
 #include "assignment/view_offsets.hpp"
 #include "assignment/visibility_flood.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/view_region.hpp>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -287,7 +286,7 @@ AssignedFrontiers find_visible_frontiers(const RayCaster& caster, const VoxelGri
                       std::move(nearby),
                       std::move(spread)};
   std::vector<AssignedFrontiers> found((frontiers.size() + kBatch - 1) / kBatch);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
+  for_each_index(found.size(), [&](std::size_t b) {
     const std::size_t begin = b * kBatch;
     Batch batch(search, begin, std::min(frontiers.size(), begin + kBatch));
     batch.decide();

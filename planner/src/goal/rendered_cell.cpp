@@ -1,6 +1,6 @@
 #include "goal/rendered_cell.hpp"
 
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ bool better_candidate(const GoalQuery& query, const Candidate& a, const Candidat
 std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQualityImage& image,
                                        const VoxelKey* containing) {
   std::vector<Candidate> candidates(image.size());
-  tbb::parallel_for(std::size_t{0}, image.size(), [&](std::size_t i) {
+  for_each_index(image.size(), [&](std::size_t i) {
     Candidate& candidate = candidates[i];
     candidate.rated = rate(query, image, i, containing);
     const ViewQuality& value = image.values()[i];

@@ -3,9 +3,8 @@
 #include "goal/rendered_cell.hpp"
 #include "mapping/box_array.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/view_region.hpp>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -136,11 +135,10 @@ UpperBounds upper_bounds(const GoalQuery& query, std::span<const VoxelKey> cells
   const CubeView view(query);
   const std::vector<Cube> targets = cubes_of(query.targets);
   std::vector<Cube> cubes = cubes_of(cells);
-  tbb::parallel_for(std::size_t{0}, cubes.size(),
-                    [&](std::size_t i) { cubes[i].count = view.most(cubes[i], targets); });
+  for_each_index(cubes.size(), [&](std::size_t i) { cubes[i].count = view.most(cubes[i], targets); });
   UpperBounds bounds{std::vector<std::size_t>(cells.size()), cubes.size(), std::vector<double>(cells.size()),
                      std::vector<double>(cells.size())};
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+  for_each_index(cells.size(), [&](std::size_t i) {
     const auto cube = std::lower_bound(cubes.begin(), cubes.end(), Cube{corner_of(cells[i])}, by_corner);
     const double distance = query.distance(cells[i]);
     bounds.cube[i] = static_cast<std::size_t>(cube - cubes.begin());

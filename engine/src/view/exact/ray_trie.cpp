@@ -3,7 +3,7 @@
 #include "view/azimuth_bins.hpp"
 #include "walk/walk.hpp"
 
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -222,7 +222,7 @@ std::optional<RayTrie> RayTrie::make(const ViewRegion& view, int azimuth_bins, i
     for (int dz = -height; dz <= height; ++dz) sector.emplace_back(Cell{dx, dy, dz});
   });
   std::vector<RayTrie> sectors(lines.size());
-  tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t bin) {
+  for_each_index(lines.size(), [&](std::size_t bin) {
     if (lines[bin].empty()) return;
     sectors[bin].layout_ = layout;
     RayTrieBuilder(sectors[bin], lines[bin]).build(static_cast<int>(bin));

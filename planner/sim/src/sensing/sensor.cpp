@@ -1,9 +1,7 @@
 #include "sensing/keyed_random.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/sim/sensor.hpp>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -130,10 +128,9 @@ planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner:
     if (sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
     return std::clamp(range + sigma * normal(random), 0.0, max_range);
   };
-  constexpr std::size_t kGrain = 1024;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      scan.ranges[i] = static_cast<float>(measured(i));
+  constexpr std::size_t kChunk = 1024;
+  for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) scan.ranges[i] = static_cast<float>(measured(i));
   });
   return scan;
 }

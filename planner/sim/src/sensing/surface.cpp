@@ -1,10 +1,9 @@
 #include "sensing/ray_frame.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/sim/surface.hpp>
 
 #include <embree3/rtcore.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -212,10 +211,8 @@ void Surface::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
     const FloatingPointMode mode(FloatingPointMode::kToNearest);
     for (std::size_t i = begin; i < end; ++i) hits[i] = scene_->first(rays[i]);
   };
-  constexpr std::size_t kGrain = 256;
-  if (rays.size() <= kGrain) return piece(0, rays.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
-                    [&](const auto& range) { piece(range.begin(), range.end()); });
+  constexpr std::size_t kChunk = 256;
+  for_each_chunk(rays.size(), kChunk, piece);
 }
 
 }  // namespace frontlux::sim

@@ -2,7 +2,7 @@
 
 #include "mesh/triangle_overlap.hpp"
 
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 
@@ -81,14 +81,14 @@ class Painter {
 }  // namespace
 
 void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::uint8_t>& cells) {
-  constexpr std::int64_t kThickness = 16;
+  constexpr std::size_t kThickness = 16;
   Painter painter(mesh, frame, cells);
   Eigen::Index axis = 0;
   const std::int64_t length = frame.size.maxCoeff(&axis);
-  tbb::parallel_for(std::int64_t{0}, (length + kThickness - 1) / kThickness, [&](std::int64_t slab) {
+  for_each_chunk(static_cast<std::size_t>(length), kThickness, [&](std::size_t begin, std::size_t end) {
     Block block{Cell::Zero(), frame.size - Cell::Ones()};
-    block.low[axis] = slab * kThickness;
-    block.high[axis] = std::min(length, (slab + 1) * kThickness) - 1;
+    block.low[axis] = static_cast<std::int64_t>(begin);
+    block.high[axis] = static_cast<std::int64_t>(end) - 1;
     painter.paint_slab(block);
   });
 }
