@@ -36,7 +36,7 @@ inline std::string quoted(const std::string& word) {
 inline Answer run_frontlux(const std::vector<std::string>& words, const std::filesystem::path& folder,
                            const std::string& before = "") {
   std::string command = before + " " + quoted(FRONTLUX_COMMAND);
-  for (const std::string& word : words) command += " " + quoted(word);
+  for (const std::string& word : words) command.append(" ").append(quoted(word));
   const std::filesystem::path out = folder / "out", err = folder / "err";
   const int status =
       std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string())).c_str());
