@@ -212,7 +212,9 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
     expect_refused({"--resume", path("kept")}, {"--resume", "run.frontlux", part});
   };
   const std::size_t version = bytes.find('\n') - 1;
-  expect_refused_recording(std::string(bytes).replace(version, 1, "7"), "format 7");
+  std::string newer = bytes;
+  newer[version] = '7';
+  expect_refused_recording(newer, "format 7");
   expect_refused_recording("# Octomap OcTree file\n", "is not a recording");
   expect_refused_recording("", "is not a recording");
   expect_refused_recording(bytes.substr(0, version + 30), "before the run began");

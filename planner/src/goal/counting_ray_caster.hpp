@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <stdexcept>
 
 namespace frontlux::planner::detail {
 
@@ -43,9 +42,7 @@ class CountingRayCaster final : public RayCaster {
                 UnknownPolicy unknown) const override {
     counted_.count(segments, counts, unknown);
   }
-  void do_update(const VoxelGrid&) override {
-    throw std::logic_error("a counting caster cannot update; update the caster that it counts");
-  }
+  void do_update(const VoxelGrid&) override {}  // the counted caster holds the map, and its owner updates it
 
   const RayCaster& counted_;
   mutable std::atomic<std::uint64_t> rays_{0};

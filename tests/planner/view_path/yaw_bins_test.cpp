@@ -81,7 +81,9 @@ TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
     const std::uint64_t reached = test::distinct_by_hand(scene, seen);
     EXPECT_LE(reached, best.distinct);
     // What is known of greedy choices without limits: at least half; with the sweeps it comes much nearer.
-    if (!limits.limited()) EXPECT_GE(static_cast<double>(reached), 0.85 * static_cast<double>(best.distinct));
+    if (!limits.limited()) {
+      EXPECT_GE(static_cast<double>(reached), 0.85 * static_cast<double>(best.distinct));
+    }
     distinct += reached;
     most_distinct += best.distinct;
   }
