@@ -19,6 +19,8 @@ Option& Option::excludes(const Option& other) {
 Command::Command(CLI::App& app, const char* name, const char* summary)
     : app_(app.add_subcommand(name, summary)) {}
 
+constexpr int kMostWords = 1 << 20;  // of a positional argument that may be repeated
+
 Option Command::add_words(const char* name, const char* type, const char* what,
                           const std::string& default_text, bool repeatable, ReadWord read_word) {
   const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
@@ -35,7 +37,7 @@ Option Command::add_words(const char* name, const char* type, const char* what,
       what);
   option->type_name(type)->default_str(default_text)->group(group_);
   if (repeatable && option->get_positional())
-    option->expected(-1);  // at least one
+    option->expected(1, kMostWords)->allow_extra_args();
   else if (repeatable)
     option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return Option(option);

@@ -39,8 +39,10 @@ Info gather(const MapFile& map) {
   info.frontiers = 0;
   if (info.bounds) {
     info.unknown = volume(*info.bounds) - info.occupied - info.free;
-    const auto frontiers = find_frontiers(grid, *info.bounds);
-    info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
+    if (info.unknown != 0) {
+      const auto frontiers = find_frontiers(grid, *info.bounds);
+      info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
+    }
   }
   return info;
 }

@@ -78,7 +78,7 @@ TEST(Polyline, IsShortenedAroundAnObstacle) {
   }
   EXPECT_GT(shorter, 60);
   EXPECT_GT(straight, 20);
-  EXPECT_LT(straight, 80);
+  EXPECT_LT(straight, 90);  // both cases occur
 }
 
 }  // namespace
