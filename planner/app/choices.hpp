@@ -56,7 +56,8 @@ inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::Pa
 template <>
 inline constexpr auto kChoices<CasterKind> = [] {
   std::array<Choice<CasterKind>, kCasterNames.size()> choices{};
-  for (std::size_t i = 0; i < choices.size(); ++i) choices[i] = {kCasterNames[i].first, kCasterNames[i].second};
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    choices[i] = {kCasterNames[i].first, kCasterNames[i].second};
   return choices;
 }();
 

@@ -15,9 +15,11 @@ namespace frontlux {
 inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 
 /// The bytes of a file.
-/// @throws std::runtime_error naming the file and what to do, unless it is a regular file that can be read and
+/// @throws std::runtime_error naming the file and what to do, unless it is a regular file that can be read
+/// and
 ///         has at most `max_bytes`
-[[nodiscard]] std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes = kMaxFileBytes);
+[[nodiscard]] std::string read_file(const std::filesystem::path& file,
+                                    std::uint64_t max_bytes = kMaxFileBytes);
 
 /// Writes a file complete or not at all: into a file beside it first, which then takes its name.
 /// @param write  writes the bytes

@@ -4,9 +4,10 @@
 
 namespace frontlux {
 
-/// Random numbers that are the same with every compiler and standard library, which `std::uniform_*` does not promise:
-/// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014), a hash of a state that
-/// grows by a constant. Seed it with `mix` of what the numbers are drawn for, and they depend on nothing else.
+/// Random numbers that are the same with every compiler and standard library, which `std::uniform_*` does not
+/// promise: SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014), a
+/// hash of a state that grows by a constant. Seed it with `mix` of what the numbers are drawn for, and they
+/// depend on nothing else.
 class SplitMix64 {
  public:
   static constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15U;

@@ -4,10 +4,10 @@
 #include "packet/packet_walk.hpp"
 
 #include "packet/open_voxels.hpp"
+#include "packet/table_query.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
-#include "packet/table_query.hpp"
 #include "walk/walk.hpp"
 
 #include <frontlux/octomap.hpp>

@@ -3,9 +3,9 @@
 #include "planner/exploration/team_in_world.hpp"
 #include "support/command.hpp"
 
-#include <frontlux/octomap.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
+#include <frontlux/octomap.hpp>
 #include <frontlux/sim/coverage.hpp>
 
 #include <gtest/gtest.h>

@@ -53,8 +53,7 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
     travel.min_height = random.uniform(-9, 9);
     head.robots.push_back(robot);
     planner::ExplorationStart start{random_pose(random), {}};
-    for (int k = random.below(9); k > 0; --k)
-      start.known_free.push_back(random_key(random, kAllVoxels));
+    for (int k = random.below(9); k > 0; --k) start.known_free.push_back(random_key(random, kAllVoxels));
     head.starts.push_back(start);
   }
   return head;
@@ -112,11 +111,12 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
         robot.still_unknown.push_back(random_key(random, kAllVoxels));
       if (!robot.still_unknown.empty()) robot.blocked = {robot.still_unknown.front()};
       std::sort(robot.still_unknown.begin(), robot.still_unknown.end());
-      robot.still_unknown.erase(std::unique(robot.still_unknown.begin(), robot.still_unknown.end()), robot.still_unknown.end());
+      robot.still_unknown.erase(std::unique(robot.still_unknown.begin(), robot.still_unknown.end()),
+                                robot.still_unknown.end());
       for (int i = random.below(size); i > 0; --i)
-        robot.image.push_back({random_key(random, kAllVoxels), random.uniform(0, 9),
-                               random.uniform(0, 9), random.uniform(0, 9), random.uniform(0, 9),
-                               random.uniform(-4, 4), static_cast<std::uint32_t>(random.bits())});
+        robot.image.push_back({random_key(random, kAllVoxels), random.uniform(0, 9), random.uniform(0, 9),
+                               random.uniform(0, 9), random.uniform(0, 9), random.uniform(-4, 4),
+                               static_cast<std::uint32_t>(random.bits())});
     }
     step.robots.push_back(robot);
   }

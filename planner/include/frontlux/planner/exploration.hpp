@@ -114,8 +114,8 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 ///     while (!exploration.end()) exploration.step(drive);
 ///
 /// The result depends on the options, the starts and the scans only: not on time, not on the number of
-/// threads, not on the choice among the fast, the embree and the grid caster. Works in TBB's current arena. Thread
-/// safety: as a standard container.
+/// threads, not on the choice among the fast, the embree and the grid caster. Works in TBB's current arena.
+/// Thread safety: as a standard container.
 class Exploration {
  public:
   /// @param mapping  the map to fill; empty, or with what is known already

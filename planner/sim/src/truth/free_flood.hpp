@@ -9,9 +9,9 @@
 
 namespace frontlux::sim {
 
-/// Calls `visit(key)` for the free voxels of a box that can be reached from one of them within the box, without crossing
-/// a wall, through voxels for which `may_enter(key)`. Voxels of fewer steps come first; the order depends on nothing else.
-/// Ends when `visit` returns true.
+/// Calls `visit(key)` for the free voxels of a box that can be reached from one of them within the box,
+/// without crossing a wall, through voxels for which `may_enter(key)`. Voxels of fewer steps come first; the
+/// order depends on nothing else. Ends when `visit` returns true.
 template <class MayEnter, class Visit>
 void flood_free(const GroundTruth& truth, const VoxelKey& from, const KeyBox& box, const MayEnter& may_enter,
                 const Visit& visit) {
@@ -30,7 +30,8 @@ void flood_free(const GroundTruth& truth, const VoxelKey& from, const KeyBox& bo
       if (visit(here)) return;
       for (std::size_t axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
-          const auto there = offset_key(here, axis == 0 ? step : 0, axis == 1 ? step : 0, axis == 2 ? step : 0);
+          const auto there =
+              offset_key(here, axis == 0 ? step : 0, axis == 1 ? step : 0, axis == 2 ? step : 0);
           if (!there || !box.contains(*there) || !truth.open(step < 0 ? *there : here, axis)) continue;
           if (seen[index(*there)] || !may_enter(*there)) continue;
           seen[index(*there)] = true;
