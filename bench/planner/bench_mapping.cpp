@@ -22,18 +22,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
 
-using frontlux::KeyBox;
-using frontlux::Lattice;
-using frontlux::planner::FrontierSet;
-using frontlux::planner::Mapping;
-using frontlux::planner::Pose;
-using frontlux::planner::Scan;
+using frontlux::KeyBox, frontlux::Lattice, frontlux::planner::FrontierSet, frontlux::planner::Mapping,
+    frontlux::planner::Pose, frontlux::planner::Scan;
 
 constexpr double kResolution = 0.3;  // [m]
 constexpr int kSteps = 60;           // of the tour through the hall

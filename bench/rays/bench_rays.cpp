@@ -6,8 +6,6 @@
 #include "rays/workload.hpp"
 #include "table.hpp"
 
-#include <frontlux/machine.hpp>
-
 #ifdef FRONTLUX_BENCH_NANOVDB
 #include "peers/nanovdb_peer.hpp"
 #endif
@@ -147,7 +145,6 @@ octree to the caster, the grid included.
 int run(int argc, char** argv) {
   const RaysOptions options = read_rays_options(argc, argv);
   GoogleBenchmark google_benchmark(argv[0], options);
-  std::cout << processor_name() << ". All answers are compared before anything is timed.\n";
   Session session;
   tbb::task_arena(options.threads.back()).execute([&] {
     std::set<std::string> names(options.generated.begin(), options.generated.end());
@@ -155,10 +152,7 @@ int run(int argc, char** argv) {
       prepare(generate_map(name, options.cache), name, options, session);
     for (const auto& file : options.maps) prepare(file, unique_name(file, names), options, session);
   });
-  if (!session.agreed) {
-    std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
-    return 1;
-  }
+  if (!google_benchmark.may_run(session.agreed)) return 1;
   if (session.trials.empty()) {
     std::cout << "Nothing to measure.\n";
     return 0;

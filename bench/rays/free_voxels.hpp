@@ -31,8 +31,7 @@ void for_each_neighbour(const VoxelKey& key, const Visit& visit) {
       if (neighbour) visit(*neighbour);
 }
 
-/// The voxels of one state that share a face with a free voxel, each once, sorted: frontiers, if `state` is
-/// unknown.
+/// The voxels of one state that share a face with a free voxel, each once, sorted: the frontiers, if unknown.
 [[nodiscard]] std::vector<VoxelKey> voxels_beside_free(const VoxelGrid& grid, Occupancy state);
 
 /// Voxels sorted into cubes, to find those near a place.

@@ -7,13 +7,11 @@
 #include <cmath>
 #include <mutex>
 #include <sstream>
-#include <string>
 
 namespace frontlux::planner {
 namespace {
 
-using Ipopt::Index;
-using Ipopt::Number;
+using Ipopt::Index, Ipopt::Number;
 
 constexpr double kFirstStep = 0.1;  // [rad] largest turn of a stage's first step, before there is curvature
 constexpr double kFlat = 1e-9;    // gradient per unit of gain under which a path counts as stationary [1/rad]
