@@ -174,8 +174,7 @@ double insert_by_octomap(octomap::OcTree& tree, const Step& step) {
   return seconds;
 }
 
-// Fraction of the leaves that differ. Only rays without a return may differ, whose ends the two clouds round
-// differently.
+// Fraction of the leaves that differ. Only rays without a return may: the two clouds round their ends.
 double disagreement(const Mapping& mapping, const octomap::OcTree& tree) {
   const Lattice lattice(kResolution);
   std::size_t known = 0, different = 0;

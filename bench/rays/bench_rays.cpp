@@ -85,8 +85,7 @@ std::string ray_count(double count) {
   return format("%.1f M", count * 1e-6);
 }
 
-/// One line per workload and map: rates, speed-up over castRay, agreement, and from how many rays on a caster
-/// pays off.
+/// One line per workload and map: rates, speed-up over castRay, agreement, and when a caster pays off.
 void print_table(const Session& session, const std::vector<int>& threads, const GoogleBenchmark& timed) {
   std::vector<std::string> casters;
   for (const auto& trial : session.trials)

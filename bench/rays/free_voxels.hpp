@@ -10,8 +10,7 @@
 
 namespace frontlux::bench {
 
-/// The horizontal plane (key z) that has most free voxels, the lowest of them if several have; nothing if
-/// no voxel is free.
+/// The horizontal plane (key z) that has most free voxels, the lowest of several; nothing if none is free.
 [[nodiscard]] std::optional<std::uint16_t> fullest_free_plane(const VoxelGrid& grid);
 
 /// At most `count` free voxels, one drawn from each of `count` equal parts of all, in order of storage,

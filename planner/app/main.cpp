@@ -73,15 +73,11 @@ int run(int argc, const char* const* argv) {
   frontlux explore station --seed 3 -o station_run
 Run frontlux COMMAND --help for the options of a command. Lengths are in metres, angles in radians.
 Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other failure.)");
-  frontlux::app::add_info_command(app);
-  frontlux::app::add_cast_command(app);
-  frontlux::app::add_world_command(app);
-  frontlux::app::add_scan_command(app);
-  frontlux::app::add_map_command(app);
-  frontlux::app::add_plan_command(app);
-  frontlux::app::add_render_command(app);
-  frontlux::app::add_explore_command(app);
-  frontlux::app::add_report_command(app);
+  using namespace frontlux::app;
+  for (const auto add :
+       {add_info_command, add_cast_command, add_world_command, add_scan_command, add_map_command,
+        add_plan_command, add_render_command, add_explore_command, add_report_command})
+    add(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version

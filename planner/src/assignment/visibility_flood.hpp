@@ -44,8 +44,7 @@ class VisibilityFlood {
   // Parts of a quadrant by azimuth. The narrower they are, the less is connected that no ray connects.
   static constexpr std::size_t kSectors = 4;
 
-  // Of a column at an offset along x and y: heights at which rays of the region may cross it, and from which
-  // the target may be in view.
+  // Of a column at an offset along x and y: heights at which rays may cross it, and that may see the target.
   struct Limit {
     std::uint64_t crossed = 0, cells = 0;
   };

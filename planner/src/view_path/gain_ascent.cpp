@@ -158,8 +158,7 @@ class Stage : public Ipopt::TNLP {
     return viewpoint > 0 && viewpoint + 1 < yaws_.size();
   }
 
-  // Ipopt calls for value and gradient separately, and sometimes twice. Its flag for a new x is not reliable,
-  // so the points are compared.
+  // Ipopt calls for value and gradient separately, and sometimes twice. Its flag for a new x is unreliable.
   bool move_to(Index n, const Number* x) {
     if (std::equal(x, x + n, yaws_.begin() + 1)) return true;
     if (climb_.evaluations() >= last_evaluation_) {

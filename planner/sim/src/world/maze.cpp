@@ -122,8 +122,7 @@ class Maze {
     }
   }
 
-  // Dead ends that become low and get a second exit: shortcuts for the UGV alone. No other cell is reached
-  // through a dead end alone.
+  // Dead ends that become low and get a second exit: shortcuts for the UGV alone. No cell lies behind one.
   void dig_tunnels(Solid& solid, Cell start) {
     std::vector<Cell> ends;
     for (int i = 0; i < kCells; ++i)
