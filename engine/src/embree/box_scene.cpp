@@ -3,7 +3,13 @@
 #include "embree/box_kernel.hpp"
 #include "embree/probe_order.hpp"
 
+#include <frontlux/floating_point_mode.hpp>
+
+#if FRONTLUX_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -15,27 +21,17 @@
 #include <unordered_map>
 #include <utility>
 #include <vector>
-#include <xmmintrin.h>
 
 namespace frontlux::detail {
 namespace {
 
-// Embree wants denormals flushed to zero while it works. The caller's mode comes back afterwards: castRay's
-// arithmetic needs it, and it is not ours to change.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | kFlushToZero | kDenormalsAreZero); }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  static constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
-  unsigned saved_;
-};
-
+// What a query hands to the callbacks.
 struct QueryContext {
-  RTCIntersectContext embree;  // first: callbacks get a pointer to it
+#if FRONTLUX_EMBREE == 3
+  RTCIntersectContext embree;
+#else
+  RTCRayQueryContext embree;
+#endif
   std::uint8_t* too_close = nullptr;
 };
 
@@ -85,21 +81,112 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
                          reinterpret_cast<float*>(args->rayhit), args->N, args->primID, args->geomID);
 }
 
+// Embree's types and calls for packets of one size.
+template <unsigned kSize>
+struct Packet;
+template <>
+struct Packet<4> {
+  using Rays = RTCRay4;
+  using RayHits = RTCRayHit4;
+  static constexpr auto kOccluded = &rtcOccluded4;
+  static constexpr auto kIntersect = &rtcIntersect4;
+};
+template <>
+struct Packet<8> {
+  using Rays = RTCRay8;
+  using RayHits = RTCRayHit8;
+  static constexpr auto kOccluded = &rtcOccluded8;
+  static constexpr auto kIntersect = &rtcIntersect8;
+};
+template <>
+struct Packet<16> {
+  using Rays = RTCRay16;
+  using RayHits = RTCRayHit16;
+  static constexpr auto kOccluded = &rtcOccluded16;
+  static constexpr auto kIntersect = &rtcIntersect16;
+};
+
+template <class Rays>
+void set_ray(Rays& rays, unsigned lane, const Probe& probe, std::size_t id) {
+  rays.org_x[lane] = probe.origin[0];
+  rays.org_y[lane] = probe.origin[1];
+  rays.org_z[lane] = probe.origin[2];
+  rays.tnear[lane] = probe.t_near;
+  rays.dir_x[lane] = probe.direction[0];
+  rays.dir_y[lane] = probe.direction[1];
+  rays.dir_z[lane] = probe.direction[2];
+  rays.time[lane] = 0.0F;
+  rays.tfar[lane] = probe.t_far;
+  rays.mask[lane] = ~0U;
+  rays.id[lane] = static_cast<unsigned>(id);
+  rays.flags[lane] = 0;
+}
+
 RTCRay make_ray(const Probe& probe, std::size_t id) {
-  RTCRay ray;
-  ray.org_x = probe.origin[0];
-  ray.org_y = probe.origin[1];
-  ray.org_z = probe.origin[2];
-  ray.tnear = probe.t_near;
-  ray.dir_x = probe.direction[0];
-  ray.dir_y = probe.direction[1];
-  ray.dir_z = probe.direction[2];
-  ray.time = 0.0F;
-  ray.tfar = probe.t_far;
-  ray.mask = ~0U;
-  ray.id = static_cast<unsigned>(id);
-  ray.flags = 0;
-  return ray;
+  const auto& [x, y, z] = probe.origin;
+  const auto& [dx, dy, dz] = probe.direction;
+  return {x, y, z, probe.t_near, dx, dy, dz, 0.0F, probe.t_far, ~0U, static_cast<unsigned>(id), 0};
+}
+
+// How both versions of Embree are asked.
+class Query {
+ public:
+  Query(RTCScene scene, bool coherent, std::uint8_t* too_close) : scene_(scene) {
+    context_.too_close = too_close;
+#if FRONTLUX_EMBREE == 3
+    rtcInitIntersectContext(&context_.embree);
+    if (coherent) context_.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#else
+    rtcInitRayQueryContext(&context_.embree);
+    rtcInitOccludedArguments(&occluded_);
+    rtcInitIntersectArguments(&intersect_);
+    occluded_.context = intersect_.context = &context_.embree;
+    if (coherent) occluded_.flags = intersect_.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+#endif
+  }
+
+#if FRONTLUX_EMBREE == 3
+  void occluded(RTCRay& ray) { rtcOccluded1(scene_, &context_.embree, &ray); }
+  void intersect(RTCRayHit& ray) { rtcIntersect1(scene_, &context_.embree, &ray); }
+  template <unsigned kSize>
+  void occluded(const int* valid, typename Packet<kSize>::Rays& rays) {
+    Packet<kSize>::kOccluded(valid, scene_, &context_.embree, &rays);
+  }
+  template <unsigned kSize>
+  void intersect(const int* valid, typename Packet<kSize>::RayHits& rays) {
+    Packet<kSize>::kIntersect(valid, scene_, &context_.embree, &rays);
+  }
+#else
+  void occluded(RTCRay& ray) { rtcOccluded1(scene_, &ray, &occluded_); }
+  void intersect(RTCRayHit& ray) { rtcIntersect1(scene_, &ray, &intersect_); }
+  template <unsigned kSize>
+  void occluded(const int* valid, typename Packet<kSize>::Rays& rays) {
+    Packet<kSize>::kOccluded(valid, scene_, &rays, &occluded_);
+  }
+  template <unsigned kSize>
+  void intersect(const int* valid, typename Packet<kSize>::RayHits& rays) {
+    Packet<kSize>::kIntersect(valid, scene_, &rays, &intersect_);
+  }
+#endif
+
+ private:
+  RTCScene scene_;
+  QueryContext context_;
+#if FRONTLUX_EMBREE != 3
+  RTCOccludedArguments occluded_;
+  RTCIntersectArguments intersect_;
+#endif
+};
+
+// Calls visit(first, count, valid) for packets of probes, the last of them perhaps not full.
+template <unsigned kSize, class Visit>
+void for_each_packet(std::size_t size, const Visit& visit) {
+  for (std::size_t first = 0; first < size; first += kSize) {
+    const auto count = static_cast<unsigned>(std::min<std::size_t>(kSize, size - first));
+    alignas(64) int valid[kSize];
+    for (unsigned lane = 0; lane < kSize; ++lane) valid[lane] = lane < count ? -1 : 0;
+    visit(first, count, valid);
+  }
 }
 
 }  // namespace
@@ -115,12 +202,19 @@ class BoxSceneDevice {
           return true;
         },
         &bytes_);
+    const auto native = [this](RTCDeviceProperty size) { return rtcGetDeviceProperty(device_, size) != 0; };
+    packet_size_ = native(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+                   : native(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                   : native(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ? 4
+                                                                       : 1;
   }
   ~BoxSceneDevice() { rtcReleaseDevice(device_); }
   BoxSceneDevice(const BoxSceneDevice&) = delete;
   BoxSceneDevice& operator=(const BoxSceneDevice&) = delete;
 
   [[nodiscard]] RTCDevice get() const { return device_; }
+  /// The widest packets that Embree traverses as such here; it takes wider ones apart, and loses their ids.
+  [[nodiscard]] unsigned packet_size() const { return packet_size_; }
   [[nodiscard]] std::size_t bytes() const {
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes_, 0));
   }
@@ -128,6 +222,7 @@ class BoxSceneDevice {
  private:
   std::atomic<std::ptrdiff_t> bytes_{0};  // outlives the device, which counts down to the end
   RTCDevice device_;
+  unsigned packet_size_ = 1;
 };
 
 std::shared_ptr<BoxSceneDevice> make_box_scene_device() { return std::make_shared<BoxSceneDevice>(); }
@@ -164,18 +259,26 @@ struct BoxScene::Embree {
     if (id >= views.size()) views.resize(id + 1);
     views[id] = std::move(view);
   }
-  // Embree's packets of sixteen neighbouring rays are faster while such rays mostly meet the same boxes;
-  // where they diverge, single rays are. Rays from one place diverge with their length, and large boxes keep
-  // them together. The factor was measured (docs/benchmarking.md). The answers are the same in both modes.
-  [[nodiscard]] QueryContext make_context(const ProbeOrder& order) const {
+  // Coherent: rays that mostly meet the same boxes. Rays from one place diverge with their length, and large
+  // boxes keep them together. The factor was measured (docs/benchmarking.md); the answers are the same.
+  [[nodiscard]] Query query(const ProbeOrder& order, std::uint8_t* too_close) const {
     constexpr float kTogether = 8.0F;
-    QueryContext context;
-    rtcInitIntersectContext(&context.embree);
-    if (order.mean_length() < kTogether * mean_edge)
-      context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    return context;
+    return {scene, order.mean_length() < kTogether * mean_edge, too_close};
   }
-
+  // Calls visit<size>() with the size of the packets to ask in, or 1.
+  template <class Visit>
+  void with_packets(const ProbeOrder& order, const Visit& visit) const {
+    switch (order.in_packets() ? device->packet_size() : 1) {
+      case 16:
+        return visit.template operator()<16>();
+      case 8:
+        return visit.template operator()<8>();
+      case 4:
+        return visit.template operator()<4>();
+      default:
+        return visit.template operator()<1>();
+    }
+  }
   void detach(std::size_t id) {
     rtcDetachGeometry(scene, static_cast<unsigned>(id));
     views[id].reset();
@@ -250,45 +353,66 @@ void BoxScene::update(const Blockers& blockers) {
 }
 
 void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) const {
-  std::array<RTCRay, kMaxBatch> rays;
   std::array<std::uint8_t, kMaxBatch> too_close;
-  const std::size_t size = probes.size();
+  std::fill_n(too_close.begin(), probes.size(), std::uint8_t{0});
   const ProbeOrder order(probes);
-  std::fill_n(too_close.begin(), size, std::uint8_t{0});
-  for (std::size_t i = 0; i < size; ++i) rays[i] = make_ray(probes[order[i]], order[i]);
-  QueryContext context = embree_->make_context(order);
-  context.too_close = too_close.data();
-  {
-    const FlushDenormals scope;
-    rtcOccluded1M(embree_->scene, &context.embree, rays.data(), static_cast<unsigned>(size), sizeof(RTCRay));
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const bool hit = rays[i].tfar == -std::numeric_limits<float>::infinity();
-    sights[order[i]] = hit ? Sight::kBlocked : too_close[order[i]] != 0 ? Sight::kTooClose : Sight::kClear;
-  }
+  Query query = embree_->query(order, too_close.data());
+  const auto sight = [&](std::size_t id, float t_far) {
+    sights[id] = t_far == -std::numeric_limits<float>::infinity() ? Sight::kBlocked
+                 : too_close[id] != 0                             ? Sight::kTooClose
+                                                                  : Sight::kClear;
+  };
+  const FloatingPointMode flushed(FloatingPointMode::kFlushed);
+  embree_->with_packets(order, [&]<unsigned kSize>() {
+    if constexpr (kSize == 1) {
+      for (std::size_t id = 0; id < probes.size(); ++id) {
+        RTCRay ray = make_ray(probes[id], id);
+        query.occluded(ray);
+        sight(id, ray.tfar);
+      }
+    } else {
+      typename Packet<kSize>::Rays rays;
+      for_each_packet<kSize>(probes.size(), [&](std::size_t first, unsigned count, const int* valid) {
+        for (unsigned lane = 0; lane < count; ++lane)
+          set_ray(rays, lane, probes[order[first + lane]], order[first + lane]);
+        query.occluded<kSize>(valid, rays);
+        for (unsigned lane = 0; lane < count; ++lane) sight(order[first + lane], rays.tfar[lane]);
+      });
+    }
+  });
 }
 
 void BoxScene::first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const {
-  std::array<RTCRayHit, kMaxBatch> rays;
-  const std::size_t size = probes.size();
   const ProbeOrder order(probes);
-  for (std::size_t i = 0; i < size; ++i) {
-    rays[i].ray = make_ray(probes[order[i]], order[i]);
-    rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  }
-  QueryContext context = embree_->make_context(order);
-  {
-    const FlushDenormals scope;
-    rtcIntersect1M(embree_->scene, &context.embree, rays.data(), static_cast<unsigned>(size),
-                   sizeof(RTCRayHit));
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const RTCHit& hit = rays[i].hit;
-    boxes[order[i]] = hit.geomID == RTC_INVALID_GEOMETRY_ID
-                          ? std::nullopt
-                          : std::optional(embree_->views[hit.geomID]->group->box(hit.primID));
-  }
+  Query query = embree_->query(order, nullptr);
+  const auto box = [&](unsigned geometry, unsigned primitive) {
+    return geometry == RTC_INVALID_GEOMETRY_ID
+               ? std::nullopt
+               : std::optional(embree_->views[geometry]->group->box(primitive));
+  };
+  const FloatingPointMode flushed(FloatingPointMode::kFlushed);
+  embree_->with_packets(order, [&]<unsigned kSize>() {
+    if constexpr (kSize == 1) {
+      for (std::size_t id = 0; id < probes.size(); ++id) {
+        RTCRayHit ray;
+        ray.ray = make_ray(probes[id], id);
+        ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        query.intersect(ray);
+        boxes[id] = box(ray.hit.geomID, ray.hit.primID);
+      }
+    } else {
+      typename Packet<kSize>::RayHits rays;
+      for_each_packet<kSize>(probes.size(), [&](std::size_t first, unsigned count, const int* valid) {
+        for (unsigned lane = 0; lane < count; ++lane) {
+          set_ray(rays.ray, lane, probes[order[first + lane]], order[first + lane]);
+          rays.hit.geomID[lane] = rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        query.intersect<kSize>(valid, rays);
+        for (unsigned lane = 0; lane < count; ++lane)
+          boxes[order[first + lane]] = box(rays.hit.geomID[lane], rays.hit.primID[lane]);
+      });
+    }
+  });
 }
 
 }  // namespace frontlux::detail

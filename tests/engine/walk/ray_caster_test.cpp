@@ -1,5 +1,6 @@
 // What holds for every caster: batches, threads, bad input, updates while others read.
 
+#include "support/floating_point_control.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
@@ -19,7 +20,6 @@
 #include <limits>
 #include <numeric>
 #include <thread>
-#include <xmmintrin.h>
 
 namespace frontlux::test {
 namespace {
@@ -305,10 +305,10 @@ TEST(RayCaster, QueriesGoOnDuringUpdates) {
 TEST(RayCaster, LeavesTheCallersFloatingPointModeAlone) {
   const Casters casters;
   const Questions questions(casters.grid, 1000);
-  const unsigned before = _mm_getcsr() & ~0x3FU;  // but for the sticky exception flags
+  const std::uint64_t before = floating_point_control();
   for (const auto& caster : casters.all) {
     (void)questions.ask(*caster, 1000);
-    EXPECT_EQ(_mm_getcsr() & ~0x3FU, before);
+    EXPECT_EQ(floating_point_control(), before);
   }
 }
 

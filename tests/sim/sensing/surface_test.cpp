@@ -2,6 +2,7 @@
 // aimed at the edges and corners that a closed surface must not let through.
 
 #include "sim/mesh/box_mesh.hpp"
+#include "support/floating_point_control.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/sim/surface.hpp>
@@ -9,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
-#include <xmmintrin.h>
 
 namespace frontlux::sim {
 namespace {
@@ -227,12 +228,12 @@ TEST(Surface, RangeLimitIsInclusiveAndLengthOfTheDirectionDoesNotMatter) {
 
 TEST(Surface, LeavesTheFloatingPointModeAlone) {
   const Surface surface(test::box_mesh({Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()}));
-  const unsigned saved = _mm_getcsr();
-  const unsigned unusual = 0x1F80 | 0x6000;  // rounds towards zero
-  _mm_setcsr(unusual);
+  std::fesetround(FE_TOWARDZERO);
+  const std::uint64_t unusual = floating_point_control();
   const auto hits = cast(surface, {{{0.5F, 0.5F, 0.5F}, {1, 0, 0}}});
-  const unsigned after = _mm_getcsr();
-  _mm_setcsr(saved);
+  const std::uint64_t after = floating_point_control();
+  std::fesetround(FE_TONEAREST);
+  EXPECT_NE(floating_point_control(), unusual);
   EXPECT_EQ(after, unusual);
   EXPECT_EQ(hits[0].range, 0.5);
 }
