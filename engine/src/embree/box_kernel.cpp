@@ -1,5 +1,7 @@
 #include "embree/box_kernel.hpp"
 
+#include "isa/targets.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <limits>

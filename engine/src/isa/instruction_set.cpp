@@ -1,5 +1,7 @@
 #include "isa/instruction_set.hpp"
 
+#include "isa/targets.hpp"
+
 #include <frontlux/machine.hpp>
 
 #include <array>

@@ -4,10 +4,6 @@
 #include <cstdint>
 #include <span>
 
-#if defined(__x86_64__) && defined(__GNUC__)  // clang as well
-#define FRONTLUX_X86_SETS
-#endif
-
 namespace frontlux::detail {
 
 /// The sets of vector instructions that parts of the engine are written for, the widest first.
@@ -36,23 +32,3 @@ template <class Variant>
 }
 
 }  // namespace frontlux::detail
-
-// What stands between FRONTLUX_BEGIN_... and FRONTLUX_END_TARGET is compiled for that set, templates and
-// lambdas included, which an attribute on a function does not reach.
-#ifdef FRONTLUX_X86_SETS
-#ifdef __clang__
-#define FRONTLUX_BEGIN_AVX512 \
-  _Pragma(                    \
-      "clang attribute push(__attribute__((target(\"avx512f,avx512vl,avx512dq,avx512bw\"))), \
-apply_to = function)")
-#define FRONTLUX_BEGIN_AVX2 \
-  _Pragma("clang attribute push(__attribute__((target(\"avx2,fma\"))), apply_to = function)")
-#define FRONTLUX_END_TARGET _Pragma("clang attribute pop")
-#else
-#define FRONTLUX_BEGIN_AVX512 \
-  _Pragma("GCC push_options") \
-      _Pragma("GCC target(\"avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512\")")
-#define FRONTLUX_BEGIN_AVX2 _Pragma("GCC push_options") _Pragma("GCC target(\"avx2,fma\")")
-#define FRONTLUX_END_TARGET _Pragma("GCC pop_options")
-#endif
-#endif

@@ -1,13 +1,9 @@
 #include "packet/packet_walk.hpp"
 
+#include "isa/targets.hpp"
+
 #include <array>
 #include <bit>
-
-#ifdef FRONTLUX_X86_SETS
-#include <immintrin.h>
-// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
 
 namespace frontlux::detail {
 namespace {

@@ -1,16 +1,12 @@
 #include "view/exact/trie_walk.hpp"
 
+#include "isa/targets.hpp"
+
 #include <algorithm>
 #include <cstring>
 
 // Vectors are passed among functions of this file only, and those are inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-#ifdef FRONTLUX_X86_SETS
-#include <immintrin.h>
-// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
 
 namespace frontlux::detail {
 
