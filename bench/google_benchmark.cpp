@@ -16,14 +16,6 @@
 #include <stdexcept>
 #include <thread>
 
-// What only the build knows.
-#ifndef FRONTLUX_BENCH_FLAGS
-#define FRONTLUX_BENCH_FLAGS "unknown"
-#endif
-#ifndef FRONTLUX_BENCH_VERSIONS
-#define FRONTLUX_BENCH_VERSIONS "unknown"
-#endif
-
 namespace frontlux::bench {
 namespace {
 
@@ -43,7 +35,7 @@ void add_context() {
 #elif defined(__GNUC__)
   benchmark::AddCustomContext("compiler", "gcc " __VERSION__);
 #endif
-  benchmark::AddCustomContext("compiler_flags", FRONTLUX_BENCH_FLAGS);
+  benchmark::AddCustomContext("compiler_flags", FRONTLUX_BENCH_FLAGS);  // what only the build knows
   benchmark::AddCustomContext("versions", FRONTLUX_BENCH_VERSIONS);
 }
 
@@ -93,6 +85,7 @@ GoogleBenchmark::GoogleBenchmark(const std::string& program, const Options& opti
   if (processors > 0 && options.threads.back() > processors)
     std::cerr << "This machine has " << processors
               << " processors. Rows with more threads do not show their gain.\n";
+  std::cout << processor_name() << ". All answers are compared before anything is timed." << std::endl;
 }
 
 GoogleBenchmark::~GoogleBenchmark() {
@@ -117,6 +110,12 @@ void GoogleBenchmark::add(const std::string& name, int threads, std::size_t item
     for (const auto& [counter, value] : counters) state.counters[counter] = value;
   };
   benchmark::RegisterBenchmark(name.c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
+}
+
+bool GoogleBenchmark::may_run(bool agreed) {
+  if (!agreed)
+    std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
+  return agreed;
 }
 
 void GoogleBenchmark::run() {

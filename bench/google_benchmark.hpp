@@ -16,9 +16,9 @@ namespace frontlux::bench {
 /// machine does not affect one caster only.
 class GoogleBenchmark {
  public:
-  /// Warns on stderr if the machine has fewer processors than threads are asked for.
-  /// @throws std::runtime_error if an option is unknown to Google Benchmark or the JSON file cannot be
-  /// written
+  /// Prints the processor's name. Warns on stderr if the machine has fewer processors than threads are asked
+  /// for.
+  /// @throws std::runtime_error if Google Benchmark knows no such option or JSON cannot be written
   GoogleBenchmark(const std::string& program, const Options& options);
   ~GoogleBenchmark();
   GoogleBenchmark(const GoogleBenchmark&) = delete;
@@ -30,6 +30,10 @@ class GoogleBenchmark {
   /// @param counters  added to the row's JSON
   void add(const std::string& name, int threads, std::size_t items, std::function<void()> pass,
            std::map<std::string, double> counters);
+
+  /// Says on stderr that nothing is timed, unless all casters agree where they have to.
+  /// @return whether they do
+  [[nodiscard]] static bool may_run(bool agreed);
 
   /// Times all rows that pass the filter. The JSON file appears when all have been timed.
   void run();

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const CLI::Range kThreads(1, 1024), kCounts(std::size_t{1}, std::size_t{10'000'000}), kSamples(1, 1'000'000);
+const CLI::Range kThreads(1, 1024), kCounts(std::size_t{1}, std::size_t{10'000'000});
 
 /// A command line with the options that all benchmarks have.
 class CommandLine : public CLI::App {
@@ -25,6 +25,16 @@ class CommandLine : public CLI::App {
   void add_maps(const std::string& defaults) {
     add_option("--map", options_.maps, "maps to measure on, .bt or .ot (default: " + defaults + ")")
         ->check(CLI::ExistingFile);
+  }
+
+  template <class Given>
+  void add_viewpoints(Given& given) {
+    add_option("--samples", given.samples, "frontiers drawn for each viewpoint")
+        ->check(CLI::Range(1, 1'000'000));
+    add_option("--viewpoints", given.ground_viewpoints, "most viewpoints of the ground robot")
+        ->check(kCounts);
+    add_option("--viewpoints-in-space", given.aerial_viewpoints, "most viewpoints of the aerial robot")
+        ->check(kCounts);
   }
 
   void add_google_benchmark(const std::string& quick) {
@@ -79,13 +89,13 @@ std::vector<fs::path> maps_in(const fs::path& folder) {
 RaysOptions read_rays_options(int argc, char** argv) {
   RaysOptions options;
   CommandLine line(
-      "Measures the rays per second of every ray caster on OctoMap maps. Before that, it checks that all "
-      "casters\n"
-      "give the same answers. The casters:\n"
-      "  octomap  OctoMap's castRay, the baseline\n"
-      "  fast     make_ray_caster: packets of rays through a table of open voxels, Embree for long rays\n"
-      "  embree   make_embree_ray_caster: Embree's BVH alone\n"
-      "  grid     make_grid_ray_caster: castRay's walk over the voxel grid, one ray at a time\n",
+      R"(Measures the rays per second of every ray caster on OctoMap maps. Before that, it checks that all casters
+give the same answers. The casters:
+  octomap  OctoMap's castRay, the baseline
+  fast     make_ray_caster: packets of rays through a table of open voxels, Embree for long rays
+  embree   make_embree_ray_caster: Embree's BVH alone
+  grid     make_grid_ray_caster: castRay's walk over the voxel grid, one ray at a time
+)",
       options);
   bool generated = false;
   line.add_maps(
@@ -111,19 +121,17 @@ RaysOptions read_rays_options(int argc, char** argv) {
 ScalingOptions read_scaling_options(int argc, char** argv) {
   ScalingOptions options;
   CommandLine line(
-      "Measures how the rays per second of every ray caster change with the map, the rays and the threads. "
-      "Before\n"
-      "that, it checks that all casters give the same answers. One axis is varied at a time:\n"
-      "  resolution  the generated building in voxels of 0.1 to 0.5 m: visible_uav, cast_lidar\n"
-      "  length      rays of 2 to 60 m in a nearly empty box and in the building\n"
-      "  density     0.01 % to 20 % of a box occupied by random cubes; rays of 20 m\n"
-      "  size        1 to 100 million known voxels in equal rooms; rays of 5 m; also memory and build time\n"
-      "  order       the rays of the building in a planner's order and shuffled, on each number of threads\n"
-      "All axes but `order` are measured on the highest number of threads. Without --quick a run takes some "
-      "minutes\n"
-      "and 2.2 GB of memory; the first run generates the building in four resolutions, which takes two "
-      "minutes more.\n"
-      "To draw the results: bench/plot_scaling.py RESULTS.json FOLDER\n",
+      R"(Measures how the rays per second of every ray caster change with the map, the rays and the threads. Before
+that, it checks that all casters give the same answers. One axis is varied at a time:
+  resolution  the generated building in voxels of 0.1 to 0.5 m: visible_uav, cast_lidar
+  length      rays of 2 to 60 m in a nearly empty box and in the building
+  density     0.01 % to 20 % of a box occupied by random cubes; rays of 20 m
+  size        1 to 100 million known voxels in equal rooms; rays of 5 m; also memory and build time
+  order       the rays of the building in a planner's order and shuffled, on each number of threads
+All axes but `order` are measured on the highest number of threads. Without --quick a run takes some minutes
+and 2.2 GB of memory; the first run generates the building in four resolutions, which takes two minutes more.
+To draw the results: bench/plot_scaling.py RESULTS.json FOLDER
+)",
       options);
   line.add_option("--axis", options.axes, "what to vary (default: all)")
       ->check(CLI::IsMember(std::vector<std::string>(kAxes.begin(), kAxes.end())));
@@ -137,14 +145,10 @@ ScalingOptions read_scaling_options(int argc, char** argv) {
 PlannerOptions read_planner_options(int argc, char** argv) {
   PlannerOptions options;
   CommandLine line(
-      "Measures the time to choose goals. Before that, it checks that all ray casters give the same answers.",
+      R"(Measures the time to choose goals. Before that, it checks that all ray casters give the same answers.)",
       options);
   line.add_maps("the generated building_0.3m");
-  line.add_option("--samples", options.samples, "frontiers drawn for each viewpoint")->check(kSamples);
-  line.add_option("--viewpoints", options.ground_viewpoints, "most viewpoints of the ground robot")
-      ->check(kCounts);
-  line.add_option("--viewpoints-in-space", options.aerial_viewpoints, "most viewpoints of the aerial robot")
-      ->check(kCounts);
+  line.add_viewpoints(options);
   line.add_flag("--corners", options.corners,
                 "also count voxels as frontiers that share only an edge or corner with a free voxel");
   line.add_google_benchmark("only check that it works: few viewpoints, one repetition");
@@ -160,16 +164,11 @@ ViewErrorOptions read_view_error_options(int argc, char** argv) {
   ViewErrorOptions options;
   options.threads = {1};
   CommandLine line(
-      "Measures the error of sampled view quality against exact view quality, and the time of both. Before "
-      "that, it\n"
-      "checks that the exact values are those of rays to all frontiers.",
+      R"(Measures the error of sampled view quality against exact view quality, and the time of both. Before that, it
+checks that the exact values are those of rays to all frontiers.)",
       options);
   line.add_maps("the generated building_0.3m");
-  line.add_option("--samples", options.samples, "frontiers drawn for each viewpoint")->check(kSamples);
-  line.add_option("--viewpoints", options.ground_viewpoints, "most viewpoints of the ground robot")
-      ->check(kCounts);
-  line.add_option("--viewpoints-in-space", options.aerial_viewpoints, "most viewpoints of the aerial robot")
-      ->check(kCounts);
+  line.add_viewpoints(options);
   line.add_option("--checked", options.checked_viewpoints,
                   "viewpoints that are checked, and on which the slow casters are timed")
       ->check(kCounts);
@@ -185,7 +184,7 @@ ViewErrorOptions read_view_error_options(int argc, char** argv) {
 PathsOptions read_paths_options(int argc, char** argv) {
   PathsOptions options;
   CommandLine line(
-      "Compares methods that choose the yaws of a path: distinct frontiers in view, time, evaluations.",
+      R"(Compares methods that choose the yaws of a path: distinct frontiers in view, time, evaluations.)",
       options);
   line.add_maps("none; the generated building_0.3m is always measured");
   line.add_option("--seeds", options.seeds, "random paths on each map")

@@ -34,6 +34,16 @@ function(frontlux_target name)
   endif()
 endfunction()
 
+# frontlux_compile_together(NAME file...): as one translation unit, for files that instantiate the same templates: that
+# takes longer than everything else of them. Their unnamed namespaces become one.
+function(frontlux_compile_together name first)
+  if(FRONTLUX_PRECOMPILE_HEADERS)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    get_filename_component(group ${first} NAME_WE)
+    set_source_files_properties(${first} ${ARGN} PROPERTIES UNITY_GROUP ${group})
+  endif()
+endfunction()
+
 # frontlux_install(NAME EXPORT): installs the library frontlux_NAME and its public headers as frontlux::NAME.
 function(frontlux_install name export)
   # Before 1.0 a new minor version may break users, so it is a new library name.

@@ -20,9 +20,8 @@ constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
 void list_maps() {
-  for (const synthetic::MapRecipe& recipe : synthetic::map_recipes()) {
+  for (const synthetic::MapRecipe& recipe : synthetic::map_recipes())
     std::cout << recipe.name << '\t' << recipe.resolution << " m\t" << recipe.file_name() << '\n';
-  }
 }
 
 void make_map(const synthetic::MapRecipe& recipe, const std::filesystem::path& folder, std::uint64_t seed) {
@@ -62,9 +61,8 @@ int main(int argc, char** argv) {
     std::vector<synthetic::MapRecipe> recipes;
     for (const std::string& name : names) recipes.push_back(synthetic::find_map_recipe(name));
     if (names.empty()) recipes.assign(synthetic::map_recipes().begin(), synthetic::map_recipes().end());
-    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
+    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
       throw std::invalid_argument("--out: " + folder + " is not a folder");
-    }
     std::filesystem::create_directories(folder);
     for (const synthetic::MapRecipe& recipe : recipes) make_map(recipe, folder, seed);
   } catch (const std::invalid_argument& error) {

@@ -36,7 +36,7 @@ LIBRARIES = [
     (r"nlohmann/", r"planner/(app|io/src|report/src)/.*\.cpp"),
     (r"CLI/", r"planner/app/"),
     (r"png\.h", r"planner/app/draw/png_file\.cpp"),
-    (r"zlib\.h", r"planner/src/recording/.*\.cpp|planner/report/src/compression\.cpp"),
+    (r"zlib\.h", r"planner/src/recording/.*\.cpp|planner/report/src/report\.cpp"),
     (r"(oneapi/)?tbb/", r"(engine|planner)/.*src/|planner/app/"),
 ]
 MOST_FILES = 25

@@ -1,12 +1,11 @@
 #include "peers/nanovdb_peer.hpp"
 
+#include <frontlux/parallel.hpp>
+
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/HDDA.h>
 #include <nanovdb/util/Ray.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -59,10 +58,9 @@ Peer make_nanovdb_peer(const VoxelGrid& grid) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   const auto query = [handle](std::span<const KeySegment> segments, std::span<std::uint8_t> answers) {
     const nanovdb::NanoGrid<float>& voxels = *handle->grid<float>();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, segments.size(), 256), [&](const auto& block) {
+    for_each_chunk(segments.size(), 256, [&](std::size_t begin, std::size_t end) {
       auto accessor = voxels.getAccessor();
-      for (std::size_t i = block.begin(); i != block.end(); ++i)
-        answers[i] = visible(segments[i], accessor) ? 1 : 0;
+      for (std::size_t i = begin; i != end; ++i) answers[i] = visible(segments[i], accessor) ? 1 : 0;
     });
   };
   return {{"nanovdb", seconds.count(), static_cast<std::size_t>(handle->size())}, query};

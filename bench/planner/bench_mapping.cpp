@@ -22,18 +22,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
 
-using frontlux::KeyBox;
-using frontlux::Lattice;
-using frontlux::planner::FrontierSet;
-using frontlux::planner::Mapping;
-using frontlux::planner::Pose;
-using frontlux::planner::Scan;
+using frontlux::KeyBox, frontlux::Lattice, frontlux::planner::FrontierSet, frontlux::planner::Mapping,
+    frontlux::planner::Pose, frontlux::planner::Scan;
 
 constexpr double kResolution = 0.3;  // [m]
 constexpr int kSteps = 60;           // of the tour through the hall
@@ -179,8 +174,7 @@ double insert_by_octomap(octomap::OcTree& tree, const Step& step) {
   return seconds;
 }
 
-// Fraction of the leaves that differ. Only rays without a return may differ, whose ends the two clouds round
-// differently.
+// Fraction of the leaves that differ. Only rays without a return may: the two clouds round their ends.
 double disagreement(const Mapping& mapping, const octomap::OcTree& tree) {
   const Lattice lattice(kResolution);
   std::size_t known = 0, different = 0;

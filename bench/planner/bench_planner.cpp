@@ -6,8 +6,6 @@
 #include "rays/subject.hpp"
 #include "table.hpp"
 
-#include <frontlux/machine.hpp>
-
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
@@ -219,17 +217,13 @@ void Session::prepare(const std::filesystem::path& file, const PlannerOptions& o
 int run(int argc, char** argv) {
   const PlannerOptions options = read_planner_options(argc, argv);
   GoogleBenchmark google_benchmark(argv[0], options);
-  std::cout << processor_name() << ". All answers are compared before anything is timed.\n";
   auto maps = options.maps;
   if (maps.empty()) maps.push_back(generate_map("building_0.3m", options.cache));
   Session session;
   tbb::task_arena(options.threads.back()).execute([&] {
     for (const auto& map : maps) session.prepare(map, options);
   });
-  if (!session.agreed()) {
-    std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
-    return 1;
-  }
+  if (!google_benchmark.may_run(session.agreed())) return 1;
   for (const Row& row : session.rows())
     for (const int threads : options.threads)
       google_benchmark.add(row.name(row.caster, threads), threads, row.items, row.pass, row.counters);

@@ -2,17 +2,15 @@
 
 #include "quiet_octomap.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
 
 namespace frontlux::bench {
 namespace {
 
 template <class CastOne>
-void in_blocks(std::size_t count, CastOne&& cast_one) {
-  constexpr std::size_t kBlock = 256;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock), [&](const auto& block) {
-    for (std::size_t i = block.begin(); i != block.end(); ++i) cast_one(i);
+void in_blocks(std::size_t count, const CastOne& cast_one) {
+  for_each_chunk(count, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) cast_one(i);
   });
 }
 

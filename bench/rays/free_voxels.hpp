@@ -10,8 +10,7 @@
 
 namespace frontlux::bench {
 
-/// The horizontal plane (key z) that has most free voxels, the lowest of them if several have; nothing if
-/// no voxel is free.
+/// The horizontal plane (key z) that has most free voxels, the lowest of several; nothing if none is free.
 [[nodiscard]] std::optional<std::uint16_t> fullest_free_plane(const VoxelGrid& grid);
 
 /// At most `count` free voxels, one drawn from each of `count` equal parts of all, in order of storage,
@@ -31,8 +30,7 @@ void for_each_neighbour(const VoxelKey& key, const Visit& visit) {
       if (neighbour) visit(*neighbour);
 }
 
-/// The voxels of one state that share a face with a free voxel, each once, sorted: frontiers, if `state` is
-/// unknown.
+/// The voxels of one state that share a face with a free voxel, each once, sorted: the frontiers, if unknown.
 [[nodiscard]] std::vector<VoxelKey> voxels_beside_free(const VoxelGrid& grid, Occupancy state);
 
 /// Voxels sorted into cubes, to find those near a place.

@@ -63,24 +63,21 @@ struct Trial::Buffers {
 
   [[nodiscard]] std::vector<Answer> read_visible() const {
     std::vector<Answer> answers;
-    for (const std::uint8_t v : visible) {
+    for (const std::uint8_t v : visible)
       answers.push_back({v != 0, {static_cast<float>(v), 0.0F, 0.0F}, false, {}, {}});
-    }
     return answers;
   }
   [[nodiscard]] std::vector<Answer> read_hits() const {
     std::vector<Answer> answers;
-    for (const auto& batch : hits) {
+    for (const auto& batch : hits)
       for (const Hit& hit : batch) answers.push_back(answer_of(hit));
-    }
     return answers;
   }
   [[nodiscard]] std::vector<Answer> read_castray() const {
     std::vector<Answer> answers;
     for (const CastRayAnswers& batch : castray) {
-      for (std::size_t i = 0; i < batch.end.size(); ++i) {
+      for (std::size_t i = 0; i < batch.end.size(); ++i)
         answers.push_back({batch.occupied[i] != 0, batch.end[i], false, {}, {}});
-      }
     }
     return answers;
   }
@@ -190,21 +187,19 @@ bool Trial::check(std::span<const int> threads, std::ostream& out) {
       std::size_t differing_here = 0;
       for (std::size_t i = 0; i < rays; ++i) {
         if (same(answers[i], expected[i])) continue;
-        if (entry.must_agree && differing == 0 && differing_here == 0) {
+        if (entry.must_agree && differing == 0 && differing_here == 0)
           complaints += "  DISAGREEMENT, " + entry.caster + format(" on %d threads, ", count) +
                         describe_ray(i) + "\n    answered " + describe(answers[i]) + "\n    expected " +
                         describe(expected[i]) + "\n";
-        }
         ++differing_here;
       }
       differing = std::max(differing, differing_here);
     }
     entry.agreement = 1.0 - static_cast<double>(differing) / static_cast<double>(rays);
     agreements += format("; %s: %zu differ", entry.caster.c_str(), differing);
-    if (!entry.must_agree) {
+    if (!entry.must_agree)
       agreements += format(" (%.3f %%%s)", 100 * (1 - entry.agreement),
                            entry.caster == kOctomap ? ", by rounding" : "");
-    }
   }
   out << format("  %-12s %7zu rays, %.1f voxels each, %.1f %% %s", workload_.name.c_str(), rays, mean_voxels_,
                 100 * positive_fraction_, workload_.segments.empty() ? "hit" : "visible")

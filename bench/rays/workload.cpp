@@ -1,7 +1,6 @@
 #include "rays/workload.hpp"
 
 #include "random.hpp"
-#include "rays/free_voxels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,9 +51,8 @@ void for_each_in_reach(const VoxelIndex& targets, const VoxelKey& viewpoint, con
 std::vector<KeySegment> sample_pairs(const std::vector<VoxelKey>& viewpoints, const VoxelIndex& targets,
                                      const Reach& reach, double resolution, std::size_t count) {
   std::uint64_t total = 0;
-  for (const VoxelKey& from : viewpoints) {
+  for (const VoxelKey& from : viewpoints)
     for_each_in_reach(targets, from, reach, resolution, [&](const VoxelKey&) { ++total; });
-  }
   std::vector<KeySegment> pairs;
   pairs.reserve(std::min<std::uint64_t>(count, total));
   std::uint64_t seen = 0;

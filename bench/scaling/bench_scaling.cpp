@@ -4,8 +4,6 @@
 #include "scaling/sweep.hpp"
 #include "table.hpp"
 
-#include <frontlux/machine.hpp>
-
 #include <iostream>
 #include <set>
 #include <string>
@@ -86,12 +84,8 @@ octree to the caster; every caster includes the grid.
 int run(int argc, char** argv) {
   const ScalingOptions options = read_scaling_options(argc, argv);
   GoogleBenchmark google_benchmark(argv[0], options);
-  std::cout << processor_name() << ". All answers are compared before anything is timed." << std::endl;
   Sweep sweep(options, std::cout);
-  if (!sweep.prepare()) {
-    std::cerr << "\nCasters disagree where they must not (see DISAGREEMENT above): nothing is timed.\n";
-    return 1;
-  }
+  if (!google_benchmark.may_run(sweep.prepare())) return 1;
   for (const Point& point : sweep.points())
     for (const Entry& entry : point.trial->entries())
       for (const int threads : point.threads) {

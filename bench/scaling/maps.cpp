@@ -2,11 +2,8 @@
 
 #include "random.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
-#include <string>
 
 namespace frontlux::bench {
 namespace {
@@ -105,10 +102,9 @@ class Builder {
 void fill_box(VoxelGrid& grid, const KeyBox& box, Occupancy state) { fill_part(grid, box, state, {{}, 16}); }
 
 VoxelGrid make_blocks(double fraction) {
-  if (!(fraction >= 0.0 && fraction <= 0.5)) {
+  if (!(fraction >= 0.0 && fraction <= 0.5))
     throw std::invalid_argument("make_blocks: the occupied fraction is " + std::to_string(fraction) +
                                 ", must be from 0 to 0.5");
-  }
   VoxelGrid grid(kBlocksResolution);
   const KeyBox room = box_at(0, 0, 0, kBlocksEdge, kBlocksEdge, kBlocksHeight);
   fill_box(grid, room, Occupancy::kFree);

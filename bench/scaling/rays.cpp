@@ -50,11 +50,10 @@ void shuffle(std::vector<Item>& items, std::uint64_t stream) {
 
 std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length, std::size_t count) {
   const double voxels = std::min(length / grid.resolution(), 2.0 * Lattice::kKeysPerAxis);
-  if (!(voxels >= 2 && std::isfinite(length))) {
+  if (!(voxels >= 2 && std::isfinite(length)))
     throw std::invalid_argument("segments_of_length: length is " + std::to_string(length) +
                                 " m, must be two voxels of " + std::to_string(grid.resolution()) +
                                 " m at least");
-  }
   const std::size_t viewpoints = (count + kTargetsPerViewpoint - 1) / kTargetsPerViewpoint;
   std::vector<KeySegment> segments;
   segments.reserve(count);

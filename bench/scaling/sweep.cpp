@@ -58,10 +58,9 @@ void Sweep::vary_resolution() {
 void Sweep::vary_length() {
   const std::vector<double> lengths =
       options_.quick ? std::vector{2.0, 10.0, 60.0} : std::vector{2.0, 5.0, 10.0, 20.0, 40.0, 60.0};
-  for (const Subject* subject : {&blocks(kNearlyEmpty), &building(options_.quick ? 0.3 : 0.2)}) {
+  for (const Subject* subject : {&blocks(kNearlyEmpty), &building(options_.quick ? 0.3 : 0.2)})
     for (const double length : lengths)
       add_lines("length", length, format("%g", length) + "m", *subject, length, std::nullopt);
-  }
 }
 
 void Sweep::vary_density() {
@@ -95,9 +94,8 @@ void Sweep::vary_order() {
       add("order", 1, "shuffled", subject, shuffled(std::move(workload)));
     }
   }
-  for (Point& point : points_) {
+  for (Point& point : points_)
     if (point.axis == "order") point.threads = options_.threads;
-  }
 }
 
 const Subject& Sweep::building(double resolution) {

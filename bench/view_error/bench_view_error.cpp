@@ -101,8 +101,7 @@ std::vector<Method> methods_of(const Case& scene, const ViewErrorOptions& option
   return methods;
 }
 
-// Each pass runs all methods in turn, so that a slow moment does not affect one of them only; every pass
-// draws anew.
+// Each pass runs all methods in turn, so that a slow moment does not affect only one; every pass draws anew.
 void measure(const Case& scene, int passes, std::vector<Method>& methods) {
   for (int pass = 0; pass < passes; ++pass)
     for (Method& method : methods) {

@@ -34,17 +34,14 @@ Line make_line(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) 
 // Distance at which the line enters the box. Each step rounds monotonically in the box's faces, so that a box
 // around another is never entered later than that one: this makes the hierarchy exact, without a tolerance.
 double enter(const Line& line, const Box& box) {
-  double near = 0.0;
-  double far = kMiss;
+  double near = 0.0, far = kMiss;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double low = box.min().data()[i] - line.origin[i];
-    const double high = box.max().data()[i] - line.origin[i];
+    const double low = box.min().data()[i] - line.origin[i], high = box.max().data()[i] - line.origin[i];
     if (line.parallel[i]) {
       if (low > 0.0 || high < 0.0) return kMiss;
       continue;
     }
-    const double a = low * line.inverse[i];
-    const double b = high * line.inverse[i];
+    const double a = low * line.inverse[i], b = high * line.inverse[i];
     near = std::max(near, std::min(a, b));
     far = std::min(far, std::max(a, b));
   }
@@ -54,11 +51,9 @@ double enter(const Line& line, const Box& box) {
 }  // namespace
 
 BoxSet::BoxSet(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (boxes_[i].isEmpty() || !boxes_[i].min().allFinite() || !boxes_[i].max().allFinite()) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    if (boxes_[i].isEmpty() || !boxes_[i].min().allFinite() || !boxes_[i].max().allFinite())
       throw std::invalid_argument("BoxSet: box " + std::to_string(i) + " is empty or not finite");
-    }
-  }
   std::iota(order_.begin(), order_.end(), 0U);
   if (!boxes_.empty()) build(0, static_cast<std::uint32_t>(boxes_.size()));
 }
@@ -66,8 +61,7 @@ BoxSet::BoxSet(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_
 void BoxSet::build(std::uint32_t first, std::uint32_t count) {
   const std::size_t node = nodes_.size();
   nodes_.emplace_back();
-  Box bounds;
-  Box centers;
+  Box bounds, centers;
   for (std::uint32_t i = first; i < first + count; ++i) {
     bounds.extend(boxes_[order_[i]]);
     centers.extend(boxes_[order_[i]].center());

@@ -42,8 +42,7 @@ void split(const Rect& rect, bool tall, Random& random, std::vector<Space>& spac
     return;
   }
   const int cut = random.whole(kShortest, length - kShortest);
-  Rect first = rect;
-  Rect second = rect;
+  Rect first = rect, second = rect;
   if (across_x) {
     first.x1 = second.x0 = rect.x0 + cut;
   } else {
@@ -88,12 +87,9 @@ std::vector<Border> find_borders(const std::vector<Space>& spaces) {
   std::vector<Border> borders;
   for (std::size_t a = 0; a < spaces.size(); ++a) {
     for (std::size_t b = 0; b < spaces.size(); ++b) {
-      const Rect& p = spaces[a].rect;
-      const Rect& q = spaces[b].rect;
-      const int y0 = std::max(p.y0, q.y0);
-      const int y1 = std::min(p.y1, q.y1);
-      const int x0 = std::max(p.x0, q.x0);
-      const int x1 = std::min(p.x1, q.x1);
+      const Rect &p = spaces[a].rect, &q = spaces[b].rect;
+      const int y0 = std::max(p.y0, q.y0), y1 = std::min(p.y1, q.y1);
+      const int x0 = std::max(p.x0, q.x0), x1 = std::min(p.x1, q.x1);
       if (p.x1 == q.x0 && y0 < y1) borders.push_back({{true, p.x1, y0, y1}, a, b});
       if (p.y1 == q.y0 && x0 < x1) borders.push_back({{false, p.y1, x0, x1}, a, b});
     }
@@ -118,9 +114,8 @@ std::vector<Opening> door(const WallLine& line, Random& random) {
 // Pillars with openings between them: gates below, balustrades above.
 std::vector<Opening> arcade(const WallLine& line, int sill) {
   std::vector<Opening> openings;
-  for (int from = line.from + 4; from + 13 <= line.to - 3; from += 20) {
+  for (int from = line.from + 4; from + 13 <= line.to - 3; from += 20)
     openings.push_back({from, from + 13, sill, 12});
-  }
   return openings;
 }
 
@@ -135,16 +130,14 @@ std::vector<Rect> hall_pillars(const Rect& hall) {
 void build_storey(int storey, const Rect& hall, Random& random, Modules& solids) {
   const std::vector<Space> spaces = plan_storey(storey, hall, random);
   std::vector<Border> borders = find_borders(spaces);
-  for (std::size_t i = borders.size(); i > 1; --i) {
+  for (std::size_t i = borders.size(); i > 1; --i)
     std::swap(borders[i - 1], borders[static_cast<std::size_t>(random.whole(0, static_cast<int>(i) - 1))]);
-  }
   const int floor = storey * kPitch;
   std::vector<std::size_t> parent(spaces.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   std::vector<Rect> keep_clear = hall_pillars(hall);
   for (const Border& border : borders) {
-    const Use a = spaces[border.a].use;
-    const Use b = spaces[border.b].use;
+    const Use a = spaces[border.a].use, b = spaces[border.b].use;
     std::vector<Opening> openings;
     if (a == Use::kHall || b == Use::kHall) {
       openings = arcade(border.line, storey == 0 ? 0 : 3);
@@ -152,9 +145,8 @@ void build_storey(int storey, const Rect& hall, Random& random, Modules& solids)
       parent[root(parent, border.a)] = root(parent, border.b);
       keep_clear.push_back(module_passage(border.line, {border.line.from, border.line.to}));
       // The storey above ends here.
-      if (spaces[border.a].tall != spaces[border.b].tall) {
+      if (spaces[border.a].tall != spaces[border.b].tall)
         solids.add_wall(border.line, {floor + kPitch, kHeight}, {});
-      }
       continue;
     } else if (root(parent, border.a) != root(parent, border.b) || random.one_in(5)) {
       openings = door(border.line, random);
@@ -175,8 +167,7 @@ void build_storey(int storey, const Rect& hall, Random& random, Modules& solids)
 // The floor of the storey above the hall's, as far as that has one. Its pieces overlap by a module.
 void add_slab_around(const Rect& hall, const Rise& slab, Modules& solids) {
   const Rect hole = between_walls(hall);
-  const int y1 = kPlan.y1 + 1;
-  const int x1 = hall.x1 + kCorridorWidth + 1;
+  const int y1 = kPlan.y1 + 1, x1 = hall.x1 + kCorridorWidth + 1;
   solids.add({kPlan.x0, kPlan.y0, hole.x0, y1}, slab);
   solids.add({hole.x1, kPlan.y0, x1, y1}, slab);
   solids.add({hole.x0 - 1, kPlan.y0, hole.x1 + 1, hole.y0}, slab);

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <ostream>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -102,10 +101,9 @@ std::filesystem::path ensure_map(std::string_view name, const std::filesystem::p
 
 std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed,
                                                const ScanProgress& progress) {
-  if (!(resolution >= 0.02 && resolution <= 2.0)) {
+  if (!(resolution >= 0.02 && resolution <= 2.0))
     throw std::invalid_argument("make_building: resolution is " + std::to_string(resolution) +
                                 " m, must be from 0.02 to 2 m");
-  }
   const Survey survey = plan_survey(SceneKind::kBuilding, resolution, seed);
   return scan(survey.scene, survey.places, survey.options, progress);
 }

@@ -52,8 +52,7 @@ void Modules::add_wall(const WallLine& line, const Rise& rise, const std::vector
 
 void Modules::add_furniture(const Rect& space, int floor, int count, std::vector<Rect>& keep_clear,
                             Random& random) {
-  const Rect inside = between_walls(space);
-  const Rect middle = inside.grown(-3);
+  const Rect inside = between_walls(space), middle = inside.grown(-3);
   for (int i = 0; i < count; ++i) {
     const int kind = random.whole(0, 3);
     const int side = random.whole(0, 3);

@@ -15,8 +15,7 @@ namespace frontlux::synthetic {
 ///
 /// So that this opens no crack, solids are drawn one module into what they stand on or lean against.
 ///
-/// Rects, rises, lines and openings are in modules here. A wall on a line at n fills the module from n to n
-/// + 1.
+/// Rects, rises, lines and openings are in modules. A wall on a line at n fills the module from n to n + 1.
 class Modules {
  public:
   static constexpr double kEdge = 0.3;    ///< [m]

@@ -59,8 +59,7 @@ class House {
     passages_.push_back(on_line(line, door_from, door_to, kPassage));
   }
 
-  // Crates, shelves and tables in a room, as far as `count` tries find space beside each other and before the
-  // doors.
+  // Crates, shelves and tables in a room, as far as `count` tries find space beside others and before doors.
   void add_furniture(const Rect& space, int count, Random& random) {
     const Rect inside = space.grown(-kHalfWall);
     std::vector<Rect> keep_clear = passages_;

@@ -27,15 +27,12 @@ void require_positive(const char* name, double value) {
 // Even directions on a Fibonacci lattice. Turned step by step instead of by sin and cos, whose last bit
 // depends on the C library and even on the processor it finds itself on.
 std::vector<Eigen::Vector3d> even_directions(int count) {
-  constexpr double kCosGoldenAngle = -0.7373688780783197;
-  constexpr double kSinGoldenAngle = 0.6754902942615238;
+  constexpr double kCosGoldenAngle = -0.7373688780783197, kSinGoldenAngle = 0.6754902942615238;
   std::vector<Eigen::Vector3d> directions;
   directions.reserve(static_cast<std::size_t>(count));
-  double c = 1.0;
-  double s = 0.0;
+  double c = 1.0, s = 0.0;
   for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double radius = std::sqrt(1.0 - z * z);
+    const double z = 1.0 - (2.0 * i + 1.0) / count, radius = std::sqrt(1.0 - z * z);
     directions.emplace_back(radius * c, radius * s, z);
     const double turned = c * kCosGoldenAngle - s * kSinGoldenAngle;
     s = s * kCosGoldenAngle + c * kSinGoldenAngle;
@@ -123,8 +120,7 @@ std::vector<Eigen::Vector3d> draw_places(const Scene& scene, std::size_t count, 
     const auto storey = static_cast<std::size_t>(random.whole(0, static_cast<int>(scene.floors.size()) - 1));
     place.z() = scene.floors[storey] + kSensorHeight;
     const bool crowded = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector3d& other) {
-      const double dx = other.x() - place.x();
-      const double dy = other.y() - place.y();
+      const double dx = other.x() - place.x(), dy = other.y() - place.y();
       return other.z() == place.z() && dx * dx + dy * dy < spacing * spacing;
     });
     if (crowded || scene.solids.overlaps(Box(place - margin, place + margin))) continue;

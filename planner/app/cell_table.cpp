@@ -4,6 +4,7 @@
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/io/ply.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -12,15 +13,6 @@
 #include <string>
 
 namespace frontlux::app {
-namespace {
-
-// Little-endian on every machine.
-void append(std::string& bytes, std::uint32_t word) {
-  for (unsigned shift = 0; shift < 32; shift += 8)
-    bytes.push_back(static_cast<char>((word >> shift) & 0xFFU));
-}
-
-}  // namespace
 
 void write_csv(const std::filesystem::path& file, const Lattice& lattice,
                std::span<const planner::RenderedCell> cells) {
@@ -49,8 +41,8 @@ void write_ply(const std::filesystem::path& file, const Lattice& lattice,
     for (const double number :
          {lattice.center(cell.cell.x), lattice.center(cell.cell.y), lattice.center(cell.cell.z),
           cell.distance, cell.gain, cell.standard_error, cell.quality, cell.yaw})
-      append(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
-    append(out, cell.hits);
+      io::append_number(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
+    io::append_number(out, cell.hits);
     const Color color = color_of(best > 0.0 ? cell.quality / best : 0.0);
     for (const std::uint8_t part : {color.red, color.green, color.blue})
       out.push_back(static_cast<char>(part));

@@ -3,7 +3,6 @@
 #include "read_value.hpp"
 #include "text.hpp"
 
-#include <cstddef>
 #include <functional>
 #include <initializer_list>
 #include <optional>

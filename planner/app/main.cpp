@@ -78,24 +78,19 @@ int run(int argc, const char* const* argv) {
   app.set_version_flag("--version", version, "Print the version, and the vector instructions in use");
   app.set_help_flag("-h,--help", "Print this help");
   app.require_subcommand(1);
-  app.footer(
-      "Examples:\n"
-      "  frontlux info building.bt\n"
-      "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
-      "  frontlux world station --seed 3 -o station.ply\n"
-      "  frontlux scan station --seed 3 -o station.bt\n"
-      "  frontlux explore station --seed 3 -o station_run\n"
-      "Run frontlux COMMAND --help for the options of a command. Lengths are in metres, angles in radians.\n"
-      "Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other failure.");
-  frontlux::app::add_info_command(app);
-  frontlux::app::add_cast_command(app);
-  frontlux::app::add_world_command(app);
-  frontlux::app::add_scan_command(app);
-  frontlux::app::add_map_command(app);
-  frontlux::app::add_plan_command(app);
-  frontlux::app::add_render_command(app);
-  frontlux::app::add_explore_command(app);
-  frontlux::app::add_report_command(app);
+  app.footer(R"(Examples:
+  frontlux info building.bt
+  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10
+  frontlux world station --seed 3 -o station.ply
+  frontlux scan station --seed 3 -o station.bt
+  frontlux explore station --seed 3 -o station_run
+Run frontlux COMMAND --help for the options of a command. Lengths are in metres, angles in radians.
+Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other failure.)");
+  using namespace frontlux::app;
+  for (const auto add :
+       {add_info_command, add_cast_command, add_world_command, add_scan_command, add_map_command,
+        add_plan_command, add_render_command, add_explore_command, add_report_command})
+    add(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version

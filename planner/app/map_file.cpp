@@ -3,6 +3,7 @@
 #include "bad_input.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/sim/ground_truth.hpp>
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -49,12 +50,6 @@ std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid
   return std::visit([&](const auto& tree) { return make_ray_caster(kind, grid, *tree); }, map.tree);
 }
 
-std::uint64_t volume(const KeyBox& box) {
-  const auto edge = [](int min, int max) { return static_cast<std::uint64_t>(max - min + 1); };
-  const auto& [min, max] = box;
-  return edge(min.x, max.x) * edge(min.y, max.y) * edge(min.z, max.z);
-}
-
 std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds) {
   constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;  // around large free blocks, one brick thick
   constexpr int kBrickEdge = 1 << Brick::kLog2;
@@ -62,7 +57,7 @@ std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const 
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
     if (brick != nullptr || state != Occupancy::kFree || block.log2_edge <= Brick::kLog2) return;
     const KeyBox free = cube(block.corner, 1 << block.log2_edge);
-    around += volume(*intersection(grown(free, kBrickEdge), bounds)) - volume(free);
+    around += sim::volume(*intersection(grown(free, kBrickEdge), bounds)) - sim::volume(free);
   });
   if (around > kMostVoxels) return std::nullopt;
   return planner::FrontierSet(grid, bounds);

@@ -41,13 +41,9 @@ struct TreeSize {
 [[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,
                                                      CasterKind kind);
 
-/// Number of voxels in a box.
-[[nodiscard]] std::uint64_t volume(const KeyBox& box);
-
 /// The frontiers of a map.
 /// @param bounds  known bounds of the grid
-/// @return nothing if the map's large free blocks have so wide a surface that looking at all of it would take
-/// too much time and memory
+/// @return nothing if the map's large free blocks have so wide a surface that it would take too long
 [[nodiscard]] std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds);
 
 }  // namespace frontlux::app

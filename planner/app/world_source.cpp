@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
-#include <string_view>
 
 namespace frontlux::app {
 namespace {

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CastOptions {
   std::string map;
   Eigen::Vector3f from = Eigen::Vector3f::Zero();
   std::optional<Eigen::Vector3f> to, direction;
@@ -47,7 +47,7 @@ void check_inside(const Lattice& lattice, std::string_view name, const Eigen::Ve
                      rounded(-edge) + " m to below " + rounded(edge) + " m");
 }
 
-Answer cast(const Options& options) {
+Answer cast(const CastOptions& options) {
   if (options.direction && options.direction->isZero(0.F))
     throw BadInput("--direction: " + to_text(*options.direction) +
                    " has no length; give a number other than 0");
@@ -79,20 +79,10 @@ Answer cast(const Options& options) {
 }
 
 std::string explain(RayStop stop) {
-  switch (stop) {
-    case RayStop::kOccupied:
-      return "hit an occupied voxel";
-    case RayStop::kUnknown:
-      return "stopped by an unknown voxel";
-    case RayStop::kOutOfRange:
-      return "nothing hit within --range; this is the first voxel beyond it";
-    case RayStop::kLeftMap:
-      return "nothing hit up to the end of the map's key range; this is the last voxel";
-    case RayStop::kReached:
-    case RayStop::kInvalid:
-      break;
-  }
-  return "no ray";
+  constexpr std::array kTexts = {"no ray", "hit an occupied voxel", "stopped by an unknown voxel",
+                                 "nothing hit within --range; this is the first voxel beyond it",
+                                 "nothing hit up to the end of the map's key range; this is the last voxel"};
+  return kTexts.at(static_cast<std::size_t>(stop));
 }
 
 std::string list(const PathCount& count) {
@@ -125,7 +115,7 @@ void print_text(const Answer& answer) {
 }
 
 Json json_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
-Json json_of(const Eigen::Vector3f& point) {
+Json json_of_point(const Eigen::Vector3f& point) {
   return {as_written(point.x()), as_written(point.y()), as_written(point.z())};
 }
 Json json_of(const PathCount& count) {
@@ -141,8 +131,8 @@ void print_json(const Answer& answer) {
               {"stop", name_of(hit.stop)},
               {"key", json_of(hit.key)},
               {"state", to_text(hit.state)},
-              {"end_m", json_of(hit.end)},
-              {"entry_m", json_of(hit.entry)},
+              {"end_m", json_of_point(hit.end)},
+              {"entry_m", json_of_point(hit.entry)},
               {"distance_m", as_written(hit.distance)}};
   if (answer.crossed) out["crossed"] = json_of(*answer.crossed);
   if (answer.visible) out["visible"] = *answer.visible;
@@ -154,7 +144,7 @@ void print_json(const Answer& answer) {
 
 void add_cast_command(CLI::App& app) {
   Command command(app, "cast", "Cast one ray into a map and print where it ends");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CastOptions>();
   command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
   command.group("Ray");
   command.add("--from", options->from, "X,Y,Z", "Origin").required();
@@ -168,17 +158,14 @@ void add_cast_command(CLI::App& app) {
   command.add("--caster", options->caster, "Ray caster; all give the same answer");
   command.add_flag("--count", options->count, "Count the voxels crossed: by the ray, and before --to");
   command.add_flag("--json", options->json, "Print one JSON object");
-  command.examples(
-      "Examples:\n"
-      "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10\n"
-      "  frontlux cast building.bt --from -2.5,0,1.2 --to 4,-1,0.5 --unknown pass\n"
-      "  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10 --unknown pass --count\n"
-      "The first prints what a sensor at (0, 0, 1.2) sees along x within 10 m. The second also prints "
-      "whether\n"
-      "the voxel of (4, -1, 0.5) is visible when unknown voxels do not block the view. The third also "
-      "counts\n"
-      "the unknown, free and occupied voxels that the ray crosses, from its first voxel, included, to its\n"
-      "last, excluded.");
+  command.examples(R"(Examples:
+  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10
+  frontlux cast building.bt --from -2.5,0,1.2 --to 4,-1,0.5 --unknown pass
+  frontlux cast building.bt --from 0,0,1.2 --direction 1,0,0 --range 10 --unknown pass --count
+The first prints what a sensor at (0, 0, 1.2) sees along x within 10 m. The second also prints whether
+the voxel of (4, -1, 0.5) is visible when unknown voxels do not block the view. The third also counts
+the unknown, free and occupied voxels that the ray crosses, from its first voxel, included, to its
+last, excluded.)");
   command.run([options] {
     const Answer answer = cast(*options);
     options->json ? print_json(answer) : print_text(answer);

@@ -5,7 +5,6 @@
 #include "explore/explore_run.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -84,14 +83,12 @@ void add_explore_command(CLI::App& app) {
   add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
   command.allow_only(resume, {"--threads", "--max-steps", "--report"});
-  command.examples(
-      "Examples:\n"
-      "  frontlux explore station --seed 3 -o station_run\n"
-      "  frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run\n"
-      "  frontlux explore --resume station_run\n"
-      "Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux "
-      "(the\n"
-      "recording) and report.html. Ctrl-C ends a run after the current step.");
+  command.examples(R"(Examples:
+  frontlux explore station --seed 3 -o station_run
+  frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run
+  frontlux explore --resume station_run
+Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux (the
+recording) and report.html. Ctrl-C ends a run after the current step.)");
   command.run([given] { run(*given); });
 }
 

@@ -3,6 +3,8 @@
 #include "map_file.hpp"
 #include "text.hpp"
 
+#include <frontlux/sim/ground_truth.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -14,7 +16,7 @@
 namespace frontlux::app {
 namespace {
 
-struct Options {
+struct InfoOptions {
   std::string map;
   bool json = false;
 };
@@ -38,7 +40,7 @@ Info gather(const MapFile& map) {
   info.free = voxels[static_cast<std::size_t>(Occupancy::kFree)];
   info.frontiers = 0;
   if (info.bounds) {
-    info.unknown = volume(*info.bounds) - info.occupied - info.free;
+    info.unknown = sim::volume(*info.bounds) - info.occupied - info.free;
     if (info.unknown != 0) {
       const auto frontiers = find_frontiers(grid, *info.bounds);
       info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
@@ -114,14 +116,13 @@ void print_json(const MapFile& map, const Info& info) {
 
 void add_info_command(CLI::App& app) {
   Command command(app, "info", "Print what a map holds");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
   command.add_flag("--json", options->json, "Print one JSON object");
-  command.examples(
-      "Example:\n"
-      "  frontlux info building.bt\n"
-      "prints the map's resolution, the box that holds all known voxels, the number of voxels of each state\n"
-      "and of frontiers in that box, and the memory that the map takes.");
+  command.examples(R"(Example:
+  frontlux info building.bt
+prints the map's resolution, the box that holds all known voxels, the number of voxels of each state
+and of frontiers in that box, and the memory that the map takes.)");
   command.run([options] {
     const MapFile map = read_map_file(options->map);
     const Info info = gather(map);

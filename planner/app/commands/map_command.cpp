@@ -1,7 +1,6 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "output_file.hpp"
 #include "progress_line.hpp"
 #include "text.hpp"
 
@@ -25,9 +24,7 @@
 namespace frontlux::app {
 namespace {
 
-using io::RecordedScan;
-using planner::Mapping;
-using planner::MappingOptions;
+using io::RecordedScan, planner::Mapping, planner::MappingOptions;
 
 struct Options {
   std::string scans, output, poses;
@@ -120,12 +117,11 @@ void add_map_command(CLI::App& app) {
               "Longest range of a hit; farther points only free the space up to it [no limit]", kAboveZero);
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Box to map: lowest and highest corner [everything]");
-  command.examples(
-      "Examples:\n"
-      "  frontlux map corridor.graph -o corridor.bt --resolution 0.05\n"
-      "  frontlux map clouds/ -o clouds.ot --max-range 20 --bounds -10,-10,0,10,10,4\n"
-      "Clouds are in the sensor's frame. The pose file has a line for each cloud, in metres and radians:\n"
-      "file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw.");
+  command.examples(R"(Examples:
+  frontlux map corridor.graph -o corridor.bt --resolution 0.05
+  frontlux map clouds/ -o clouds.ot --max-range 20 --bounds -10,-10,0,10,10,4
+Clouds are in the sensor's frame. The pose file has a line for each cloud, in metres and radians:
+file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw.)");
   command.run([options] {
     work_on(options->scans, "give --max-range, --bounds or a coarser --resolution", [&] { map(*options); });
   });

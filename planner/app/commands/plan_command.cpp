@@ -2,7 +2,6 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "map_file.hpp"
-#include "output_file.hpp"
 #include "stopwatch.hpp"
 #include "text.hpp"
 
@@ -31,12 +30,8 @@
 namespace frontlux::app {
 namespace {
 
-using planner::PathOptions;
-using planner::PathPlan;
-using planner::PathSearch;
-using planner::Pose;
-using planner::TravelCorridor;
-using planner::TravelOptions;
+using planner::PathOptions, planner::PathPlan, planner::PathSearch, planner::Pose, planner::TravelCorridor,
+    planner::TravelOptions;
 
 // An end of the path, as the user gives it.
 struct End {
@@ -287,11 +282,10 @@ void add_plan_command(CLI::App& app) {
   command.add("--optimize", options->optimize, "Turn the viewpoints so that they see more frontiers");
   command.add("--move", options->move, "Also move the viewpoints, by 0.6 m at most");
   command.add("--mode", options->mode, "Count each frontier once, or as printed in the paper [default]");
-  command.examples(
-      "Example:\n"
-      "  frontlux plan building.bt --robot uav --from 0,0,1.5,0 --to 8,3,2 -o path.csv\n"
-      "plans a path on which the robot fits in known free space, and writes viewpoints at most 1.2 m apart.\n"
-      "The sensor of a ugv is 0.75 m above the floor at both ends of its path.");
+  command.examples(R"(Example:
+  frontlux plan building.bt --robot uav --from 0,0,1.5,0 --to 8,3,2 -o path.csv
+plans a path on which the robot fits in known free space, and writes viewpoints at most 1.2 m apart.
+The sensor of a ugv is 0.75 m above the floor at both ends of its path.)");
   command.run(
       [options] { work_on(options->map, "give a map of a coarser resolution", [&] { plan(*options); }); });
 }

@@ -5,7 +5,6 @@
 #include "draw/png_file.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
-#include "output_file.hpp"
 #include "stopwatch.hpp"
 #include "text.hpp"
 
@@ -27,14 +26,8 @@
 namespace frontlux::app {
 namespace {
 
-using planner::Goal;
-using planner::GoalRule;
-using planner::GoalSelection;
-using planner::GoalState;
-using planner::Method;
-using planner::Motion;
-using planner::RenderedCell;
-using planner::TeamMember;
+using planner::Goal, planner::GoalRule, planner::GoalSelection, planner::GoalState, planner::Method,
+    planner::Motion, planner::RenderedCell, planner::TeamMember;
 
 enum class Shown { kBest, kLayer };
 
@@ -275,13 +268,11 @@ void add_render_command(CLI::App& app) {
               "Frontiers drawn for each cell, where they are drawn [64]");
   command.add("--seed", options->seed, "N", "Random seed of the draws", kSeeds);
   command.add("--caster", options->caster, "Ray caster");
-  command.examples(
-      "Examples:\n"
-      "  frontlux render hall.bt --robot ugv --at 0,0,0.75 -o hall.png\n"
-      "  frontlux render hall.bt --robot uav --at 0,0,1.65 --samples all -o hall.csv\n"
-      "The sensor of a ugv is 0.75 m above the floor that it drives on, that of a uav at least 1.2 m. Yaws "
-      "in\n"
-      "tables are in radians, counter-clockwise from x.");
+  command.examples(R"(Examples:
+  frontlux render hall.bt --robot ugv --at 0,0,0.75 -o hall.png
+  frontlux render hall.bt --robot uav --at 0,0,1.65 --samples all -o hall.csv
+The sensor of a ugv is 0.75 m above the floor that it drives on, that of a uav at least 1.2 m. Yaws in
+tables are in radians, counter-clockwise from x.)");
   command.run(
       [options] { work_on(options->map, "give a map of a coarser resolution", [&] { render(*options); }); });
 }

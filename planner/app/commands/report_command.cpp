@@ -1,10 +1,8 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "draw/coverage_still.hpp"
-#include "draw/map_still.hpp"
 #include "draw/png_file.hpp"
-#include "output_file.hpp"
+#include "draw/stills.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
@@ -13,7 +11,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -46,8 +43,7 @@ std::filesystem::path recording_of(const std::filesystem::path& run) {
   return run;
 }
 
-// The name of the folder, since every recording is called run.frontlux; or the name that a user gave the
-// file.
+// The name of the folder, since all recordings are called run.frontlux; or the name that a user gave it.
 std::string name_of(const std::filesystem::path& file) {
   const std::filesystem::path full = std::filesystem::absolute(file).lexically_normal();
   return full.filename() == "run.frontlux" ? full.parent_path().filename().string() : full.stem().string();
@@ -106,13 +102,11 @@ void add_report_command(CLI::App& app) {
       .required();
   command.add("-o,--output", options->output, "FILE.html", "Page to write [report.html beside a single run]");
   command.add_flag("--png", options->png, "Also write final_map.png and coverage.png beside each recording");
-  command.examples(
-      "Examples:\n"
-      "  frontlux report runs/station --png\n"
-      "  frontlux report runs/team runs/uav_alone -o comparison.html\n"
-      "The page needs no network and no other file. An incomplete recording is shown up to its last "
-      "complete\n"
-      "step.");
+  command.examples(R"(Examples:
+  frontlux report runs/station --png
+  frontlux report runs/team runs/uav_alone -o comparison.html
+The page needs no network and no other file. An incomplete recording is shown up to its last complete
+step.)");
   command.run([options] { work_on("report", "report fewer runs", [&] { report(*options); }); });
 }
 

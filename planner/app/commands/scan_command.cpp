@@ -2,7 +2,6 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "interrupt.hpp"
-#include "output_file.hpp"
 #include "progress_line.hpp"
 #include "stopwatch.hpp"
 #include "text.hpp"
@@ -18,18 +17,13 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace frontlux::app {
 namespace {
 
-using planner::Mapping;
-using planner::Pose;
-using planner::RobotDescription;
-using sim::GroundTruth;
-using sim::View;
+using planner::Mapping, planner::Pose, planner::RobotDescription, sim::GroundTruth, sim::View;
 
 enum class Sensors { kBoth, kUgv, kUav };
 
@@ -207,13 +201,11 @@ void add_scan_command(CLI::App& app) {
               kProbability);
   command.add("--seed", options->seed, "N", "Random seed (layout of a built-in world, noise)", kSeeds);
   add_world_options(command, options->source, "off");
-  command.examples(
-      "Examples:\n"
-      "  frontlux scan storage --seed 4 -o storage.bt\n"
-      "  frontlux scan house.ply --start 1,2,0.5 --ground auto --resolution 0.1 --sweep 1.5 -o house.ot\n"
-      "A sweep begins at the robots' starts, near the world's start or --start; the space around them "
-      "counts\n"
-      "as free. The map is written when all scans are done.");
+  command.examples(R"(Examples:
+  frontlux scan storage --seed 4 -o storage.bt
+  frontlux scan house.ply --start 1,2,0.5 --ground auto --resolution 0.1 --sweep 1.5 -o house.ot
+A sweep begins at the robots' starts, near the world's start or --start; the space around them counts
+as free. The map is written when all scans are done.)");
   command.run(
       [options] { work_on(options->source.world, "give a coarser --resolution", [&] { run(*options); }); });
 }

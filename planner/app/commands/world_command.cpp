@@ -12,7 +12,6 @@
 
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -93,10 +92,9 @@ void add_world_command(CLI::App& app) {
   command.add("-o,--output", options->output, "FILE.ply", "Write the world's surface to this file");
   add_world_options(command, source, "off");
   command.add("--seed", source.seed, "N", "Layout of a built-in world [1]", kSeeds);
-  command.examples(
-      "Example:\n"
-      "  frontlux world factory --seed 7 -o factory.ply\n"
-      "prints the measures of the seventh factory and writes it as a mesh.");
+  command.examples(R"(Example:
+  frontlux world factory --seed 7 -o factory.ply
+prints the measures of the seventh factory and writes it as a mesh.)");
   command.run([options] {
     if (options->source.world.empty()) return print_list();
     const SourcedWorld sourced = make_world(options->source);

@@ -34,15 +34,18 @@ class Canvas {
   void disc(double x, double y, double radius, Color color);
   void ring(double x, double y, double radius, double thickness, Color color);
   void line(double x0, double y0, double x1, double y1, double thickness, Color color);
-  /// Capitals, digits and the commonest signs; others show as a box. @param scale [px] of a dot of the
-  /// letters
-  void text(int x, int y, std::string_view text, int scale, Color color);
+  /// Capitals, digits and the commonest signs; others show as a box.
+  void text(int x, int y, std::string_view text, Color color);
 
   /// [px]
-  [[nodiscard]] static int text_width(std::string_view text, int scale);
-  static constexpr int kTextHeight = 7;  ///< [px] at scale 1
+  [[nodiscard]] static int text_width(std::string_view text);
+  static constexpr int kTextHeight = 14;
 
  private:
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+  }
+
   int width_, height_;
   std::vector<std::uint8_t> bytes_;
 };

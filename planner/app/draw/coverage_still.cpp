@@ -1,6 +1,5 @@
-#include "draw/coverage_still.hpp"
-
 #include "draw/colors.hpp"
+#include "draw/stills.hpp"
 #include "text.hpp"
 
 #include <algorithm>
@@ -13,7 +12,7 @@ namespace frontlux::app {
 namespace {
 
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kGrid{217, 223, 231}, kMuted{86, 97, 112};
-constexpr int kWidth = 1000, kHeight = 560, kLeft = 96, kRight = 30, kTop = 96, kBottom = 70, kLetters = 2;
+constexpr int kWidth = 1000, kHeight = 560, kLeft = 96, kRight = 30, kTop = 96, kBottom = 70;
 
 struct Curve {
   std::string name;
@@ -70,29 +69,28 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
   Canvas canvas(kWidth, kHeight, kPaper);
   canvas.text(24, 24,
               (name == recording.head.world ? name : name + ": " + recording.head.world) + ", mapped " + of,
-              kLetters, kInk);
+              kInk);
   int x = 24;
   for (const Curve& curve : curves) {
     canvas.fill(x, 58, 24, 5, curve.color);
     const std::string text = curve.name + " " + percent(curve.fractions.back(), 1);
-    canvas.text(x + 32, 54, text, kLetters, kInk);
-    x += 32 + Canvas::text_width(text, kLetters) + 28;
+    canvas.text(x + 32, 54, text, kInk);
+    x += 32 + Canvas::text_width(text) + 28;
   }
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = static_cast<int>(std::lround(pixel_y(tick / 4.0)));
     canvas.fill(kLeft, y, kWidth - kLeft - kRight, 1, kGrid);
     const std::string text = percent(tick / 4.0, 0);
-    canvas.text(kLeft - 10 - Canvas::text_width(text, kLetters), y - Canvas::kTextHeight, text, kLetters,
-                kMuted);
+    canvas.text(kLeft - 10 - Canvas::text_width(text), y - Canvas::kTextHeight / 2, text, kMuted);
   }
   const std::uint64_t each = tick_of(last - first);
   for (std::uint64_t tick = 0; tick <= last - first; tick += each) {
     const int at = static_cast<int>(std::lround(pixel_x(static_cast<double>(tick))));
     canvas.fill(at, kTop, 1, kHeight - kTop - kBottom, kGrid);
     const std::string text = std::to_string(first + tick);
-    canvas.text(at - Canvas::text_width(text, kLetters) / 2, kHeight - kBottom + 10, text, kLetters, kMuted);
+    canvas.text(at - Canvas::text_width(text) / 2, kHeight - kBottom + 10, text, kMuted);
   }
-  canvas.text(kWidth - kRight - Canvas::text_width("step", kLetters), kHeight - 30, "step", kLetters, kMuted);
+  canvas.text(kWidth - kRight - Canvas::text_width("step"), kHeight - 30, "step", kMuted);
   std::for_each(curves.rbegin(), curves.rend(), [&](const Curve& curve) {
     for (std::size_t i = 1; i < curve.fractions.size(); ++i) {
       const auto step = [&](std::size_t k) {

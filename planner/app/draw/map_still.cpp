@@ -1,6 +1,5 @@
-#include "draw/map_still.hpp"
-
 #include "draw/colors.hpp"
+#include "draw/stills.hpp"
 #include "text.hpp"
 
 #include <frontlux/key_box.hpp>
@@ -17,7 +16,7 @@ namespace {
 
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kLow{86, 106, 140}, kMiddle{172, 178, 176},
     kHigh{233, 220, 180};
-constexpr int kMargin = 24, kLine = 24, kLetters = 2, kMaxWidth = 1800, kMaxHeight = 1400;
+constexpr int kMargin = 24, kLine = 24, kMaxWidth = 1800, kMaxHeight = 1400;
 
 // Seen from 18 degrees aside and 48 degrees above the ground; y and x point away from the viewer.
 struct Projection {
@@ -204,14 +203,13 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
   for (const Face& face : faces) fill_face(canvas, projection, face, face_color(face, low, high));
   for (std::size_t r = 0; r < paths.size(); ++r) draw_path(canvas, projection, paths[r], robot_color(r));
 
-  canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kLetters, kInk);
+  canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kInk);
   for (std::size_t r = 0; r < paths.size(); ++r) {
     const int y = kMargin + kLine * (1 + static_cast<int>(r));
     canvas.fill(kMargin, y + 4, 26, 6, robot_color(r));
     double length = 0.0;
     for (const planner::RecordedStep& step : recording.steps) length += step.step.robots[r].length;
-    canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + "  " + fixed(length, 0) + " m",
-                kLetters, kInk);
+    canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + "  " + fixed(length, 0) + " m", kInk);
   }
   return canvas;
 }

@@ -5,7 +5,6 @@
 #include <ostream>
 #include <png.h>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 namespace frontlux::app {

@@ -8,9 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <stdexcept>
-#include <string>
 
 namespace frontlux::app {
 namespace {
@@ -18,7 +16,7 @@ namespace {
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kUnknown{150, 150, 156}, kFree{226, 226, 230},
     kOccupied{38, 38, 44}, kFrontier{238, 120, 20}, kFarFrontier{226, 184, 150}, kGoal{214, 18, 92},
     kRobot{255, 255, 255};
-constexpr int kMargin = 24, kPanel = 250, kLetters = 2, kLine = 26;
+constexpr int kMargin = 24, kPanel = 250, kLine = 26;
 constexpr int kWidth = 900;                   // [px] of the longer edge of the map, about
 constexpr int kMinScale = 3, kMaxScale = 24;  // [px] of a voxel
 constexpr int kMaxPixels = 12000;             // of an edge
@@ -32,6 +30,9 @@ struct Window {
 
   [[nodiscard]] int columns() const { return max_x - min_x + 1; }
   [[nodiscard]] int rows() const { return max_y - min_y + 1; }
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>((y - min_y) * columns() + x - min_x);
+  }
   [[nodiscard]] int pixel_x(int key) const { return left + (key - min_x) * scale; }
   [[nodiscard]] int pixel_y(int key) const { return top + (max_y - key) * scale; }
 };
@@ -79,16 +80,13 @@ void draw_map(Canvas& canvas, const ViewScene& scene, const Window& window) {
 
 // The best quality of each column of voxels, -1 where there is no cell.
 std::vector<double> columns_of(const ViewScene& scene, const Window& window) {
-  std::vector<double> columns(
-      static_cast<std::size_t>(window.columns()) * static_cast<std::size_t>(window.rows()), -1.0);
+  std::vector<double> columns(window.place(window.max_x, window.max_y) + 1, -1.0);
   const int edge = scene.cell_edge;
   for (const auto& cell : scene.cells) {
     const int low_x = cell.cell.x - cell.cell.x % edge, low_y = cell.cell.y - cell.cell.y % edge;
     for (int x = std::max(low_x, window.min_x); x < low_x + edge && x <= window.max_x; ++x)
       for (int y = std::max(low_y, window.min_y); y < low_y + edge && y <= window.max_y; ++y) {
-        double& best =
-            columns[static_cast<std::size_t>(y - window.min_y) * static_cast<std::size_t>(window.columns()) +
-                    static_cast<std::size_t>(x - window.min_x)];
+        double& best = columns[window.place(x, y)];
         best = std::max(best, cell.quality);
       }
   }
@@ -100,10 +98,7 @@ double fraction_of(double quality, double most) { return most > 0.0 ? std::sqrt(
 
 void draw_cells(Canvas& canvas, const ViewScene& scene, const Window& window, double most) {
   const std::vector<double> columns = columns_of(scene, window);
-  const auto quality = [&](int x, int y) {
-    return columns[static_cast<std::size_t>(y - window.min_y) * static_cast<std::size_t>(window.columns()) +
-                   static_cast<std::size_t>(x - window.min_x)];
-  };
+  const auto quality = [&](int x, int y) { return columns[window.place(x, y)]; };
   for (int x = window.min_x; x <= window.max_x; ++x)
     for (int y = window.min_y; y <= window.max_y; ++y)
       if (quality(x, y) >= 0.0)
@@ -173,7 +168,7 @@ std::string short_number(double number) {
 void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, int left, int height,
                 double most) {
   constexpr int kBar = 28, kBarHeight = 300;
-  canvas.text(left, window.top, "view quality", kLetters, kInk);
+  canvas.text(left, window.top, "view quality", kInk);
   const int top = window.top + kLine;
   for (int y = 0; y < kBarHeight; ++y)
     canvas.fill(left, top + y, kBar, 1, color_of(1.0 - y / (kBarHeight - 1.0)));
@@ -181,13 +176,12 @@ void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, in
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = top + (kBarHeight - 1) * (4 - tick) / 4;
     canvas.fill(left + kBar, y, 6, 1, kInk);
-    canvas.text(left + kBar + 12, y - Canvas::kTextHeight, short_number(most * tick * tick / 16), kLetters,
-                kInk);
+    canvas.text(left + kBar + 12, y - Canvas::kTextHeight / 2, short_number(most * tick * tick / 16), kInk);
   }
   int y = top + kBarHeight + kMargin;
   const auto entry = [&](const char* name, const auto& draw) {
     draw(left + 10, y + 9);
-    canvas.text(left + 32, y + 2, name, kLetters, kInk);
+    canvas.text(left + 32, y + 2, name, kInk);
     y += kLine;
   };
   const auto patch = [&](Color color) {
@@ -218,7 +212,7 @@ void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, in
   canvas.fill(left, bar_y, pixels, 4, kInk);
   canvas.fill(left, bar_y - 6, 2, 16, kInk);
   canvas.fill(left + pixels - 2, bar_y - 6, 2, 16, kInk);
-  canvas.text(left, bar_y - 26, short_number(length) + " m", kLetters, kInk);
+  canvas.text(left, bar_y - 26, short_number(length) + " m", kInk);
 }
 
 }  // namespace
@@ -228,13 +222,12 @@ Canvas draw_view(const ViewScene& scene) {
   const Window window = choose_window(scene);
   const int map_width = window.columns() * window.scale, map_height = window.rows() * window.scale;
   int title_width = 0;
-  for (const std::string& line : scene.title)
-    title_width = std::max(title_width, Canvas::text_width(line, kLetters));
+  for (const std::string& line : scene.title) title_width = std::max(title_width, Canvas::text_width(line));
   const int width = std::max({kWidth, 3 * kMargin + map_width + kPanel, 2 * kMargin + title_width});
   const int height = window.top + std::max(map_height, kPanelHeight) + kMargin;
   Canvas canvas(width, height, kPaper);
   for (std::size_t i = 0; i < scene.title.size(); ++i)
-    canvas.text(kMargin, kMargin + kLine * static_cast<int>(i), scene.title[i], kLetters, kInk);
+    canvas.text(kMargin, kMargin + kLine * static_cast<int>(i), scene.title[i], kInk);
   double most = 0.0;
   for (const auto& cell : scene.cells) most = std::max(most, cell.quality);
   draw_map(canvas, scene, window);

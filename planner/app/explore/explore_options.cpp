@@ -110,17 +110,13 @@ void read(std::string_view word, StartPose& start) {
   start.robot = word.substr(0, equals);
 }
 
-nlohmann::ordered_json to_json(const ExploreOptions& options) {
+std::string json_text(const ExploreOptions& options) {
   Json json = Json::object();
   for_each_member(options, [&](const char* name, const auto& value) {
     Json member = json_of(value);
     if (!member.is_null()) json[name] = std::move(member);
   });
-  return json;
-}
-
-std::string json_text(const ExploreOptions& options) {
-  return to_json(options).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 ExploreOptions explore_options_of(const std::string& text) {

@@ -6,8 +6,6 @@
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/sim/sensor.hpp>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,10 +43,7 @@ struct ExploreOptions {
   sim::RangeErrors errors;
 };
 
-/// As a JSON object, without what is not given.
-[[nodiscard]] nlohmann::ordered_json to_json(const ExploreOptions& options);
-
-/// As it is recorded: the object on one line, in Unicode whatever the bytes of file names.
+/// As it is recorded: a JSON object on one line, without what is not given; Unicode, whatever file names are.
 [[nodiscard]] std::string json_text(const ExploreOptions& options);
 
 /// What `json_text` made. Members that are missing keep their default.

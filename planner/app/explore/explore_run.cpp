@@ -3,7 +3,6 @@
 #include "bad_input.hpp"
 #include "explore/explore_setup.hpp"
 #include "explore/run_files.hpp"
-#include "explore/run_json.hpp"
 #include "interrupt.hpp"
 #include "stopwatch.hpp"
 #include "text.hpp"
@@ -28,10 +27,7 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using planner::Exploration;
-using planner::ExplorationStep;
-using planner::RecordedStep;
-using planner::Recording;
+using planner::Exploration, planner::ExplorationStep, planner::RecordedStep, planner::Recording;
 
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";

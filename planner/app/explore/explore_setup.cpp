@@ -3,7 +3,6 @@
 #include "bad_input.hpp"
 #include "text.hpp"
 
-#include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
@@ -16,15 +15,11 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 namespace frontlux::app {
 namespace {
 
-using planner::Method;
-using planner::Motion;
-using planner::Pose;
-using planner::RobotDescription;
+using planner::Method, planner::Motion, planner::Pose, planner::RobotDescription;
 
 constexpr std::size_t kMaxRobots = 32;
 

@@ -3,7 +3,6 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +14,10 @@ class GroundTruth;
 }
 
 namespace frontlux::app {
+
+struct ExploreOptions;
+struct ExploreRun;
+struct ExploreSetup;
 
 /// A step with the voxels that it made known, as it is recorded.
 /// @param before  the step before, or null for the first
@@ -56,5 +59,12 @@ class RunFiles {
   std::ofstream steps_file_, paths_file_;
   RunSums sums_;
 };
+
+/// Writes run.json: what was asked for and what came out.
+/// @param end      why the run ended, in one word
+/// @param seconds  that it took
+/// @throws std::runtime_error naming the file, if it cannot be written
+void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
+                    const RunSums& sums, const std::string& end, double seconds);
 
 }  // namespace frontlux::app

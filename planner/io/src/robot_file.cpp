@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <numbers>
@@ -18,10 +17,7 @@
 namespace frontlux::io {
 namespace {
 
-using nlohmann::json;
-using planner::Motion;
-using planner::RobotDescription;
-using planner::TravelOptions;
+using nlohmann::json, planner::Motion, planner::RobotDescription, planner::TravelOptions;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 20;

@@ -30,8 +30,7 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 ///     count of planned viewpoints, those travelled, and of each x, y, z, yaw as f32
 ///
 /// A count takes seven bits a byte, the lowest first; the top bit says that another byte follows. A
-/// difference d is written as the count 2 d, or -2 d - 1 if it is negative. f32 is single precision, lowest
-/// byte first.
+/// difference d is written as the count 2 d, or -2 d - 1 if negative. f32 is a float, lowest byte first.
 [[nodiscard]] std::string run_data(const planner::Recording& recording);
 
 }  // namespace frontlux::report::detail

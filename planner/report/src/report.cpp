@@ -1,15 +1,15 @@
-#include "compression.hpp"
 #include "parts.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/report/report.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>
 #include <stdexcept>
-#include <string>
 #include <string_view>
+#include <zlib.h>
 
 namespace frontlux::report {
 namespace {
@@ -17,21 +17,11 @@ namespace {
 // As text between tags.
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
+  for (const char c : text)
+    if (c == '&' || c == '<' || c == '>')
+      out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : "&gt;";
+    else
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   return out;
 }
 
@@ -50,6 +40,32 @@ void check(std::span<const ReportedRun> runs) {
   }
 }
 
+// Bytes in zlib's format (RFC 1950), which browsers read by themselves.
+std::string compressed(std::string_view bytes) {
+  uLongf length = compressBound(static_cast<uLong>(bytes.size()));
+  std::string out(length, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION) != Z_OK)
+    throw std::runtime_error("there is not enough memory to compress a report; close other programs");
+  out.resize(length);
+  return out;
+}
+
+// Letters, digits, + and /, four for each three bytes; = fills up the end.
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8U | (k < here ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= here ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
 // The facts and the data of a run: the length of the facts in four bytes, the lowest first, and both.
 std::string packed(const ReportedRun& run, const std::string& version) {
   const std::string facts = detail::run_facts(run, version);
@@ -57,7 +73,7 @@ std::string packed(const ReportedRun& run, const std::string& version) {
   for (unsigned shift = 0; shift < 32; shift += 8)
     bytes += static_cast<char>(static_cast<std::uint8_t>(facts.size() >> shift));
   bytes.append(facts).append(detail::run_data(*run.recording));
-  return detail::base64(detail::compressed(bytes));
+  return base64(compressed(bytes));
 }
 
 std::string title_of(std::span<const ReportedRun> runs) {

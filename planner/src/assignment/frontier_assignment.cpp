@@ -19,10 +19,7 @@
 namespace frontlux::planner {
 namespace {
 
-using detail::BlockCells;
-using detail::CorridorBlocks;
-using detail::Occlusion;
-using detail::VisibilityFlood;
+using detail::BlockCells, detail::CorridorBlocks, detail::Occlusion, detail::VisibilityFlood;
 
 constexpr std::size_t kBatch = 256;             // frontiers that one thread decides together
 constexpr std::size_t kSome = 48, kMany = 512;  // rays for one frontier in a round

@@ -29,8 +29,7 @@ bool Occlusion::occupied(const KeyBox& box) const {
 // A line from a voxel's centre to the target's crosses the middle of a layer between them at a point, and its
 // path visits the voxel that holds the point, or both that share it. Seen from the target the point lies at
 // the fraction m / d of the offset, with d layers to the voxel and m to the layer in question; so the points
-// of all lines from the box lie in a rectangle. Its sides, as m grows, are lines: in fixed point, rounded
-// outwards.
+// of all lines from the box lie in a rectangle. Its sides are lines in m: in fixed point, rounded outwards.
 bool Occlusion::hides(const VoxelKey& target, const KeyBox& from) const {
   if (!walls_) return false;
   constexpr int kFraction = 32;

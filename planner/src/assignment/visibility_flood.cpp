@@ -37,8 +37,7 @@ std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid,
   return flood;
 }
 
-// A ray to an offset in the region rises no more than the region's slope allows, and crosses only voxels
-// that it touches.
+// A ray to an offset in the region rises no more than the region's slope, and crosses what it touches.
 VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& region)
     : up_{VoxelColumns(box), VoxelColumns(box)},
       down_{VoxelColumns(box, true), VoxelColumns(box, true)},
@@ -76,8 +75,7 @@ void VisibilityFlood::cells(const VoxelKey& target, Row& row, std::vector<VoxelK
 // Column by column, away from the target; heights come from the column before along x, and along y.
 void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& side, std::size_t sector,
                             Row& row, std::vector<VoxelKey>& cells) const {
-  // Distances to the last cell; beyond it there is nothing to find. Offsets of zero belong to the sides that
-  // ascend.
+  // Distances to the last cell; beyond it there is nothing. Offsets of zero belong to the sides that ascend.
   const std::array<int, 3> t = {target.x, target.y, target.z},
                            low = {corridor_.min.x, corridor_.min.y, corridor_.min.z},
                            high = {corridor_.max.x, corridor_.max.y, corridor_.max.z};

@@ -19,8 +19,7 @@ namespace frontlux::planner::detail {
 /// A ray between voxels steps along one axis at a time and never back. So such steps connect all that it
 /// crosses to the target, within one sector of one octant around the target. The flood finds what is
 /// connected so through voxels that are not occupied, no farther above or below than rays of the region come,
-/// for 64 voxels of a column at a time. It misses no cell that sees the target; some cells that do not see it
-/// remain.
+/// for 64 voxels of a column at a time. It misses no cell that sees the target; some that do not remain.
 class VisibilityFlood {
  public:
   /// Nothing if the region is higher than a word has bits, or if the tables would be too large to be worth
@@ -45,8 +44,7 @@ class VisibilityFlood {
   // Parts of a quadrant by azimuth. The narrower they are, the less is connected that no ray connects.
   static constexpr std::size_t kSectors = 4;
 
-  // Of a column at an offset along x and y: heights at which rays of the region may cross it, and from which
-  // the target may be in view.
+  // Of a column at an offset along x and y: heights at which rays may cross it, and that may see the target.
   struct Limit {
     std::uint64_t crossed = 0, cells = 0;
   };

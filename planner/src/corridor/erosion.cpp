@@ -92,8 +92,7 @@ void Erosion::erode_along_z(std::size_t first) {
   }
 }
 
-// Renews the columns of `to` whose window along an axis meets a stale column of `from`, and marks those that
-// change.
+// Renews the columns of `to` whose window along an axis meets a stale one of `from`, marking what changes.
 template <int kAxis>
 void Erosion::erode_across(const Bits& from, Bits& to, const Flags& stale_from, Flags& stale_to) {
   constexpr auto kPlace = static_cast<std::size_t>(kAxis);

@@ -3,10 +3,12 @@
 #include "corridor/path_distances.hpp"
 #include "mapping/box_array.hpp"
 
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +18,7 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // of a voxel: 0.9 m are three voxels of 0.3 m, whatever the division says
 constexpr int kMaxWindow = 1024;
+constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
@@ -121,6 +124,18 @@ TravelOptions uav_node_travel() {
   return options;
 }
 
+Robot ugv() { return {"ugv", ugv_travel(), {FieldOfView::Shape::kSpinning, 0.0, 40.0 * kDegree, 6.0}}; }
+
+Robot uav(Method method) {
+  return {"uav",
+          method == Method::kPaper ? uav_node_travel() : uav_travel(),
+          {FieldOfView::Shape::kPyramid, 90.0 * kDegree, 72.0 * kDegree, 10.0}};
+}
+
+RobotDescription ugv_description() { return {ugv(), 720, 32}; }
+
+RobotDescription uav_description(Method method) { return {uav(method), 160, 120}; }
+
 VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
   return aligned(options, window_of(options, lattice.resolution()), voxel);
 }
@@ -144,25 +159,15 @@ Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
 }
 
 std::string_view describe(CorridorState state) {
-  switch (state) {
-    case CorridorState::kReady:
-      return "has a corridor";
-    case CorridorState::kNotUpdated:
-      return "has no map yet";
-    case CorridorState::kOutside:
-      return "is outside the bounds";
-    case CorridorState::kTooLow:
-      return "is in a cell below its minimum height";
-    case CorridorState::kUnknown:
-      return "is in an unknown voxel";
-    case CorridorState::kOccupied:
-      return "is in an occupied voxel";
-    case CorridorState::kBoxNotFree:
-      return "needs more space than is known to be free around it";
-    case CorridorState::kWithoutGround:
-      return "stands where no ground is known";
-  }
-  return "is in no known state";
+  constexpr std::array<std::string_view, 8> kTexts = {"has a corridor",
+                                                      "has no map yet",
+                                                      "is outside the bounds",
+                                                      "is in a cell below its minimum height",
+                                                      "is in an unknown voxel",
+                                                      "is in an occupied voxel",
+                                                      "needs more space than is known to be free around it",
+                                                      "stands where no ground is known"};
+  return kTexts.at(static_cast<std::size_t>(state));
 }
 
 // What depends on the plane is made again when the robot is on another one; in space it is made once.

@@ -52,31 +52,18 @@ std::string_view name_of(Phase phase) {
 }
 
 std::string_view name_of(ExplorationEnd end) {
-  switch (end) {
-    case ExplorationEnd::kLowGain:
-      return "low_gain";
-    case ExplorationEnd::kNothingToDo:
-      return "nothing_to_do";
-    case ExplorationEnd::kStepLimit:
-      return "step_limit";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 3> kNames = {"low_gain", "nothing_to_do", "step_limit"};
+  return kNames.at(static_cast<std::size_t>(end));
 }
 
 std::string describe(ExplorationEnd end, const ExplorationOptions& options) {
-  switch (end) {
-    case ExplorationEnd::kLowGain: {
-      std::ostringstream text;  // 10 without zeros behind it
-      text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
-           << " steps";
-      return text.str();
-    }
-    case ExplorationEnd::kNothingToDo:
-      return "no robot can see a frontier from anywhere it can go";
-    case ExplorationEnd::kStepLimit:
-      return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
-  }
-  return "unknown";
+  if (end == ExplorationEnd::kNothingToDo) return "no robot can see a frontier from anywhere it can go";
+  if (end == ExplorationEnd::kStepLimit)
+    return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
+  std::ostringstream text;  // 10 without zeros behind it
+  text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
+       << " steps";
+  return text.str();
 }
 
 }  // namespace frontlux::planner

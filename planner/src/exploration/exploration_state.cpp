@@ -33,8 +33,7 @@ class PhaseClock {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-// Targets that are in view from where the robot has been, the first viewpoint left out, and are unknown
-// still.
+// Targets that are in view from where the robot has been, the first viewpoint left out, and still unknown.
 std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const InformationGain& gain,
                                          std::span<const Pose> viewpoints,
                                          std::span<const VoxelKey> targets) {

@@ -1,5 +1,5 @@
 #include "assignment/corridor_blocks.hpp"
-#include "goal/goal_rules.hpp"
+#include "goal/goal_query.hpp"
 #include "goal/rendered_cell.hpp"
 
 #include <frontlux/view_region.hpp>

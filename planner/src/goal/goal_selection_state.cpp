@@ -1,6 +1,6 @@
 #include "goal/goal_selection_state.hpp"
 
-#include "goal/goal_rules.hpp"
+#include "goal/goal_query.hpp"
 #include "goal/rendered_cell.hpp"
 #include "goal/viewpoint_candidates.hpp"
 

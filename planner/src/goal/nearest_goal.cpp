@@ -1,4 +1,4 @@
-#include "goal/goal_rules.hpp"
+#include "goal/goal_query.hpp"
 #include "goal/rendered_cell.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace frontlux::planner::detail {

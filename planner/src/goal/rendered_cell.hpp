@@ -5,7 +5,6 @@
 #include <frontlux/view_quality.hpp>
 
 #include <optional>
-#include <vector>
 
 namespace frontlux::planner::detail {
 
@@ -15,8 +14,7 @@ namespace frontlux::planner::detail {
 [[nodiscard]] RenderedCell rate(const GoalQuery& query, const ViewQualityImage& image, std::size_t index,
                                 const VoxelKey* containing = nullptr);
 
-/// Whether one cell is the better goal: first by whether its gain is enough, then by eq. 1, then by the
-/// smaller key.
+/// Whether one cell is the better goal: first by whether its gain is enough, then by eq. 1, then by key.
 [[nodiscard]] bool better(const GoalQuery& query, const RenderedCell& a, const RenderedCell& b);
 
 /// The best cell of an image by `better`; nothing if no cell that is far enough sees a target. With `refined`

@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 namespace frontlux::planner::detail {
 namespace {

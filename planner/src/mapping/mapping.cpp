@@ -12,7 +12,6 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace frontlux::planner {
 namespace {
@@ -27,6 +26,24 @@ std::string shortest(double number) {
 }
 
 }  // namespace
+
+void check(const Scan& scan) {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument("scan: " + what); };
+  if (scan.directions.size() != scan.ranges.size())
+    refuse(std::to_string(scan.directions.size()) + " directions, but " + std::to_string(scan.ranges.size()) +
+           " ranges");
+  if (!scan.origin.allFinite()) refuse("its origin is not finite");
+  if (!(scan.max_range > 0.0 && std::isfinite(scan.max_range)))
+    refuse("max_range is " + std::to_string(scan.max_range) + " m, but has to be positive");
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    if (!(std::fabs(scan.directions[i].norm() - 1.0F) < 1e-3F))
+      refuse("direction " + std::to_string(i) + " is not of unit length");
+    const auto range = static_cast<double>(scan.ranges[i]);
+    if (range < 0.0 || (std::isfinite(range) && range > scan.max_range * (1.0 + 1e-6)))
+      refuse("range " + std::to_string(i) + " is " + std::to_string(range) + " m, outside 0 to max_range, " +
+             std::to_string(scan.max_range) + " m");
+  }
+}
 
 KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box) {
   constexpr double kOnFace = 1e-6;  // [voxels]
@@ -152,8 +169,7 @@ const VoxelGrid& Mapping::grid() const { return state_->grid; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
 const InsertionTime& Mapping::insertion_time() const { return state_->time; }
 
-// The headers are our own: OctoMap's functions for whole files and trees report on stderr, and round the
-// resolution.
+// The headers are our own: OctoMap's functions for whole files report on stderr, and round the resolution.
 void Mapping::write(const std::filesystem::path& file) const {
   const bool binary = file.extension() == ".bt";
   if (!binary && file.extension() != ".ot")

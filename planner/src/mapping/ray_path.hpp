@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -67,8 +66,7 @@ struct PathStart {
 }
 
 /// Four paths at a time. A step waits for the one before it, so that a path alone leaves most of the
-/// processor idle; and which axis is next is a coin toss to the branch predictor, so all three move, two of
-/// them by zero.
+/// processor idle; and no branch predictor knows which axis is next, so all three move, two of them by 0.
 class PathLanes {
  public:
   static constexpr unsigned kLanes = 4;

@@ -2,11 +2,11 @@
 
 #include "mapping/voxel_sets.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <mutex>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -17,16 +17,23 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
                                      std::span<const RayEnd> rays) {
   constexpr std::size_t kGrain = 1024;
   const LinearPlaces places = none.places();
-  tbb::enumerable_thread_specific<Voxels> passed(none);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kGrain),
-                    [&](const tbb::blocked_range<std::size_t>& piece) {
-                      Voxels& voxels = passed.local();
-                      for_each_passed(
-                          lattice, origin, start, rays.subspan(piece.begin(), piece.size()), places,
-                          [&voxels](unsigned lane, std::int64_t place) { return voxels.add(place, lane); });
-                    });
+  // Sets that no thread is filling; there are never more than threads.
+  std::vector<std::unique_ptr<Voxels>> passed;
+  std::mutex mutex;
+  for_each_chunk(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Voxels> voxels;
+    if (const std::lock_guard lock(mutex); !passed.empty()) {
+      voxels = std::move(passed.back());
+      passed.pop_back();
+    }
+    if (!voxels) voxels = std::make_unique<Voxels>(none);
+    for_each_passed(lattice, origin, start, rays.subspan(begin, end - begin), places,
+                    [&](unsigned lane, std::int64_t place) { return voxels->add(place, lane); });
+    const std::lock_guard lock(mutex);
+    passed.push_back(std::move(voxels));
+  });
   Voxels all = none, hits = none;
-  for (const Voxels& voxels : passed) all.add(voxels);
+  for (const auto& voxels : passed) all.add(*voxels);
   for (const RayEnd& ray : rays)
     if (ray.has_key && ray.hit) hits.add(places.at(ray.key));
   all.add(hits);

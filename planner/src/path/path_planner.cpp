@@ -64,8 +64,7 @@ std::uint64_t seed_of(const PathKey& key) {
   return mixed(mixed(mixed(key.seed + kOdd) + key.step + kOdd) + key.robot + kOdd);
 }
 
-// Along the paths from the robot's cell: from the start back to where those to start and goal part, and on to
-// the goal.
+// Along the paths from the robot's cell: from the start back to where those to both part, and on to the goal.
 std::vector<VoxelKey> cells_between(const TravelCorridor& corridor, const VoxelKey& start,
                                     const VoxelKey& goal) {
   std::vector<VoxelKey> back = corridor.path_to(start);
@@ -162,23 +161,15 @@ std::string_view name_of(PathOutcome outcome) {
 }
 
 std::string_view describe(PathOutcome outcome) {
-  switch (outcome) {
-    case PathOutcome::kFound:
-      return "was found by the search";
-    case PathOutcome::kFellBack:
-      return "is the shortest through the corridor, since the search found none within its iterations";
-    case PathOutcome::kInPlace:
-      return "has no length: start and goal are the same point";
-    case PathOutcome::kNoCorridor:
-      return "does not exist: the robot has no corridor";
-    case PathOutcome::kStartNotFree:
-      return "does not exist: the space that the robot needs at the start is not known to be free";
-    case PathOutcome::kGoalNotFree:
-      return "does not exist: the space that the robot needs at the goal is not known to be free";
-    case PathOutcome::kOutOfReach:
-      return "does not exist: the robot's corridor does not connect start and goal";
-  }
-  return "has no known outcome";
+  constexpr std::array<std::string_view, 7> kTexts = {
+      "was found by the search",
+      "is the shortest through the corridor, since the search found none within its iterations",
+      "has no length: start and goal are the same point",
+      "does not exist: the robot has no corridor",
+      "does not exist: the space that the robot needs at the start is not known to be free",
+      "does not exist: the space that the robot needs at the goal is not known to be free",
+      "does not exist: the robot's corridor does not connect start and goal"};
+  return kTexts.at(static_cast<std::size_t>(outcome));
 }
 
 bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& from,

@@ -2,9 +2,7 @@
 
 #include "recording/record_bytes.hpp"
 
-#include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <new>
 #include <stdexcept>
 #include <zlib.h>

@@ -33,8 +33,7 @@ class RecordBytes {
  public:
   /// To write: all values that follow are appended.
   RecordBytes() = default;
-  /// To read: all values that follow are taken from here. Nothing is allocated for what the bytes do not
-  /// hold.
+  /// To read: all values that follow come from here. Nothing is allocated for what the bytes do not hold.
   explicit RecordBytes(std::string_view bytes) : reading_(true), left_(bytes) {}
 
   [[nodiscard]] const std::string& written() const { return written_; }

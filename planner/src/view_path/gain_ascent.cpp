@@ -7,13 +7,11 @@
 #include <cmath>
 #include <mutex>
 #include <sstream>
-#include <string>
 
 namespace frontlux::planner {
 namespace {
 
-using Ipopt::Index;
-using Ipopt::Number;
+using Ipopt::Index, Ipopt::Number;
 
 constexpr double kFirstStep = 0.1;  // [rad] largest turn of a stage's first step, before there is curvature
 constexpr double kFlat = 1e-9;    // gradient per unit of gain under which a path counts as stationary [1/rad]
@@ -160,8 +158,7 @@ class Stage : public Ipopt::TNLP {
     return viewpoint > 0 && viewpoint + 1 < yaws_.size();
   }
 
-  // Ipopt calls for value and gradient separately, and sometimes twice. Its flag for a new x is not reliable,
-  // so the points are compared.
+  // Ipopt calls for value and gradient separately, and sometimes twice. Its flag for a new x is unreliable.
   bool move_to(Index n, const Number* x) {
     if (std::equal(x, x + n, yaws_.begin() + 1)) return true;
     if (climb_.evaluations() >= last_evaluation_) {

@@ -67,25 +67,16 @@ PathOptimizerOptions paper_path_options() {
 }
 
 std::string_view describe(PathEnd end) {
-  switch (end) {
-    case PathEnd::kConverged:
-      return "converged";
-    case PathEnd::kEvaluationLimit:
-      return "the limit on evaluations was reached";
-    case PathEnd::kSolverStopped:
-      return "the solver could not go on";
-    case PathEnd::kAscentOff:
-      return "the ascent is switched off";
-    case PathEnd::kNothingToTurn:
-      return "no viewpoint between the first and the last";
-    case PathEnd::kNothingVisible:
-      return "no frontier is visible between the first and the last viewpoint";
-    case PathEnd::kYawHasNoEffect:
-      return "the sensor sees all around";
-    case PathEnd::kLimitsUnreachable:
-      return "the yaws of first and last viewpoint differ by more than the limits allow";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 8> kTexts = {
+      "converged",
+      "the limit on evaluations was reached",
+      "the solver could not go on",
+      "the ascent is switched off",
+      "no viewpoint between the first and the last",
+      "no frontier is visible between the first and the last viewpoint",
+      "the sensor sees all around",
+      "the yaws of first and last viewpoint differ by more than the limits allow"};
+  return kTexts.at(static_cast<std::size_t>(end));
 }
 
 OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Eigen::Vector3d> frontiers,

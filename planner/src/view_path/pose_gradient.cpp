@@ -45,8 +45,7 @@ Boundaries boundaries(const FieldOfView& view, double yaw, const Eigen::Vector3d
   switch (view.shape) {
     case FieldOfView::Shape::kSpinning: {
       const double flat = std::hypot(u.x(), u.y());
-      // Straight above and below the horizontal direction of a point is none, and its derivative is taken as
-      // 0.
+      // Straight above and below there is no horizontal direction, and its derivative is taken as 0.
       const Eigen::Vector3d along = flat > 0.0 ? Eigen::Vector3d(u.x() / flat, u.y() / flat, 0.0)
                                                : Eigen::Vector3d(Eigen::Vector3d::Zero());
       all.add_pair(view.vertical, along, 0.0, up, 0.0);
@@ -71,8 +70,7 @@ Membership closed_form(const Pose& pose, const Eigen::Vector3d& point, const Fie
   const Eigen::Vector3d u = offset / range;
   const Boundaries all = boundaries(view, pose.yaw, u);
   const double in_range = 1.0 / (1.0 + std::exp(-range_sharpness * (view.max_range - range)));
-  // Of the logarithm of the membership: d log sigma(k s) = k (1 - sigma) ds, where du/dp = (u u' - 1) /
-  // range.
+  // Of the logarithm of the membership: d log sigma(k s) = k (1 - sigma) ds, du/dp = (u u' - 1) / range.
   Membership m{in_range, {range_sharpness * (1.0 - in_range) * u, 0.0}};
   for (std::size_t b = 0; b < all.count; ++b) {
     const auto& [normal, threshold, rate] = all.at[b];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <numbers>
-#include <numeric>
 
 namespace frontlux::planner {
 namespace {

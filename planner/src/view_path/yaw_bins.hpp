@@ -10,8 +10,7 @@
 
 namespace frontlux::planner {
 
-/// A few yaws for each viewpoint of a path, the frontiers truly in view at each of them, and choices among
-/// them.
+/// A few yaws for each viewpoint of a path, the frontiers truly in view at each, and choices among them.
 class YawBins {
  public:
   static constexpr int kMaxBins = 63;  // a bit each, and one for the even turn
@@ -20,8 +19,7 @@ class YawBins {
   /// turning is limited, that of the even turn.
   YawBins(const InformationGain& gain, int bins, double first_yaw, double last_yaw, const YawLimits& limits);
 
-  /// The yaws with most views within the limits. A frontier counts once for each viewpoint that has it in
-  /// view.
+  /// The yaws with most views within the limits. A frontier counts once for each viewpoint that sees it.
   [[nodiscard]] std::vector<double> most_views() const;
 
   /// Yaws with many distinct frontiers in view, within the limits: chosen greedily, then improved viewpoint

@@ -126,8 +126,7 @@ class Exploration {
   Exploration& operator=(Exploration&&) noexcept;
 
   /// Alg. 1, lines 1 and 2: each robot looks all around at its start.
-  /// @throws std::invalid_argument if there is not one start for each robot, one is not finite, or it has
-  /// begun already
+  /// @throws std::invalid_argument unless there is one finite start for each robot, or if it has begun
   ExplorationStep begin(std::span<const ExplorationStart> starts, const Drive& drive);
 
   /// Alg. 1, lines 4 to 11. It may be called after the end, too.

@@ -5,7 +5,6 @@
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

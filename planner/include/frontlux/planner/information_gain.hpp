@@ -67,8 +67,7 @@ class InformationGain {
   /// stay as they were, which is right for small moves only.
   double value_at(std::span<const Pose> poses, double sharpness, std::span<PoseGradient> gradient) const;
 
-  /// The hard gain: the number of distinct frontiers in view (`FieldOfView::contains`) from a viewpoint that
-  /// sees them.
+  /// The hard gain: distinct frontiers in view (`FieldOfView::contains`) from a viewpoint that sees them.
   [[nodiscard]] std::uint64_t distinct(std::span<const double> yaws) const;
 
   /// Frontiers that a viewpoint sees at some yaw, ascending: `VisiblePairs::frontiers_of`.

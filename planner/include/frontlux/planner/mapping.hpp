@@ -11,7 +11,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace octomap {
 class OcTree;
@@ -71,8 +70,7 @@ class Mapping {
                    double max_range = std::numeric_limits<double>::infinity());
 
   /// Marks free what a robot knows to be free without seeing it; voxels outside the bounds are left out. They
-  /// become as free as one miss makes an unknown voxel, unless they are freer already; so sensors can still
-  /// correct it.
+  /// become as free as one miss makes an unknown voxel, unless they are freer; sensors can still correct it.
   MapChange mark_free(std::span<const VoxelKey> voxels);
 
   /// The map itself. Its change detection is off, since insertion reports changes by itself.

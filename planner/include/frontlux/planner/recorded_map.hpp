@@ -4,7 +4,7 @@
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstddef>
-#include <memory>
+#include <map>
 #include <optional>
 
 namespace frontlux::planner {
@@ -14,32 +14,28 @@ namespace frontlux::planner {
 ///     RecordedMap map(recording.head.resolution);
 ///     for (const RecordedStep& step : recording.steps) map.apply(step);
 ///
-/// Takes some megabytes for a map of a million known voxels. Thread safety: as a standard container.
+/// Takes some 50 megabytes for a map of a million known voxels. Thread safety: as a standard container.
 class RecordedMap {
  public:
   /// The map before step 0: all is unknown.
   /// @param resolution [m]
   /// @throws std::invalid_argument if it is no length
   explicit RecordedMap(double resolution);
-  ~RecordedMap();
-  RecordedMap(RecordedMap&&) noexcept;
-  RecordedMap& operator=(RecordedMap&&) noexcept;
 
   /// Applies the next step: what its robots changed, in their order. Step 0 includes what they knew to be
   /// free at their starts.
-  /// @throws std::invalid_argument naming a voxel that was not what the step says it was; the map stays as it
-  /// is
+  /// @throws std::invalid_argument naming a voxel that was not what the step says; the map stays as it is
   void apply(const RecordedStep& step);
 
   /// The map after the steps applied so far; a copy is a snapshot.
-  [[nodiscard]] const VoxelGrid& grid() const;
+  [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
 
   /// The robot that mapped a voxel first, by its place in the team; nothing if none did.
   [[nodiscard]] std::optional<std::size_t> first_seen_by(const VoxelKey& key) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  VoxelGrid grid_;
+  std::map<VoxelKey, std::size_t> first_;  // the robot by voxel
 };
 
 }  // namespace frontlux::planner

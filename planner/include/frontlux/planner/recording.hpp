@@ -48,8 +48,7 @@ struct Recording {
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 
-/// Writes a recording step by step. After each call the file holds all steps so far, even if the process is
-/// killed.
+/// Writes a recording step by step. After each call the file holds all steps, even if the process is killed.
 class RecordingWriter {
  public:
   /// A new recording; a file of that name is replaced.

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,11 +40,9 @@ struct TravelOptions {
 
   double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
   /// On a plane: go only where no floor voxel under the box is known to be free, and one within
-  /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is the layer below the
-  /// box.
+  /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is below the box.
   bool require_ground = true;
-  /// [m] Along x and y: the part of the floor that must not be known to be free; all under the box if not
-  /// given.
+  /// [m] Along x and y: the part of the floor that must not be known to be free; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;                ///< [voxels] along x and y
   std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its floor
@@ -99,13 +96,11 @@ enum class CorridorState : std::uint8_t {
 /// cells connect with the robot's by faces. Diagonal steps shorten paths but reach no other cells. After an
 /// update the result is the same as that of a new corridor.
 ///
-/// Takes memory for every voxel of the bounds, or of one layer of them. Thread safety: as a standard
-/// container.
+/// Takes memory for each voxel of the bounds, or of one layer. Thread safety: as a standard container.
 class TravelCorridor {
  public:
   /// @param bounds  of the collision box; on a plane only x and y are used
-  /// @throws std::invalid_argument naming the option that is not valid, or if the bounds hold more than 2^29
-  /// cells
+  /// @throws std::invalid_argument naming the option that is not valid, or if the bounds hold over 2^29 cells
   TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds);
   ~TravelCorridor();
   TravelCorridor(TravelCorridor&&) noexcept;

@@ -45,8 +45,7 @@ class VisiblePairs {
 /// The pairs that are in view at some yaw and visible. Unknown and occupied voxels block; the voxels of the
 /// viewpoint and of the frontier do not. Casts one batch of rays for the whole path.
 /// @param grid  on whose lattice the keys lie
-/// @throws std::invalid_argument if a viewpoint is not finite, or a value of the field of view is out of
-/// bounds
+/// @throws std::invalid_argument if a viewpoint is not finite, or a value of the view is out of bounds
 [[nodiscard]] VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
                                          std::span<const Pose> viewpoints,
                                          std::span<const VoxelKey> frontiers, const FieldOfView& view);

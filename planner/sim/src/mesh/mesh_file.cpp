@@ -33,15 +33,8 @@ io::RawMesh read_raw(const std::filesystem::path& file, bool keep_frame) {
 
 // Into a right-handed frame with z up.
 Eigen::Vector3d upright(const Eigen::Vector3d& p, UpAxis up) {
-  switch (up) {
-    case UpAxis::kX:
-      return {p.y(), p.z(), p.x()};
-    case UpAxis::kY:
-      return {p.x(), -p.z(), p.y()};
-    case UpAxis::kZ:
-      break;
-  }
-  return p;
+  if (up == UpAxis::kX) return {p.y(), p.z(), p.x()};
+  return up == UpAxis::kY ? Eigen::Vector3d(p.x(), -p.z(), p.y()) : p;
 }
 
 using Bits = std::array<std::uint32_t, 3>;  // of a vertex
@@ -93,12 +86,6 @@ TriangleMesh refine(const std::filesystem::path& file, const io::RawMesh& raw, d
   return mesh;
 }
 
-// Little-endian on every machine.
-void append(std::string& bytes, std::uint32_t word) {
-  for (unsigned shift = 0; shift < 32; shift += 8)
-    bytes.push_back(static_cast<char>((word >> shift) & 0xFFU));
-}
-
 std::string ply_of(const TriangleMesh& mesh) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment frontlux world: metres, z up\nelement vertex " +
@@ -107,10 +94,10 @@ std::string ply_of(const TriangleMesh& mesh) {
       std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
   for (const auto& vertex : mesh.vertices)
-    for (const float coordinate : vertex) append(bytes, std::bit_cast<std::uint32_t>(coordinate));
+    for (const float coordinate : vertex) io::append_number(bytes, std::bit_cast<std::uint32_t>(coordinate));
   for (const auto& triangle : mesh.triangles) {
     bytes.push_back(3);
-    for (const std::uint32_t index : triangle) append(bytes, index);
+    for (const std::uint32_t index : triangle) io::append_number(bytes, index);
   }
   return bytes;
 }

@@ -4,7 +4,6 @@
 #include <frontlux/planner/segment_voxels.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,8 +12,7 @@
 namespace frontlux::sim {
 namespace {
 
-using planner::Motion;
-using planner::TravelOptions;
+using planner::Motion, planner::TravelOptions;
 
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument("simulated robots: " + what);
@@ -26,12 +24,6 @@ VoxelKey key_of(const Lattice& lattice, const Eigen::Vector3d& point) {
     refuse("the viewpoint " + std::to_string(point.x()) + ", " + std::to_string(point.y()) + ", " +
            std::to_string(point.z()) + " m is not finite, or outside of the map's key range");
   return *key;
-}
-
-// If the robot plans with nodes, its box counts here.
-TravelOptions with_box(TravelOptions travel) {
-  travel.node_edge = 0.0;
-  return travel;
 }
 
 // The body itself, smaller by a margin on all sides.
@@ -46,10 +38,6 @@ Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
   }
   const Eigen::Vector3d margin = (half / 2).cwiseMin(GroundTruth::kMargin);
   return {body.min() + margin, body.max() - margin};
-}
-
-bool holds_surface(const GroundTruth& truth, const KeyBox& box) {
-  return !all_of(box, [&](const VoxelKey& key) { return !truth.holds_surface(key); });
 }
 
 }  // namespace
@@ -70,10 +58,12 @@ SimulatedRobots::SimulatedRobots(const World& world, const GroundTruth& truth,
 Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, const Eigen::Vector3d& from,
                                                const Eigen::Vector3d& to) const {
   const Lattice& lattice = truth_->lattice();
-  const TravelOptions box = with_box(travel);
+  TravelOptions box = travel;
+  box.node_edge = 0.0;  // if the robot plans with nodes, its box counts here
   Collisions met;
   static_cast<void>(planner::SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
-    met.lattice += static_cast<std::uint64_t>(holds_surface(*truth_, voxels_of_cell(box, lattice, key)));
+    const auto is_open = [&](const VoxelKey& k) { return !truth_->holds_surface(k); };
+    met.lattice += all_of(voxels_of_cell(box, lattice, key), is_open) ? 0 : 1;
     return true;
   }));
   const Eigen::AlignedBox3d first = body_at(box, lattice, from), last = body_at(box, lattice, to);

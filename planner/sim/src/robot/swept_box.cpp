@@ -18,8 +18,7 @@ bool SweptBox::apart(const Eigen::Vector3d& axis, const std::array<Eigen::Vector
 }
 
 bool SweptBox::touches(const std::array<Eigen::Vector3d, 3>& triangle) const {
-  // Separating axes, as in TriangleOverlap. The swept space is convex; its edges are those of the box and the
-  // motion.
+  // Separating axes, as in TriangleOverlap. The swept space is convex; its edges: the box's and the motion.
   const std::array<Eigen::Vector3d, 3> at{triangle[0] - center_, triangle[1] - center_,
                                           triangle[2] - center_};
   const std::array<Eigen::Vector3d, 3> sides{at[1] - at[0], at[2] - at[1], at[0] - at[2]};

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <cmath>
 #include <optional>
 
 namespace frontlux::sim {

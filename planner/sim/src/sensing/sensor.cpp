@@ -59,18 +59,6 @@ std::vector<Eigen::Vector3d> cone(const FieldOfView& view, std::size_t count) {
   return directions;
 }
 
-std::vector<Eigen::Vector3d> directions_of(const FieldOfView& view, std::size_t columns, std::size_t rows) {
-  switch (view.shape) {
-    case FieldOfView::Shape::kPyramid:
-      return pyramid(view, columns, rows);
-    case FieldOfView::Shape::kSpinning:
-      return spinning(view, columns, rows);
-    case FieldOfView::Shape::kCone:
-      return cone(view, columns * rows);
-  }
-  throw std::invalid_argument("sensor: the field of view has an unknown shape");
-}
-
 // Between 0 and 1, neither of them included.
 double open_unit(SplitMix64& random) { return (static_cast<double>(random.bits() >> 12) + 0.5) * 0x1p-52; }
 
@@ -94,7 +82,10 @@ Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_
   if (!(errors.dropout >= 0.0 && errors.dropout <= 1.0))
     throw std::invalid_argument("sensor: dropout is " + std::to_string(errors.dropout) +
                                 ", but has to be a probability");
-  directions_ = directions_of(field_of_view, columns, rows);
+  directions_ = field_of_view.shape == FieldOfView::Shape::kPyramid ? pyramid(field_of_view, columns, rows)
+                : field_of_view.shape == FieldOfView::Shape::kSpinning
+                    ? spinning(field_of_view, columns, rows)
+                    : cone(field_of_view, columns * rows);
 }
 
 Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {

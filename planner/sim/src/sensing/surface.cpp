@@ -14,14 +14,12 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace frontlux::sim {
 namespace {
 
-// The triangles, and the frame in which Embree sees them: moved to the middle, where single precision is
-// best.
+// The triangles, and the frame in which Embree sees them: about the middle, where floats are best.
 struct Geometry {
   std::vector<Corners> triangles;
   Eigen::AlignedBox3d box;                           // around them, with some room
@@ -58,8 +56,7 @@ struct Query {
   std::uint32_t triangle = Surface::kNone;
 };
 
-// A little more, so that Embree's single precision loses nothing that is exactly there. Rounding may make a
-// length negative.
+// A little more, so that Embree's single precision loses nothing. Rounding may make a length negative.
 float widened(double length) { return static_cast<float>(std::max(length, 0.0) * (1.0 + 0x1p-20)); }
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {

@@ -4,8 +4,6 @@
 
 #include <frontlux/parallel.hpp>
 
-#include <algorithm>
-
 namespace frontlux::sim {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 
 namespace frontlux::sim {
 namespace {

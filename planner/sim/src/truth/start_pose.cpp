@@ -4,15 +4,12 @@
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace frontlux::sim {
 namespace {
 
-using planner::Motion;
-using planner::Pose;
-using planner::Robot;
+using planner::Motion, planner::Pose, planner::Robot;
 
 constexpr double kSearched = 15.0;          // [m] along each axis
 constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
@@ -69,9 +66,14 @@ KeyBox taken_by(const Lattice& lattice, const Robot& robot, const Pose& sensor_p
   return taken;
 }
 
-bool overlaps_one(const KeyBox& box, std::span<const KeyBox> others) {
-  return std::ranges::any_of(others,
-                             [&](const KeyBox& other) { return intersection(box, other).has_value(); });
+// The pose, if the robot can be there beside those that are placed.
+std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const Pose& pose,
+                            std::span<const KeyBox> taken) {
+  if (obstacle_at(truth, robot, pose)) return std::nullopt;
+  const KeyBox box = taken_by(truth.lattice(), robot, pose);
+  if (std::ranges::any_of(taken, [&](const KeyBox& other) { return intersection(box, other).has_value(); }))
+    return std::nullopt;
+  return pose;
 }
 
 std::optional<Pose> find_on_floor(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
@@ -80,9 +82,7 @@ std::optional<Pose> find_on_floor(const GroundTruth& truth, const Eigen::Vector3
     if (!has_floor(truth, key)) return std::nullopt;
     Pose pose{truth.lattice().exact_center(key)};
     pose.position.z() = lower_face(truth.lattice(), key.z) + robot.travel.sensor_height;
-    if (obstacle_at(truth, robot, pose)) return std::nullopt;
-    if (overlaps_one(taken_by(truth.lattice(), robot, pose), taken)) return std::nullopt;
-    return pose;
+    return if_free(truth, robot, pose, taken);
   });
 }
 
@@ -93,9 +93,7 @@ std::optional<Pose> find_in_space(const GroundTruth& truth, const Eigen::Vector3
   const auto good = [&](const VoxelKey& key) -> std::optional<Pose> {
     const Pose pose{lattice.exact_center(key)};
     if (pose.position.z() < ground + robot.travel.min_height - kRounding) return std::nullopt;
-    if (obstacle_at(truth, robot, pose)) return std::nullopt;
-    if (overlaps_one(taken_by(lattice, robot, pose), taken)) return std::nullopt;
-    return pose;
+    return if_free(truth, robot, pose, taken);
   };
   if (robot.travel.node_edge > 0.0) {
     const auto in_node = find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {

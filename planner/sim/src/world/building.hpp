@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <span>
 
 namespace frontlux::sim {
 
@@ -18,6 +19,15 @@ class LayoutRandom : public SplitMix64 {
 
   /// True in `percent` of 100 draws.
   bool chance(int percent) { return whole(1, 100) <= percent; }
+  /// Adds `left` to some widths, one by one, none above `widest`.
+  void widen(std::span<int> widths, int widest, int left) {
+    while (left > 0)
+      if (int& one = widths[static_cast<std::size_t>(whole(0, static_cast<int>(widths.size()) - 1))];
+          one < widest) {
+        ++one;
+        --left;
+      }
+  }
 };
 
 /// What a generator makes: what is solid, and where to start. All in decimetres.

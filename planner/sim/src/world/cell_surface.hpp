@@ -10,8 +10,7 @@
 namespace frontlux::sim {
 
 /// One side of a solid cell of a rectilinear lattice, beyond which there is no solid. For axis a the cell is
-/// cell u along axis a + 1 and cell v along axis a + 2, in cyclic order; the side lies on lattice line
-/// `plane`.
+/// cell u along axis a + 1 and cell v along axis a + 2, in cyclic order; the side is on line `plane`.
 struct CellFace {
   std::int32_t plane = 0, u = 0, v = 0;
 };

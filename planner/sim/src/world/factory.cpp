@@ -131,8 +131,7 @@ Building build_factory(std::uint64_t seed) {
   const Rect conveyor{{west + random.whole(25, 40), racks_from - random.whole(25, 40)}, {belt, belt + 12}};
   add_conveyor(solid, conveyor, random);
   floor.occupy(conveyor.grown(3));
-  const Rect start = floor.place(random, 12, 12).value();
-  building.start = {start.x.middle(), start.y.middle(), 0};
+  building.start = floor.place(random, 12, 12).value().middle();
   for (int i = 0; i < 3; ++i) {
     const int diameter = 2 * random.whole(10, 16) + 1;
     if (const auto tank = floor.place(random, diameter, diameter))

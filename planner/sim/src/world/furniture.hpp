@@ -13,8 +13,7 @@ namespace frontlux::sim {
 /// wherever it begins, as many as a UGV of 1 m needs.
 constexpr int kPassage = 20;
 
-/// A part of a floor. Things are placed on it with a passage around each, so no part of the floor is ever cut
-/// off.
+/// A part of a floor. Things are placed on it with a passage around each, so none of it is ever cut off.
 class FloorPlan {
  public:
   /// @param area between walls or other things: nothing is placed nearer than a passage to its sides

@@ -18,9 +18,8 @@ constexpr std::size_t kMaxSides = std::size_t{1} << 30U;  // compared; some ten 
 using Cell = std::array<int, 3>;
 
 bool is_occupied(const VoxelGrid& grid, const Cell& c) {
-  for (const int k : c)
-    if (k < 0 || k >= Lattice::kKeysPerAxis) return false;
-  return grid.at(make_key(c[0], c[1], c[2])) == Occupancy::kOccupied;
+  const auto key = offset_key({}, c[0], c[1], c[2]);
+  return key && grid.at(*key) == Occupancy::kOccupied;
 }
 
 class SurfaceFaces {

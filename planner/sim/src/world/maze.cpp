@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace frontlux::sim {
@@ -26,12 +25,7 @@ bool inside(Cell c) { return c.i >= 0 && c.i < kCells && c.j >= 0 && c.j < kCell
 // Widths from kNarrow to kWide that, with walls between them, fill the size.
 std::vector<Span> corridors(LayoutRandom& random) {
   std::vector<int> width(kCells, kNarrow);
-  for (int left = kSize - kWall * (kCells - 1) - kNarrow * kCells; left > 0;) {
-    int& one = width[static_cast<std::size_t>(random.whole(0, kCells - 1))];
-    if (one == kWide) continue;
-    ++one;
-    --left;
-  }
+  random.widen(width, kWide, kSize - kWall * (kCells - 1) - kNarrow * kCells);
   std::vector<Span> spans;
   int at = 0;
   for (const int w : width) {
@@ -62,8 +56,7 @@ class Maze {
     open_chambers(solid, start);
     dig_tunnels(solid, start);
     open_walls(solid);
-    const Rect first = rect_of(start);
-    building.start = {first.x.middle(), first.y.middle(), 0};
+    building.start = rect_of(start).middle();
     return building;
   }
 
@@ -129,8 +122,7 @@ class Maze {
     }
   }
 
-  // Dead ends that become low and get a second exit: shortcuts for the UGV alone. No other cell is reached
-  // through a dead end alone.
+  // Dead ends that become low and get a second exit: shortcuts for the UGV alone. No cell lies behind one.
   void dig_tunnels(Solid& solid, Cell start) {
     std::vector<Cell> ends;
     for (int i = 0; i < kCells; ++i)

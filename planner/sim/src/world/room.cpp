@@ -24,8 +24,7 @@ Building build_room(std::uint64_t seed) {
   cut_door(solid, {{door, door + kPassage}, wall_y});
 
   FloorPlan south({kInside.x, {0, wall}}), north({kInside.x, {wall + 2, 120}});
-  const Rect start = south.place(random, 12, 12).value();
-  building.start = {start.x.middle(), start.y.middle(), 0};
+  building.start = south.place(random, 12, 12).value().middle();
   if (const auto pillar = south.place(random, 5, 5)) solid.add(*pillar, {0, kHeight});
   if (const auto table = random.chance(50) ? south.place(random, 16, 8) : south.place(random, 8, 16))
     add_table(solid, *table, 0);

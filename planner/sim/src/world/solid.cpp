@@ -16,25 +16,6 @@ double place(int axis, int decimetres) {
   return static_cast<double>(decimetres) / 10.0 + kOffset[static_cast<std::size_t>(axis)];
 }
 
-// The coordinates between which nothing changes.
-class Cuts {
- public:
-  void add(Span span) { lines_.insert(lines_.end(), {span.from, span.to}); }
-  void finish() {
-    std::sort(lines_.begin(), lines_.end());
-    lines_.erase(std::unique(lines_.begin(), lines_.end()), lines_.end());
-  }
-  [[nodiscard]] int cells() const { return std::max(0, static_cast<int>(lines_.size()) - 1); }
-  [[nodiscard]] int line(std::int32_t i) const { return lines_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] Span cells_of(Span span) const { return {index(span.from), index(span.to)}; }
-
- private:
-  [[nodiscard]] int index(int line) const {
-    return static_cast<int>(std::lower_bound(lines_.begin(), lines_.end(), line) - lines_.begin());
-  }
-  std::vector<int> lines_;
-};
-
 }  // namespace
 
 void Solid::mirror(const Rect& frame, bool x, bool y) {
@@ -45,14 +26,25 @@ void Solid::mirror(const Rect& frame, bool x, bool y) {
 }
 
 TriangleMesh Solid::surface() const {
-  std::array<Cuts, 3> cuts;
+  std::array<std::vector<int>, 3> lines;  // between which nothing changes
   for (const auto& [x, y, z, add] : steps_) {
-    cuts[0].add(x);
-    cuts[1].add(y);
-    cuts[2].add(z);
+    lines[0].insert(lines[0].end(), {x.from, x.to});
+    lines[1].insert(lines[1].end(), {y.from, y.to});
+    lines[2].insert(lines[2].end(), {z.from, z.to});
   }
-  for (auto& axis : cuts) axis.finish();
-  const std::array<int, 3> cells = {cuts[0].cells(), cuts[1].cells(), cuts[2].cells()};
+  std::array<int, 3> cells{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<int>& some = lines[axis];
+    std::sort(some.begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+    cells[axis] = std::max(0, static_cast<int>(some.size()) - 1);
+  }
+  const auto cells_of = [&](std::size_t axis, const Span& span) {
+    const auto place = [&some = lines[axis]](int line) {
+      return static_cast<int>(std::lower_bound(some.begin(), some.end(), line) - some.begin());
+    };
+    return Span{place(span.from), place(span.to)};
+  };
   const auto index = [&](int x, int y, int z) {
     return (static_cast<std::size_t>(x) * static_cast<std::size_t>(cells[1]) + static_cast<std::size_t>(y)) *
                static_cast<std::size_t>(cells[2]) +
@@ -60,7 +52,7 @@ TriangleMesh Solid::surface() const {
   };
   std::vector<std::uint8_t> solid(index(cells[0], 0, 0));
   for (const auto& step : steps_) {
-    const Span xs = cuts[0].cells_of(step.x), ys = cuts[1].cells_of(step.y), zs = cuts[2].cells_of(step.z);
+    const Span xs = cells_of(0, step.x), ys = cells_of(1, step.y), zs = cells_of(2, step.z);
     for (int x = xs.from; x < xs.to; ++x)
       for (int y = ys.from; y < ys.to; ++y)
         for (int z = zs.from; z < zs.to; ++z) solid[index(x, y, z)] = step.add ? 1 : 0;
@@ -86,7 +78,8 @@ TriangleMesh Solid::surface() const {
           }
       }
   return mesh_of(std::move(faces), [&](int axis, std::int32_t line) {
-    return static_cast<float>(place(axis, cuts[static_cast<std::size_t>(axis)].line(line)));
+    return static_cast<float>(
+        place(axis, lines[static_cast<std::size_t>(axis)][static_cast<std::size_t>(line)]));
   });
 }
 

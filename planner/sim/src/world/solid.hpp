@@ -22,6 +22,8 @@ struct Span {
 struct Rect {
   Span x, y;
   [[nodiscard]] Rect grown(int by) const { return {x.grown(by), y.grown(by)}; }
+  /// On the floor.
+  [[nodiscard]] Eigen::Vector3i middle() const { return {x.middle(), y.middle(), 0}; }
   /// Touching does not count.
   [[nodiscard]] bool overlaps(const Rect& other) const {
     return x.from < other.x.to && other.x.from < x.to && y.from < other.y.to && other.y.from < y.to;

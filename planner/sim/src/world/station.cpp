@@ -126,8 +126,7 @@ void furnish_concourse(Solid& solid, const Layout& plan, LayoutRandom& random, B
   floor.occupy(plan.flight);
   for (const Rect& column : stand) floor.occupy(column);
   floor.occupy({{plan.deck.x.from, kInside.x.to}, kInside.y});
-  const Rect start = floor.place(random, 12, 12).value();
-  building.start = {start.x.middle(), start.y.middle(), kPlatform};
+  building.start = floor.place(random, 12, 12).value().middle();
   for (int i = 0; i < 4; ++i)
     if (const auto kiosk = floor.place(random, random.whole(32, 44), random.whole(30, 44)))
       add_kiosk(solid, *kiosk, random);

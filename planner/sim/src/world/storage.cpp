@@ -1,8 +1,7 @@
 #include "world/building.hpp"
 #include "world/furniture.hpp"
 
-#include <algorithm>
-#include <array>
+#include <vector>
 
 namespace frontlux::sim {
 namespace {
@@ -21,16 +20,9 @@ Building build_storage(std::uint64_t seed) {
   Solid& solid = building.solid;
   add_hall(solid, kInside, kHeight);
 
-  // Racks along the walls, pairs of racks between the aisles; a cross aisle cuts through all but the
-  // outermost.
-  std::array<int, kAisles> aisle{};
-  aisle.fill(kNarrowAisle);
-  for (int left = kInside.y.to - 2 * kAisles * kRackDepth - kAisles * kNarrowAisle; left > 0;) {
-    int& one = aisle[static_cast<std::size_t>(random.whole(0, kAisles - 1))];
-    if (one == kWideAisle) continue;
-    ++one;
-    --left;
-  }
+  // Racks along the walls, pairs between the aisles; a cross aisle cuts through all but the outermost.
+  std::vector<int> aisle(kAisles, kNarrowAisle);
+  random.widen(aisle, kWideAisle, kInside.y.to - 2 * kAisles * kRackDepth - kAisles * kNarrowAisle);
   const int cross = random.whole(kRacks.from + 40, kRacks.to - 40 - kPassage);
   int y = 0;
   for (int row = 0; row < 2 * kAisles; ++row) {
@@ -69,8 +61,7 @@ Building build_storage(std::uint64_t seed) {
     if (random.chance(60))
       add_pile(solid, {{kInside.x.to - kBay, kInside.x.to}, {at, at + kBay}}, random.whole(6, 24), random);
   FloorPlan yard({{kRacks.to, kInside.x.to - kBay}, yard_y});
-  const Rect start = yard.place(random, 12, 12).value();
-  building.start = {start.x.middle(), start.y.middle(), 0};
+  building.start = yard.place(random, 12, 12).value().middle();
   for (int i = 0; i < 4; ++i)
     if (const auto pallet = yard.place(random, random.whole(8, 14), random.whole(8, 12)))
       add_pile(solid, *pallet, random.whole(6, 22), random);

@@ -10,8 +10,7 @@ namespace frontlux::synthetic {
 class Random : public SplitMix64 {
  public:
   /// @param seed    of the whole scene
-  /// @param stream  which of its independent sequences, so that one part may draw more without changing
-  /// another
+  /// @param stream  which of its independent sequences: one part may draw more without changing another
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : SplitMix64(mix(seed) + mix(~stream)) {}
 };
 

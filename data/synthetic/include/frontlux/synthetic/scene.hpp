@@ -20,8 +20,7 @@ struct Scene {
 };
 
 /// 77 x 77 x 10 m: two storeys of rooms, corridors and furniture around a hall, which like the rooms on the
-/// east side is as high as the house. Doors join all rooms of a storey; galleries join both storeys with the
-/// hall.
+/// east side is as high as the house. Doors join the rooms of a storey, galleries both storeys with the hall.
 [[nodiscard]] Scene make_building_scene(std::uint64_t seed);
 
 /// 6 x 5 x 3 m: a furnished room and a side room behind a door.

@@ -7,8 +7,7 @@
 
 namespace frontlux::sim {
 
-/// How much of a world a map knows, in voxels. A voxel is known if it is free or occupied, whether rightly or
-/// not.
+/// How much of a world a map knows, in voxels. A voxel is known if it is free or occupied, rightly or not.
 struct Coverage {
   std::uint64_t known_observable = 0, observable = 0;  ///< of the observable voxels
   std::uint64_t known_bounding = 0, bounding = 0;      ///< of all voxels within the world's bounds

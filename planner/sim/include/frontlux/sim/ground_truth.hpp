@@ -50,8 +50,7 @@ class GroundTruth {
   /// @param resolution edge length of a voxel [m]
   /// @param start [m] a point in free space, in the world frame
   /// @throws std::invalid_argument naming the value, if the resolution, the bounds or the mesh is not valid,
-  /// the bounds hold more than 2^31 voxels, the start lies outside of them, or a surface passes through its
-  /// voxel
+  /// the bounds hold more than 2^31 voxels, the start is outside, or a surface passes through its voxel
   GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start);
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }

@@ -60,8 +60,7 @@ class SimulatedRobots {
   /// The errors of its scan depend on the seed, the robot and the number of its scans before, and on nothing
   /// else.
   /// @return the scan from there; nothing if its bumper stopped it
-  /// @throws std::invalid_argument if there is no such robot, or the viewpoint is not finite or outside the
-  /// lattice's keys
+  /// @throws std::invalid_argument if there is no such robot, or a viewpoint is not finite or beyond the keys
   std::optional<planner::Scan> drive(std::size_t robot, const planner::Pose& viewpoint);
 
   /// Of all robots since they appeared.

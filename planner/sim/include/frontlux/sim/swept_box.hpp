@@ -6,14 +6,12 @@
 #include <Eigen/Geometry>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace frontlux::sim {
 
-/// The space that an axis-aligned box passes through on a straight motion. It is compared at once and not
-/// step by step.
+/// The space that an axis-aligned box passes through on a straight motion, compared at once, not in steps.
 class SweptBox {
  public:
   /// @param start the box where the motion begins, not empty
@@ -23,8 +21,7 @@ class SweptBox {
   /// The smallest axis-aligned box around.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 
-  /// Whether it has a point in common with a triangle, borders included: exact but for the rounding of
-  /// double.
+  /// Whether it has a point in common with a triangle, borders included: exact but for rounding.
   [[nodiscard]] bool touches(const std::array<Eigen::Vector3d, 3>& triangle) const;
 
  private:
