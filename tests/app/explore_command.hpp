@@ -5,19 +5,10 @@
 
 #include <frontlux/planner/recording.hpp>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <filesystem>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <unistd.h>
-#include <vector>
 
 namespace frontlux::test {
 
@@ -27,12 +18,7 @@ inline constexpr const char* kSteps = "4";
 
 inline std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
-  for (const char c : line) {
-    if (c == ',')
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  }
+  for (const char c : line) c == ',' ? cells.emplace_back() : cells.back() += c;
   return cells;
 }
 
@@ -60,21 +46,14 @@ class ExploreCommand : public CommandTest {
   ExploreCommand() : CommandTest("explore") {}
 
   /// The room in four steps.
-  [[nodiscard]] Answer explore(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"room", "--max-steps", kSteps, "-o", path(output)});
-    return run(more);
+  [[nodiscard]] Answer explore(const std::string& output) const {
+    return run({"room", "--max-steps", kSteps, "-o", path(output)});
   }
-  void expect_explored(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.end(), {"--report", "off"});
-    const Answer answer = explore(output, more);
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");
+  void expect_explored(const std::string& output, const std::vector<std::string>& more = {}) const {
+    expect_answer(joined({"room", "--max-steps", kSteps, "-o", path(output), "--report", "off"}, more));
   }
-  void expect_resumed(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"--report", "off", "--resume", path(output)});
-    const Answer answer = run(more);
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");
+  void expect_resumed(const std::string& output, const std::vector<std::string>& more = {}) const {
+    expect_answer(joined({"--report", "off", "--resume", path(output)}, more));
   }
 
   [[nodiscard]] nlohmann::json json_in(const std::string& output) const {
@@ -106,29 +85,12 @@ class ExploreCommand : public CommandTest {
 
   /// Starts the command and waits until it has printed so many steps.
   [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps) const {
-    std::vector<std::string> all = {FRONTLUX_COMMAND, "explore"};
-    all.insert(all.end(), words.begin(), words.end());
     fs::remove(path("out"));
-    const pid_t child = fork();
-    if (child == 0) {
-      std::signal(SIGINT, SIG_DFL);
-      static_cast<void>(std::freopen(path("out").c_str(), "w", stdout));
-      static_cast<void>(std::freopen(path("err").c_str(), "w", stderr));
-      std::vector<char*> argv;
-      for (std::string& word : all) argv.push_back(word.data());
-      argv.push_back(nullptr);
-      execv(FRONTLUX_COMMAND, argv.data());
-      _exit(127);
-    }
+    const pid_t child = start(joined({FRONTLUX_COMMAND, "explore"}, words), folder_);
     const std::string last = "step " + std::to_string(steps) + ":";
     for (int i = 0; i < 6000 && content_of(path("out")).find(last) == std::string::npos; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return child;
-  }
-  static int status_of(pid_t child) {
-    int status = 0;
-    EXPECT_EQ(waitpid(child, &status, 0), child);
-    return status;
   }
 };
 

@@ -2,27 +2,22 @@
 
 #include "app/explore_command.hpp"
 
+#include "support/test.hpp"
+
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/planner/recording.hpp>
 
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <string>
 #include <unistd.h>
 #include <variant>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using test::Answer;
 using test::content_of;
 using test::ExploreCommand;
 using test::table_of;
@@ -38,8 +33,9 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   const auto rows = table_of(path("run/steps.csv"));
   ASSERT_EQ(rows.size(), 1 + 2 * recording.steps.size());
   const auto& header = rows.front();
+  const std::string csv = content_of(path("run/steps.csv"));
   EXPECT_EQ(
-      content_of(path("run/steps.csv")).substr(0, content_of(path("run/steps.csv")).find('\n')),
+      csv.substr(0, csv.find('\n')),
       "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
       "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
       "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
@@ -137,15 +133,13 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   const std::string out = content_of(path("out"));
   for (int step = 0; step <= 4; ++step)
     EXPECT_NE(out.find("step " + std::to_string(step) + ": "), std::string::npos) << out;
-  for (const char* part : {"\nend          step_limit", "\nsteps        4\n", "\ncollisions   0\n"})
-    EXPECT_NE(out.find(part), std::string::npos) << part << " in " << out;
+  test::expect_parts(out, {"\nend          step_limit", "\nsteps        4\n", "\ncollisions   0\n"});
 }
 
 TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   const std::string output = path("new");
-  const auto with = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"room", "-o", output});
-    return words;
+  const auto with = [&](const std::vector<std::string>& words) {
+    return test::joined({"room", "-o", output}, words);
   };
   expect_refused({"castle", "-o", output}, {"castle"});
   expect_refused({path("none.ply"), "-o", output}, {"none.ply"});
@@ -154,8 +148,8 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   for (const char* team : {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv"})
     expect_refused(with({"--team", team}), {"--team"});
   expect_refused(with({"--robot", path("none.json")}), {"none.json"});
-  std::ofstream(path("bad.json")) << R"({"name": "cart", "motion": "sideways"})";
-  expect_refused(with({"--robot", path("bad.json")}), {"bad.json", "motion"});
+  expect_refused(with({"--robot", write("bad.json", R"({"name": "cart", "motion": "sideways"})")}),
+                 {"bad.json", "motion"});
   for (const char* pose : {"ugv", "car=1,1,1,0", "ugv=1,1,0.75", "ugv=1,1,0.75,0,0", "ugv=1,1,x,0",
                            "ugv=nan,1,1,0", "ugv=-5,-5,0.75,0", "uav=1e300,1,1,0", "=1,1,1,0", ""})
     expect_refused(with({"--pose", pose}), {"--pose"});
@@ -186,9 +180,9 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
 
 TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   fs::create_directory(path("kept"));
-  std::ofstream(path("kept/notes.txt")) << "mine";
+  write("kept/notes.txt", "mine");
   expect_refused({"room", "-o", path("kept")}, {"--output", "is not empty", "--force"});
-  std::ofstream(path("file")) << "mine";
+  write("file", "mine");
   expect_refused({"room", "-o", path("file")}, {"--output", "is a file"});
   expect_refused({"room", "-o", path("file/run")}, {"--output"});
   expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be created"});
@@ -200,16 +194,20 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   EXPECT_EQ(content_of(path("kept/notes.txt")), "mine");
   const std::string bytes = content_of(path("kept/run.frontlux"));
 
-  expect_refused({"--resume", path("kept"), "-o", path("new")}, {"--resume", "-o"});
-  expect_refused({"--resume", path("kept"), "--force"}, {"--resume", "--force"});
-  expect_refused({"--resume", path("kept"), "--team", "uav"}, {"--resume", "--team"});
-  expect_refused({"--resume", path("kept"), "--seed", "1"}, {"--resume", "--seed"});
-  expect_refused({"--resume", path("kept"), "room"}, {"--resume", "WORLD"});
-  expect_refused({"--resume", path("kept"), "--max-steps", "x"}, {"--max-steps"});
+  const auto refuse_to_resume = [&](const std::vector<std::string>& more,
+                                    const std::vector<std::string>& parts) {
+    expect_refused(test::joined({"--resume", path("kept")}, more), parts);
+  };
+  refuse_to_resume({"-o", path("new")}, {"--resume", "-o"});
+  refuse_to_resume({"--force"}, {"--resume", "--force"});
+  refuse_to_resume({"--team", "uav"}, {"--resume", "--team"});
+  refuse_to_resume({"--seed", "1"}, {"--resume", "--seed"});
+  refuse_to_resume({"room"}, {"--resume", "WORLD"});
+  refuse_to_resume({"--max-steps", "x"}, {"--max-steps"});
 
   const auto expect_refused_recording = [&](const std::string& content, const std::string& part) {
-    std::ofstream(path("kept/run.frontlux"), std::ios::binary) << content;
-    expect_refused({"--resume", path("kept")}, {"--resume", "run.frontlux", part});
+    write("kept/run.frontlux", content);
+    refuse_to_resume({}, {"--resume", "run.frontlux", part});
   };
   const std::size_t version = bytes.find('\n') - 1;
   std::string newer = bytes;
@@ -241,12 +239,11 @@ TEST_F(ExploreCommand, RefusesAFolderThatMayNotBeWritten) {
             static_cast<char*>(nullptr));
       _exit(77);
     }
-    const int status = status_of(child);
+    const int status = test::status_of(child);
     ASSERT_TRUE(WIFEXITED(status));
     if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "cannot be another user here";
     EXPECT_EQ(WEXITSTATUS(status), 2);
-    EXPECT_NE(content_of(path("open/err")).find("--output: " + path(name)), std::string::npos)
-        << content_of(path("open/err"));
+    test::expect_parts(content_of(path("open/err")), {"--output: " + path(name)});
     EXPECT_TRUE(fs::is_empty(path("locked")));
   }
 }

@@ -2,20 +2,12 @@
 // every kind of end.
 
 #include "app/explore_command.hpp"
+#include "support/test.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
-#include <sys/wait.h>
-
 #include <csignal>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
@@ -57,7 +49,7 @@ TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
     SCOPED_TRACE("after " + std::to_string(cut) + " of " + std::to_string(bytes.size()) + " bytes");
     fs::remove_all(path("cut"));
     fs::create_directory(path("cut"));
-    std::ofstream(path("cut/run.frontlux"), std::ios::binary) << bytes.substr(0, cut);
+    write("cut/run.frontlux", bytes.substr(0, cut));
     expect_resumed("cut");
     expect_same_runs("whole", "cut");
   }
@@ -83,11 +75,9 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
   sim::write_ply(path("poles.ply"), with_unseen_poles(room.mesh, *room.start));
   std::ostringstream at;
   at << room.start->x() << ',' << room.start->y() << ',' << room.start->z();
-  for (const auto& [output, steps] : {std::pair("whole", "4"), std::pair("cut", "2")}) {
-    const Answer answer = run({path("poles.ply"), "--start", at.str(), "--ground", "off", "--max-steps",
-                               steps, "--report", "off", "-o", path(output)});
-    ASSERT_EQ(answer.code, 0) << answer.err;
-  }
+  for (const auto& [output, steps] : {std::pair("whole", "4"), std::pair("cut", "2")})
+    expect_answer({path("poles.ply"), "--start", at.str(), "--ground", "off", "--max-steps", steps,
+                   "--report", "off", "-o", path(output)});
   const std::uint64_t before = json_in("cut").at("held_back");
   EXPECT_GT(before, 0U);
   EXPECT_GT(json_in("whole").at("held_back"), before);
@@ -97,18 +87,15 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
 
 // A world that is large enough to be caught in the middle of.
 TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
-  const std::vector<std::string> words = {"storage", "--max-steps", "6", "--report", "off", "-o"};
   const auto to = [&](const std::string& output) {
-    auto all = words;
-    all.push_back(path(output));
-    return all;
+    return std::vector<std::string>{"storage", "--max-steps", "6", "--report", "off", "-o", path(output)};
   };
   ASSERT_EQ(run(to("whole")).code, 0);
 
   pid_t child = start_and_wait(to("killed"), 2);
   ASSERT_GT(child, 0);
   kill(child, SIGKILL);
-  int status = status_of(child);
+  int status = test::status_of(child);
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status << content_of(path("err"));
   EXPECT_FALSE(fs::exists(path("killed/run.json")));
   const std::size_t recorded = read_recording(path("killed/run.frontlux")).steps.size();
@@ -120,13 +107,10 @@ TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
   child = start_and_wait(to("stopped"), 1);
   ASSERT_GT(child, 0);
   kill(child, SIGINT);
-  status = status_of(child);
-  ASSERT_TRUE(WIFEXITED(status)) << status;
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_NE(
-      content_of(path("err")).find("frontlux explore --resume " + path("stopped") + " continues the run"),
-      std::string::npos)
-      << content_of(path("err"));
+  status = test::status_of(child);
+  EXPECT_EQ(test::exit_code(status), 130) << status;
+  test::expect_parts(content_of(path("err")),
+                     {"frontlux explore --resume " + path("stopped") + " continues the run"});
   const nlohmann::json json = json_in("stopped");
   EXPECT_EQ(json.at("end"), "stopped");
   EXPECT_GE(json.at("steps"), 1);
@@ -146,9 +130,8 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
     fs::remove_all(path("full"));
     const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);
     EXPECT_EQ(answer.code, 2) << answer.err;
-    for (const std::string& words : {path("full/run.frontlux") + ": cannot be written",
-                                     "frontlux explore --resume " + path("full") + " continues the run"})
-      EXPECT_NE(answer.err.find(words), std::string::npos) << words << " in " << answer.err;
+    test::expect_parts(answer.err, {path("full/run.frontlux") + ": cannot be written",
+                                    "frontlux explore --resume " + path("full") + " continues the run"});
     const std::size_t kept = read_recording(path("full/run.frontlux")).steps.size();
     EXPECT_GE(kept, 1U);
     EXPECT_LT(kept, 5U);
@@ -161,9 +144,7 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
     fs::create_symlink("/dev/full", path("whole") + "/" + table);
     const Answer answer = run({"--resume", path("whole")});
     EXPECT_EQ(answer.code, 2) << answer.err;
-    EXPECT_NE(answer.err.find(std::string(table) + ": cannot be written: No space left on device"),
-              std::string::npos)
-        << answer.err;
+    test::expect_parts(answer.err, {std::string(table) + ": cannot be written: No space left on device"});
     fs::remove(path("whole") + "/" + table);
   }
   expect_resumed("whole");
@@ -179,9 +160,8 @@ TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
   const Eigen::Vector3d start = *sim::make_world("room", 1).start;
   std::ostringstream at;
   at << start.x() << ',' << start.y() << ',' << start.z();
-  const Answer answer =
-      run({path("room.ply"), "--start", at.str(), "--ground", "off", "--max-steps", "1", "-o", path("run")});
-  ASSERT_EQ(answer.code, 0) << answer.err;
+  expect_answer(
+      {path("room.ply"), "--start", at.str(), "--ground", "off", "--max-steps", "1", "-o", path("run")});
   ASSERT_EQ(world("2").code, 0);
   expect_refused({"--resume", path("run"), "--max-steps", "2"},
                  {"--resume: ", "is not what room.ply is now"});

@@ -1,35 +1,25 @@
 #include "support/command_test.hpp"
+#include "support/quiet_octomap.hpp"
+#include "support/tree_state.hpp"
+#include "support/voxel_keys.hpp"
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <octomap/ColorOcTree.h>
-#include <octomap/OcTree.h>
 
-#include <array>
 #include <chrono>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
 #include <random>
-#include <sstream>
-#include <string>
-#include <unistd.h>
-#include <vector>
 
 namespace {
 
 using frontlux::test::Answer;
+using frontlux::test::full_record;
+using frontlux::test::joined;
 using Json = nlohmann::ordered_json;
 
 constexpr double kResolution = 0.1;
-constexpr int kOrigin = 32768;
 constexpr std::array kCasters = {"fast", "embree", "grid", "octomap"};
 
 octomap::OcTreeKey key(int x, int y, int z) {
-  const auto along = [](int i) { return static_cast<octomap::key_type>(kOrigin + i); };
-  return {along(x), along(y), along(z)};
+  return frontlux::test::tree_key(frontlux::test::key_at(x, y, z));
 }
 
 // A room of free voxels with a wall at x = 4 that has a hole, and noise around it.
@@ -58,9 +48,7 @@ class InfoCastCommand : public frontlux::test::CommandTest {
   }
 
   [[nodiscard]] std::vector<std::string> cast(const std::vector<std::string>& words) const {
-    std::vector<std::string> all = {"cast", path("map.bt")};
-    all.insert(all.end(), words.begin(), words.end());
-    return all;
+    return joined({"cast", path("map.bt")}, words);
   }
 
   /// With --json the command prints one line.
@@ -80,40 +68,32 @@ class InfoCastCommand : public frontlux::test::CommandTest {
 // What `frontlux info --json` says, voxel by voxel.
 template <class Tree>
 Json expected_info(const Tree& tree) {
-  enum { kUnknown, kFree, kOccupied };
-  const auto state = [&](int x, int y, int z) {
-    const auto* node = tree.search(key(x, y, z));
-    return node == nullptr ? kUnknown : tree.isNodeOccupied(node) ? kOccupied : kFree;
-  };
-  constexpr int kFar = 40;
-  std::array<int, 3> min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};
+  using frontlux::Occupancy, frontlux::VoxelKey, frontlux::test::key_at;
+  const auto state = [&](const VoxelKey& voxel) { return frontlux::test::state_of(tree, voxel); };
+  const frontlux::KeyBox searched{key_at(-40, -40, -40), key_at(40, 40, 40)};
+  frontlux::KeyBox bounds{searched.max, searched.min};
+  for_each_key(searched, [&](const VoxelKey& voxel) {
+    if (state(voxel) != Occupancy::kUnknown) bounds = hull(bounds, {voxel, voxel});
+  });
   std::array<int, 3> count{};
-  for (int x = -kFar; x <= kFar; ++x)
-    for (int y = -kFar; y <= kFar; ++y)
-      for (int z = -kFar; z <= kFar; ++z) {
-        if (state(x, y, z) == kUnknown) continue;
-        min = {std::min(min[0], x), std::min(min[1], y), std::min(min[2], z)};
-        max = {std::max(max[0], x), std::max(max[1], y), std::max(max[2], z)};
-      }
   int frontiers = 0;
-  for (int x = min[0]; x <= max[0]; ++x)
-    for (int y = min[1]; y <= max[1]; ++y)
-      for (int z = min[2]; z <= max[2]; ++z) {
-        ++count[static_cast<std::size_t>(state(x, y, z))];
-        if (state(x, y, z) == kUnknown &&
-            (state(x - 1, y, z) == kFree || state(x + 1, y, z) == kFree || state(x, y - 1, z) == kFree ||
-             state(x, y + 1, z) == kFree || state(x, y, z - 1) == kFree || state(x, y, z + 1) == kFree))
-          ++frontiers;
+  for_each_key(bounds, [&](const VoxelKey& voxel) {
+    ++count[static_cast<std::size_t>(state(voxel))];
+    if (state(voxel) != Occupancy::kUnknown) return;
+    for (const auto& [x, y, z] :
+         {std::array{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
+      if (state(*offset_key(voxel, x, y, z)) == Occupancy::kFree) {
+        ++frontiers;
+        return;
       }
-  const auto triple = [](const std::array<int, 3>& k) {
-    return Json{k[0] + kOrigin, k[1] + kOrigin, k[2] + kOrigin};
-  };
+  });
+  const auto triple = [](const VoxelKey& voxel) { return Json{voxel.x, voxel.y, voxel.z}; };
   const std::size_t leaves = tree.getNumLeafNodes();
   return {{"/tree", tree.getTreeType()},
           {"/resolution_m", 0.1},
-          {"/bounds/min_key", triple(min)},
-          {"/bounds/max_key", triple(max)},
-          {"/voxels", {{"occupied", count[kOccupied]}, {"free", count[kFree]}, {"unknown", count[kUnknown]}}},
+          {"/bounds/min_key", triple(bounds.min)},
+          {"/bounds/max_key", triple(bounds.max)},
+          {"/voxels", {{"occupied", count[2]}, {"free", count[1]}, {"unknown", count[0]}}},
           {"/frontiers", frontiers},
           {"/leaves", leaves},
           {"/inner_nodes", tree.size() - leaves},
@@ -134,29 +114,27 @@ TEST_F(InfoCastCommand, InfoCountsEveryVoxel) {
 TEST_F(InfoCastCommand, InfoCountsFrontiersBesideLargeBlocks) {
   // Free blocks of 16 and 64 voxels, some next to each other, beside single voxels and what is unknown.
   octomap::OcTree tree(kResolution);
-  const auto fill = [&](int x, int y, int z, int edge, float log_odds) {
-    for (int i = 0; i < edge; ++i)
-      for (int j = 0; j < edge; ++j)
-        for (int k = 0; k < edge; ++k) tree.setNodeValue(key(x + i, y + j, z + k), log_odds, true);
+  const auto fill = [](octomap::OcTree& into, int x, int y, int z, int edge, float log_odds) {
+    for_each_key(cube(frontlux::test::key_at(x, y, z), edge), [&](const frontlux::VoxelKey& voxel) {
+      into.setNodeValue(frontlux::test::tree_key(voxel), log_odds, true);
+    });
   };
-  fill(-16, -16, 0, 16, -2.F);
-  fill(0, -16, 0, 16, -2.F);
-  fill(0, 0, 0, 16, -2.F);
-  fill(-16, 0, -16, 8, 2.F);
-  fill(-8, 0, -16, 8, -2.F);
-  fill(20, 20, -20, 2, -2.F);
-  fill(-30, -30, -30, 1, 2.F);
+  fill(tree, -16, -16, 0, 16, -2.F);
+  fill(tree, 0, -16, 0, 16, -2.F);
+  fill(tree, 0, 0, 0, 16, -2.F);
+  fill(tree, -16, 0, -16, 8, 2.F);
+  fill(tree, -8, 0, -16, 8, -2.F);
+  fill(tree, 20, 20, -20, 2, -2.F);
+  fill(tree, -30, -30, -30, 1, 2.F);
   tree.updateInnerOccupancy();
   tree.prune();
   ASSERT_TRUE(tree.write(path("blocks.ot")));
   expect_json({"info", path("blocks.ot")}, expected_info(tree));
 
   octomap::OcTree cube(1.0);
-  for (int x = 0; x < 64; ++x)
-    for (int y = 0; y < 64; ++y)
-      for (int z = 0; z < 64; ++z) cube.setNodeValue(key(x, y, z), -2.F, true);
-  cube.setNodeValue(key(-2, -2, -2), 2.F, true);
-  cube.setNodeValue(key(70, 70, 70), 2.F, true);
+  fill(cube, 0, 0, 0, 64, -2.F);
+  fill(cube, -2, -2, -2, 1, 2.F);
+  fill(cube, 70, 70, 70, 1, 2.F);
   cube.updateInnerOccupancy();
   cube.prune();
   ASSERT_TRUE(cube.write(path("cube.ot")));
@@ -169,12 +147,6 @@ TEST_F(InfoCastCommand, InfoIsReadable) {
                  " m, keys ", "voxels", "frontiers", "leaves", "inner nodes", "memory       tree "});
 }
 
-std::string full_record(float log_odds, int child_mask) {
-  std::string record(4, '\0');
-  std::memcpy(record.data(), &log_odds, 4);
-  return record + static_cast<char>(child_mask);
-}
-
 TEST_F(InfoCastCommand, InfoKnowsMapsWithoutVoxelsAndMapsWithAllOfThem) {
   octomap::OcTree empty(0.5);
   ASSERT_TRUE(empty.write(path("empty.ot")));
@@ -182,7 +154,7 @@ TEST_F(InfoCastCommand, InfoKnowsMapsWithoutVoxelsAndMapsWithAllOfThem) {
   expect_json({"info", path("empty.ot")}, {{"/bounds", nullptr}, {"/frontiers", 0}});
 
   const std::string header = "# Octomap OcTree file\nid OcTree\nsize 1\nres 0.1\ndata\n";
-  std::ofstream(path("all.ot"), std::ios::binary) << header << full_record(-1.F, 0);
+  write("all.ot", header + full_record(-1.F, 0));
   expect_json({"info", path("all.ot")},
               {{"/voxels/free", 281474976710656}, {"/voxels/unknown", 0}, {"/frontiers", 0}});
 }
@@ -191,8 +163,7 @@ TEST_F(InfoCastCommand, InfoStaysQuickOnHugeBlocks) {
   // Four free eighths of the world that touch at edges only: 12 faces of 16.8 million bricks each.
   const std::string header = "# Octomap OcTree file\nid OcTree\nsize 5\nres 0.1\ndata\n";
   const std::string leaf = full_record(-1.F, 0);
-  std::ofstream(path("huge.ot"), std::ios::binary)
-      << header << full_record(-1.F, 0x69) << leaf << leaf << leaf << leaf;
+  write("huge.ot", header + full_record(-1.F, 0x69) + leaf + leaf + leaf + leaf);
   const auto begin = std::chrono::steady_clock::now();
   expect_json({"info", path("huge.ot")}, {{"/voxels/free", 140737488355328},
                                           {"/voxels/unknown", 140737488355328},
@@ -207,9 +178,8 @@ TEST_F(InfoCastCommand, InfoStaysQuickOnHugeBlocks) {
 TEST_F(InfoCastCommand, CastSeesTheWall) {
   for (const std::string caster : kCasters) {
     SCOPED_TRACE(caster);
-    const auto with = [&](std::vector<std::string> words) {
-      words.insert(words.end(), {"--caster", caster});
-      return cast(words);
+    const auto with = [&](const std::vector<std::string>& words) {
+      return cast(joined(words, {"--caster", caster}));
     };
     expect_answer(with({"--from", "0.05,0.05,0.55", "--direction", "2,0,0"}),
                   {"hit an occupied voxel", "key 32772, 32768, 32773, occupied", "0.45, 0.05, 0.55 m"});
@@ -242,10 +212,8 @@ TEST_F(InfoCastCommand, CastCountsWhatItCrosses) {
   for (const std::string caster : kCasters) {
     SCOPED_TRACE(caster);
     const auto count = [&](const std::vector<std::string>& words) {
-      std::vector<std::string> all = {"cast",    path("beam.ot"), "--from", "0.05,0.05,0.05",
-                                      "--count", "--caster",      caster};
-      all.insert(all.end(), words.begin(), words.end());
-      return all;
+      return joined({"cast", path("beam.ot"), "--from", "0.05,0.05,0.05", "--count", "--caster", caster},
+                    words);
     };
     expect_answer(count({"--unknown", "pass", "--direction", "1,0,0"}),
                   {"crossed      3 unknown, 3 free, 0 occupied voxels (before this one)\n"});

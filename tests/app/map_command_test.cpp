@@ -6,21 +6,13 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 
-#include <gtest/gtest.h>
 #include <octomap/ScanGraph.h>
 
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <sstream>
-#include <string>
 #include <variant>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
-using test::Answer;
 using test::content_of;
 
 using octomap::OcTree;
@@ -65,11 +57,8 @@ std::shared_ptr<OcTree> tree_in(const std::string& file) {
 }
 
 TEST_F(MapCommandTest, MapsAGraphAsOctomapDoes) {
-  const Answer answer =
-      run({path("scans.graph"), "-o", path("map.ot"), "--resolution", "0.2", "--max-range", "3.5"});
-  ASSERT_EQ(answer.code, 0) << answer.err;
-  EXPECT_EQ(answer.err, "");
-  EXPECT_NE(answer.out.find("scans        3\npoints       900\n"), std::string::npos) << answer.out;
+  expect_answer({path("scans.graph"), "-o", path("map.ot"), "--resolution", "0.2", "--max-range", "3.5"},
+                {"scans        3\npoints       900\n"});
   OcTree expected(0.2);
   for (const auto& scan : io::read_scan_graph(path("scans.graph"))) {
     octomap::Pointcloud cloud;
@@ -81,9 +70,8 @@ TEST_F(MapCommandTest, MapsAGraphAsOctomapDoes) {
 }
 
 TEST_F(MapCommandTest, AFolderGivesTheMapOfTheGraph) {
-  ASSERT_EQ(run({path("scans.graph"), "-o", path("graph.ot"), "--bounds", "-2,-2,0,3,2,2.5"}).code, 0);
-  const Answer answer = run({path("clouds"), "-o", path("folder.ot"), "--bounds=-2,-2,0,3,2,2.5"});
-  ASSERT_EQ(answer.code, 0) << answer.err;
+  expect_answer({path("scans.graph"), "-o", path("graph.ot"), "--bounds", "-2,-2,0,3,2,2.5"});
+  expect_answer({path("clouds"), "-o", path("folder.ot"), "--bounds=-2,-2,0,3,2,2.5"});
   EXPECT_EQ(content_of(path("folder.ot")), content_of(path("graph.ot")));
   const auto known = make_voxel_grid(*tree_in(path("folder.ot"))).known_bounds();
   ASSERT_TRUE(known.has_value());
@@ -91,7 +79,7 @@ TEST_F(MapCommandTest, AFolderGivesTheMapOfTheGraph) {
   EXPECT_TRUE(bounds.contains(known->min) && bounds.contains(known->max));
 
   std::filesystem::rename(path("clouds/poses.csv"), path("elsewhere.csv"));
-  ASSERT_EQ(run({path("clouds"), "--poses", path("elsewhere.csv"), "-o", path("folder.bt")}).code, 0);
+  expect_answer({path("clouds"), "--poses", path("elsewhere.csv"), "-o", path("folder.bt")});
   EXPECT_GT(tree_in(path("folder.bt"))->size(), 100U);
 }
 
@@ -112,10 +100,8 @@ TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
                  "make no voxel within the bounds known");
   expect_refused({graph, "-o", map, "--poses", path("clouds/poses.csv")}, "has its own poses");
   const auto with_poses = [&](const std::string& table) {
-    std::ofstream(path("bad.csv")) << table;
-    return std::vector<std::string>{path("clouds"), "-o", map, "--poses", path("bad.csv")};
+    return std::vector<std::string>{path("clouds"), "-o", map, "--poses", write("bad.csv", table)};
   };
-  static_cast<void>(with_poses(""));
   expect_refused(with_poses("a.pcd,0,0,0,0\nb.ply,0,zero,0,0\n"),
                  path("bad.csv") + ": line 2: 'zero' is no finite number");
   expect_refused(with_poses("a.pcd,0,0,0,0\nd.ply,0,0,0,0\n"), "d.ply: there is no such file");

@@ -3,19 +3,9 @@
 #include "planner/goal/goal_room.hpp"
 #include "support/command_test.hpp"
 #include "support/quiet_octomap.hpp"
+#include "support/tree_state.hpp"
 
-#include <frontlux/octomap.hpp>
-
-#include <gtest/gtest.h>
 #include <octomap/OcTree.h>
-
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 namespace frontlux::test {
 namespace {
@@ -25,23 +15,18 @@ class RenderCommand : public CommandTest {
   RenderCommand() : CommandTest("render"), room_(34, 8, 5) {
     room_.clear(17, 17, 2, 3);
     octomap::OcTree tree(0.3);
-    for (int x = 0; x < room_.length; ++x)
-      for (int y = 0; y < room_.length; ++y)
-        for (int z = -1; z < room_.height; ++z) {
-          const VoxelKey key = room_.key(x, y, z);
-          const Occupancy state = room_.grid.at(key);
-          if (state != Occupancy::kUnknown)
-            tree.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), state == Occupancy::kOccupied);
-        }
+    for_each_key(room_.bounds(), [&](const VoxelKey& key) {
+      const Occupancy state = room_.grid.at(key);
+      if (state != Occupancy::kUnknown) tree.updateNode(tree_key(key), state == Occupancy::kOccupied);
+    });
     std::ofstream map(path("room.bt"), std::ios::binary);
     tree.writeBinary(map);
   }
 
-  [[nodiscard]] Answer render(const std::string& robot, const std::string& at, const std::string& output,
-                              const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {path("room.bt"), "--robot", robot, "--at", at, "-o", path(output)};
-    words.insert(words.end(), more.begin(), more.end());
-    return run(words);
+  [[nodiscard]] std::vector<std::string> words(const std::string& robot, const std::string& at,
+                                               const std::string& output,
+                                               const std::vector<std::string>& more = {}) const {
+    return joined({path("room.bt"), "--robot", robot, "--at", at, "-o", path(output)}, more);
   }
 
   GoalRoom room_;
@@ -78,17 +63,13 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
 
   std::string first;
   for (const char* used : {"grid", "embree", "fast"}) {
-    const Answer answer =
-        render("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"});
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");
+    const std::string out = expect_answer(
+        words("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"}));
     const std::string csv = content_of(path("room.csv"));
     if (first.empty()) first = csv;
     EXPECT_EQ(csv, first);
-    EXPECT_NE(answer.out.find(std::to_string(frontiers.size()) + ", " + std::to_string(assigned.size()) +
-                              " of them assigned to the ugv"),
-              std::string::npos)
-        << answer.out;
+    expect_parts(out, {std::to_string(frontiers.size()) + ", " + std::to_string(assigned.size()) +
+                       " of them assigned to the ugv"});
   }
   const auto rows = table_of(first);
   ASSERT_EQ(rows.size(), corridor.cells().size());
@@ -112,28 +93,15 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
   EXPECT_GT(most, 5.0);
 }
 
-std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
-  std::uint32_t word = 0;
-  for (std::size_t i = 0; i < 4; ++i) word = word << 8 | static_cast<unsigned char>(bytes.at(at + i));
-  return word;
-}
-
 TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
   for (const std::string mode : {"default", "paper"})
     for (const std::string robot : {"ugv", "uav"}) {
       const std::string at = robot == "ugv" ? kStart : "5.25,5.25,1.35";
       std::string first;
       for (int i = 0; i < 2; ++i) {
-        const Answer answer = render(robot, at, "room.png", {"--mode", mode});
-        ASSERT_EQ(answer.code, 0) << robot << " " << mode << answer.err;
-        EXPECT_NE(answer.out.find("goal         "), std::string::npos);
+        expect_answer(words(robot, at, "room.png", {"--mode", mode}), {"goal         "});
         const std::string png = content_of(path("room.png"));
-        ASSERT_GT(png.size(), 100U);
-        EXPECT_EQ(png.substr(0, 8), std::string("\x89PNG\r\n\x1a\n"));
-        EXPECT_EQ(png.substr(12, 4), "IHDR");
-        EXPECT_GE(big_endian(png, 16), 900U);
-        EXPECT_GE(big_endian(png, 20), 600U);
-        EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+        expect_png(png, 900, 600);
         if (i == 0) first = png;
         EXPECT_EQ(png, first);
       }
@@ -141,11 +109,10 @@ TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
 }
 
 TEST_F(RenderCommand, PointsHoldAllCells) {
-  ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.csv").code, 0);
-  ASSERT_EQ(render("uav", "5.25,5.25,1.35", "room.ply").code, 0);
+  for (const char* file : {"room.csv", "room.ply"}) expect_answer(words("uav", "5.25,5.25,1.35", file));
   const auto rows = table_of(content_of(path("room.csv")));
   const std::string ply = content_of(path("room.ply"));
-  EXPECT_NE(ply.find("element vertex " + std::to_string(rows.size()) + "\n"), std::string::npos);
+  expect_parts(ply, {"element vertex " + std::to_string(rows.size()) + "\n"});
   const std::size_t body = ply.find("end_header\n") + 11;
   constexpr std::size_t kRow = 8 * 4 + 4 + 3;
   ASSERT_EQ(ply.size() - body, rows.size() * kRow);
@@ -162,20 +129,15 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   const std::string map = path("room.bt"), out = path("x.png");
   const auto refuse = [&](const std::string& robot, const std::string& at,
                           const std::vector<std::string>& more, const std::vector<std::string>& parts) {
-    std::vector<std::string> words = {map, "--robot", robot, "--at", at, "-o", out};
-    words.insert(words.end(), more.begin(), more.end());
-    expect_refused(words, parts);
+    expect_refused(words(robot, at, "x.png", more), parts);
   };
   refuse("ugv", "nan,0,0", {}, {"--at: 'nan,0,0' is not three finite numbers"});
   refuse("ugv", "1,2", {}, {"--at: '1,2' is not three finite numbers"});
   refuse("ugv", "1e9,0,0", {}, {"--at: 1e+09, 0, 0", "key range"});
   refuse("boat", kStart, {}, {"--robot: 'boat' is none of ugv, uav"});
-  expect_refused({map, "--robot", "ugv", "--at", kStart, "-o", path("x.jpg")},
-                 {"--output", "x.jpg does not end in .png or .ply or .csv"});
-  expect_refused({map, "--robot", "ugv", "--at", kStart, "-o", path("no/x.png")},
-                 {"--output", "there is no folder"});
-  expect_refused({map, "--robot", "ugv", "--at", kStart, "-o", path("x.csv"), "--show", "layer"},
-                 {"--show: "});
+  expect_refused(words("ugv", kStart, "x.jpg"), {"--output", "x.jpg does not end in .png or .ply or .csv"});
+  expect_refused(words("ugv", kStart, "no/x.png"), {"--output", "there is no folder"});
+  expect_refused(words("ugv", kStart, "x.csv", {"--show", "layer"}), {"--show: "});
   for (const std::string samples : {"0", "x", "1.5", ""})
     refuse("ugv", kStart, {"--samples", samples}, {"--samples: '" + samples + "' is not", ", or all"});
   refuse("ugv", kStart, {"--seed", "-1"}, {"--seed", "'-1'"});
@@ -190,12 +152,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   for (const std::string& file : {path("none.bt"), write("broken.bt", "# Octomap OcTree binary file\n")})
     expect_refused({file, "--robot", "ugv", "--at", kStart, "-o", out}, {file});
   octomap::OcTree full(0.3);
-  for (int x = 0; x < 8; ++x)
-    for (int y = 0; y < 8; ++y)
-      for (int z = -1; z < 6; ++z) {
-        const VoxelKey key = room_.key(x, y, z);
-        full.updateNode(octomap::OcTreeKey(key.x, key.y, key.z), z < 0);
-      }
+  for_each_key({room_.key(0, 0, -1), room_.key(7, 7, 5)},
+               [&](const VoxelKey& key) { full.updateNode(tree_key(key), key.z < Lattice::kOrigin); });
   {
     std::ofstream stream(path("full.bt"), std::ios::binary);
     full.writeBinary(stream);

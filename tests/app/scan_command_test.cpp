@@ -4,22 +4,11 @@
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
-#include <gtest/gtest.h>
 #include <octomap/OcTree.h>
-#include <sys/wait.h>
-
-#include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <string>
-#include <unistd.h>
-#include <utility>
-#include <vector>
 
 namespace frontlux::sim {
 namespace {
 
-using test::Answer;
 using test::content_of;
 
 class ScanCommand : public test::CommandTest {
@@ -29,23 +18,17 @@ class ScanCommand : public test::CommandTest {
 };
 
 TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
-  const std::vector<std::string> words = {"room", "--sweep",   "5",   "--noise",
-                                          "0.01", "--dropout", "0.1", "-o"};
-  auto first = words, second = words;
-  first.push_back(map("a.ot"));
-  second.push_back(map("b.ot"));
-  const Answer answer = run(first);
-  EXPECT_EQ(answer.code, 0) << answer.err;
-  EXPECT_EQ(answer.err, "");
-  for (const char* part :
-       {"world        room\n", "scans        ", "free         ", "occupied     ", "unknown      ",
-        "% of the observable space", "UGV          starts at", "UAV          starts at"})
-    EXPECT_NE(answer.out.find(part), std::string::npos) << part << "\nin\n" << answer.out;
-  EXPECT_EQ(run(second).code, 0);
+  const auto words = [&](const std::string& output) {
+    return std::vector<std::string>{"room",      "--sweep", "5",  "--noise",  "0.01",
+                                    "--dropout", "0.1",     "-o", map(output)};
+  };
+  expect_answer(words("a.ot"),
+                {"world        room\n", "scans        ", "free         ", "occupied     ", "unknown      ",
+                 "% of the observable space", "UGV          starts at", "UAV          starts at"});
+  expect_answer(words("b.ot"));
   EXPECT_TRUE(content_of(map("a.ot")) == content_of(map("b.ot")));
   EXPECT_EQ(std::get<std::shared_ptr<octomap::OcTree>>(read_octree(map("a.ot")))->getResolution(), 0.3);
-  second.insert(second.end(), {"--seed", "2"});
-  EXPECT_EQ(run(second).code, 0);
+  expect_answer(test::joined(words("b.ot"), {"--seed", "2"}));
   EXPECT_FALSE(content_of(map("a.ot")) == content_of(map("b.ot")));
 }
 
@@ -54,11 +37,8 @@ TEST_F(ScanCommand, LooksFromThePosesOfAFile) {
   const std::string start = std::to_string(world.start->x()) + ", " + std::to_string(world.start->y());
   const std::string poses =
       write("poses.csv", "x,y,z,yaw\n# the start\n" + start + ",1,0\n\n" + start + ",1.5,3.1\n");
-  const Answer both = run({"room", "--poses", poses, "-o", map("both.bt")});
-  EXPECT_EQ(both.code, 0) << both.err;
-  EXPECT_NE(both.out.find("scans        4\n"), std::string::npos) << both.out;
-  const Answer one = run({"room", "--poses", poses, "--robot", "uav", "-o", map("one.bt")});
-  EXPECT_NE(one.out.find("scans        2\n"), std::string::npos) << one.out;
+  expect_answer({"room", "--poses", poses, "-o", map("both.bt")}, {"scans        4\n"});
+  expect_answer({"room", "--poses", poses, "--robot", "uav", "-o", map("one.bt")}, {"scans        2\n"});
 }
 
 TEST_F(ScanCommand, RefusesPosesByLine) {
@@ -81,10 +61,8 @@ TEST_F(ScanCommand, RefusesPosesByLine) {
 }
 
 TEST_F(ScanCommand, RefusesWhatItCannotUse) {
-  const std::string out = map("no.bt");
-  const auto expect = [&](std::vector<std::string> words, const std::vector<std::string>& parts) {
-    words.insert(words.end(), {"-o", out});
-    expect_refused(words, parts);
+  const auto expect = [&](const std::vector<std::string>& words, const std::vector<std::string>& parts) {
+    expect_refused(test::joined(words, {"-o", map("no.bt")}), parts);
   };
   expect({}, {"WORLD"});
   expect({"attic"}, {"'attic'", "room"});
@@ -121,22 +99,14 @@ TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
 }
 
 TEST_F(ScanCommand, WritesNothingWhenStopped) {
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    std::signal(SIGINT, SIG_DFL);
-    static_cast<void>(std::freopen(path("err").c_str(), "w", stderr));
-    execl(FRONTLUX_COMMAND, FRONTLUX_COMMAND, "scan", "station", "--sweep", "1", "-o",
-          map("stopped.bt").c_str(), static_cast<char*>(nullptr));
-    _exit(127);
-  }
+  const pid_t child =
+      test::start({FRONTLUX_COMMAND, "scan", "station", "--sweep", "1", "-o", map("stopped.bt")}, folder_);
+  ASSERT_GT(child, 0);
   sleep(3);
   kill(child, SIGINT);
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
+  const int status = test::status_of(child);
   // Before the first scan the signal ends the program by itself, which a shell reports as 130 as well.
-  EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
-              (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
+  EXPECT_TRUE(test::exit_code(status) == 130 || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
       << status;
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps"));
 }
@@ -157,9 +127,7 @@ TEST_F(ScanCommand, MakesTheMapsThatAreKept) {
       {"maze_0.3m.bt", {"maze", "--resolution", "0.3", "--robot", "ugv", "--sweep", "6"}},
   };
   for (const Kept& kept : all) {
-    auto words = kept.words;
-    words.insert(words.end(), {"-o", map(kept.file)});
-    EXPECT_EQ(run(words).code, 0) << kept.file;
+    expect_answer(test::joined(kept.words, {"-o", map(kept.file)}));
     EXPECT_TRUE(content_of(map(kept.file)) ==
                 content_of(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps" / kept.file))
         << kept.file << " is not what the command makes now";

@@ -1,31 +1,18 @@
+#include "support/test.hpp"
+
 #include <frontlux/synthetic/random.hpp>
 #include <frontlux/synthetic/scanner.hpp>
 #include <frontlux/synthetic/scene.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <set>
-#include <utility>
-#include <vector>
 
 namespace frontlux::synthetic {
 namespace {
 
 TEST(Scenes, KeepTheirFacesOffTheVoxelFaces) {
-  for (const Scene& scene : {make_building_scene(1), make_room_scene(1)}) {
-    for (const Box& box : scene.solids.boxes()) {
-      for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const double cells = corner[axis] / 0.05;
-          ASSERT_GT(std::abs(cells - std::round(cells)), 0.3) << corner.transpose();
-        }
-      }
-    }
-  }
+  for (const Scene& scene : {make_building_scene(1), make_room_scene(1)})
+    for (const Box& box : scene.solids.boxes())
+      for (const Eigen::Vector3d& corner : {box.min(), box.max()})
+        for (const double along : corner)
+          ASSERT_GT(std::abs(along / 0.05 - std::round(along / 0.05)), 0.3) << corner.transpose();
 }
 
 constexpr double kStep = 0.2;  // [m]
@@ -42,12 +29,8 @@ std::set<std::pair<int, int>> reachable_cells(const Scene& scene, const Eigen::V
   while (!open.empty()) {
     const auto [i, j] = open.back();
     open.pop_back();
-    for (const auto& next : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}}) {
-      if (!seen.contains(next) && fits(next.first, next.second)) {
-        seen.insert(next);
-        open.push_back(next);
-      }
-    }
+    for (const auto& next : {std::pair{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}})
+      if (fits(next.first, next.second) && seen.insert(next).second) open.push_back(next);
   }
   return seen;
 }
@@ -59,9 +42,8 @@ TEST(Scenes, DoorsJoinAllRoomsOfAStoreyOfTheBuilding) {
   ASSERT_EQ(places.size(), 100U);
   for (const double floor : scene.floors) {
     std::vector<Eigen::Vector3d> storey;
-    for (const Eigen::Vector3d& place : places) {
+    for (const Eigen::Vector3d& place : places)
       if (std::abs(place.z() - floor - 1.2) < 1e-9) storey.push_back(place);
-    }
     ASSERT_GT(storey.size(), 20U);
     const auto cells = reachable_cells(scene, storey.front());
     for (const Eigen::Vector3d& place : storey) {

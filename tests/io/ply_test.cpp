@@ -1,15 +1,7 @@
+#include "support/complaint.hpp"
 #include "support/input_test.hpp"
 
 #include <frontlux/io/ply.hpp>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <tuple>
-#include <vector>
 
 namespace frontlux::io {
 namespace {
@@ -80,10 +72,7 @@ TEST_F(Ply, ReadsBinaryOfEitherByteOrder) {
 
 TEST_F(Ply, SaysWhatIsWrong) {
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& part) {
-    std::string text = kText;
-    const auto at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    expect_refused("a.ply", text.replace(at, from.size(), to), part);
+    expect_refused("a.ply", test::replaced(kText, from, to), part);
   };
   expect_refused("a.ply", "", "ends before its header does; a PLY header ends with a line of end_header");
   expect_refused("a.ply", "solid\n", "line 1: does not begin with the line 'ply'");

@@ -2,12 +2,6 @@
 
 #include <frontlux/io/point_cloud.hpp>
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <utility>
-#include <vector>
-
 namespace frontlux::io {
 namespace {
 

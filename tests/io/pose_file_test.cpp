@@ -2,8 +2,6 @@
 
 #include <frontlux/io/pose_file.hpp>
 
-#include <cmath>
-
 namespace frontlux::io {
 namespace {
 

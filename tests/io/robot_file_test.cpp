@@ -1,15 +1,7 @@
+#include "planner/recording/random_recording.hpp"
 #include "support/input_test.hpp"
 
 #include <frontlux/io/robot_file.hpp>
-
-#include <filesystem>
-#include <fstream>
-#include <numbers>
-#include <stdexcept>
-#include <string>
-#include <unistd.h>
-#include <utility>
-#include <vector>
 
 namespace frontlux::io {
 namespace {
@@ -27,26 +19,7 @@ class RobotFile : public test::InputTest {
 };
 
 void expect_equal(const RobotDescription& a, const RobotDescription& b) {
-  EXPECT_EQ(a.robot.name, b.robot.name);
-  EXPECT_EQ(a.columns, b.columns);
-  EXPECT_EQ(a.rows, b.rows);
-  const TravelOptions &s = a.robot.travel, &t = b.robot.travel;
-  EXPECT_EQ(s.motion, t.motion);
-  EXPECT_EQ(s.extents, t.extents);
-  EXPECT_EQ(s.metric, t.metric);
-  EXPECT_EQ(s.sensor_height, t.sensor_height);
-  EXPECT_EQ(s.require_ground, t.require_ground);
-  EXPECT_EQ(s.ground_extents, t.ground_extents);
-  EXPECT_EQ(s.ground_reach, t.ground_reach);
-  EXPECT_EQ(s.without_ground.size(), t.without_ground.size());
-  EXPECT_EQ(s.floor, t.floor);
-  EXPECT_EQ(s.min_height, t.min_height);
-  EXPECT_EQ(s.node_edge, t.node_edge);
-  const FieldOfView &v = a.robot.view, &w = b.robot.view;
-  EXPECT_EQ(v.shape, w.shape);
-  EXPECT_EQ(v.horizontal, w.horizontal);
-  EXPECT_EQ(v.vertical, w.vertical);
-  EXPECT_EQ(v.max_range, w.max_range);
+  EXPECT_EQ(test::listed(a), test::listed(b));
 }
 
 const std::filesystem::path kRobots = std::filesystem::path(FRONTLUX_DATA_DIR) / "robots";
@@ -79,10 +52,7 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       R"({"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 10, "columns": 16, "rows": 12}})";
   EXPECT_EQ(complaint("r.json", good), "");
   const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    const auto at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
+    return test::replaced(good, from, to);
   };
   const std::vector<std::pair<std::string, std::string>> cases = {
       {with(R"("name": "r", )", ""), "name is missing; give 1 to 40 letters"},
@@ -137,7 +107,7 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
   };
   for (const auto& [text, expected] : cases) {
     const std::string what = complaint("r.json", text);
-    EXPECT_NE(what.find(expected), std::string::npos) << what << "\nexpected: " << expected;
+    test::expect_parts(what, {expected});
     for (const char c : what) EXPECT_TRUE(c >= ' ' && c <= '~') << what;
   }
   EXPECT_THROW(static_cast<void>(read_robot(folder_ / "none.json")), std::runtime_error);
@@ -145,8 +115,7 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
 }
 
 TEST_F(RobotFile, SurvivesEveryTruncationAndFlippedByte) {
-  std::ifstream stream(kRobots / "uav.json", std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = test::content_of(kRobots / "uav.json");
   ASSERT_GT(text.size(), 100U);
   for (std::size_t i = 0; i + 2 < text.size(); ++i)
     EXPECT_NE(complaint("r.json", text.substr(0, i)), "") << i;
@@ -154,10 +123,7 @@ TEST_F(RobotFile, SurvivesEveryTruncationAndFlippedByte) {
     for (const int bit : {0, 3, 7}) {
       std::string damaged = text;
       damaged[i] = static_cast<char>(static_cast<unsigned char>(damaged[i]) ^ (1U << bit));
-      try {
-        read(damaged).robot.check();
-      } catch (const std::runtime_error&) {
-      }
+      test::complaint_of<std::runtime_error>([&] { read(damaged).robot.check(); });
     }
 }
 

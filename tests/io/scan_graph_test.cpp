@@ -6,12 +6,6 @@
 
 #include <octomap/ScanGraph.h>
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <sstream>
-#include <vector>
-
 namespace frontlux::io {
 namespace {
 
@@ -75,9 +69,6 @@ TEST_F(ScanGraph, RefusesDamagedGraphs) {
 
   // One scan of one point: 4 bytes of scans, 4 of points, 28 of the point, 28 and 36 of the pose, 4 of the
   // id.
-  const auto replaced = [](std::string bytes, std::size_t at, const std::string& by) {
-    return bytes.replace(at, by.size(), by);
-  };
   octomap::ScanGraph small;
   auto* points = new octomap::Pointcloud;
   points->push_back(1.F, 2.F, 3.F);
@@ -86,14 +77,16 @@ TEST_F(ScanGraph, RefusesDamagedGraphs) {
   small.writeBinary(stream);
   const std::string one = stream.str();
   ASSERT_EQ(complaint("a.graph", one), "");
-  expect_refused("a.graph", replaced(one, 4, bytes_of<std::uint32_t>(1 << 28)), "268435456 points");
-  expect_refused("a.graph", replaced(one, 8, bytes_of<std::int32_t>(4)), "vector of 4 instead of 3");
-  expect_refused("a.graph", replaced(one, 40, bytes_of(std::nan(""))), "pose that is not finite");
-  expect_refused("a.graph", replaced(one, 40, bytes_of(std::numeric_limits<double>::infinity())),
-                 "pose that is not finite");
-  expect_refused("a.graph", replaced(one, 64, bytes_of<std::int32_t>(-4)), "quaternion of -4 instead of 4");
-  expect_refused("a.graph", replaced(one, 68, bytes_of(0.5)), "quaternion is not of length 1");
-  const auto scans = read_scan_graph(save("a.graph", replaced(one, 12, bytes_of(1e300))));
+  const auto refuses = [&](std::size_t at, const std::string& by, const std::string& part) {
+    expect_refused("a.graph", std::string(one).replace(at, by.size(), by), part);
+  };
+  refuses(4, bytes_of<std::uint32_t>(1 << 28), "268435456 points");
+  refuses(8, bytes_of<std::int32_t>(4), "vector of 4 instead of 3");
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+    refuses(40, bytes_of(bad), "pose that is not finite");
+  refuses(64, bytes_of<std::int32_t>(-4), "quaternion of -4 instead of 4");
+  refuses(68, bytes_of(0.5), "quaternion is not of length 1");
+  const auto scans = read_scan_graph(save("a.graph", std::string(one).replace(12, 8, bytes_of(1e300))));
   EXPECT_EQ(scans[0].points[0], Eigen::Vector3f(std::numeric_limits<float>::infinity(), 2.F, 3.F));
   EXPECT_NE(complaint("nothing/a.graph", ""), "");
   EXPECT_THROW(static_cast<void>(read_scan_graph(folder_)), std::runtime_error);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <frontlux/planner/recording.hpp>
+#include "support/test.hpp"
 
-#include <string>
+#include <frontlux/planner/recording.hpp>
 
 namespace frontlux::test {
 

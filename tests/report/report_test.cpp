@@ -1,37 +1,19 @@
 #include "report/explored_run.hpp"
+#include "support/complaint.hpp"
+#include "support/folder_test.hpp"
 
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/report/report.hpp>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <stdexcept>
-#include <string>
 #include <string_view>
-#include <tuple>
-#include <unistd.h>
-#include <vector>
 #include <zlib.h>
 
 namespace frontlux::report {
 namespace {
 
 using planner::Recording;
-
-std::string content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::size_t count(std::string_view text, std::string_view part) {
   std::size_t found = 0;
@@ -127,26 +109,16 @@ Decoded decode(const std::string& packed) {
   return {nlohmann::json::parse(bytes.substr(4, length)), {bytes.substr(4 + length)}};
 }
 
-class ReportTest : public testing::Test {
+class ReportTest : public test::FolderTest {
  protected:
-  ReportTest()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_report_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~ReportTest() override { std::filesystem::remove_all(folder_); }
-  ReportTest(const ReportTest&) = delete;
-  ReportTest& operator=(const ReportTest&) = delete;
-
   std::string page_of(const std::vector<ReportedRun>& runs) {
     write_report(folder_ / "report.html", runs, "1.2.3");
-    return content_of(folder_ / "report.html");
+    return test::content_of(folder_ / "report.html");
   }
   static const Recording& room() {
     static const Recording recording = test::explored_run("room", 5);
     return recording;
   }
-
-  std::filesystem::path folder_;
 };
 
 using Changes = std::map<VoxelKey, Occupancy>;
@@ -321,18 +293,12 @@ TEST_F(ReportTest, WrongCallsAndFilesAreRefused) {
   stepless.steps.clear();
   Recording lacking = room();
   lacking.steps[1].known.pop_back();
-  EXPECT_THROW(page_of({}), std::invalid_argument);
-  EXPECT_THROW(page_of({{"none", nullptr}}), std::invalid_argument);
-  EXPECT_THROW(page_of({{"robotless", &robotless}}), std::invalid_argument);
-  EXPECT_THROW(page_of({{"lacking", &lacking}}), std::invalid_argument);
-  EXPECT_THROW(page_of({{"stepless", &stepless}}), std::invalid_argument);
+  EXPECT_REFUSED(page_of({}));
+  EXPECT_REFUSED(page_of({{"none", nullptr}}));
+  for (const Recording* bad : {&robotless, &lacking, &stepless}) EXPECT_REFUSED(page_of({{"bad", bad}}));
   const std::vector<ReportedRun> runs = {{"room", &room()}};
-  try {
-    write_report(folder_ / "nowhere" / "report.html", runs, "1");
-    FAIL() << "there is no such folder";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("nowhere"), std::string::npos) << error.what();
-  }
+  test::expect_complaint<std::runtime_error>(
+      [&] { write_report(folder_ / "nowhere" / "report.html", runs, "1"); }, {"nowhere"});
 }
 
 }  // namespace

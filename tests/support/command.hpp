@@ -1,13 +1,13 @@
 #pragma once
 
+#include "support/folder_test.hpp"
+#include "support/test.hpp"
+
 #include <sys/wait.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
+#include <csignal>
+#include <cstdio>
+#include <unistd.h>
 
 namespace frontlux::test {
 
@@ -17,18 +17,14 @@ struct Answer {
   std::string out, err;
 };
 
-/// Empty if there is no such file.
-inline std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// A word as a POSIX shell takes it, whatever it holds.
 inline std::string quoted(const std::string& word) {
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out += "'";
 }
+
+inline int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
 
 /// Runs `frontlux` with these words.
 /// @param folder  for two files, `out` and `err`, with what it prints
@@ -40,7 +36,28 @@ inline Answer run_frontlux(const std::vector<std::string>& words, const std::fil
   const std::filesystem::path out = folder / "out", err = folder / "err";
   const int status =
       std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string())).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
+  return {exit_code(status), content_of(out), content_of(err)};
+}
+
+/// Starts a program, whose name is the first word, and does not wait for it. It prints into the same files.
+inline pid_t start(std::vector<std::string> words, const std::filesystem::path& folder) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  std::signal(SIGINT, SIG_DFL);
+  static_cast<void>(std::freopen((folder / "out").c_str(), "w", stdout));
+  static_cast<void>(std::freopen((folder / "err").c_str(), "w", stderr));
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
+/// Waits until it has ended. @return its status
+inline int status_of(pid_t child) {
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
 }
 
 }  // namespace frontlux::test

@@ -1,48 +1,24 @@
 #pragma once
 
 #include "support/command.hpp"
-
-#include <gtest/gtest.h>
+#include "support/complaint.hpp"
+#include "support/test.hpp"
 
 #include <concepts>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <string>
-#include <unistd.h>
-#include <utility>
-#include <vector>
 
 namespace frontlux::test {
 
-/// Every part has to be in the text.
-inline void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
+/// The words, and more behind them.
+inline std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
 }
 
-/// Tests of one of the commands of `frontlux`, with a folder of their own that is deleted with them.
-class CommandTest : public testing::Test {
+/// Tests of one of the commands of `frontlux`.
+class CommandTest : public FolderTest {
  protected:
   /// @param command  as "map"; empty: the words that are run begin with it
-  explicit CommandTest(std::string command)
-      : command_(std::move(command)),
-        folder_(std::filesystem::temp_directory_path() /
-                ("frontlux_" + command_ + "_test_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~CommandTest() override { std::filesystem::remove_all(folder_); }
-  CommandTest(const CommandTest&) = delete;
-  CommandTest& operator=(const CommandTest&) = delete;
-
-  /// In the folder.
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  /// Writes a file into the folder. @return its path
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
+  explicit CommandTest(std::string command) : command_(std::move(command)) {}
 
   /// @param before  shell commands that come first, as "ulimit -f 8;"
   [[nodiscard]] Answer run(std::vector<std::string> words, const std::string& before = "") const {
@@ -51,11 +27,14 @@ class CommandTest : public testing::Test {
   }
 
   /// The command does what it should without a complaint, and prints these parts.
-  void expect_answer(const std::vector<std::string>& words, const std::vector<std::string>& parts) const {
-    const Answer answer = run(words);
+  /// @return all that it prints
+  std::string expect_answer(const std::vector<std::string>& words, const std::vector<std::string>& parts = {},
+                            const std::string& before = "") const {
+    const Answer answer = run(words, before);
     EXPECT_EQ(answer.code, 0) << answer.err;
     EXPECT_EQ(answer.err, "");
     expect_parts(answer.out, parts);
+    return answer.out;
   }
 
   /// The command complains in one line with these parts, exits with 2, and changes no file.
@@ -87,9 +66,21 @@ class CommandTest : public testing::Test {
   }
 
   std::string command_;
-
- protected:
-  std::filesystem::path folder_;
 };
+
+/// Whether these are the bytes of a whole picture, as wide and high as this [pixels] or more.
+inline void expect_png(const std::string& bytes, std::uint32_t width, std::uint32_t height) {
+  const auto number = [&](std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < 4; ++i) word = word << 8U | static_cast<unsigned char>(bytes.at(at + i));
+    return word;
+  };
+  ASSERT_GT(bytes.size(), 100U);
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(12, 4), "IHDR");
+  EXPECT_GE(number(16), width);
+  EXPECT_GE(number(20), height);
+  EXPECT_EQ(bytes.substr(bytes.size() - 8, 4), "IEND");
+}
 
 }  // namespace frontlux::test

@@ -1,16 +1,13 @@
 #include "support/maps.hpp"
 
 #include "support/random.hpp"
-
-#include <algorithm>
-#include <cstdlib>
+#include "support/tree_state.hpp"
 
 namespace frontlux::test {
 namespace {
 
-octomap::OcTreeKey key_at(int x, int y, int z) {
-  return {static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
-          static_cast<octomap::key_type>(z)};
+void fill(octomap::OcTree& tree, const KeyBox& box, float log_odds) {
+  for_each_key(box, [&](const VoxelKey& key) { tree.setNodeValue(tree_key(key), log_odds, true); });
 }
 
 std::vector<NamedMap> read_folder(const std::filesystem::path& folder) {
@@ -37,17 +34,13 @@ std::shared_ptr<octomap::OcTree> make_random_tree(std::uint64_t seed, double res
     const auto corner = [&] { return 32768 + (random.below(96) - 48) / edge * edge; };
     const int x0 = corner(), y0 = corner(), z0 = corner();
     const bool occupied = random.one_in(4);
-    for (int x = 0; x < edge; ++x)
-      for (int y = 0; y < edge; ++y)
-        for (int z = 0; z < edge; ++z)
-          tree->setNodeValue(key_at(x0 + x, y0 + y, z0 + z), occupied ? 3.5F : -2.0F, true);
+    fill(*tree, cube(make_key(x0, y0, z0), edge), occupied ? 3.5F : -2.0F);
   }
   for (int i = 0; i < 400; ++i) {
-    const auto at = [&] { return 32768 + random.below(96) - 48; };
-    tree->setNodeValue(key_at(at(), at(), at()), random.one_in(2) ? 0.0F : -0.4F,
-                       true);  // 0 counts as occupied
+    const VoxelKey key = random.key_in(cube({32720, 32720, 32720}, 96));
+    fill(*tree, {key, key}, random.one_in(2) ? 0.0F : -0.4F);  // 0 counts as occupied
   }
-  for (const int far : {3, 33100, 65533}) tree->setNodeValue(key_at(far, far, 32768), 1.0F, true);
+  for (const int far : {3, 33100, 65533}) fill(*tree, cube(make_key(far, far, 32768), 1), 1.0F);
   tree->updateInnerOccupancy();
   tree->prune();
   return tree;
@@ -56,14 +49,11 @@ std::shared_ptr<octomap::OcTree> make_random_tree(std::uint64_t seed, double res
 std::shared_ptr<octomap::OcTree> make_noise_tree(std::uint64_t seed, double resolution, int edge) {
   auto tree = std::make_shared<octomap::OcTree>(resolution);
   Random random(seed);
-  for (int x = 0; x < edge; ++x)
-    for (int y = 0; y < edge; ++y)
-      for (int z = 0; z < edge; ++z) {
-        const int state = random.below(3);
-        const int low = 32768 - edge / 2;
-        if (state != 0)
-          tree->setNodeValue(key_at(low + x, low + y, low + z), state == 1 ? -1.0F : 1.0F, true);
-      }
+  const int low = 32768 - edge / 2;
+  for_each_key(cube(make_key(low, low, low), edge), [&](const VoxelKey& key) {
+    const int state = random.below(3);
+    if (state != 0) fill(*tree, {key, key}, state == 1 ? -1.0F : 1.0F);
+  });
   tree->updateInnerOccupancy();
   return tree;
 }

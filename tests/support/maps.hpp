@@ -1,13 +1,9 @@
 #pragma once
 
 #include "support/quiet_octomap.hpp"
+#include "support/test.hpp"
 
 #include <frontlux/octomap.hpp>
-
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace frontlux::test {
 

@@ -1,12 +1,9 @@
 #pragma once
 
 #include "support/random_view.hpp"
+#include "support/test.hpp"
 
 #include <unsupported/Eigen/AutoDiff>
-
-#include <cmath>
-#include <span>
-#include <vector>
 
 /// The information gain as exploration.md prints it, one logistic at a time, for any type of number: the
 /// oracle of `InformationGain`.

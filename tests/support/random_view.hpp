@@ -1,14 +1,11 @@
 #pragma once
 
 #include "support/random.hpp"
+#include "support/test.hpp"
+#include "support/views.hpp"
 
 #include <frontlux/planner/information_gain.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
-
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <vector>
 
 namespace frontlux::test {
 
@@ -30,10 +27,6 @@ struct Scene {
   }
 };
 
-inline FieldOfView camera() {
-  return {FieldOfView::Shape::kPyramid, std::numbers::pi / 2, 0.4 * std::numbers::pi, 10.0};
-}
-
 /// A walk of viewpoints among frontiers that are thrown about it, `share` of the pairs visible.
 inline Scene random_scene(Random& random, int viewpoints, int frontiers, double share = 0.7,
                           const FieldOfView& view = camera()) {
@@ -46,9 +39,8 @@ inline Scene random_scene(Random& random, int viewpoints, int frontiers, double 
     at += 1.2 * Eigen::Vector3d(std::cos(heading), std::sin(heading), random.uniform(-0.2, 0.2));
   }
   for (int j = 0; j < frontiers; ++j) {
-    const auto& near = scene.path[static_cast<std::size_t>(random.below(viewpoints))].position;
-    scene.frontiers.push_back(
-        near + Eigen::Vector3d(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-3, 3)));
+    const Eigen::Vector3d off = random.point(-9, 9).cwiseProduct(Eigen::Vector3d(1, 1, 1.0 / 3));
+    scene.frontiers.push_back(random.pick(scene.path).position + off);
     for (int i = 0; i < viewpoints; ++i)
       if (random.uniform(0, 1) < share)
         scene.list.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});

@@ -2,12 +2,11 @@
 
 #include "support/random.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace frontlux::test {
 namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 class Sampler {
  public:
@@ -22,12 +21,8 @@ class Sampler {
   Random& random() { return random_; }
 
   VoxelKey any_key() {
-    const Block& block = blocks_[static_cast<std::size_t>(random_.bits() % blocks_.size())];
-    const auto along = [&](std::uint16_t base) {
-      const int edge = 1 << block.log2_edge;
-      return static_cast<std::uint16_t>(std::clamp(base + random_.below(edge + 4) - 2, 0, 65535));
-    };
-    return {along(block.corner.x), along(block.corner.y), along(block.corner.z)};
+    const Block& block = random_.pick(blocks_);
+    return random_.key_in(grown(cube(block.corner, 1 << block.log2_edge), 2));
   }
   VoxelKey free_key() {
     for (int attempt = 0; attempt < 64; ++attempt) {
@@ -64,19 +59,16 @@ class Sampler {
 
   Eigen::Vector3f origin() {
     if (random_.one_in(400)) {
-      const float nan = std::numeric_limits<float>::quiet_NaN(),
-                  infinity = std::numeric_limits<float>::infinity();
       const float edge = static_cast<float>(32768.0 * grid_.resolution());
-      const float odd[] = {nan, infinity, -infinity, 1e30F, edge, -edge, std::nextafter(edge, 0.0F), -0.0F};
+      const float odd[] = {kNan, kInfinity, -kInfinity, 1e30F, edge, -edge, std::nextafter(edge, 0.0F),
+                           -0.0F};
       Eigen::Vector3f p = point_in(any_key());
       p[random_.below(3)] = odd[random_.below(8)];
       return p;
     }
     if (random_.one_in(100)) {  // far outside everything mapped
       const double reach = 32768.0 * grid_.resolution();
-      return Eigen::Vector3d(random_.uniform(-reach, reach), random_.uniform(-reach, reach),
-                             random_.uniform(-reach, reach))
-          .cast<float>();
+      return random_.point(-reach, reach).cast<float>();
     }
     return point_in(mostly_free_key());
   }
@@ -88,44 +80,35 @@ class Sampler {
       return static_cast<float>(
           std::ldexp(random_.uniform(-1.0, 1.0), -random_.below(random_.one_in(3) ? 150 : 32)));
     };
-    Eigen::Vector3f d;
-    switch (random_.below(12)) {
-      case 0:
-        d = {sign(), sign(), sign()};
-        break;  // axes, diagonals, zero
-      case 1:
-        d = Eigen::Vector3f::Zero();
-        d[random_.below(3)] = at_random();
-        break;  // along an axis
-      case 2:
-        d = {sign() * 2.0F, sign(), sign() * 3.0F};
-        break;  // through lattice points
-      case 3:
-        d = {sign(), sign(), tiny()};
-        break;  // all but parallel to a face
-      case 4:
-        d = {at_random(), tiny(), sign()};
-        break;
-      case 10:
-        d = {tiny(), tiny(), sign()};
-        break;
-      case 11:
-        d = {sign(), tiny(), at_random()};
-        break;
-      case 5:
-      case 6:
-        d = point_in(any_key()) - origin;
-        break;  // to corners, edges, centres
-      default:
-        d = {at_random(), at_random(), at_random()};
-        break;
-    }
+    const auto drawn = [&]() -> Eigen::Vector3f {
+      switch (random_.below(12)) {
+        case 0:  // axes, diagonals, zero
+          return {sign(), sign(), sign()};
+        case 1:
+          return Eigen::Vector3f::Unit(random_.below(3)) * at_random();
+        case 2:  // through lattice points
+          return {sign() * 2.0F, sign(), sign() * 3.0F};
+        case 3:  // all but parallel to a face
+          return {sign(), sign(), tiny()};
+        case 4:
+          return {at_random(), tiny(), sign()};
+        case 10:
+          return {tiny(), tiny(), sign()};
+        case 11:
+          return {sign(), tiny(), at_random()};
+        case 5:
+        case 6:  // to corners, edges, centres
+          return point_in(any_key()) - origin;
+        default:
+          return {at_random(), at_random(), at_random()};
+      }
+    };
+    Eigen::Vector3f d = drawn();
     if (random_.one_in(20))
       d *= std::ldexp(1.0F, random_.below(250) - 130);  // overflows and denormals among them
     if (random_.one_in(300)) {
-      const float odd[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
-                           std::numeric_limits<float>::denorm_min(), -0.0F};
-      d[random_.below(3)] = odd[random_.below(4)];
+      constexpr float kOdd[] = {kNan, kInfinity, std::numeric_limits<float>::denorm_min(), -0.0F};
+      d[random_.below(3)] = kOdd[random_.below(4)];
     }
     return d;
   }

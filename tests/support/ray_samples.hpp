@@ -1,11 +1,9 @@
 #pragma once
 
+#include "support/test.hpp"
+
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace frontlux::test {
 

@@ -21,7 +21,7 @@ std::array<std::uint32_t, 3> bits(const octomap::point3d& p) {
 octomap::OcTree make_room() {
   octomap::OcTree tree(0.1);
   const octomap::point3d sensor(0.05F, 0.05F, 0.05F);
-  for (int i = -20; i <= 20; ++i) {
+  for (int i = -20; i <= 20; ++i)
     for (int j = -20; j <= 20; ++j) {
       const float a = 0.1F * static_cast<float>(i), b = 0.1F * static_cast<float>(j);
       tree.insertRay(sensor, {2.0F, a, 0.5F * b});
@@ -29,7 +29,6 @@ octomap::OcTree make_room() {
       tree.insertRay(sensor, {a, 2.0F, 0.5F * b});
       tree.insertRay(sensor, {a, b, -1.0F});
     }
-  }
   return tree;
 }
 

@@ -19,17 +19,14 @@ bool same_bits(float a, float b) {
 // Rays along a lattice of directions, axis-parallel and diagonal ones among them, from inside and outside.
 std::vector<frontlux::Ray> make_rays() {
   std::vector<frontlux::Ray> rays;
-  for (const float x : {0.1F, 0.5F, -1.3F, 2.0F}) {
-    for (int i = -6; i <= 6; ++i) {
-      for (int j = -6; j <= 6; ++j) {
+  for (const float x : {0.1F, 0.5F, -1.3F, 2.0F})
+    for (int i = -6; i <= 6; ++i)
+      for (int j = -6; j <= 6; ++j)
         for (int k = -6; k <= 6; ++k) {
           const Eigen::Vector3f direction(static_cast<float>(i), static_cast<float>(j),
                                           static_cast<float>(k));
           rays.push_back({.origin = {x, 0.25F, 0.0F}, .direction = direction, .max_range = 4.0});
         }
-      }
-    }
-  }
   return rays;
 }
 
@@ -61,12 +58,11 @@ int main() {
   std::size_t different = 0;
   for (const float distance : {1.0F, 2.0F, 3.0F}) {
     octomap::Pointcloud scan;
-    for (int i = -8; i <= 8; ++i) {
+    for (int i = -8; i <= 8; ++i)
       for (int j = -8; j <= 8; ++j) {
         scan.push_back(distance, 0.2F * static_cast<float>(i), 0.2F * static_cast<float>(j));
         scan.push_back(0.2F * static_cast<float>(i), -distance, 0.2F * static_cast<float>(j));
       }
-    }
     tree.insertPointCloud(scan, {0.1F, 0.1F, 0.1F});
     fast.refresh();
     different += count_differences(tree, fast, rays, false) + count_differences(tree, fast, rays, true);

@@ -17,7 +17,7 @@ const Eigen::AlignedBox3d kRoom(Eigen::Vector3d(-4.0, -3.0, 0.1), Eigen::Vector3
 // What the camera measures: the distance from a point in the room to its walls, along rays in view.
 planner::Scan scan_from(const planner::Pose& pose, const planner::RobotDescription& camera) {
   planner::Scan scan{pose.position.cast<float>(), camera.robot.view.max_range, {}, {}};
-  for (int column = 0; column < 160; ++column) {
+  for (int column = 0; column < 160; ++column)
     for (int row = 0; row < 120; ++row) {
       const double left = (2.0 * column / 159.0 - 1.0) * std::tan(camera.robot.view.horizontal / 2.0),
                    up = (2.0 * row / 119.0 - 1.0) * std::tan(camera.robot.view.vertical / 2.0);
@@ -32,7 +32,6 @@ planner::Scan scan_from(const planner::Pose& pose, const planner::RobotDescripti
       scan.ranges.push_back(range + 1e-3 < scan.max_range ? static_cast<float>(range + 1e-3)
                                                           : std::numeric_limits<float>::infinity());
     }
-  }
   return scan;
 }
 

@@ -1,45 +1,39 @@
 // The mirror of a tree, kept in step or rebuilt; the drop-in; files.
 
+#include "support/folder_test.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
+#include "support/tree_state.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/octomap.hpp>
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <sstream>
-#include <vector>
 
 namespace frontlux::test {
 namespace {
 
-octomap::OcTreeKey tree_key(const VoxelKey& key) { return {key.x, key.y, key.z}; }
-
-template <class Tree>
-Occupancy state_by_search(const Tree& tree, const VoxelKey& key) {
-  const auto* node = tree.search(tree_key(key));
-  if (node == nullptr) return Occupancy::kUnknown;
-  return tree.isNodeOccupied(node) ? Occupancy::kOccupied : Occupancy::kFree;
-}
-
 template <class Tree>
 void expect_mirrors(const VoxelGrid& grid, const Tree& tree, int reach) {
-  for (int z = -reach; z < reach; ++z)
-    for (int y = -reach; y < reach; ++y)
-      for (int x = -reach; x < reach; ++x) {
-        const auto at = [](int offset) { return static_cast<std::uint16_t>(32768 + offset); };
-        const VoxelKey key{at(x), at(y), at(z)};
-        ASSERT_EQ(grid.at(key), state_by_search(tree, key)) << x << ' ' << y << ' ' << z;
-      }
+  for_each_key({key_at(-reach, -reach, -reach), key_at(reach - 1, reach - 1, reach - 1)},
+               [&](const VoxelKey& key) {
+                 ASSERT_EQ(grid.at(key), state_of(tree, key)) << key.x << ' ' << key.y << ' ' << key.z;
+               });
+}
+
+octomap::point3d random_point(Random& random, double reach) {
+  const Eigen::Vector3f at = random.point(-reach, reach).cast<float>();
+  return {at.x(), at.y(), at.z()};
 }
 
 octomap::Pointcloud random_cloud(Random& random, int points) {
   octomap::Pointcloud cloud;
-  for (int i = 0; i < points; ++i)
-    cloud.push_back(static_cast<float>(random.uniform(-2, 2)), static_cast<float>(random.uniform(-2, 2)),
-                    static_cast<float>(random.uniform(-2, 2)));
+  for (int i = 0; i < points; ++i) cloud.push_back(random_point(random, 2));
   return cloud;
+}
+
+octomap::ColorOcTree random_color_tree(Random& random, double reach, int points) {
+  octomap::ColorOcTree tree(0.2);
+  for (int i = 0; i < points; ++i) tree.updateNode(random_point(random, reach), random.one_in(2));
+  return tree;
 }
 
 TEST(VoxelGridOfATree, EqualsSearch) {
@@ -47,13 +41,8 @@ TEST(VoxelGridOfATree, EqualsSearch) {
     SCOPED_TRACE(map.name);
     expect_mirrors(make_voxel_grid(*map.tree), *map.tree, 60);
   }
-  octomap::ColorOcTree color(0.2);
   Random random(3);
-  for (int i = 0; i < 500; ++i)
-    color.updateNode(
-        octomap::point3d(static_cast<float>(random.uniform(-3, 3)), static_cast<float>(random.uniform(-3, 3)),
-                         static_cast<float>(random.uniform(-3, 3))),
-        random.one_in(2));
+  const octomap::ColorOcTree color = random_color_tree(random, 3, 500);
   expect_mirrors(make_voxel_grid(color), color, 20);
   EXPECT_TRUE(make_voxel_grid(octomap::OcTree(0.1)) == VoxelGrid(0.1));
 }
@@ -157,17 +146,11 @@ TEST(OctreeRayCaster, RefreshTakesANewSnapshot) {
 }
 
 TEST(OctreeRayCaster, ServesColorTrees) {
-  octomap::ColorOcTree tree(0.2);
   Random random(8);
-  for (int i = 0; i < 300; ++i)
-    tree.updateNode(
-        octomap::point3d(static_cast<float>(random.uniform(-2, 2)), static_cast<float>(random.uniform(-2, 2)),
-                         static_cast<float>(random.uniform(-2, 2))),
-        random.one_in(2));
+  const octomap::ColorOcTree tree = random_color_tree(random, 2, 300);
   const OctreeRayCaster fast(tree);
   for (int i = 0; i < 2000; ++i) {
-    const auto any = [&] { return static_cast<float>(random.uniform(-2, 2)); };
-    const octomap::point3d origin(any(), any(), any()), direction(any(), any(), any());
+    const octomap::point3d origin = random_point(random, 2), direction = random_point(random, 2);
     octomap::point3d expected, end;
     ASSERT_EQ(fast.castRay(origin, direction, end, true, 5.0),
               tree.castRay(origin, direction, expected, true, 5.0));
@@ -175,24 +158,22 @@ TEST(OctreeRayCaster, ServesColorTrees) {
   }
 }
 
-TEST(ReadOctree, ReadsWhatOctomapWrote) {
-  const auto folder = std::filesystem::temp_directory_path() / "frontlux_read_octree_test";
-  std::filesystem::create_directories(folder);
+class ReadOctree : public FolderTest {};
+
+TEST_F(ReadOctree, ReadsWhatOctomapWrote) {
   const auto tree = make_random_tree(4, 0.25);
-  ASSERT_TRUE(tree->writeBinaryConst((folder / "tree.bt").string()));
-  ASSERT_TRUE(tree->write((folder / "tree.ot").string()));
+  ASSERT_TRUE(tree->writeBinaryConst(path("tree.bt")));
+  ASSERT_TRUE(tree->write(path("tree.ot")));
   for (const char* name : {"tree.bt", "tree.ot"}) {
-    const Octree read = read_octree(folder / name);
+    const Octree read = read_octree(path(name));
     ASSERT_TRUE(std::holds_alternative<std::shared_ptr<octomap::OcTree>>(read));
     EXPECT_TRUE(make_voxel_grid(*std::get<0>(read)) == make_voxel_grid(*tree)) << name;
   }
   octomap::ColorOcTree color(0.2);
   color.updateNode(octomap::point3d(0.5F, 0.5F, 0.5F), true);
-  ASSERT_TRUE(color.write((folder / "color.ot").string()));
-  EXPECT_TRUE(
-      std::holds_alternative<std::shared_ptr<octomap::ColorOcTree>>(read_octree(folder / "color.ot")));
-  EXPECT_THROW((void)read_octree(folder / "missing.bt"), std::runtime_error);
-  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(color.write(path("color.ot")));
+  EXPECT_TRUE(std::holds_alternative<std::shared_ptr<octomap::ColorOcTree>>(read_octree(path("color.ot"))));
+  EXPECT_THROW((void)read_octree(path("missing.bt")), std::runtime_error);
 }
 
 }  // namespace

@@ -1,22 +1,15 @@
 #pragma once
 
 #include "octomap/octree_file.hpp"
+#include "support/complaint.hpp"
+#include "support/folder_test.hpp"
+#include "support/tree_state.hpp"
 
-#include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
 #include <initializer_list>
-#include <optional>
 #include <random>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <unistd.h>
-#include <vector>
 
 namespace frontlux::test {
 
@@ -43,12 +36,6 @@ inline std::string repeated(const std::string& text, int times) {
 inline std::string header(const std::string& first_line, std::uint64_t size, const std::string& id = "OcTree",
                           const std::string& res = "0.1") {
   return first_line + "#\nid " + id + "\nsize " + std::to_string(size) + "\nres " + res + "\ndata\n";
-}
-
-inline std::string full_record(float log_odds, int child_mask) {
-  std::string record(4, '\0');
-  std::memcpy(record.data(), &log_odds, 4);
-  return record + static_cast<char>(child_mask);
 }
 
 template <class Tree>
@@ -91,9 +78,8 @@ inline std::vector<Saved> saved_trees() {
   octomap::ColorOcTree color(0.1);
   grow(color);
   color.setNodeColor(0.05F, 0.05F, 0.05F, 10, 20, 30);
-  std::vector<Saved> all;
-  all.push_back({"OcTree .ot", saved_full(tree), tree.size()});
-  all.push_back({"ColorOcTree .ot", saved_full(color), color.size()});
+  std::vector<Saved> all = {{"OcTree .ot", saved_full(tree), tree.size()},
+                            {"ColorOcTree .ot", saved_full(color), color.size()}};
   const std::string binary = saved_binary(tree), color_binary = saved_binary(color);  // both prune their tree
   all.push_back({"OcTree .bt", binary, tree.size()});
   all.push_back({"ColorOcTree .bt", color_binary, color.size()});
@@ -137,20 +123,22 @@ inline void give_to_octomap(const OctreeFile& file) {
   }
 }
 
-class OctreeFileTest : public testing::Test {
+class OctreeFileTest : public FolderTest {
  protected:
-  OctreeFileTest()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("frontlux_octree_file_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~OctreeFileTest() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::filesystem::path path() const { return folder_ / "map.ot"; }
 
   /// The tree, or nothing and why in `complaint_`.
   std::optional<OctreeFile> check(const std::string& content) {
     return caught([&] { return check_octree_bytes(path(), content); });
+  }
+
+  /// Expects a tree, which OctoMap then can use.
+  OctreeFile accepted(const std::string& content) {
+    const auto file = check(content);
+    EXPECT_TRUE(file) << complaint_;
+    if (!file) return {};
+    give_to_octomap(*file);
+    return *file;
   }
 
   std::optional<OctreeFile> read() {
@@ -164,24 +152,20 @@ class OctreeFileTest : public testing::Test {
   }
 
   void says(const std::vector<std::string>& parts) {
-    for (const auto& part : parts) EXPECT_NE(complaint_.find(part), std::string::npos) << complaint_;
+    expect_parts(complaint_, parts);
     complaint_.clear();
   }
 
  private:
   template <class Read>
   std::optional<OctreeFile> caught(const Read& read_tree) {
-    try {
-      return read_tree();
-    } catch (const std::runtime_error& error) {
-      complaint_ = error.what();
-      EXPECT_TRUE(complaint_.starts_with(path().string() + ": ")) << complaint_;
-      return std::nullopt;
-    }
+    std::optional<OctreeFile> file;
+    complaint_ = complaint_of<std::runtime_error>([&] { file = read_tree(); });
+    EXPECT_TRUE(file || complaint_.starts_with(path().string() + ": ")) << complaint_;
+    return file;
   }
 
  protected:
-  std::filesystem::path folder_;
   std::string complaint_;
 };
 

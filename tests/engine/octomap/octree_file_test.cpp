@@ -1,18 +1,10 @@
 #include "engine/octomap/octree_bytes.hpp"
+#include "support/test.hpp"
 
 #include <octomap/OcTree.h>
 #include <sys/stat.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <memory>
 #include <random>
-#include <sstream>
-#include <string>
 #include <unistd.h>
 
 namespace frontlux::test {
@@ -57,11 +49,9 @@ TEST_F(OctreeFileTest, AgreesWithOctoMapsOwnReaders) {
 TEST_F(OctreeFileTest, ReadsEmptyTrees) {
   octomap::OcTree tree(0.25);
   for (const std::string& content : {saved_binary(tree), saved_full(tree)}) {
-    const auto file = check(content);
-    ASSERT_TRUE(file) << complaint_;
-    EXPECT_EQ(file->node_count, 0U);
-    EXPECT_EQ(file->resolution, 0.25);
-    give_to_octomap(*file);
+    const OctreeFile file = accepted(content);
+    EXPECT_EQ(file.node_count, 0U);
+    EXPECT_EQ(file.resolution, 0.25);
     refuses(content + "x", {"declares no nodes, but 1 bytes"});
   }
 }
@@ -122,15 +112,11 @@ TEST_F(OctreeFileTest, SurvivesRandomDamage) {
 
 TEST_F(OctreeFileTest, KnowsTheDepthOfATree) {
   const std::string to_child = bytes({0x03, 0x00}), to_leaf = bytes({0x01, 0x00});
-  const auto deepest = check(header(kBinary, 17) + repeated(to_child, 15) + to_leaf);
-  ASSERT_TRUE(deepest) << complaint_;
-  give_to_octomap(*deepest);
+  accepted(header(kBinary, 17) + repeated(to_child, 15) + to_leaf);
   refuses(header(kBinary, 18) + repeated(to_child, 16) + to_leaf, {"more than 16 levels", "byte"});
 
   const std::string inner = full_record(0.F, 1), leaf = full_record(0.F, 0);
-  const auto deepest_full = check(header(kFull, 17) + repeated(inner, 16) + leaf);
-  ASSERT_TRUE(deepest_full) << complaint_;
-  give_to_octomap(*deepest_full);
+  accepted(header(kFull, 17) + repeated(inner, 16) + leaf);
   refuses(header(kFull, 18) + repeated(inner, 17) + leaf, {"more than 16 levels", "byte"});
 }
 
@@ -145,10 +131,7 @@ TEST_F(OctreeFileTest, RefusesEndlessChains) {
 TEST_F(OctreeFileTest, RefusesNodesWithoutTheChildrenTheyClaim) {
   refuses(header(kBinary, 2) + bytes({0x03, 0x00, 0x00, 0x00}), {"claims children and has none", "byte 63"});
   refuses(header(kBinary, 1) + bytes({0x00, 0x00}), {"root without children", ".ot"});
-  const auto root_only = check(header(kFull, 1) + full_record(-1.F, 0));
-  ASSERT_TRUE(root_only) << complaint_;
-  EXPECT_EQ(root_only->node_count, 1U);
-  give_to_octomap(*root_only);
+  EXPECT_EQ(accepted(header(kFull, 1) + full_record(-1.F, 0)).node_count, 1U);
 }
 
 TEST_F(OctreeFileTest, ComparesTheDeclaredSize) {
@@ -158,10 +141,7 @@ TEST_F(OctreeFileTest, ComparesTheDeclaredSize) {
   refuses(header(kBinary, 3) + two_nodes, {"declares 3 nodes and holds 2"});
   refuses(header(kBinary, 4294967295) + two_nodes, {"declares 4294967295 nodes and holds 2"});
   const std::string one_node = full_record(1.F, 0);
-  const auto file = check(header(kFull, 9) + one_node);
-  ASSERT_TRUE(file) << complaint_;
-  EXPECT_EQ(file->node_count, 1U);
-  give_to_octomap(*file);
+  EXPECT_EQ(accepted(header(kFull, 9) + one_node).node_count, 1U);
   refuses(header(kFull, 9) + one_node + "more", {"declares 9 nodes and holds 1"});
   EXPECT_TRUE(check(header(kFull, 1) + one_node + "more"));
 }
@@ -169,13 +149,11 @@ TEST_F(OctreeFileTest, ComparesTheDeclaredSize) {
 TEST_F(OctreeFileTest, AcceptsLogOddsThatAreNoNumbers) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float log_odds : {std::nanf(""), kInfinity, -kInfinity}) {
-    const auto file = check(header(kFull, 2) + full_record(0.F, 1) + full_record(log_odds, 0));
-    ASSERT_TRUE(file) << complaint_;
-    octomap::OcTree tree(file->resolution);
-    std::istringstream nodes(file->bytes.substr(file->data_offset));
+    const OctreeFile file = accepted(header(kFull, 2) + full_record(0.F, 1) + full_record(log_odds, 0));
+    octomap::OcTree tree(file.resolution);
+    std::istringstream nodes(file.bytes.substr(file.data_offset));
     tree.readData(nodes);
     EXPECT_EQ(tree.isNodeOccupied(tree.search(octomap::OcTreeKey(0, 0, 0))), log_odds > 0.F);
-    give_to_octomap(*file);
   }
 }
 

@@ -1,7 +1,7 @@
 #include "engine/octomap/octree_bytes.hpp"
+#include "support/test.hpp"
 
 #include <locale>
-#include <string>
 
 namespace frontlux::test {
 namespace {

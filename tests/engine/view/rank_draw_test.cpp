@@ -1,14 +1,8 @@
 #include "view/rank_draw.hpp"
 
+#include "support/test.hpp"
+
 #include <frontlux/key_box.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-#include <vector>
 
 namespace frontlux::test {
 namespace {

@@ -4,23 +4,17 @@
 
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-#include <vector>
-
 namespace frontlux::test {
 namespace {
 
 using detail::TargetIndex;
 
-constexpr int kMiddle = 32768;
+const KeyBox kBox{{32768, 32768, 0}, {32917, 32917, 79}};
 
 TEST(CellCode, SortsByCubesAndIsReversible) {
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
-    const VoxelKey a = make_key(random.below(65536), random.below(65536), random.below(65536));
+    const VoxelKey a = random.key_in(kAllVoxels);
     const std::uint64_t code = detail::cell_code(a);
     ASSERT_EQ(detail::cell_of_code(code), a);
     ASSERT_EQ(detail::cube_of_code(code), cube(make_key(a.x & ~7, a.y & ~7, a.z & ~7), 8));
@@ -32,8 +26,7 @@ TEST(CellCode, SortsByCubesAndIsReversible) {
 TEST(TargetIndex, ListsAllThatIsInView) {
   Random random(3);
   std::vector<VoxelKey> targets{{0, 0, 0}, {65535, 65535, 65535}};
-  for (int i = 0; i < 4000; ++i)
-    targets.push_back(make_key(kMiddle + random.below(150), kMiddle + random.below(150), random.below(80)));
+  for (int i = 0; i < 4000; ++i) targets.push_back(random.key_in(kBox));
   targets.push_back(targets.front());
   const TargetIndex index(targets);
   EXPECT_EQ(index.codes().size(), std::set<VoxelKey>(targets.begin(), targets.end()).size());
@@ -49,8 +42,7 @@ TEST(TargetIndex, ListsAllThatIsInView) {
   const ViewRegion view({FieldOfView::Shape::kSpinning, 0.0, 1.2, 6.0}, 0.3);
   std::vector<std::uint32_t> cubes;
   for (int i = 0; i < 100; ++i) {
-    const VoxelKey from =
-        make_key(kMiddle + random.below(150), kMiddle + random.below(150), random.below(80));
+    const VoxelKey from = random.key_in(kBox);
     index.list_cubes(view, {from, from}, cubes);
     EXPECT_TRUE(std::is_sorted(cubes.begin(), cubes.end()));
     EXPECT_LT(cubes.size(), index.cubes().size());

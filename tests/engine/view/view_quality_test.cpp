@@ -1,20 +1,14 @@
 // The renderer against brute force: target by target, with the field of view's own test and the grid caster.
 // What is drawn is judged by its statistics over many seeds, what is kept by rendering again.
 
+#include "engine/view/count_view.hpp"
+#include "support/complaint.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 
 #include <frontlux/view_quality.hpp>
 
-#include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-#include <string>
-#include <vector>
 
 namespace frontlux::test {
 namespace {
@@ -22,11 +16,7 @@ namespace {
 using Sampling = ViewQualityOptions::Sampling;
 using Estimator = ViewQualityOptions::Estimator;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr Sampling kSamplings[] = {Sampling::kFeasible, Sampling::kBuckets};
-
-FieldOfView lidar() { return {FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0}; }
-FieldOfView camera() { return {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 4.0}; }
 
 // A hall with pillars, in which some voxels were never seen.
 struct Hall {
@@ -41,8 +31,8 @@ struct Hall {
       grid.set(k, random.one_in(24) ? Occupancy::kUnknown : Occupancy::kFree);
     });
     for (int i = 0; i < 14; ++i) {
-      const int x = random.below(kLength), y = random.below(kLength);
-      for (int z = 0; z < kHeight; ++z) grid.set(make_key(low + x, low + y, low + z), Occupancy::kOccupied);
+      const VoxelKey at = random.key_in(box());
+      fill(grid, {make_key(at.x, at.y, low), make_key(at.x, at.y, low + kHeight - 1)}, Occupancy::kOccupied);
     }
     observe();
   }
@@ -67,30 +57,11 @@ struct Hall {
   }
 };
 
-struct Truth {
-  std::size_t in_view = 0, visible = 0;
-  std::vector<std::uint32_t> bins;
-};
-
-Truth look_at_all(const RayCaster& caster, const Hall& hall, const VoxelKey& from, const FieldOfView& view,
-                  std::size_t bins = 0) {
-  Truth truth{0, 0, std::vector<std::uint32_t>(bins)};
-  for (const VoxelKey& to : hall.targets) {
-    const double r = hall.grid.resolution();
-    const int dx = to.x - from.x, dy = to.y - from.y, dz = to.z - from.z;
-    if (!view.contains_at_some_yaw({dx * r, dy * r, dz * r})) continue;
-    ++truth.in_view;
-    const KeySegment segment{from, to};
-    std::uint8_t visible = 0;
-    caster.visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kBlock);
-    truth.visible += visible;
-    if (bins == 0 || visible == 0) continue;
-    double degrees = std::atan2(dy, dx) / kDegree;
-    if (degrees < 0) degrees += 360;
-    // Axes and diagonals lie on borders of bins, exactly.
-    ++truth.bins[static_cast<std::size_t>(degrees * static_cast<double>(bins) / 360 + 1e-9) % bins];
-  }
-  return truth;
+ViewCount look_at_all(const RayCaster& caster, const Hall& hall, const VoxelKey& from,
+                      const FieldOfView& view, int bins = 0) {
+  return count_view(from, hall.targets, view, hall.grid.resolution(), bins, [&](const VoxelKey& to) {
+    return is_visible(caster, {from, to}, UnknownPolicy::kBlock);
+  });
 }
 
 ViewQualityImage render(const RayCaster& caster, const Hall& hall, std::span<const VoxelKey> viewpoints,
@@ -108,8 +79,8 @@ void expect_equal(const ViewQualityImage& a, const ViewQualityImage& b) {
 }
 
 TEST(ViewQuality, IsExactWhereAllTargetsAreTaken) {
-  const FieldOfView sonar{FieldOfView::Shape::kCone, 50 * kDegree, 0.0, 3.3};
-  for (const FieldOfView& view : {lidar(), camera(), sonar})
+  const FieldOfView sonar = cone(50 * kDegree, 3.3);
+  for (const FieldOfView& view : {lidar(), camera(4), sonar})
     for (const int low : {0, 32750, 65536 - Hall::kLength}) {
       const Hall hall(1, low);
       const auto caster = make_grid_ray_caster(hall.grid);
@@ -122,7 +93,7 @@ TEST(ViewQuality, IsExactWhereAllTargetsAreTaken) {
         std::size_t seen = 0, exact = 0;
         for (std::size_t i = 0; i < image.size(); i += 7) {
           const ViewQuality& value = image.values()[i];
-          const Truth truth = look_at_all(*caster, hall, hall.viewpoints[i], view, 36);
+          const ViewCount truth = look_at_all(*caster, hall, hall.viewpoints[i], view, 36);
           if (sampling == Sampling::kFeasible) {
             ASSERT_EQ(value.population, truth.in_view);
           } else {
@@ -262,23 +233,22 @@ TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
   const auto grid = make_grid_ray_caster(hall.grid);
   for (const Sampling sampling : kSamplings) {
     const ViewQualityOptions options{.sampling = sampling, .azimuth_bins = 8};
-    const auto image = render(*fast, hall, hall.viewpoints, camera(), options);
+    const auto image = render(*fast, hall, hall.viewpoints, camera(4), options);
     for (const int threads : {1, 2})
       tbb::task_arena(threads).execute(
-          [&] { expect_equal(image, render(*fast, hall, hall.viewpoints, camera(), options)); });
-    expect_equal(image, render(*grid, hall, hall.viewpoints, camera(), options));
+          [&] { expect_equal(image, render(*fast, hall, hall.viewpoints, camera(4), options)); });
+    expect_equal(image, render(*grid, hall, hall.viewpoints, camera(4), options));
 
     std::vector<std::size_t> order(hall.viewpoints.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     Hall shuffled = hall;
     Random random(1);
-    for (std::size_t i = order.size(); i > 1; --i)
-      std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    random.shuffle(order);
     for (std::size_t i = 0; i < order.size(); ++i) shuffled.viewpoints[i] = hall.viewpoints[order[i]];
     shuffled.viewpoints.push_back(shuffled.viewpoints.front());
     std::reverse(shuffled.targets.begin(), shuffled.targets.end());
     shuffled.targets.push_back(shuffled.targets.front());
-    const auto other = render(*fast, shuffled, shuffled.viewpoints, camera(), options);
+    const auto other = render(*fast, shuffled, shuffled.viewpoints, camera(4), options);
     for (std::size_t i = 0; i < order.size(); ++i) {
       ASSERT_EQ(other.values()[i], image.values()[order[i]]);
       ASSERT_TRUE(std::ranges::equal(other.bin_hits(i), image.bin_hits(order[i])));
@@ -287,7 +257,7 @@ TEST(ViewQuality, SameOnAnyThreadsCastersAndOrder) {
 
     ViewQualityOptions reseeded = options;
     reseeded.seed = 2;
-    const auto redrawn = render(*fast, hall, hall.viewpoints, camera(), reseeded);
+    const auto redrawn = render(*fast, hall, hall.viewpoints, camera(4), reseeded);
     std::size_t differing = 0;
     for (std::size_t i = 0; i < image.size(); ++i)
       differing += redrawn.values()[i] == image.values()[i] ? 0 : 1;
@@ -312,40 +282,23 @@ TEST(ViewQuality, NothingToSeeOrNowhereToStandIsNoError) {
             ViewQuality{});
 }
 
-template <class Call>
-std::string complaint(const Call& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no complaint";
-}
-
 TEST(ViewQuality, NamesTheValueThatIsWrong) {
-  const Lattice lattice(0.3);
-  const auto with = [&](const FieldOfView& view, const ViewQualityOptions& options) {
-    return complaint([&] { const ViewQualityImage image(lattice, view, options); });
+  const auto refuses = [](const FieldOfView& view, const ViewQualityOptions& options, const std::string& part,
+                          double resolution = 0.3) {
+    expect_complaint([&] { const ViewQualityImage image(Lattice(resolution), view, options); }, {part});
   };
-  const auto has = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  has(with(lidar(), {.samples = 0}), "samples is 0");
-  has(with(lidar(), {.samples = -5}), "samples is -5");
-  has(with(lidar(), {.azimuth_bins = -1}), "azimuth_bins is -1");
-  has(with(lidar(), {.azimuth_bins = 3601}), "azimuth_bins is 3601");
-  has(with(lidar(), {.sampling = static_cast<Sampling>(9)}), "sampling is 9");
-  has(with(lidar(), {.estimator = static_cast<Estimator>(9)}), "estimator is 9");
-  has(with(lidar(), {.sampling = Sampling::kBuckets, .estimator = Estimator::kPaper}), "kFeasible");
-  FieldOfView view = lidar();
-  view.max_range = -1;
-  has(with(view, {}), "max_range is -1");
-  view.max_range = 4000;
-  has(with(view, {}), "max_range is 4000");
-  view.max_range = 1e300;
-  has(with(view, {}), "out of the numbers' range");
-  has(complaint([&] { const ViewQualityImage image(Lattice(1e-200), lidar(), {}); }), "resolution");
-  EXPECT_EQ(with(lidar(), {}), "no complaint");
+  refuses(lidar(), {.samples = 0}, "samples is 0");
+  refuses(lidar(), {.samples = -5}, "samples is -5");
+  refuses(lidar(), {.azimuth_bins = -1}, "azimuth_bins is -1");
+  refuses(lidar(), {.azimuth_bins = 3601}, "azimuth_bins is 3601");
+  refuses(lidar(), {.sampling = static_cast<Sampling>(9)}, "sampling is 9");
+  refuses(lidar(), {.estimator = static_cast<Estimator>(9)}, "estimator is 9");
+  refuses(lidar(), {.sampling = Sampling::kBuckets, .estimator = Estimator::kPaper}, "kFeasible");
+  refuses(lidar(-1), {}, "max_range is -1");
+  refuses(lidar(4000), {}, "max_range is 4000");
+  refuses(lidar(1e300), {}, "out of the numbers' range");
+  refuses(lidar(), {}, "resolution", 1e-200);
+  EXPECT_NO_THROW(ViewQualityImage(Lattice(0.3), lidar(), {}));
 }
 
 // Edits of all kinds, reported as the voxels that changed or also some that did not; each time the image has
@@ -357,7 +310,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
       Random random(exactly ? 8 : 9);
       const auto caster = make_ray_caster(hall.grid);
       const ViewQualityOptions options{.samples = 24, .sampling = sampling, .azimuth_bins = 12};
-      ViewQualityImage image(hall.grid.lattice(), camera(), options);
+      ViewQualityImage image(hall.grid.lattice(), camera(4), options);
       image.render(*caster, hall.viewpoints, hall.targets);
       std::size_t rendered = 0, all = 0;
       for (int step = 0; step < 25; ++step) {
@@ -370,7 +323,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
             return hall.low + std::clamp(i + random.below(5) - 2, 0, Hall::kLength - 1);
           };
           const VoxelKey k = make_key(near(x), near(y), hall.low + random.below(Hall::kHeight));
-          hall.grid.set(k, static_cast<Occupancy>(random.below(3)));
+          hall.grid.set(k, random.state());
           changed.push_back(k);
         }
         std::sort(changed.begin(), changed.end());
@@ -383,7 +336,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
         caster->update(hall.grid);
         rendered += image.update(*caster, hall.viewpoints, hall.targets, {hall.grid, changed});
         all += hall.viewpoints.size();
-        expect_equal(image, render(*caster, hall, hall.viewpoints, camera(), options));
+        expect_equal(image, render(*caster, hall, hall.viewpoints, camera(4), options));
         if (HasFatalFailure()) return;
       }
       EXPECT_GT(rendered, all / 50);
@@ -395,7 +348,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
 TEST(ViewQualityImage, TakesItsOwnViewpointsBack) {
   const Hall hall(10);
   const auto caster = make_grid_ray_caster(hall.grid);
-  auto image = render(*caster, hall, hall.viewpoints, camera(), {.azimuth_bins = 4});
+  auto image = render(*caster, hall, hall.viewpoints, camera(4), {.azimuth_bins = 4});
   const auto whole = image;
   const std::size_t half = image.size() / 2;
   EXPECT_EQ(image.update(*caster, image.viewpoints().subspan(half), hall.targets, {hall.grid}), 0U);

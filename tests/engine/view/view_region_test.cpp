@@ -1,20 +1,13 @@
 // The table of a field of view against the field of view itself, offset by offset.
 
 #include "support/random.hpp"
+#include "support/views.hpp"
 
 #include <frontlux/view_region.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
 
 namespace frontlux::test {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kMiddle = 32768;
 
 struct Case {
@@ -91,9 +84,9 @@ TEST(ViewRegion, RejectsBoxesOnlyIfNothingInThemIsInView) {
       const KeyBox a = box(0), b = box(30);
       const bool may = region.may_contain_voxel(a, b), may_point = region.may_contain_point(a, b);
       for (int pair = 0; pair < 20; ++pair) {
-        const auto between = [&](int low, int high) { return random.uniform(low, high); };
         const auto pick = [&](const KeyBox& c) -> Eigen::Vector3d {
-          return {between(c.min.x, c.max.x), between(c.min.y, c.max.y), between(c.min.z, c.max.z)};
+          return {random.uniform(c.min.x, c.max.x), random.uniform(c.min.y, c.max.y),
+                  random.uniform(c.min.z, c.max.z)};
         };
         const Eigen::Vector3d from = pick(a), to = pick(b), whole = to.array().round() - from.array().round();
         ASSERT_TRUE(may || !view.contains_at_some_yaw(whole * resolution));

@@ -3,10 +3,6 @@
 
 #include <frontlux/lattice.hpp>
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 namespace frontlux::test {
 namespace {
 

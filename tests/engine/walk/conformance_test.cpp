@@ -2,6 +2,7 @@
 // map; FRONTLUX_LONG=1 takes three million rays on each, the generated buildings and FRONTLUX_EXTRA_MAPS
 // included.
 
+#include "support/casters.hpp"
 #include "support/maps.hpp"
 #include "support/ray_samples.hpp"
 
@@ -9,23 +10,16 @@
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/synthetic/maps.hpp>
 
-#include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
-#include <atomic>
-#include <cstring>
-#include <functional>
 #include <iostream>
-#include <sstream>
-#include <string>
 
 namespace frontlux::test {
 namespace {
 
-constexpr UnknownPolicy kPolicies[] = {UnknownPolicy::kBlock, UnknownPolicy::kPass};
 constexpr std::size_t kBatch = 50'000;
 
-std::string text(const Ray& ray) {
+std::string words_of(const Ray& ray) {
   std::ostringstream out;
   out << std::hexfloat << "origin " << ray.origin.transpose() << " direction " << ray.direction.transpose()
       << " range " << ray.max_range;
@@ -36,13 +30,7 @@ bool same_bits(const Eigen::Vector3f& a, const octomap::point3d& b) {
   const float coordinates[] = {b.x(), b.y(), b.z()};
   return std::memcmp(a.data(), coordinates, sizeof(coordinates)) == 0;
 }
-
-bool same(const Hit& a, const Hit& b) {
-  return a.stop == b.stop && a.state == b.state && a.key == b.key &&
-         std::memcmp(&a.end, &b.end, sizeof a.end) == 0 &&
-         std::memcmp(&a.entry, &b.entry, sizeof a.entry) == 0 && a.distance == b.distance;
-}
-
+octomap::point3d point_of(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
 // Counts indices for which `agrees` is false, and describes the first few of them.
 class Disagreements {
  public:
@@ -90,8 +78,7 @@ void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64
   bad.check(
       count,
       [&](std::size_t i) {
-        const octomap::point3d origin(rays[i].origin.x(), rays[i].origin.y(), rays[i].origin.z());
-        const octomap::point3d direction(rays[i].direction.x(), rays[i].direction.y(), rays[i].direction.z());
+        const octomap::point3d origin = point_of(rays[i].origin), direction = point_of(rays[i].direction);
         const octomap::point3d untouched(1e20F, -2e20F, 3e20F);
         octomap::point3d end = untouched, drop_in_end = untouched;
         const bool hit = subject.map.tree->castRay(origin, direction, end, ignore_unknown, rays[i].max_range);
@@ -103,7 +90,7 @@ void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64
                same_bits(expected, drop_in_end) && same(walked[i], fast[i]) && same(walked[i], embree[i]) &&
                same(walked[i], octomap[i]);
       },
-      [&](std::size_t i) { return subject.map.name + ": " + text(rays[i]); });
+      [&](std::size_t i) { return subject.map.name + ": " + words_of(rays[i]); });
 }
 
 void expect_visibility_conforms(const Subject& subject, std::size_t count, std::uint64_t seed,
@@ -139,15 +126,14 @@ void expect_visibility_conforms(const Subject& subject, std::size_t count, std::
         if (unknown == UnknownPolicy::kPass || subject.grid.at(*from) != Occupancy::kFree ||
             subject.grid.at(*to) == Occupancy::kFree)
           return true;
-        const Eigen::Vector3f d = segments[i].to - segments[i].from;
         octomap::point3d end;
-        subject.map.tree->castRay({segments[i].from.x(), segments[i].from.y(), segments[i].from.z()},
-                                  {d.x(), d.y(), d.z()}, end, false);
+        subject.map.tree->castRay(point_of(segments[i].from), point_of(segments[i].to - segments[i].from),
+                                  end, false);
         const Eigen::Vector3f stopped(end.x(), end.y(), end.z());
         return (walked[i] == 1) == (subject.grid.lattice().key(stopped) == to);
       },
       [&](std::size_t i) {
-        return subject.map.name + ": segment " + text({segments[i].from, segments[i].to, 0.0});
+        return subject.map.name + ": segment " + words_of({segments[i].from, segments[i].to, 0.0});
       });
 }
 

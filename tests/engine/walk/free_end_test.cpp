@@ -8,11 +8,6 @@
 
 #include <frontlux/voxel_grid.hpp>
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstddef>
-
 namespace frontlux::test {
 namespace {
 

@@ -1,26 +1,17 @@
 // Counts along paths against paths made another way: castRay's traversal written out over the tree, and exact
 // fractions between voxel centres.
 
+#include "support/casters.hpp"
+#include "support/complaint.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
+#include "support/tree_state.hpp"
 
-#include <frontlux/caster_kind.hpp>
-#include <frontlux/octomap.hpp>
-#include <frontlux/ray_caster.hpp>
-
-#include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <memory>
 #include <ostream>
-#include <string>
-#include <vector>
 
 namespace frontlux {
 
@@ -34,18 +25,12 @@ void PrintTo(const PathCount& count, std::ostream* out) {
 namespace frontlux::test {
 namespace {
 
-constexpr std::array kPolicies = {UnknownPolicy::kBlock, UnknownPolicy::kPass};
-
 // Adds up voxels until something stops the path.
 class Tally {
  public:
   Tally(const octomap::OcTree& tree, UnknownPolicy unknown) : tree_(tree), unknown_(unknown) {}
 
-  [[nodiscard]] Occupancy state(const octomap::OcTreeKey& key) const {
-    const auto* node = tree_.search(key);
-    if (node == nullptr) return Occupancy::kUnknown;
-    return tree_.isNodeOccupied(node) ? Occupancy::kOccupied : Occupancy::kFree;
-  }
+  [[nodiscard]] Occupancy state(const octomap::OcTreeKey& key) const { return state_of(tree_, key); }
   [[nodiscard]] bool blocks(const octomap::OcTreeKey& key) const {
     const Occupancy s = state(key);
     return s == Occupancy::kOccupied || (s == Occupancy::kUnknown && unknown_ == UnknownPolicy::kBlock);
@@ -168,14 +153,6 @@ PathCount expected_count(const octomap::OcTree& tree, const KeySegment& segment,
   return tally.stopped(RayStop::kReached);
 }
 
-struct Casters {
-  explicit Casters(const octomap::OcTree& tree) : grid(make_voxel_grid(tree)) {
-    for (const auto& [name, kind] : kCasterNames) all.emplace_back(name, make_ray_caster(kind, grid, tree));
-  }
-  VoxelGrid grid;
-  std::vector<std::pair<std::string, std::unique_ptr<RayCaster>>> all;
-};
-
 constexpr PathCount kNotWritten{999, 999, 999, RayStop::kLeftMap};
 
 // Compares all casters with the oracle, on one thread and on two.
@@ -237,8 +214,7 @@ TEST(PathCount, OfPathsWithoutEnd) {
     auto keys = adversarial_key_segments(casters.grid, 60, 26);
     Random random(27);
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      const auto along = [&] { return static_cast<std::uint16_t>(random.bits()); };
-      const VoxelKey far{along(), along(), along()};
+      const VoxelKey far = random.key_in(kAllVoxels);
       (i % 2 == 0 ? keys[i].from : keys[i].to) = far;
       (i % 2 == 0 ? segments[i].from : segments[i].to) = casters.grid.lattice().center(far);
     }
@@ -354,10 +330,9 @@ TEST(PathCount, SpansOfDifferentSizesThrow) {
   const Casters casters(*tree);
   std::vector<PathCount> counts(2, kNotWritten);
   for (const auto& [name, caster] : casters.all) {
-    EXPECT_THROW(caster->count(std::vector<Ray>(3), counts, UnknownPolicy::kPass), std::invalid_argument);
-    EXPECT_THROW(caster->count(std::vector<Segment>(1), counts, UnknownPolicy::kPass), std::invalid_argument);
-    EXPECT_THROW(caster->count(std::vector<KeySegment>(0), counts, UnknownPolicy::kPass),
-                 std::invalid_argument);
+    EXPECT_REFUSED(caster->count(std::vector<Ray>(3), counts, UnknownPolicy::kPass));
+    EXPECT_REFUSED(caster->count(std::vector<Segment>(1), counts, UnknownPolicy::kPass));
+    EXPECT_REFUSED(caster->count(std::vector<KeySegment>(0), counts, UnknownPolicy::kPass));
     EXPECT_NO_THROW(caster->count(std::span<const Ray>{}, std::span<PathCount>{}, UnknownPolicy::kPass));
   }
   EXPECT_EQ(counts, std::vector<PathCount>(2, kNotWritten));
@@ -366,14 +341,10 @@ TEST(PathCount, SpansOfDifferentSizesThrow) {
 // An updated caster counts as a new one does.
 TEST(PathCount, AfterAnUpdate) {
   VoxelGrid grid = make_voxel_grid(*make_random_tree(6, 0.3));
-  const std::array casters = {make_grid_ray_caster(grid), make_embree_ray_caster(grid),
-                              make_ray_caster(grid)};
+  const auto casters = casters_of(grid);
   const auto rays = adversarial_rays(grid, 3'000, 41);
   Random random(42);
-  for (int i = 0; i < 400; ++i) {
-    const auto along = [&] { return static_cast<std::uint16_t>(32768 + random.below(160) - 80); };
-    grid.set({along(), along(), along()}, static_cast<Occupancy>(random.below(3)));
-  }
+  for (int i = 0; i < 400; ++i) grid.set(random.key_in(cube({32688, 32688, 32688}, 160)), random.state());
   std::vector<PathCount> before(rays.size()), expected(rays.size()), counts(rays.size());
   casters[0]->count(rays, before, UnknownPolicy::kPass);
   make_grid_ray_caster(grid)->count(rays, expected, UnknownPolicy::kPass);

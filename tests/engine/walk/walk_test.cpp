@@ -4,15 +4,9 @@
 #include "walk/walk.hpp"
 
 #include "support/maps.hpp"
-#include "support/random.hpp"
 #include "support/ray_samples.hpp"
 
 #include <frontlux/octomap.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
 
 namespace frontlux::test {
 namespace {

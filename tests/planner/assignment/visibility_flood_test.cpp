@@ -4,17 +4,10 @@
 
 #include "assignment/view_offsets.hpp"
 #include "support/random.hpp"
+#include "support/views.hpp"
 
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/view_region.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <numbers>
-#include <set>
-#include <vector>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -22,7 +15,6 @@ namespace {
 using test::Random;
 
 constexpr int kSize = 20;  // [voxels] of the map, along x and y; along z it is twice as high
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Scene {
   VoxelGrid grid{0.5};
@@ -35,25 +27,22 @@ Scene random_scene(std::uint64_t seed) {
   const int wall = 2 + random.below(8);
   const std::array<int, 3> corner = {random.one_in(2) ? 0 : 32750, 32767,
                                      random.one_in(3) ? 65536 - 2 * kSize : 7};
-  for (int x = 0; x < kSize; ++x)
-    for (int y = 0; y < kSize; ++y)
-      for (int z = 0; z < 2 * kSize; ++z) {
-        const VoxelKey key = make_key(corner[0] + x, corner[1] + y, corner[2] + z);
-        if (random.one_in(wall) || z % 11 == 5) {
-          if (!random.one_in(10)) scene.grid.set(key, Occupancy::kOccupied);
-        } else if (random.one_in(2)) {
-          scene.grid.set(key, Occupancy::kFree);
-        }
-        if (random.one_in(3)) scene.cells.push_back(key);
-        if (random.one_in(600)) scene.targets.push_back(key);
-      }
+  const VoxelKey low = make_key(corner[0], corner[1], corner[2]);
+  for_each_key({low, make_key(low.x + kSize - 1, low.y + kSize - 1, low.z + 2 * kSize - 1)},
+               [&](const VoxelKey& key) {
+                 if (random.one_in(wall) || (key.z - low.z) % 11 == 5) {
+                   if (!random.one_in(10)) scene.grid.set(key, Occupancy::kOccupied);
+                 } else if (random.one_in(2)) {
+                   scene.grid.set(key, Occupancy::kFree);
+                 }
+                 if (random.one_in(3)) scene.cells.push_back(key);
+                 if (random.one_in(600)) scene.targets.push_back(key);
+               });
   return scene;
 }
 
 std::vector<FieldOfView> views() {
-  return {{FieldOfView::Shape::kSpinning, 0.0, 40 * kDegree, 6.0},
-          {FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0},
-          {FieldOfView::Shape::kCone, 170 * kDegree, 0.0, 5.0}};
+  return {test::lidar(6.0), test::camera(9.0), test::cone(170 * test::kDegree, 5.0)};
 }
 
 TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
@@ -73,17 +62,13 @@ TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
         ASSERT_TRUE(std::ranges::adjacent_find(found) == found.end()) << "a cell twice, seed " << seed;
         std::size_t feasible = 0;
         for (const VoxelKey& cell : scene.cells) {
-          if (!view.contains_at_some_yaw(
-                  Eigen::Vector3d(cell.x - target.x, cell.y - target.y, cell.z - target.z) * 0.5))
-            continue;
+          if (!view.contains_at_some_yaw(test::offset_between(target, cell, 0.5))) continue;
           ++in_view;
           const bool is_found = std::ranges::binary_search(found, cell);
           feasible += is_found ? 1 : 0;
-          const KeySegment segment{cell, target};
-          std::uint8_t visible = 0;
-          caster->visible({&segment, 1}, {&visible, 1}, UnknownPolicy::kPass);
-          seeing += visible;
-          ASSERT_TRUE(is_found || visible == 0) << "seed " << seed;
+          const bool visible = test::is_visible(*caster, {cell, target}, UnknownPolicy::kPass);
+          seeing += visible ? 1 : 0;
+          ASSERT_TRUE(is_found || !visible) << "seed " << seed;
         }
         ASSERT_EQ(feasible, found.size())
             << "cells that are not of the corridor or not in view, seed " << seed;
@@ -98,12 +83,11 @@ TEST(VisibilityFlood, MissesNoCellThatSeesTheTarget) {
 TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
   VoxelGrid grid(0.5);
   std::vector<VoxelKey> cells;
-  for (std::uint16_t y = 100; y < 120; ++y)
-    for (std::uint16_t z = 100; z < 120; ++z) {
-      grid.set({110, y, z}, Occupancy::kOccupied);
-      for (std::uint16_t x = 111; x < 120; ++x) cells.push_back({x, y, z});
-    }
-  const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 72 * kDegree, 9.0}, 0.5);
+  for_each_key({{110, 100, 100}, {119, 119, 119}}, [&](const VoxelKey& key) {
+    if (key.x == 110) return grid.set(key, Occupancy::kOccupied);
+    cells.push_back(key);
+  });
+  const ViewRegion region(test::camera(9.0), 0.5);
   const VoxelKey target{108, 110, 110};
   const auto found_from = [&] {
     const auto flood = VisibilityFlood::make(grid, cells, region, {target, target});
@@ -120,7 +104,7 @@ TEST(VisibilityFlood, FindsNothingBehindAClosedWall) {
 
 TEST(VisibilityFlood, LeavesRegionsThatAreTooHighToOthers) {
   const Scene scene = random_scene(1);
-  const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * kDegree, 90 * kDegree, 50.0}, 0.5);
+  const ViewRegion region({FieldOfView::Shape::kPyramid, 90 * test::kDegree, 90 * test::kDegree, 50.0}, 0.5);
   ASSERT_GT(region.greatest_height(), 63);
   EXPECT_FALSE(VisibilityFlood::make(scene.grid, scene.cells, region, bounds_of(scene.targets)));
 }

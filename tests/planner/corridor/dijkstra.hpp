@@ -1,13 +1,9 @@
 #pragma once
 
+#include "support/test.hpp"
+
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
-
-#include <array>
-#include <cstdlib>
-#include <map>
-#include <set>
-#include <utility>
 
 namespace frontlux::test {
 

@@ -3,10 +3,7 @@
 #include "corridor/erosion.hpp"
 
 #include "support/random.hpp"
-
-#include <gtest/gtest.h>
-
-#include <vector>
+#include "support/voxel_keys.hpp"
 
 namespace frontlux::planner::detail {
 namespace {
@@ -14,13 +11,9 @@ namespace {
 using test::Random;
 
 bool is_whole(const VoxelGrid& grid, const KeyBox& box, const VoxelWindow& window, const VoxelKey& key) {
-  for (int x = window.low[0]; x <= window.high[0]; ++x)
-    for (int y = window.low[1]; y <= window.high[1]; ++y)
-      for (int z = window.low[2]; z <= window.high[2]; ++z) {
-        const auto at = offset_key(key, x, y, z);
-        if (!at || !box.contains(*at) || grid.at(*at) != Occupancy::kFree) return false;
-      }
-  return true;
+  const auto at = [&](const auto& offset) { return offset_key(key, offset[0], offset[1], offset[2]); };
+  const auto low = at(window.low), high = at(window.high);
+  return low && high && box.contains(*low) && box.contains(*high) && test::is_free(grid, {*low, *high});
 }
 
 // Boxes of up to four words a column, on bricks and off them, at both ends of the key range and in its
@@ -53,7 +46,7 @@ TEST(Erosion, EqualsBruteForceAfterRandomChanges) {
       std::vector<VoxelKey> changed;
       for_each_key(grown(box, 3), [&](const VoxelKey& key) {
         if (!random.one_in(150)) return;
-        grid.set(key, random.one_in(4) ? static_cast<Occupancy>(random.below(3)) : Occupancy::kFree);
+        grid.set(key, random.one_in(4) ? random.state() : Occupancy::kFree);
         changed.push_back(key);
       });
       erosion.read(grid, changed);

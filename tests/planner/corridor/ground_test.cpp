@@ -4,11 +4,6 @@
 
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <vector>
-
 namespace frontlux::planner::detail {
 namespace {
 

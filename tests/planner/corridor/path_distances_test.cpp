@@ -5,11 +5,6 @@
 #include "planner/corridor/dijkstra.hpp"
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 namespace frontlux::planner::detail {
 namespace {
 

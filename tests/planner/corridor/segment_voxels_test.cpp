@@ -1,17 +1,7 @@
 #include "support/random.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/planner/segment_voxels.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <set>
-#include <utility>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
@@ -62,7 +52,7 @@ Keys touched(const std::array<std::int64_t, 3>& from, const std::array<std::int6
           if (last * end.second < end.first * size) end = {last, size};
         }
         meets = begin.first * end.second <= end.first * begin.second;
-        if (meets) keys.insert(make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z));
+        if (meets) keys.insert(test::key_at(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)));
       }
   return keys;
 }
@@ -149,14 +139,12 @@ TEST(SegmentVoxels, OfABoxAreExactlyThoseOfItsCorners) {
 
 TEST(SegmentVoxels, StaysOnOneSideOfAFaceInWhichItLies) {
   const Lattice lattice(0.25);
-  const auto keys = [](int x, int y, int z) {
-    return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
-  };
+  using test::key_at;
   EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.6, 0.1, 1.0}),
-            (Keys{keys(0, 0, 4), keys(1, 0, 4), keys(2, 0, 4)}));
+            (Keys{key_at(0, 0, 4), key_at(1, 0, 4), key_at(2, 0, 4)}));
   // Upwards from a face nothing below it is asked for, downwards both sides are.
-  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 1.3}), (Keys{keys(0, 0, 4), keys(0, 0, 5)}));
-  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 0.9}), (Keys{keys(0, 0, 3), keys(0, 0, 4)}));
+  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 1.3}), (Keys{key_at(0, 0, 4), key_at(0, 0, 5)}));
+  EXPECT_EQ(entered(lattice, {0.1, 0.1, 1.0}, {0.1, 0.1, 0.9}), (Keys{key_at(0, 0, 3), key_at(0, 0, 4)}));
   // Through an edge: all four around it.
   EXPECT_EQ(entered(lattice, {0.2, 0.2, 0.1}, {0.3, 0.3, 0.1}).size(), 4U);
   EXPECT_EQ(entered(lattice, {0.2, 0.2, 0.2}, {0.3, 0.3, 0.3}).size(), 8U);

@@ -2,16 +2,6 @@
 
 #include "support/voxel_keys.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <set>
-#include <utility>
-#include <vector>
-
 namespace frontlux::planner {
 namespace {
 
@@ -19,12 +9,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 // A range along one direction, from a viewpoint.
 Scan scan_along(const Pose& from, const Eigen::Vector3f& direction, float range) {
-  Scan scan;
-  scan.origin = from.position.cast<float>();
-  scan.max_range = 10.0;
-  scan.directions = {direction};
-  scan.ranges = {range};
-  return scan;
+  return {from.position.cast<float>(), 10.0, {direction}, {range}};
 }
 
 // A free hall of 6 x 3 x 3 m whose lower corner is the origin, and a robot of 0.8 m that crosses it.

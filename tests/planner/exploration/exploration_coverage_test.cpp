@@ -6,11 +6,7 @@
 
 #include <frontlux/sim/coverage.hpp>
 
-#include <gtest/gtest.h>
-
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {

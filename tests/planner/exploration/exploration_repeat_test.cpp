@@ -2,18 +2,9 @@
 // recorded steps are gone through.
 
 #include "planner/exploration/team_in_world.hpp"
+#include "support/test.hpp"
 
-#include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {

@@ -1,17 +1,10 @@
 // Whole explorations of built-in worlds, every step of which is judged by what it may do and what it says.
 
 #include "planner/exploration/team_in_world.hpp"
+#include "support/plain_frontiers.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/io/robot_file.hpp>
-#include <frontlux/planner/visible_pairs.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
@@ -21,27 +14,6 @@ using test::same;
 using test::TeamInWorld;
 using test::uav_and_ugv;
 
-bool is_frontier(const VoxelGrid& grid, const VoxelKey& key) {
-  if (grid.at(key) != Occupancy::kUnknown) return false;
-  for (const int sign : {-1, 1}) {
-    const auto beside = [sign](std::uint16_t at) { return static_cast<std::uint16_t>(at + sign); };
-    if (grid.at({beside(key.x), key.y, key.z}) == Occupancy::kFree ||
-        grid.at({key.x, beside(key.y), key.z}) == Occupancy::kFree ||
-        grid.at({key.x, key.y, beside(key.z)}) == Occupancy::kFree)
-      return true;
-  }
-  return false;
-}
-
-std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds) {
-  std::vector<VoxelKey> frontiers;
-  for_each_key(bounds, [&](const VoxelKey& key) {
-    if (is_frontier(grid, key)) frontiers.push_back(key);
-  });
-  std::sort(frontiers.begin(), frontiers.end());
-  return frontiers;
-}
-
 // Whether a body that stands still here is in voxels that are known free. One on a plane is judged by its
 // width, since which layers it takes is the corridor's business.
 bool body_is_free(const VoxelGrid& grid, const TravelOptions& body, const Eigen::Vector3d& at) {
@@ -50,8 +22,7 @@ bool body_is_free(const VoxelGrid& grid, const TravelOptions& body, const Eigen:
   if (body.motion == Motion::kPlane) half.z() = 0.0;
   half -= Eigen::Vector3d::Constant(1e-4).cwiseMin(half);
   const Eigen::Vector3d low = at - half, high = at + half;
-  return all_of(KeyBox{lattice.key(low).value(), lattice.key(high).value()},
-                [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
+  return test::is_free(grid, {lattice.key(low).value(), lattice.key(high).value()});
 }
 
 // What a run comes to.
@@ -80,7 +51,7 @@ class Watch {
   void step() {
     const VoxelGrid before = grid();
     const std::vector<Pose> from(exploration_.poses().begin(), exploration_.poses().end());
-    const auto frontiers = frontiers_of(before, team_.truth.bounds());
+    const auto frontiers = test::frontiers_by_hand(before, team_.truth.bounds());
     ASSERT_TRUE(std::ranges::equal(exploration_.frontiers(), frontiers)) << "step " << sums_.steps;
 
     std::map<std::size_t, VoxelGrid> when;  // the map as each robot set out
@@ -172,30 +143,13 @@ class Watch {
     }
     // Frontiers in view along the path by rays one at a time on the grid; its own are among them.
     const FieldOfView& view = team_.robots[r].robot.view;
-    const Lattice& lattice = before.lattice();
-    const auto caster = make_grid_ray_caster(before);
-    std::set<VoxelKey> in_view, in_view_of_places_gone_to;
-    for (std::size_t i = 0; i < robot.planned.size(); ++i) {
-      const Pose& at = robot.planned[i];
-      std::vector<Segment> segments;
-      std::vector<VoxelKey> keys;
-      for (const VoxelKey& key : frontiers) {
-        const Eigen::Vector3d center = lattice.exact_center(key);
-        if (!view.contains(center - at.position, at.yaw)) continue;
-        segments.push_back({at.position.cast<float>(), center.cast<float>()});
-        keys.push_back(key);
-      }
-      std::vector<std::uint8_t> visible(segments.size());
-      caster->visible(segments, visible, UnknownPolicy::kBlock);
-      for (std::size_t k = 0; k < keys.size(); ++k)
-        if (visible[k] != 0) {
-          in_view.insert(keys[k]);
-          if (i > 0 && i < robot.travelled) in_view_of_places_gone_to.insert(keys[k]);
-        }
-    }
+    const std::span<const Pose> path = robot.planned;
+    const auto gone_to = path.first(robot.travelled).subspan(robot.travelled == 0 ? 0 : 1);
+    const auto in_view = test::seen_by_hand(before, path, frontiers, view),
+               in_view_of_places_gone_to = test::seen_by_hand(before, gone_to, frontiers, view);
     EXPECT_LE(robot.gain_predicted, in_view.size());
     for (const VoxelKey& key : robot.still_unknown) {
-      EXPECT_TRUE(in_view_of_places_gone_to.contains(key));
+      EXPECT_TRUE(std::ranges::binary_search(in_view_of_places_gone_to, key));
       EXPECT_LT(looks_[key], exploration_.options().max_visits);
     }
   }
@@ -214,9 +168,7 @@ class Watch {
     EXPECT_TRUE(robot.changed == expected) << robot.changed.size() << " for " << expected.size();
     EXPECT_EQ(robot.gained, gained);
     sums_.gained += gained;
-    for (const VoxelKey& key : robot.still_unknown) {
-      EXPECT_EQ(after.at(key), Occupancy::kUnknown);
-    }
+    for (const VoxelKey& key : robot.still_unknown) EXPECT_EQ(after.at(key), Occupancy::kUnknown);
   }
 
   [[nodiscard]] const VoxelGrid& grid() const { return exploration_.mapping().grid(); }

@@ -8,58 +8,36 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/sim/coverage.hpp>
 
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <unistd.h>
 #include <variant>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
 namespace fs = std::filesystem;
 using test::content_of;
+using test::status_of;
 using test::TeamInWorld;
 
-class ExploreRecorded : public testing::Test {
+class ExploreRecorded : public test::FolderTest {
  protected:
-  ExploreRecorded() : folder_(fs::temp_directory_path() / ("frontlux_recorded_" + std::to_string(getpid()))) {
+  ExploreRecorded() {
     fs::create_directories(folder_ / "scans");
-    std::ofstream(folder_ / "robot.json") << R"({"name": "uav", "motion": "space", "box_m": [0.8, 0.8, 0.8],
+    write("robot.json", R"({"name": "uav", "motion": "space", "box_m": [0.8, 0.8, 0.8],
               "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 8,
-                         "columns": 100, "rows": 75}})";
+                         "columns": 100, "rows": 75}})");
   }
-  ~ExploreRecorded() override { fs::remove_all(folder_); }
 
-  [[nodiscard]] std::vector<std::string> words(const Pose& start, const std::string& seconds) const {
-    std::vector<std::string> all = {FRONTLUX_EXPLORE_RECORDED, (folder_ / "robot.json").string(),
-                                    (folder_ / "scans").string()};
+  [[nodiscard]] pid_t begin(const Pose& start, const std::string& seconds) const {
+    std::vector<std::string> all = {FRONTLUX_EXPLORE_RECORDED, path("robot.json"), path("scans")};
     for (const double number : {start.position.x(), start.position.y(), start.position.z(), start.yaw})
       all.push_back(std::to_string(number));
     all.push_back(seconds);
-    return all;
+    return test::start(all, folder_);
   }
-  [[nodiscard]] pid_t begin(std::vector<std::string> all) const {
-    const pid_t child = fork();
-    if (child != 0) return child;
-    static_cast<void>(std::freopen((folder_ / "out").c_str(), "w", stdout));
-    static_cast<void>(std::freopen((folder_ / "err").c_str(), "w", stderr));
-    std::vector<char*> argv;
-    for (std::string& word : all) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    execv(argv[0], argv.data());
-    _exit(127);
+  void expect_success(int status) const {
+    EXPECT_EQ(test::exit_code(status), 0) << content_of(folder_ / "err");
   }
 
   // Writes what a robot measures as a file in the sensor's frame, and where it was.
@@ -84,7 +62,6 @@ class ExploreRecorded : public testing::Test {
     fs::rename(folder_ / "scans/poses.new", folder_ / "scans/poses.csv");
   }
 
-  fs::path folder_;
   int scans_ = 0;
   std::string table_ = "file,x,y,z,yaw\n";
 };
@@ -94,7 +71,7 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
   const TeamInWorld team("room", 1, robot);
   sim::SimulatedRobots robots = team.bodies();
   const Pose start = team.starts[0].pose;
-  const pid_t child = begin(words(start, "60"));
+  const pid_t child = begin(start, "60");
   ASSERT_GT(child, 0);
   // The robot goes where next.csv says, until the program has ended.
   int status = 0;
@@ -108,7 +85,7 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
     ASSERT_EQ(next.size(), 1U);
     answer(robots.drive(0, next[0].pose).value(), next[0].pose);
   }
-  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  expect_success(status);
   const std::string told = content_of(folder_ / "out"), map = content_of(folder_ / "scans/map.bt");
   EXPECT_NE(told.find("\nend: "), std::string::npos) << told;
   EXPECT_GT(scans_, 10);
@@ -121,28 +98,22 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
 
   // The folder is a recording: without a robot, and without waiting, it gives the same.
   fs::remove(folder_ / "scans/map.bt");
-  const pid_t again = begin(words(start, "0"));
-  ASSERT_EQ(waitpid(again, &status, 0), again);
-  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  expect_success(status_of(begin(start, "0")));
   EXPECT_EQ(content_of(folder_ / "out"), told);
   EXPECT_TRUE(content_of(folder_ / "scans/map.bt") == map);
 }
 
 TEST_F(ExploreRecorded, EndsWithoutAnAnswer) {
-  int status = 0;
-  const pid_t child = begin(words({{1.05, 1.05, 1.65}, 0.0}, "0"));
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << content_of(folder_ / "err");
+  const Pose start{{1.05, 1.05, 1.65}, 0.0};
+  expect_success(status_of(begin(start, "0")));
   EXPECT_NE(content_of(folder_ / "out").find("end: "), std::string::npos);
   // The first place that it would have the robot look from is where the robot is.
   const auto next = io::read_pose_list(folder_ / "scans/next.csv");
   ASSERT_EQ(next.size(), 1U);
-  EXPECT_TRUE(test::same(next[0].pose, Pose{{1.05, 1.05, 1.65}, 0.0}));
+  EXPECT_TRUE(test::same(next[0].pose, start));
 
   std::ofstream(folder_ / "scans/poses.csv") << "scan1.ply,1.05,1.05,1.65,0\n";
-  const pid_t missing = begin(words({{1.05, 1.05, 1.65}, 0.0}, "0"));
-  ASSERT_EQ(waitpid(missing, &status, 0), missing);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2);
+  EXPECT_EQ(test::exit_code(status_of(begin(start, "0"))), 2);
   EXPECT_NE(content_of(folder_ / "err").find("scan1.ply"), std::string::npos);
 }
 

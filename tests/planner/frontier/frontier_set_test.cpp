@@ -1,40 +1,14 @@
+#include "support/plain_frontiers.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/mapping.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
+using test::frontiers_by_hand;
 using test::Random;
-
-// Voxel by voxel, neighbour by neighbour.
-std::vector<VoxelKey> frontiers_by_hand(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency) {
-  std::vector<VoxelKey> frontiers;
-  for (int x = bounds.min.x; x <= bounds.max.x; ++x)
-    for (int y = bounds.min.y; y <= bounds.max.y; ++y)
-      for (int z = bounds.min.z; z <= bounds.max.z; ++z) {
-        const VoxelKey key = make_key(x, y, z);
-        if (grid.at(key) != Occupancy::kUnknown) continue;
-        bool frontier = false;
-        for_each_key(grown({key, key}, 1), [&](const VoxelKey& k) {
-          const int axes = (k.x != key.x) + (k.y != key.y) + (k.z != key.z);
-          frontier =
-              frontier || ((adjacency == Adjacency::kCorners || axes == 1) && grid.at(k) == Occupancy::kFree);
-        });
-        if (frontier) frontiers.push_back(key);
-      }
-  return frontiers;
-}
 
 void expect_frontiers(const FrontierSet& set, const VoxelGrid& grid, const KeyBox& bounds,
                       Adjacency adjacency, const std::string& where) {
@@ -44,7 +18,7 @@ void expect_frontiers(const FrontierSet& set, const VoxelGrid& grid, const KeyBo
   for (const VoxelKey& key : expected) ASSERT_TRUE(set.contains(key)) << where;
 }
 
-KeyBox around(int x, int y, int z, int reach) { return grown({make_key(x, y, z), make_key(x, y, z)}, reach); }
+KeyBox around(int x, int y, int z, int reach) { return grown(cube(make_key(x, y, z), 1), reach); }
 
 // Random voxels and blocks at places where bricks, tiles, sectors and the key range end.
 TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
@@ -58,15 +32,10 @@ TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
       for (int round = 0; round < 25; ++round) {
         std::vector<VoxelKey> changed;
         for (int i = 0; i < 1 + random.below(60); ++i) {
-          const auto along = [&](int min, int max) { return min + random.below(max - min + 1); };
-          const int log2_edge = random.one_in(4) ? random.below(4) : 0;
-          const auto corner_along = [&](int min, int max) {
-            return (along(min, max) >> log2_edge) << log2_edge;
-          };
-          const int kx = corner_along(edits.min.x, edits.max.x), ky = corner_along(edits.min.y, edits.max.y);
-          const VoxelKey key = make_key(kx, ky, corner_along(edits.min.z, edits.max.z));
-          grid.fill({key, log2_edge}, static_cast<Occupancy>(random.below(3)));
-          for_each_key(cube(key, 1 << log2_edge), [&](const VoxelKey& k) { changed.push_back(k); });
+          const Block block = random.block_in(edits, random.one_in(4) ? random.below(4) : 0);
+          grid.fill(block, random.state());
+          for_each_key(cube(block.corner, 1 << block.log2_edge),
+                       [&](const VoxelKey& k) { changed.push_back(k); });
         }
         set.update({grid, changed});
         const std::string where = "at " + std::to_string(x) + ", round " + std::to_string(round);
@@ -79,7 +48,7 @@ TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
 
 Scan random_scan(Random& random) {
   Scan scan;
-  for (int a = 0; a < 3; ++a) scan.origin[a] = static_cast<float>(random.uniform(-2.5, 2.5));
+  scan.origin = random.point(-2.5, 2.5).cast<float>();
   scan.max_range = 4.0;
   const double yaw = random.uniform(-3.1, 3.1);
   for (int i = 0; i < 400; ++i) {

@@ -3,14 +3,6 @@
 #include "frontier/abandoned_frontiers.hpp"
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <iterator>
-#include <map>
-#include <set>
-#include <vector>
-
 namespace frontlux::planner {
 namespace {
 
@@ -39,11 +31,10 @@ TEST(SmallClusters, AreThoseThatAFloodFillFinds) {
   for (const int origin : {0, 32700, 0xFFFF - 19})
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
       Random random(seed);
+      const KeyBox box = cube(make_key(origin, origin, origin), 20);
       VoxelGrid grid(0.3);
-      for (int i = 0; i < 30; ++i) {
-        const auto along = [&] { return static_cast<std::uint16_t>(origin + random.below(20)); };
-        grid.set({along(), along(), along()}, random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree);
-      }
+      for (int i = 0; i < 30; ++i)
+        grid.set(random.key_in(box), random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree);
       const FrontierSet frontiers(grid, kAllVoxels);
       const auto sizes = cluster_sizes(frontiers.keys());
       std::vector<VoxelKey> some;

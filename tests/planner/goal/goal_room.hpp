@@ -2,17 +2,14 @@
 
 #include "planner/corridor/dijkstra.hpp"
 #include "support/random.hpp"
+#include "support/views.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
-
-#include <algorithm>
-#include <cstdint>
-#include <map>
-#include <vector>
 
 namespace frontlux::test {
 
@@ -23,9 +20,8 @@ struct GoalRoom {
   VoxelGrid grid{0.3};
 
   GoalRoom(int edge, int layers) : length(edge), height(layers) {
-    for_each_key(bounds(), [this](const VoxelKey& at) {
-      grid.set(at, at.z < kLow ? Occupancy::kOccupied : Occupancy::kFree);
-    });
+    fill(grid, bounds(), Occupancy::kFree);
+    fill(grid, {key(0, 0, -1), key(edge - 1, edge - 1, -1)}, Occupancy::kOccupied);
   }
 
   /// Pillars, crates and places that were never seen.
@@ -35,14 +31,18 @@ struct GoalRoom {
     for (int i = 0; i < 9; ++i) box(random, 1 + random.below(4), 4, Occupancy::kUnknown);
   }
 
-  [[nodiscard]] static VoxelKey key(int x, int y, int z) { return make_key(kLow + x, kLow + y, kLow + z); }
+  [[nodiscard]] static VoxelKey key(int x, int y, int z) { return key_at(x, y, z); }
+  VoxelKey unknown(int x, int y, int z) {
+    grid.set(key(x, y, z), Occupancy::kUnknown);
+    return key(x, y, z);
+  }
   [[nodiscard]] KeyBox bounds() const { return {key(0, 0, -1), key(length - 1, length - 1, height - 1)}; }
 
   void box(Random& random, int edge, int layers, Occupancy state) {
-    const int x0 = random.below(length), y0 = random.below(length), z0 = random.below(height);
-    const VoxelKey corner = key(x0, y0, layers == height ? 0 : z0);
-    const KeyBox voxels{corner, key(x0 + edge - 1, y0 + edge - 1, z0 + layers - 1)};
-    for_each_key(*intersection(voxels, bounds()), [&](const VoxelKey& at) { grid.set(at, state); });
+    VoxelKey corner = random.key_in({key(0, 0, 0), bounds().max});
+    if (layers == height) corner.z = kLow;
+    const KeyBox voxels{corner, make_key(corner.x + edge - 1, corner.y + edge - 1, corner.z + layers - 1)};
+    fill(grid, *intersection(voxels, bounds()), state);
   }
 
   [[nodiscard]] std::vector<VoxelKey> frontiers() const {
@@ -56,25 +56,10 @@ struct GoalRoom {
 
   /// Makes room for a robot around a cell, and floor under it.
   void clear(int x0, int y0, int z0, int half = 2) {
-    const KeyBox around{key(x0 - half, y0 - half, std::max(z0 - half, 0)),
-                        key(x0 + half, y0 + half, z0 + half)};
-    for_each_key(around, [this](const VoxelKey& at) { grid.set(at, Occupancy::kFree); });
+    fill(grid, {key(x0 - half, y0 - half, std::max(z0 - half, 0)), key(x0 + half, y0 + half, z0 + half)},
+         Occupancy::kFree);
   }
 };
-
-/// From one voxel's centre to another's [m].
-inline Eigen::Vector3d offset_between(const VoxelKey& from, const VoxelKey& to, double resolution) {
-  return Eigen::Vector3d(to.x - from.x, to.y - from.y, to.z - from.z) * resolution;
-}
-
-/// One ray.
-inline bool is_visible(const RayCaster& caster, const VoxelKey& from, const VoxelKey& to,
-                       UnknownPolicy unknown) {
-  const KeySegment segment{from, to};
-  std::uint8_t visible = 0;
-  caster.visible({&segment, 1}, {&visible, 1}, unknown);
-  return visible != 0;
-}
 
 /// The paper's Alg. 2, ray by ray.
 inline std::vector<VoxelKey> naive_assigned(const RayCaster& caster, double resolution,
@@ -84,7 +69,7 @@ inline std::vector<VoxelKey> naive_assigned(const RayCaster& caster, double reso
   for (const VoxelKey& frontier : frontiers)
     for (const VoxelKey& cell : corridor)
       if (view.contains_at_some_yaw(offset_between(cell, frontier, resolution)) &&
-          is_visible(caster, cell, frontier, UnknownPolicy::kPass)) {
+          is_visible(caster, {cell, frontier}, UnknownPolicy::kPass)) {
         assigned.push_back(frontier);
         break;
       }
@@ -97,7 +82,7 @@ inline std::vector<VoxelKey> naive_seen(const RayCaster& caster, double resoluti
   std::vector<VoxelKey> seen;
   for (const VoxelKey& frontier : frontiers)
     if (view.contains_at_some_yaw(offset_between(from, frontier, resolution)) &&
-        is_visible(caster, from, frontier, UnknownPolicy::kBlock))
+        is_visible(caster, {from, frontier}, UnknownPolicy::kBlock))
       seen.push_back(frontier);
   return seen;
 }

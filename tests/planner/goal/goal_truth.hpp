@@ -1,30 +1,11 @@
 #pragma once
 
 #include "planner/goal/goal_room.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
-#include <vector>
+#include "support/test.hpp"
 
 namespace frontlux::test {
 
-using planner::Goal;
-using planner::goal_options;
-using planner::GoalOptions;
-using planner::GoalRule;
-using planner::GoalSelection;
-using planner::GoalState;
-using planner::Method;
-using planner::PathMetric;
-using planner::Pose;
-using planner::Robot;
-using planner::TeamGoals;
-using planner::TeamMember;
-using planner::TravelDistance;
+using namespace planner;
 
 inline constexpr double kResolution = 0.3;
 inline constexpr int kAllCells = 1 << 30;
@@ -50,6 +31,32 @@ inline TeamMember aerial_robot(Method method = Method::kDefault) {
 inline double worth(double gain, double distance) {
   return gain * std::exp(-0.1386 * distance) * std::min(1.0, distance / 4.0);
 }
+
+/// What one robot decides in a room, and by what.
+struct Decision {
+  const GoalRoom& room;
+  TeamMember member;
+  VoxelKey start;
+  std::vector<VoxelKey> frontiers;
+  std::unique_ptr<RayCaster> caster = make_grid_ray_caster(room.grid);
+  GoalSelection selection{{member}, room.grid.lattice(), room.bounds()};
+  TeamGoals team;
+
+  Decision(const GoalRoom& in, const TeamMember& robot, const VoxelKey& at, std::vector<VoxelKey> known)
+      : room(in), member(robot), start(at), frontiers(std::move(known)) {
+    const Pose pose{room.grid.lattice().exact_center(start), 0.0};
+    team = selection.select(*caster, {room.grid}, frontiers, {&pose, 1});
+  }
+  [[nodiscard]] const Goal& goal() const { return team.goals[0]; }
+  [[nodiscard]] std::span<const VoxelKey> cells() const { return selection.corridor(0).cells(); }
+  [[nodiscard]] std::vector<VoxelKey> assigned() const {
+    return naive_assigned(*caster, kResolution, frontiers, cells(), member.robot.view);
+  }
+  [[nodiscard]] std::vector<VoxelKey> seen_from(const VoxelKey& cell,
+                                                const std::vector<VoxelKey>& targets) const {
+    return naive_seen(*caster, kResolution, cell, targets, member.robot.view);
+  }
+};
 
 struct Found {
   VoxelKey cell;

@@ -3,23 +3,12 @@
 #include "goal/viewpoint_candidates.hpp"
 
 #include "planner/goal/goal_room.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <set>
-#include <vector>
+#include "support/test.hpp"
 
 namespace frontlux::test {
 namespace {
 
-using planner::Goal;
-using planner::goal_options;
-using planner::GoalSelection;
-using planner::RenderedCell;
-using planner::TeamMember;
+using namespace planner;
 
 constexpr int kAllCells = 1 << 30;
 
@@ -28,17 +17,14 @@ TEST(SpacedCells, AreTheFirstOfEachCubeAndAllAroundTheRobot) {
   for (int round = 0; round < 60; ++round) {
     const int x = random.one_in(2) ? 0 : 32700, stride = random.below(5), surroundings = random.below(6);
     std::vector<VoxelKey> cells;
-    for_each_key({make_key(x, 500, 65520), make_key(x + 15, 515, 65535)}, [&](const VoxelKey& key) {
+    for (const VoxelKey& key : keys_of({make_key(x, 500, 65520), make_key(x + 15, 515, 65535)}))
       if (random.one_in(4)) cells.push_back(key);
-    });
-    std::sort(cells.begin(), cells.end());
+    std::ranges::sort(cells);
     const VoxelKey robot = random.pick(cells);
     std::set<std::array<int, 3>> cubes;
     std::vector<VoxelKey> expected;
     for (const VoxelKey& cell : cells) {
-      const bool near = std::abs(cell.x - robot.x) <= surroundings &&
-                        std::abs(cell.y - robot.y) <= surroundings &&
-                        std::abs(cell.z - robot.z) <= surroundings;
+      const bool near = grown({robot, robot}, surroundings).contains(cell);
       const int edge = std::max(stride, 1);
       if (cubes.insert({cell.x / edge, cell.y / edge, cell.z / edge}).second || near)
         expected.push_back(cell);
@@ -54,11 +40,10 @@ struct Case {
 };
 
 TeamMember robot_in_space(const Case& example) {
-  TeamMember member{planner::uav(), {}};
+  TeamMember member{uav(), goal_options(uav())};
   member.robot.travel.min_height = 0.0;
-  member.robot.view = example.camera ? member.robot.view : planner::ugv().view;
+  if (!example.camera) member.robot.view = ugv().view;
   member.robot.view.max_range = 3.0;
-  member.options = goal_options(planner::uav());
   member.options.lambda = example.lambda;
   member.options.advance = example.advance;
   member.options.min_gain = example.min_gain;
@@ -73,7 +58,7 @@ struct Chosen {
 
 Chosen choose(const GoalRoom& room, const RayCaster& caster, const TeamMember& member) {
   GoalSelection selection({member}, room.grid.lattice(), room.bounds());
-  const planner::Pose pose = room.pose(4, 4, 3);
+  const Pose pose = room.pose(4, 4, 3);
   Chosen chosen;
   chosen.goal = selection.select(caster, {room.grid}, room.frontiers(), {&pose, 1}).goals[0];
   chosen.cells = selection.rendered_cells(0);

@@ -1,3 +1,5 @@
+#include "support/complaint.hpp"
+#include "support/folder_test.hpp"
 #include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
@@ -5,22 +7,7 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 
-#include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <memory>
-#include <set>
-#include <stdexcept>
-#include <string>
-#include <unistd.h>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
@@ -29,8 +16,8 @@ using octomap::OcTree;
 using test::Random;
 using Points = std::vector<Eigen::Vector3f>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 octomap::point3d to_octomap(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -53,7 +40,6 @@ std::vector<Node> nodes_of(const OcTree& tree) {
 void expect_same_nodes(const OcTree& tree, const OcTree& expected, const std::string& where) {
   ASSERT_EQ(tree.size(), expected.size()) << where;
   const auto a = nodes_of(tree), b = nodes_of(expected);
-  ASSERT_EQ(a.size(), b.size()) << where;
   ASSERT_EQ(a.size(), tree.size()) << where;  // the count that the tree keeps is true
   for (std::size_t i = 0; i < a.size(); ++i)
     ASSERT_TRUE(a[i] == b[i]) << where << ": node " << i << " at " << a[i].key[0] << " " << a[i].key[1] << " "
@@ -66,12 +52,11 @@ void expect_same_nodes(const OcTree& tree, const OcTree& expected, const std::st
 Points adversarial_points(Random& random, const Eigen::Vector3f& origin, double resolution, double reach,
                           int count) {
   Points points;
-  const auto anywhere = [&] { return static_cast<float>(random.uniform(-reach, reach)); };
   const auto on_lattice = [&] {
     return static_cast<float>(std::round(random.uniform(-reach, reach) / resolution) * resolution);
   };
   for (int i = 0; i < count; ++i) {
-    Eigen::Vector3f p = origin + Eigen::Vector3f(anywhere(), anywhere(), anywhere());
+    Eigen::Vector3f p = origin + random.point(-reach, reach).cast<float>();
     switch (random.below(8)) {
       case 0:
         p = {on_lattice(), on_lattice(), on_lattice()};
@@ -81,13 +66,11 @@ Points adversarial_points(Random& random, const Eigen::Vector3f& origin, double 
         break;
       case 2: {
         const int axis = random.below(3);
-        const float along = p[axis];
-        p = origin;
-        p[axis] = along;
+        p = origin + Eigen::Vector3f::Unit(axis) * (p[axis] - origin[axis]);
         break;
       }
       case 3: {
-        const float d = anywhere();
+        const auto d = static_cast<float>(random.uniform(-reach, reach));
         p = origin + Eigen::Vector3f(d, random.one_in(2) ? d : -d, random.one_in(2) ? d : -d);
         break;
       }
@@ -95,10 +78,7 @@ Points adversarial_points(Random& random, const Eigen::Vector3f& origin, double 
         p = origin + 0.01F * (p - origin);
         break;
       case 5:
-        if (!points.empty())
-          p = points[static_cast<std::size_t>(random.below(static_cast<int>(points.size())))];
-        break;
-      default:
+        if (!points.empty()) p = random.pick(points);
         break;
     }
     points.push_back(p);
@@ -107,11 +87,10 @@ Points adversarial_points(Random& random, const Eigen::Vector3f& origin, double 
 }
 
 Eigen::Vector3f random_origin(Random& random, double resolution) {
-  const auto along = [&] {
-    const double c = random.uniform(-2.0, 2.0);
-    return static_cast<float>(random.one_in(4) ? std::round(c / resolution) * resolution : c);
-  };
-  return {along(), along(), along()};
+  Eigen::Vector3d at = random.point(-2.0, 2.0);
+  for (double& along : at)
+    if (random.one_in(4)) along = std::round(along / resolution) * resolution;
+  return at.cast<float>();
 }
 
 void insert_by_octomap(OcTree& tree, const Eigen::Vector3f& origin, const Points& points, double max_range) {
@@ -142,7 +121,6 @@ TEST(Mapping, PointsEqualInsertPointCloud) {
 
 // The same scan again and again: nodes are clamped, pruned, and opened once more when something moves.
 TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
-  Random random(2);
   Mapping mapping({.resolution = 0.2});
   OcTree oracle(0.2);
   const Eigen::Vector3f origin(0.3F, -0.2F, 1.1F);
@@ -233,10 +211,8 @@ Scan random_scan(Random& random, double resolution, int rays) {
   return scan;
 }
 
-VoxelKey from_origin(int x, int y, int z) { return make_key(32768 + x, 32768 + y, 32768 + z); }
-KeyBox box(int min, int max) {
-  return {from_origin(min, min + 1, min + 3), from_origin(max, max + 2, max - 1)};
-}
+using test::key_at;
+KeyBox box(int min, int max) { return {key_at(min, min + 1, min + 3), key_at(max, max + 2, max - 1)}; }
 
 TEST(Mapping, ScansEqualTheirDefinitionAndTheMirrorFollows) {
   Random random(4);
@@ -308,10 +284,8 @@ TEST(Mapping, MarksVoxelsFree) {
     const OcTree before(mapping.tree());
     const VoxelGrid grid_before = mapping.grid();
     std::vector<VoxelKey> chosen = test::keys_of(box(-3, 4));
-    for (int i = 0; i < 200; ++i) {  // some of them outside the bounds, some twice
-      const auto along = [&] { return 32748 + random.below(40); };
-      chosen.push_back(make_key(along(), along(), along()));
-    }
+    for (int i = 0; i < 200; ++i)  // some of them outside the bounds, some twice
+      chosen.push_back(random.key_in(cube({32748, 32748, 32748}, 40)));
     const auto changed = mapping.mark_free(chosen).keys;
     EXPECT_TRUE(std::ranges::equal(changed, test::changed_keys(grid_before, mapping.grid())));
     EXPECT_TRUE(mapping.grid() == make_voxel_grid(mapping.tree()));
@@ -334,57 +308,54 @@ TEST(Mapping, MarksVoxelsFree) {
   }
 }
 
-TEST(Mapping, WritesWhatItHolds) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("frontlux_mapping_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+class MappingFiles : public test::FolderTest {};
+
+TEST_F(MappingFiles, HoldWhatTheMapDoes) {
   Mapping mapping({.resolution = 0.1 + 1e-9});
   Random random(7);
-  mapping.write(folder / "empty.bt");
+  mapping.write(path("empty.bt"));
   for (int i = 0; i < 4; ++i) mapping.insert(random_scan(random, 0.1, 500));
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
-  mapping.write(folder / "map.ot");
-  mapping.write(folder / "map.bt");
+  mapping.write(path("map.ot"));
+  mapping.write(path("map.bt"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 
-  const auto full = std::get<std::shared_ptr<OcTree>>(read_octree(folder / "map.ot"));
+  const auto in_file = [&](const char* name) {
+    return std::get<std::shared_ptr<OcTree>>(read_octree(path(name)));
+  };
+  const auto full = in_file("map.ot");
   EXPECT_EQ(full->getResolution(), 0.1 + 1e-9);
   expect_same_nodes(*full, mapping.tree(), "map.ot");
-  const auto binary = std::get<std::shared_ptr<OcTree>>(read_octree(folder / "map.bt"));
-  EXPECT_TRUE(make_voxel_grid(*binary) == mapping.grid());
+  EXPECT_TRUE(make_voxel_grid(*in_file("map.bt")) == mapping.grid());
   OcTree by_octomap(0.5);
-  ASSERT_TRUE(by_octomap.readBinary((folder / "map.bt").string()));
+  ASSERT_TRUE(by_octomap.readBinary(path("map.bt")));
   EXPECT_TRUE(make_voxel_grid(by_octomap) == mapping.grid());
-  EXPECT_EQ(std::get<std::shared_ptr<OcTree>>(read_octree(folder / "empty.bt"))->size(), 0U);
+  EXPECT_EQ(in_file("empty.bt")->size(), 0U);
 
-  EXPECT_THROW(mapping.write(folder / "map.pcd"), std::invalid_argument);
-  EXPECT_THROW(mapping.write(folder / "no" / "map.bt"), std::runtime_error);
-  std::filesystem::create_directory(folder / "folder.bt");
-  EXPECT_THROW(mapping.write(folder / "folder.bt"), std::runtime_error);
+  EXPECT_REFUSED(mapping.write(path("map.pcd")));
+  EXPECT_THROW(mapping.write(path("no/map.bt")), std::runtime_error);
+  std::filesystem::create_directory(path("folder.bt"));
+  EXPECT_THROW(mapping.write(path("folder.bt")), std::runtime_error);
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
     names.insert(entry.path().filename().string());
   EXPECT_EQ(names, (std::set<std::string>{"empty.bt", "folder.bt", "map.bt", "map.ot"}));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Mapping, RefusesWrongCalls) {
-  EXPECT_THROW(Mapping({.resolution = 0.0}), std::invalid_argument);
-  EXPECT_THROW(Mapping({.resolution = std::nan("")}), std::invalid_argument);
-  EXPECT_THROW(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}), std::invalid_argument);
-  EXPECT_THROW(Mapping({.surface_depth = -0.1}), std::invalid_argument);
+  EXPECT_REFUSED(Mapping({.resolution = 0.0}));
+  EXPECT_REFUSED(Mapping({.resolution = std::nan("")}));
+  EXPECT_REFUSED(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}));
+  EXPECT_REFUSED(Mapping({.surface_depth = -0.1}));
   Mapping mapping({.resolution = 0.3});
   const Points points = {{1.F, 0.F, 0.F}};
-  EXPECT_THROW(mapping.insert({kNan, 0.F, 0.F}, points), std::invalid_argument);
-  EXPECT_THROW(mapping.insert({1e5F, 0.F, 0.F}, points), std::invalid_argument);
-  EXPECT_THROW(mapping.insert({0.F, 0.F, 0.F}, points, 0.0), std::invalid_argument);
-  EXPECT_THROW(mapping.insert({0.F, 0.F, 0.F}, points, std::nan("")), std::invalid_argument);
-  Scan scan;
-  scan.max_range = 5.0;
-  scan.ranges = {1.F};
-  EXPECT_THROW(mapping.insert(scan), std::invalid_argument);
+  EXPECT_REFUSED(mapping.insert({kNan, 0.F, 0.F}, points));
+  EXPECT_REFUSED(mapping.insert({1e5F, 0.F, 0.F}, points));
+  EXPECT_REFUSED(mapping.insert({0.F, 0.F, 0.F}, points, 0.0));
+  EXPECT_REFUSED(mapping.insert({0.F, 0.F, 0.F}, points, std::nan("")));
+  EXPECT_REFUSED(mapping.insert(Scan{{0.F, 0.F, 0.F}, 5.0, {}, {1.F}}));
   EXPECT_EQ(mapping.tree().size(), 0U);
 }
 
@@ -399,19 +370,14 @@ TEST(Mapping, EndsWhereDistancesUnderflow) {
 }
 
 TEST(VoxelsOf, BoxesOnTheLatticeAndOff) {
-  const Lattice lattice(0.3);
-  EXPECT_EQ(voxels_of(lattice, {Eigen::Vector3d(0, -0.6, -0.05), Eigen::Vector3d(12.0, 3.6, 2.95)}),
-            (KeyBox{from_origin(0, -2, -1), from_origin(39, 11, 9)}));
-  EXPECT_EQ(voxels_of(lattice, {Eigen::Vector3d::Constant(-1e9), Eigen::Vector3d::Constant(1e9)}),
-            kAllVoxels);
-  EXPECT_THROW(static_cast<void>(voxels_of(lattice, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 1)})),
-               std::invalid_argument);
-  EXPECT_THROW(
-      static_cast<void>(voxels_of(lattice, {Eigen::Vector3d(0, 0, std::nan("")), Eigen::Vector3d(1, 1, 1)})),
-      std::invalid_argument);
-  EXPECT_THROW(
-      static_cast<void>(voxels_of(lattice, {Eigen::Vector3d::Constant(1e5), Eigen::Vector3d::Constant(2e5)})),
-      std::invalid_argument);
+  const auto voxels = [](const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+    return voxels_of(Lattice(0.3), {min, max});
+  };
+  EXPECT_EQ(voxels({0, -0.6, -0.05}, {12.0, 3.6, 2.95}), (KeyBox{key_at(0, -2, -1), key_at(39, 11, 9)}));
+  EXPECT_EQ(voxels({-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}), kAllVoxels);
+  EXPECT_REFUSED(voxels({0, 0, 0}, {1, 0, 1}));
+  EXPECT_REFUSED(voxels({0, 0, std::nan("")}, {1, 1, 1}));
+  EXPECT_REFUSED(voxels({1e5, 1e5, 1e5}, {2e5, 2e5, 2e5}));
 }
 
 }  // namespace

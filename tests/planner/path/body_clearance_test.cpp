@@ -1,38 +1,42 @@
 // Segments and paths of the body itself: wherever in a voxel the robot is, all that its body covers is known
 // to be free.
 
+#include "planner/path/walled_space.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/path_planner.hpp>
-#include <frontlux/planner/segment_voxels.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace frontlux::planner {
 namespace {
 
-VoxelKey key(int x, int y, int z) {
-  return make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z);
-}
+using test::key_at;
+using test::WalledSpace;
 
-struct Scene {
-  VoxelGrid grid;
-  KeyBox bounds{key(0, 0, -1), key(23, 23, 10)};
-
-  Scene(std::uint64_t seed, double resolution) : grid(resolution) {
+// With pillars.
+struct Scene : WalledSpace {
+  Scene(std::uint64_t seed, double resolution) : WalledSpace(24, 11, resolution) {
     test::Random random(seed);
-    for_each_key(bounds, [this](const VoxelKey& at) {
-      grid.set(at, at.z < Lattice::kOrigin ? Occupancy::kOccupied : Occupancy::kFree);
-    });
-    for (int i = 0; i < 25; ++i) {  // pillars
+    for (int i = 0; i < 25; ++i) {
       const int x = random.below(24), y = random.below(24), high = random.below(11);
       for (int z = 0; z <= high; ++z)
-        grid.set(key(x, y, z), random.one_in(2) ? Occupancy::kOccupied : Occupancy::kUnknown);
+        grid.set(key_at(x, y, z), random.one_in(2) ? Occupancy::kOccupied : Occupancy::kUnknown);
     }
   }
 };
+
+// At each of three resolutions a robot on a plane and one in space, whose sensor is 0.35 m high on the plane.
+template <class Check>
+void for_each_robot(const Check& check) {
+  for (const double resolution : {0.3, 0.2, 0.25})
+    for (const bool plane : {false, true}) {
+      SCOPED_TRACE(testing::Message() << (plane ? "plane" : "space") << " at " << resolution << " m");
+      TravelOptions travel = plane ? ugv_travel() : uav_travel();
+      travel.min_height = 0.0;
+      if (plane) travel.sensor_height = 0.35;
+      check(travel, resolution, plane);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+}
 
 // The true body at a point, by its faces: how far it covers what is not known free [m], to the least depth
 // along any axis. On a plane it stands on layer 0.
@@ -46,15 +50,14 @@ double depth_in_unknown(const Scene& scene, const TravelOptions& travel, const E
   const Eigen::Vector3i first = (low / r).array().floor().cast<int>().matrix(),
                         last = (high / r).array().floor().cast<int>().matrix();
   double deepest = 0.0;
-  for (int x = first.x(); x <= last.x(); ++x)
-    for (int y = first.y(); y <= last.y(); ++y)
-      for (int z = first.z(); z <= last.z(); ++z) {
-        if (scene.grid.at(key(x, y, z)) == Occupancy::kFree) continue;
-        const Eigen::Vector3d voxel = r * Eigen::Vector3d(x, y, z);
-        const Eigen::Vector3d shared =
-            high.cwiseMin(voxel + Eigen::Vector3d::Constant(r)) - low.cwiseMax(voxel);
-        deepest = std::max(deepest, shared.minCoeff());
-      }
+  for_each_key({key_at(first.x(), first.y(), first.z()), key_at(last.x(), last.y(), last.z())},
+               [&](const VoxelKey& key) {
+                 if (scene.grid.at(key) == Occupancy::kFree) return;
+                 const Eigen::Vector3d middle = scene.grid.lattice().exact_center(key),
+                                       half = Eigen::Vector3d::Constant(r / 2);
+                 const Eigen::Vector3d shared = high.cwiseMin(middle + half) - low.cwiseMax(middle - half);
+                 deepest = std::max(deepest, shared.minCoeff());
+               });
   return deepest;
 }
 
@@ -75,111 +78,99 @@ TEST(BodyClearance, ReachIsWhatTheCollisionBoxLeavesOpen) {
 
 TEST(BodyClearance, ASegmentIsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
   int free = 0, blocked_only_by_body = 0;
-  for (const double resolution : {0.3, 0.2, 0.25})
-    for (const bool plane : {false, true}) {
-      TravelOptions travel = plane ? ugv_travel() : uav_travel();
-      travel.min_height = 0.0;
-      if (plane) travel.sensor_height = 0.35;
-      const Scene scene(static_cast<std::uint64_t>(100 * resolution), resolution);
-      TravelCorridor corridor(travel, scene.grid.lattice(), scene.bounds);
-      corridor.update({scene.grid}, key(12, 12, plane ? 1 : 5));
-      const Lattice& lattice = scene.grid.lattice();
-      const Eigen::Vector3d d = corridor.reach();
-      test::Random random(5);
-      for (int i = 0; i < 6'000; ++i) {
-        Eigen::Vector3d from, to;
-        for (int a = 0; a < 3; ++a) {
-          from[a] = random.uniform(2.0, a == 2 ? 9.0 : 22.0) * resolution;
-          to[a] = from[a] + (random.one_in(4) ? 0.0 : random.uniform(-4.0, 4.0) * resolution);
-        }
-        if (plane) from.z() = to.z() = 0.35;
-        const bool is_free = segment_is_free(corridor, lattice, from, to);
-        bool middle_free = true, cells_free = true;
-        for (int k = 0; k <= 60; ++k) {
-          const Eigen::Vector3d at = from + (to - from) * (k / 60.0);
-          const auto cell = [&](const Eigen::Vector3d& p) {
-            return corridor.passable(lattice.key(p).value());
-          };
-          middle_free = middle_free && cell(at);
-          for (int corner = 0; corner < 8; ++corner)
-            cells_free = cells_free && cell(at + Eigen::Vector3d((corner & 1) != 0 ? d.x() : -d.x(),
-                                                                 (corner & 2) != 0 ? d.y() : -d.y(),
-                                                                 (corner & 4) != 0 ? d.z() : -d.z()));
-          if (is_free) {
-            ASSERT_TRUE(cells_free) << at.transpose();
-            // What `reach_of` ignores is a ten thousandth of a voxel.
-            ASSERT_LE(depth_in_unknown(scene, travel, at), 1.001e-4 * resolution)
-                << at.transpose() << " on the segment from " << from.transpose() << " to " << to.transpose();
-          }
-        }
-        free += static_cast<int>(is_free);
-        blocked_only_by_body += static_cast<int>(middle_free && !is_free);
-        if (from == to) {
-          ASSERT_EQ(is_free, cells_free);
+  for_each_robot([&](const TravelOptions& travel, double resolution, bool plane) {
+    const Scene scene(static_cast<std::uint64_t>(100 * resolution), resolution);
+    const TravelCorridor corridor = scene.corridor(travel, key_at(12, 12, plane ? 1 : 5));
+    const Lattice& lattice = scene.grid.lattice();
+    const Eigen::Vector3d d = corridor.reach();
+    test::Random random(5);
+    for (int i = 0; i < 6'000; ++i) {
+      Eigen::Vector3d from, to;
+      for (int a = 0; a < 3; ++a) {
+        from[a] = random.uniform(2.0, a == 2 ? 9.0 : 22.0) * resolution;
+        to[a] = from[a] + (random.one_in(4) ? 0.0 : random.uniform(-4.0, 4.0) * resolution);
+      }
+      if (plane) from.z() = to.z() = 0.35;
+      const bool is_free = segment_is_free(corridor, lattice, from, to);
+      bool middle_free = true, cells_free = true;
+      for (int k = 0; k <= 60; ++k) {
+        const Eigen::Vector3d at = from + (to - from) * (k / 60.0);
+        const auto cell = [&](const Eigen::Vector3d& p) { return corridor.passable(lattice.key(p).value()); };
+        middle_free = middle_free && cell(at);
+        for (int corner = 0; corner < 8; ++corner)
+          cells_free = cells_free && cell(at + Eigen::Vector3d((corner & 1) != 0 ? d.x() : -d.x(),
+                                                               (corner & 2) != 0 ? d.y() : -d.y(),
+                                                               (corner & 4) != 0 ? d.z() : -d.z()));
+        if (is_free) {
+          ASSERT_TRUE(cells_free) << at.transpose();
+          // What `reach_of` ignores is a ten thousandth of a voxel.
+          ASSERT_LE(depth_in_unknown(scene, travel, at), 1.001e-4 * resolution)
+              << at.transpose() << " on the segment from " << from.transpose() << " to " << to.transpose();
         }
       }
-      // In the middle of a passable cell there is always room.
-      for (const VoxelKey& cell : corridor.cells()) {
-        const Eigen::Vector3d center = lattice.exact_center(cell);
-        ASSERT_TRUE(segment_is_free(corridor, lattice, center, center));
+      free += static_cast<int>(is_free);
+      blocked_only_by_body += static_cast<int>(middle_free && !is_free);
+      if (from == to) {
+        ASSERT_EQ(is_free, cells_free);
       }
     }
+    // In the middle of a passable cell there is always room.
+    for (const VoxelKey& cell : corridor.cells()) {
+      const Eigen::Vector3d center = lattice.exact_center(cell);
+      ASSERT_TRUE(segment_is_free(corridor, lattice, center, center));
+    }
+  });
   EXPECT_GT(free, 1000);
   EXPECT_GT(blocked_only_by_body, 200);  // else the body was never what decided
 }
 
 TEST(BodyClearance, PlansFromAndToAnywhereInTheBody) {
   int paths = 0, escapes = 0, refused = 0;
-  for (const double resolution : {0.3, 0.2, 0.25}) {
-    for (const bool plane : {false, true}) {
-      TravelOptions travel = plane ? ugv_travel() : uav_travel();
-      travel.min_height = 0.0;
-      if (plane) travel.sensor_height = 0.35;
-      const Scene scene(static_cast<std::uint64_t>(100 * resolution) + 7, resolution);
-      TravelCorridor corridor(travel, scene.grid.lattice(), scene.bounds);
-      test::Random random(8);
-      // The robot's own cell may be anywhere that is passable.
-      for (int x = 3; x < 20 && corridor.state() != CorridorState::kReady; ++x)
-        corridor.update({scene.grid}, key(x, 12, plane ? 1 : 5));
-      ASSERT_EQ(corridor.state(), CorridorState::kReady);
-      const Lattice& lattice = scene.grid.lattice();
-      const auto cells = corridor.cells();
-      for (int i = 0; i < 60; ++i) {
-        const auto somewhere = [&] {
-          Pose pose{lattice.exact_center(random.pick(cells))};
-          for (int a = 0; a < 3; ++a) pose.position[a] += random.uniform(-0.49, 0.49) * resolution;
-          return pose;
-        };
-        const Pose start = somewhere(), goal = somewhere();
-        const bool starts_free = segment_is_free(corridor, lattice, start.position, start.position);
-        PathOptions options;
-        options.search = i % 2 == 0 ? PathSearch::kRrt : PathSearch::kCorridor;
-        options.iterations = 300;
-        options.shortcut_rounds = i % 4 < 2 ? 0 : 6;
-        const PathPlan plan = plan_path(corridor, lattice, start, goal, {1, 2, 3}, options);
-        if (!segment_is_free(corridor, lattice, goal.position, goal.position)) {
-          EXPECT_EQ(plan.outcome, PathOutcome::kGoalNotFree);
-          ++refused;
-          continue;
-        }
-        ASSERT_TRUE(plan.found()) << describe(plan.outcome);
-        ++paths;
-        EXPECT_EQ(plan.viewpoints.front().position, start.position);
-        EXPECT_EQ(plan.viewpoints.back().position, goal.position);
-        double before = depth_in_unknown(scene, travel, start.position);
-        escapes += static_cast<int>(!starts_free);
-        for (std::size_t k = 1; k < plan.viewpoints.size(); ++k)
-          for (int part = 0; part <= 40; ++part) {
-            const Eigen::Vector3d from = plan.viewpoints[k - 1].position, to = plan.viewpoints[k].position;
-            const double depth = depth_in_unknown(scene, travel, from + (to - from) * (part / 40.0));
-            // Out of where it should not be it only ever gets better.
-            ASSERT_LE(depth, k == 1 && !starts_free ? before + 1e-9 : 1.001e-4 * resolution)
-                << "case " << i << ", part " << k << " of " << plan.viewpoints.size();
-            before = depth;
-          }
+  for_each_robot([&](const TravelOptions& travel, double resolution, bool plane) {
+    const Scene scene(static_cast<std::uint64_t>(100 * resolution) + 7, resolution);
+    TravelCorridor corridor(travel, scene.grid.lattice(), scene.bounds);
+    test::Random random(8);
+    // The robot's own cell may be anywhere that is passable.
+    for (int x = 3; x < 20 && corridor.state() != CorridorState::kReady; ++x)
+      corridor.update({scene.grid}, key_at(x, 12, plane ? 1 : 5));
+    ASSERT_EQ(corridor.state(), CorridorState::kReady);
+    const Lattice& lattice = scene.grid.lattice();
+    const auto cells = corridor.cells();
+    for (int i = 0; i < 60; ++i) {
+      const auto somewhere = [&] {
+        Pose pose{lattice.exact_center(random.pick(cells))};
+        pose.position += random.point(-0.49, 0.49) * resolution;
+        return pose;
+      };
+      const Pose start = somewhere(), goal = somewhere();
+      const bool starts_free = segment_is_free(corridor, lattice, start.position, start.position);
+      PathOptions options;
+      options.search = i % 2 == 0 ? PathSearch::kRrt : PathSearch::kCorridor;
+      options.iterations = 300;
+      options.shortcut_rounds = i % 4 < 2 ? 0 : 6;
+      const PathPlan plan = plan_path(corridor, lattice, start, goal, {1, 2, 3}, options);
+      if (!segment_is_free(corridor, lattice, goal.position, goal.position)) {
+        EXPECT_EQ(plan.outcome, PathOutcome::kGoalNotFree);
+        ++refused;
+        continue;
       }
+      ASSERT_TRUE(plan.found()) << describe(plan.outcome);
+      ++paths;
+      EXPECT_EQ(plan.viewpoints.front().position, start.position);
+      EXPECT_EQ(plan.viewpoints.back().position, goal.position);
+      double before = depth_in_unknown(scene, travel, start.position);
+      escapes += static_cast<int>(!starts_free);
+      for (std::size_t k = 1; k < plan.viewpoints.size(); ++k)
+        for (int part = 0; part <= 40; ++part) {
+          const Eigen::Vector3d from = plan.viewpoints[k - 1].position, to = plan.viewpoints[k].position;
+          const double depth = depth_in_unknown(scene, travel, from + (to - from) * (part / 40.0));
+          // Out of where it should not be it only ever gets better.
+          ASSERT_LE(depth, k == 1 && !starts_free ? before + 1e-9 : 1.001e-4 * resolution)
+              << "case " << i << ", part " << k << " of " << plan.viewpoints.size();
+          before = depth;
+        }
     }
-  }
+  });
   EXPECT_GT(paths, 150);
   EXPECT_GT(escapes, 10);
   EXPECT_GT(refused, 10);

@@ -1,13 +1,9 @@
+#include "planner/path/walled_space.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground_truth.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
 
 namespace frontlux::planner {
 namespace {
@@ -29,44 +25,18 @@ struct KnownWorld {
   }
 };
 
-struct Box {
-  int half, below, above;  // [voxels] around the one that holds the robot
-};
-
-bool box_is_free(const VoxelGrid& grid, const VoxelKey& at, const Box& box) {
-  const KeyBox voxels{make_key(at.x - box.half, at.y - box.half, at.z - box.below),
-                      make_key(at.x + box.half, at.y + box.half, at.z + box.above)};
-  return all_of(voxels, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
-}
-
-// At a tenth of a voxel, without the corridor.
-void expect_free(const VoxelGrid& grid, const PathPlan& plan, const Box& box) {
-  VoxelKey last{};
-  for (std::size_t i = 1; i < plan.viewpoints.size(); ++i) {
-    const Eigen::Vector3d from = plan.viewpoints[i - 1].position, to = plan.viewpoints[i].position;
-    const int steps = 1 + static_cast<int>((to - from).norm() / (kResolution / 10));
-    for (int k = 0; k <= steps; ++k) {
-      const Eigen::Vector3d at = from + (to - from) * (static_cast<double>(k) / steps);
-      const VoxelKey key = grid.lattice().key(at).value();
-      if (key == last) continue;
-      last = key;
-      ASSERT_TRUE(box_is_free(grid, key, box)) << "at " << at.transpose();
-    }
-  }
-}
-
 Pose random_pose(test::Random& random, const Lattice& lattice, const TravelCorridor& corridor,
                  double height) {
   const VoxelKey cell = random.pick(corridor.cells());
   Pose pose{lattice.exact_center(cell)};
-  for (int a = 0; a < 3; ++a) pose.position[a] += random.uniform(-0.499, 0.499) * kResolution;
+  pose.position += random.point(-0.499, 0.499) * kResolution;
   if (height > 0.0) pose.position.z() = height;
   pose.yaw = random.uniform(-3.0, 3.0);
   return pose;
 }
 
 void check_pairs(const std::string& name, const KnownWorld& known, const TravelOptions& travel, double height,
-                 const Box& box, const PathOptions& options, int pairs) {
+                 const test::BodyBox& body, const PathOptions& options, int pairs) {
   const Lattice& lattice = known.grid.lattice();
   TravelCorridor corridor(travel, lattice, known.truth.bounds());
   Eigen::Vector3d robot = *known.world.start;
@@ -91,7 +61,7 @@ void check_pairs(const std::string& name, const KnownWorld& known, const TravelO
     ASSERT_EQ(plan.viewpoints.back().yaw, goal.yaw);
     for (std::size_t k = 1; k < plan.viewpoints.size(); ++k)
       ASSERT_LE((plan.viewpoints[k].position - plan.viewpoints[k - 1].position).norm(), 1.2 * (1 + 1e-9));
-    expect_free(known.grid, plan, box);
+    test::expect_free(known.grid, plan.viewpoints, body, 10);
     if (testing::Test::HasFatalFailure()) return;
 
     if (i % 10 == 0) {  // the same key, the same path

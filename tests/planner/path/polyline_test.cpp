@@ -2,10 +2,6 @@
 
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 namespace frontlux::planner::detail {
 namespace {
 

@@ -1,25 +1,11 @@
 #pragma once
 
 #include "support/random.hpp"
+#include "support/voxel_keys.hpp"
 
 #include <frontlux/planner/recording.hpp>
 
-#include <algorithm>
-#include <cstdint>
-#include <map>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 namespace frontlux::test {
-
-inline VoxelKey random_key(Random& random, const KeyBox& box) {
-  const auto along = [&](int low, int high) {
-    return static_cast<std::uint16_t>(low + random.below(high - low + 1));
-  };
-  return {along(box.min.x, box.max.x), along(box.min.y, box.max.y), along(box.min.z, box.max.z)};
-}
 
 inline planner::Pose random_pose(Random& random) {
   return {{random.uniform(-90, 90), random.uniform(-1e-3, 1e3), random.uniform(0, 3)}, random.uniform(-4, 4)};
@@ -48,12 +34,12 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
     travel.sensor_height = random.uniform(-1, 1);
     travel.ground_reach = random.below(65536);
     for (int box = random.below(3); box > 0; --box)
-      travel.without_ground.push_back({random_key(random, head.bounds), random_key(random, head.bounds)});
+      travel.without_ground.push_back({random.key_in(head.bounds), random.key_in(head.bounds)});
     travel.floor = random.uniform(-9, 9);
     travel.min_height = random.uniform(-9, 9);
     head.robots.push_back(robot);
     planner::ExplorationStart start{random_pose(random), {}};
-    for (int k = random.below(9); k > 0; --k) start.known_free.push_back(random_key(random, kAllVoxels));
+    for (int k = random.below(9); k > 0; --k) start.known_free.push_back(random.key_in(kAllVoxels));
     head.starts.push_back(start);
   }
   return head;
@@ -62,7 +48,7 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
 inline std::vector<planner::VoxelChange> random_changes(Random& random, const KeyBox& box, int count) {
   std::map<VoxelKey, planner::VoxelChange> changes;
   for (int i = 0; i < count; ++i) {
-    const VoxelKey key = random_key(random, box);
+    const VoxelKey key = random.key_in(box);
     const int before = random.below(3), after = (before + 1 + random.below(2)) % 3;
     changes[key] = {key, static_cast<Occupancy>(before), static_cast<Occupancy>(after)};
   }
@@ -93,7 +79,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     robot.path = static_cast<planner::PathOutcome>(random.below(7));
     robot.goal.state = static_cast<planner::GoalState>(random.below(7));
     if (robot.goal.state <= planner::GoalState::kUncovered) robot.goal.pose = random_pose(random);
-    robot.goal.cell = random_key(random, kAllVoxels);
+    robot.goal.cell = random.key_in(kAllVoxels);
     robot.goal.reason = "goal " + std::to_string(random.bits());
     robot.goal.distance = random.uniform(0, 50);
     robot.goal.gain = random.uniform(0, 500);
@@ -107,14 +93,11 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
       for (int i = random.below(12); i > 0; --i) robot.planned.push_back(random_pose(random));
       robot.travelled = random.bits() % (robot.planned.size() + 1);
       robot.changed = random_changes(random, head.bounds, random.below(size));
-      for (int i = random.below(size); i > 0; --i)
-        robot.still_unknown.push_back(random_key(random, kAllVoxels));
+      for (int i = random.below(size); i > 0; --i) robot.still_unknown.push_back(random.key_in(kAllVoxels));
       if (!robot.still_unknown.empty()) robot.blocked = {robot.still_unknown.front()};
-      std::sort(robot.still_unknown.begin(), robot.still_unknown.end());
-      robot.still_unknown.erase(std::unique(robot.still_unknown.begin(), robot.still_unknown.end()),
-                                robot.still_unknown.end());
+      sort(robot.still_unknown);
       for (int i = random.below(size); i > 0; --i)
-        robot.image.push_back({random_key(random, kAllVoxels), random.uniform(0, 9), random.uniform(0, 9),
+        robot.image.push_back({random.key_in(kAllVoxels), random.uniform(0, 9), random.uniform(0, 9),
                                random.uniform(0, 9), random.uniform(0, 9), random.uniform(-4, 4),
                                static_cast<std::uint32_t>(random.bits())});
     }
@@ -132,33 +115,44 @@ class Listing {
   void add(const planner::RecordingHead& head) {
     line("world", head.world, head.resolution, head.observable, head.bounding, head.options);
     add(head.bounds);
-    for (const auto& [robot, columns, rows] : head.robots) {
-      const auto& t = robot.travel;
-      line("robot", robot.name, columns, rows, static_cast<int>(robot.view.shape), robot.view.horizontal,
-           robot.view.vertical, robot.view.max_range);
-      line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(),
-           static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
-      if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
-      line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
-      for (const KeyBox& box : t.without_ground) add(box);
-    }
+    for (const auto& description : head.robots) add(description);
     for (const auto& start : head.starts) {
       add(start.pose);
       for (const VoxelKey& key : start.known_free) add(key);
     }
   }
 
+  void add(const planner::RobotDescription& description) {
+    const auto& [robot, columns, rows] = description;
+    const auto& t = robot.travel;
+    line("robot", robot.name, columns, rows, static_cast<int>(robot.view.shape), robot.view.horizontal,
+         robot.view.vertical, robot.view.max_range);
+    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(),
+         static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
+    if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
+    line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
+    for (const KeyBox& box : t.without_ground) add(box);
+  }
+
+  void add(const planner::Goal& g) {
+    line("goal", static_cast<int>(g.state), g.reason, g.distance, g.gain, g.standard_error, g.quality,
+         g.assigned, g.released, g.received, g.uncovered, g.pose.has_value());
+    if (g.pose) add(*g.pose);
+    add(g.cell);
+  }
+
   void add(const planner::RecordedStep& recorded) {
-    const auto& s = recorded.step;
-    line("step", s.number, s.frontiers, s.unassigned, s.abandoned, s.rays, recorded.collisions);
-    for (const double seconds : s.seconds) line("s", seconds);
+    line("collisions", recorded.collisions);
+    for (const double seconds : recorded.step.seconds) line("s", seconds);
     for (const auto& known : recorded.known) line("known", known.observable, known.bounding);
+    add(recorded.step);
+  }
+
+  /// All but the times.
+  void add(const planner::ExplorationStep& s) {
+    line("step", s.number, s.frontiers, s.unassigned, s.abandoned, s.rays);
     for (const auto& r : s.robots) {
-      const auto& g = r.goal;
-      line("goal", static_cast<int>(g.state), g.reason, g.distance, g.gain, g.standard_error, g.quality,
-           g.assigned, g.released, g.received, g.uncovered, g.pose.has_value());
-      if (g.pose) add(*g.pose);
-      add(g.cell);
+      add(r.goal);
       line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.travelled, r.length,
            r.gained);
       for (const auto& pose : r.planned) add(pose);
@@ -199,6 +193,15 @@ std::string listed(const Recorded& recorded) {
   Listing listing;
   listing.add(recorded);
   return listing.text();
+}
+
+/// The first lines in which two listings differ.
+inline std::string first_difference(const std::string& a, const std::string& b) {
+  std::istringstream in_a(a), in_b(b);
+  std::string line_a, line_b;
+  while (std::getline(in_a, line_a) && std::getline(in_b, line_b))
+    if (line_a != line_b) return line_a + "\nis not\n" + line_b;
+  return "one is shorter";
 }
 
 }  // namespace frontlux::test

@@ -1,66 +1,39 @@
 #include "planner/recording/random_recording.hpp"
 #include "recording/packed_record.hpp"
 #include "recording/recording_format.hpp"
+#include "support/complaint.hpp"
+#include "support/folder_test.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/recording.hpp>
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <array>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <unistd.h>
-#include <utility>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
+using test::complaint_of;
 using test::listed;
 using test::Random;
 
-class RecordingTest : public testing::Test {
+class RecordingTest : public test::FolderTest {
  protected:
-  RecordingTest()
-      : folder_(std::filesystem::temp_directory_path() / ("frontlux_recording_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-    file_ = folder_ / "run.frontlux";
-  }
-  ~RecordingTest() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string bytes() const {
-    std::ostringstream all;
-    all << std::ifstream(file_, std::ios::binary).rdbuf();
-    return all.str();
-  }
-  void save(const std::string& bytes) const {
-    std::filesystem::remove(file_);  // some file systems wait for the disk when a file is overwritten
-    std::ofstream(file_, std::ios::binary) << bytes;
-  }
+  [[nodiscard]] std::string bytes() const { return test::content_of(file_); }
+  void save(const std::string& bytes) const { write("run.frontlux", bytes); }
 
   // What reading says when it refuses the file; empty if it does not.
   std::string complaint(const std::string& content) const {
     save(content);
-    try {
-      static_cast<void>(read_recording(file_));
-    } catch (const std::runtime_error& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with(file_.string() + ": ")) << error.what();
-      return error.what();
-    }
-    return "";
+    const std::string said =
+        complaint_of<std::runtime_error>([&] { static_cast<void>(read_recording(file_)); });
+    EXPECT_TRUE(said.empty() || said.starts_with(file_.string() + ": ")) << said;
+    return said;
   }
   void expect_refused(const std::string& content, const std::string& part) const {
-    const std::string said = complaint(content);
-    EXPECT_NE(said.find(part), std::string::npos) << "'" << said << "' does not say: " << part;
+    test::expect_parts(complaint(content), {part});
   }
 
   // A run in a file; returns its size after the head and after each step.
@@ -85,7 +58,7 @@ class RecordingTest : public testing::Test {
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(listed(recording.steps[i]), listed(steps_[i])) << i;
   }
 
-  std::filesystem::path folder_, file_;
+  std::filesystem::path file_ = folder_ / "run.frontlux";
   RecordingHead head_;
   std::vector<RecordedStep> steps_;
 };
@@ -221,12 +194,7 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
     RecordedStep bad = good;
     change(bad);
     const std::string kept = bytes();
-    try {
-      RecordingWriter(file_, read_recording(file_)).write(bad);
-      ADD_FAILURE() << "written: " << part;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
+    test::expect_complaint([&] { RecordingWriter(file_, read_recording(file_)).write(bad); }, {part});
     EXPECT_EQ(bytes(), kept);
   };
   refuses("has another number", [](RecordedStep& s) { s.step.number = 1; });
@@ -271,7 +239,7 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
   });
   RecordingHead head = head_;
   head.resolution = nan;
-  EXPECT_THROW(RecordingWriter(folder_ / "other", head), std::invalid_argument);
+  EXPECT_REFUSED(RecordingWriter(folder_ / "other", head));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other")) << "nothing is created for a wrong head";
 }
 
@@ -305,28 +273,19 @@ TEST_F(RecordingTest, OneWriterAtATime) {
 TEST_F(RecordingTest, WrongOrderOfCalls) {
   record(1, 4, false);
   RecordingWriter writer(file_, read_recording(file_));
-  EXPECT_THROW(writer.write_end("No Reason!"), std::invalid_argument);
+  EXPECT_REFUSED(writer.write_end("No Reason!"));
   writer.write_end("stopped");
-  EXPECT_THROW(writer.write_end("stopped"), std::invalid_argument);
-  EXPECT_THROW(writer.write(steps_[0]), std::invalid_argument);
+  EXPECT_REFUSED(writer.write_end("stopped"));
+  EXPECT_REFUSED(writer.write(steps_[0]));
   RecordingWriter other = std::move(writer);
   EXPECT_EQ(read_recording(file_).end, "stopped");
-}
-
-std::string what_it_throws(const auto& call) {
-  try {
-    call();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST_F(RecordingTest, FullDiskIsNamed) {
   Random random(1);
   head_ = test::random_head(random, 1);
   std::filesystem::create_symlink("/dev/full", file_);
-  const std::string said = what_it_throws([&] { RecordingWriter(file_, head_); });
+  const std::string said = complaint_of<std::runtime_error>([&] { RecordingWriter(file_, head_); });
   EXPECT_TRUE(said.starts_with(file_.string() + ": cannot be written: disk full")) << said;
 }
 
@@ -357,7 +316,7 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
   RecordingWriter writer(file_, read_recording(file_));
   {
     const FileSizeLimit limit(sizes[2] - 10);
-    EXPECT_NE(what_it_throws([&] { writer.write(steps_[1]); }).find("cannot be written"), std::string::npos);
+    test::expect_complaint<std::runtime_error>([&] { writer.write(steps_[1]); }, {"cannot be written"});
     EXPECT_EQ(bytes(), whole.substr(0, sizes[1]));
   }
   writer.write(steps_[1]);
@@ -387,12 +346,12 @@ TEST_F(RecordingTest, ForeignFiles) {
   expect_refused(running.substr(0, 29) + running.substr(sizes[0]), "has no head");
   expect_refused(running.substr(0, sizes[0]) + running.substr(sizes[1]), "has another number");
   expect_refused(running + "nonsense", "damaged at byte " + std::to_string(running.size()));
-  EXPECT_NE(what_it_throws([&] { static_cast<void>(read_recording(folder_)); }).find("is a directory"),
-            std::string::npos);
-  EXPECT_NE(what_it_throws([&] { static_cast<void>(read_recording(folder_ / "no")); }).find("no such file"),
-            std::string::npos);
-  EXPECT_NE(what_it_throws([&] { RecordingWriter(folder_ / "no" / "x", head_); }).find("No such file"),
-            std::string::npos);
+  const auto refuses = [](const auto& call, const std::string& part) {
+    test::expect_complaint<std::runtime_error>(call, {part});
+  };
+  refuses([&] { static_cast<void>(read_recording(folder_)); }, "is a directory");
+  refuses([&] { static_cast<void>(read_recording(folder_ / "no")); }, "no such file");
+  refuses([&] { RecordingWriter(folder_ / "no" / "x", head_); }, "No such file");
 }
 
 #ifdef FRONTLUX_PYTHON

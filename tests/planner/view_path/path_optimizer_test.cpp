@@ -1,20 +1,11 @@
+#include "support/complaint.hpp"
+#include "support/folder_test.hpp"
 #include "support/random.hpp"
 #include "support/random_view.hpp"
 
 #include <frontlux/planner/path_optimizer.hpp>
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <numbers>
-#include <optional>
-#include <stdexcept>
 #include <thread>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
@@ -35,11 +26,10 @@ std::vector<PathOptimizerOptions> all_modes() {
   for (const YawStart start : {YawStart::kGreedy, YawStart::kBestBins, YawStart::kTangent})
     for (const GainMode mode : {GainMode::kOr, GainMode::kSum})
       for (const bool ascend : {true, false}) {
-        PathOptimizerOptions options;
+        PathOptimizerOptions& options = all.emplace_back();
         options.start = start;
         options.gain.mode = mode;
         options.ascend = ascend;
-        all.push_back(options);
       }
   return all;
 }
@@ -149,12 +139,10 @@ TEST(PathOptimizer, WhatCannotBeTurnedHasAReason) {
   EXPECT_EQ(optimize(lidar).end, PathEnd::kYawHasNoEffect);
   EXPECT_EQ(optimize(lidar).result.distinct, test::distinct_by_hand(lidar, lidar.yaws()));
 
-  PathOptimizerOptions plain;
+  PathOptimizerOptions plain, short_of;
   plain.ascend = false;
-  EXPECT_EQ(optimize(scene, plain).end, PathEnd::kAscentOff);
-
-  PathOptimizerOptions short_of;
   short_of.max_evaluations = 4;
+  EXPECT_EQ(optimize(scene, plain).end, PathEnd::kAscentOff);
   EXPECT_EQ(optimize(scene, short_of).end, PathEnd::kEvaluationLimit);
   EXPECT_LE(optimize(scene, short_of).evaluations, 4);
 }
@@ -187,20 +175,19 @@ TEST(PathOptimizer, RefusesBadInput) {
   const Scene scene = test::random_scene(random, 4, 20);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
-    Scene broken = scene;
-    broken.path[2].yaw = bad;
-    EXPECT_THROW((void)optimize(broken), std::invalid_argument);
-    broken = scene;
-    broken.path[0].position.x() = bad;
-    EXPECT_THROW((void)optimize(broken), std::invalid_argument);
-    broken = scene;
-    broken.frontiers[0].x() = bad;
-    EXPECT_THROW((void)optimize(broken), std::invalid_argument);
+    const auto refused = [&](const auto& spoil) {
+      Scene broken = scene;
+      spoil(broken);
+      EXPECT_REFUSED(optimize(broken));
+    };
+    refused([&](Scene& s) { s.path[2].yaw = bad; });
+    refused([&](Scene& s) { s.path[0].position.x() = bad; });
+    refused([&](Scene& s) { s.frontiers[0].x() = bad; });
   }
   const auto refused = [&](const auto& change) {
     PathOptimizerOptions options;
     change(options);
-    EXPECT_THROW((void)optimize(scene, options), std::invalid_argument);
+    EXPECT_REFUSED(optimize(scene, options));
   };
   refused([&](auto& o) { o.max_yaw_step = nan; });
   refused([&](auto& o) { o.max_yaw_rate = -1.0; });
@@ -228,30 +215,28 @@ TEST(PathOptimizer, SameInputSameBytesInAnyThread) {
 }
 
 // Ipopt prints by itself, and reads ipopt.opt where the program runs; neither may happen.
-TEST(PathOptimizer, IpoptIsSilentAndReadsNoFile) {
+class PathOptimizerFolder : public test::FolderTest {};
+
+TEST_F(PathOptimizerFolder, IpoptIsSilentAndReadsNoFile) {
   Random random(9);
   const Scene scene = test::random_scene(random, 8, 200);
   PathOptimizerOptions limited;
   limited.max_yaw_step = 0.8;
   const auto expected = optimize(scene);
   const auto home = std::filesystem::current_path();
-  const auto folder = std::filesystem::path(testing::TempDir()) / "frontlux_ipopt_silence";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "ipopt.opt") << "print_level 5\nmax_iter 0\noutput_file ipopt.out\n";
-  std::filesystem::current_path(folder);
+  write("ipopt.opt", "print_level 5\nmax_iter 0\noutput_file ipopt.out\n");
+  std::filesystem::current_path(folder_);
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const auto path = optimize(scene);
+  const auto turned = optimize(scene);
   (void)optimize(scene, limited);
   (void)optimize(scene, paper_path_options());
   const auto out = testing::internal::GetCapturedStdout(), err = testing::internal::GetCapturedStderr();
-  const bool wrote = std::filesystem::exists(folder / "ipopt.out");
   std::filesystem::current_path(home);
-  std::filesystem::remove_all(folder);
   EXPECT_EQ(out, "");
   EXPECT_EQ(err, "");
-  EXPECT_FALSE(wrote);
-  EXPECT_EQ(path.yaws, expected.yaws);
+  EXPECT_FALSE(std::filesystem::exists(path("ipopt.out")));
+  EXPECT_EQ(turned.yaws, expected.yaws);
 }
 
 }  // namespace

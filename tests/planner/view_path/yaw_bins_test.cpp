@@ -5,14 +5,6 @@
 #include "support/random.hpp"
 #include "support/random_view.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 namespace frontlux::planner {
 namespace {
 

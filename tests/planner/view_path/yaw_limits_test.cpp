@@ -2,15 +2,6 @@
 
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-#include <vector>
-
 namespace frontlux::planner {
 namespace {
 

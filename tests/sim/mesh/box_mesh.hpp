@@ -1,12 +1,11 @@
 #pragma once
 
+#include "support/test.hpp"
+
 #include <frontlux/sim/world.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
-#include <cstddef>
-#include <cstdint>
 
 namespace frontlux::sim::test {
 
@@ -28,8 +27,8 @@ inline void add_box(TriangleMesh& mesh, const Eigen::AlignedBox3f& box, int piec
   };
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const int side : {0, pieces}) {
-      for (int i = 0; i < pieces; ++i) {
+    for (const int side : {0, pieces})
+      for (int i = 0; i < pieces; ++i)
         for (int j = 0; j < pieces; ++j) {
           const auto corner = [&](int a, int b) {
             Eigen::Vector3f point;
@@ -40,8 +39,6 @@ inline void add_box(TriangleMesh& mesh, const Eigen::AlignedBox3f& box, int piec
           };
           add_quad(mesh, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
         }
-      }
-    }
   }
 }
 

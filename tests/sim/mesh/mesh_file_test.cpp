@@ -5,33 +5,18 @@
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <stdexcept>
-#include <string>
 #include <unistd.h>
-#include <vector>
 
 namespace frontlux::sim {
 namespace {
+
+using test::content_of;
 
 class MeshFile : public test::InputTest {
  protected:
   MeshFile() : InputTest([](const auto& file) { static_cast<void>(read_mesh_world(file)); }) {}
 
   [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
-
-  static std::string content_of(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
 };
 
 // The corners of every triangle, which the order of vertices does not change.
@@ -62,15 +47,11 @@ std::string text_of(const Numbers& numbers) {
 std::string house_ply(const std::string& newline = "\n") {
   std::string text;
   const auto line = [&](const std::string& words) { text += words + newline; };
-  line("ply");
-  line("format ascii 1.0");
-  line("comment a house");
-  line("element vertex 8");
-  for (const char* property : {"float x", "double y", "uchar red", "float32 z"})
-    line(std::string("property ") + property);
-  line("element face 6");
-  line("property list uint8 int32 vertex_index");
-  line("end_header");
+  for (const char* words :
+       {"ply", "format ascii 1.0", "comment a house", "element vertex 8", "property float x",
+        "property double y", "property uchar red", "property float32 z", "element face 6",
+        "property list uint8 int32 vertex_index", "end_header"})
+    line(words);
   for (const auto& v : kHouse) line(text_of(v.head<2>()) + "7 " + text_of(v.tail<1>()));
   for (const auto& s : kSides) line(std::string("4 ").append(text_of(s)));
   return text;
@@ -204,16 +185,20 @@ TEST_F(MeshFile, ScaleUnitAndAxisAreTaken) {
   expect_house(read_mesh_world(save("h.gltf", house_gltf()), {.scale = 1, .up = UpAxis::kZ}), {10, 0, 0},
                {12, 3, 5});
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
-    EXPECT_THROW(static_cast<void>(read_mesh_world(ply, {.scale = scale})), std::invalid_argument);
+    EXPECT_REFUSED(read_mesh_world(ply, {.scale = scale}));
+}
+
+// The header and the rows of a PLY of triangles.
+std::string triangles_ply(int vertices, int faces, const std::string& rows) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
+         "\nproperty list uchar int vertex_indices\nend_header\n" + rows;
 }
 
 TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOut) {
-  const auto path =
-      save("h.ply",
-           "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
-           "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
-           "0 0 0\n1 0 0\n2 0 0\n0 1 0\n0 0 0\n"
-           "3 0 1 2\n3 0 1 3\n3 0 4 3\n3 1 1 1\n");
+  const auto path = save("h.ply", triangles_ply(5, 4,
+                                                "0 0 0\n1 0 0\n2 0 0\n0 1 0\n0 0 0\n"
+                                                "3 0 1 2\n3 0 1 3\n3 0 4 3\n3 1 1 1\n"));
   const World world = read_mesh_world(path);
   EXPECT_EQ(world.mesh.triangles.size(), 1U);
   EXPECT_EQ(world.mesh.vertices.size(), 3U);
@@ -222,12 +207,6 @@ TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOut) {
 
 TEST_F(MeshFile, BadFilesAreRefusedByName) {
   const std::string house = house_ply();
-  const auto replaced = [&](const std::string& from, const std::string& to) {
-    std::string text = house;
-    const auto at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
-  };
   expect_refused(file("none.ply"), "no such file");
   expect_refused(file("none.obj"), "no such file");
   std::filesystem::create_directories(file("folder.ply"));
@@ -238,34 +217,27 @@ TEST_F(MeshFile, BadFilesAreRefusedByName) {
   for (const char* name : {"foreign.stl", "foreign.dae", "foreign.gltf", "foreign.glb"})
     expect_refused(save(name, house));
   const auto ply = [&](const std::string& from, const std::string& to, const std::string& part) {
-    expect_refused("bad.ply", replaced(from, to), part);
+    expect_refused("bad.ply", test::replaced(house, from, to), part);
   };
   ply("element face 6", "element face 0", "no triangles");
   ply("4 0 3 2 1", "4 0 3 8 1", "vertex 8, but there are only 8");
-  ply("2.000000", "nan", "vertex 1 is not finite");
-  ply("2.000000", "-inf", "vertex 1 is not finite");
-  ply("2.000000", "1e39", "vertex 1 is not finite");
-  expect_refused(
-      save("flat.ply",
-           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 "
-           "2\n"),
-      "none of its 1 triangles has an area");
+  for (const char* bad : {"nan", "-inf", "1e39"}) ply("2.000000", bad, "vertex 1 is not finite");
+  expect_refused("flat.ply", triangles_ply(3, 1, "0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n"),
+                 "none of its 1 triangles has an area");
   expect_refused(save("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"));
 }
 
 // Reads it, or refuses it as a runtime_error that names it; a world that is read is sound.
 void expect_calm(const std::filesystem::path& path) {
-  try {
+  const std::string said = test::complaint_of<std::runtime_error>([&] {
     const World world = read_mesh_world(path);
     ASSERT_FALSE(world.mesh.triangles.empty());
     for (const auto& t : world.mesh.triangles)
       for (const auto i : t) ASSERT_LT(i, world.mesh.vertices.size());
     for (const auto& v : world.mesh.vertices) ASSERT_TRUE(v.allFinite());
     ASSERT_GT(surface_area(world.mesh), 0.0);
-  } catch (const std::runtime_error& error) {
-    ASSERT_TRUE(std::string(error.what()).starts_with(path.string() + ": ")) << error.what();
-  }
+  });
+  ASSERT_TRUE(said.empty() || said.starts_with(path.string() + ": ")) << said;
 }
 
 TEST_F(MeshFile, TruncatedPlyIsRefused) {

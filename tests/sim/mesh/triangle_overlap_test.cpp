@@ -4,11 +4,6 @@
 
 #include "support/random.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <vector>
-
 namespace frontlux::sim {
 namespace {
 
@@ -41,8 +36,7 @@ TriangleOverlap overlap_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b, c
 TEST(TriangleOverlap, AgreesWithClipping) {
   frontlux::test::Random random(1);
   const auto point = [&](double reach) {
-    Eigen::Vector3d p(random.uniform(-reach, reach), random.uniform(-reach, reach),
-                      random.uniform(-reach, reach));
+    Eigen::Vector3d p = random.point(-reach, reach);
     if (random.one_in(3)) p = p.array().round();  // on planes of the box, and on each other
     return p;
   };

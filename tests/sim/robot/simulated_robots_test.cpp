@@ -1,19 +1,9 @@
 #include "mesh/triangle_overlap.hpp"
+#include "sim/world/place.hpp"
+#include "support/complaint.hpp"
 #include "support/random.hpp"
 
-#include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
-#include <frontlux/sim/start_pose.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <vector>
 
 namespace frontlux::sim {
 namespace {
@@ -40,12 +30,10 @@ bool same_bits(const planner::Scan& a, const planner::Scan& b) {
 }
 
 TEST(SweptBox, MeetsTheTrianglesThatABoxInManyStepsMeets) {
-  test::Random random(3);
+  frontlux::test::Random random(3);
   int met = 0, passed = 0;
   for (int i = 0; i < 4'000; ++i) {
-    const auto point = [&](double far) {
-      return Eigen::Vector3d(random.uniform(-far, far), random.uniform(-far, far), random.uniform(-far, far));
-    };
+    const auto point = [&](double far) { return random.point(-far, far); };
     Eigen::Vector3d motion = point(2.0), half = point(0.4).cwiseAbs() + Eigen::Vector3d::Constant(0.05);
     if (random.one_in(4)) motion[random.below(3)] = 0.0;
     if (random.one_in(20)) motion.setZero();
@@ -77,14 +65,12 @@ TEST(SweptBox, MeetsTheTrianglesThatABoxInManyStepsMeets) {
 TEST(TriangleBvh, CountsAsALoopOverAllTriangles) {
   const World world = make_world("factory", 2);
   const TriangleBvh bvh(world.mesh);
-  test::Random random(4);
+  frontlux::test::Random random(4);
   std::uint64_t all = 0;
   for (int i = 0; i < 300; ++i) {
-    Eigen::Vector3d at, motion;
-    for (int a = 0; a < 3; ++a) {
-      at[a] = random.uniform(world.bounds.min()[a], world.bounds.max()[a]);
-      motion[a] = random.uniform(-1.5, 1.5);
-    }
+    const Eigen::Vector3d half = world.bounds.sizes() / 2;
+    const Eigen::Vector3d at = world.bounds.center() + random.point(-1, 1).cwiseProduct(half),
+                          motion = random.point(-1.5, 1.5);
     const SweptBox box({at - Eigen::Vector3d::Constant(0.4), at + Eigen::Vector3d::Constant(0.4)}, motion);
     std::uint64_t count = 0;
     for (std::size_t t = 0; t < world.mesh.triangles.size(); ++t)
@@ -97,6 +83,17 @@ TEST(TriangleBvh, CountsAsALoopOverAllTriangles) {
             0U);
 }
 
+// Two robots, the one on the ground and the one in the air, beside the pane.
+struct BesideThePane {
+  World world = pane();
+  GroundTruth truth{world, 0.3, *world.start};
+  [[nodiscard]] SimulatedRobots robots(std::vector<planner::RobotDescription> team,
+                                       const RangeErrors& errors = {}, std::uint64_t seed = 1,
+                                       AtContact at_contact = AtContact::kGoOn) const {
+    return SimulatedRobots(world, truth, std::move(team), errors, seed, at_contact);
+  }
+};
+
 // Drives, and tells what the robot ran into.
 Collisions collisions_of(SimulatedRobots& robots, std::size_t robot, const Pose& viewpoint) {
   const Collisions before = robots.total();
@@ -105,9 +102,8 @@ Collisions collisions_of(SimulatedRobots& robots, std::size_t robot, const Pose&
 }
 
 TEST(SimulatedRobots, CountWhatTheyRunInto) {
-  const World world = pane();
-  const GroundTruth truth(world, 0.3, *world.start);
-  SimulatedRobots robots(world, truth, {planner::ugv_description(), planner::uav_description()}, {}, 1);
+  const BesideThePane scene;
+  SimulatedRobots robots = scene.robots({planner::ugv_description(), planner::uav_description()});
   const auto drive = [&](std::size_t robot, double x, double y, double z) {
     return collisions_of(robots, robot, {{x, y, z}});
   };
@@ -135,11 +131,12 @@ TEST(SimulatedRobots, CountWhatTheyRunInto) {
 }
 
 TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
-  const World world = make_world("storage", 2);
-  const Eigen::Vector3d start = free_start(world, 0.3, true);
-  const GroundTruth truth(world, 0.3, start);
-  SimulatedRobots robots(world, truth, {planner::ugv_description(), planner::uav_description()}, {}, 1);
-  test::Random random(9);
+  const test::Place place("storage", 2);
+  const Eigen::Vector3d& start = place.start;
+  const auto& bounds = place.world.bounds;
+  SimulatedRobots robots(place.world, place.truth, {planner::ugv_description(), planner::uav_description()},
+                         {}, 1);
+  frontlux::test::Random random(9);
   std::array<Eigen::Vector3d, 2> at{Eigen::Vector3d(start.x(), start.y(), 0.75),
                                     Eigen::Vector3d(start.x(), start.y(), 1.35)};
   for (std::size_t robot = 0; robot < 2; ++robot) robots.drive(robot, {at[robot]});
@@ -149,8 +146,8 @@ TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
     // Along one axis, so that it is clear which voxels it passes.
     Eigen::Vector3d to = at[robot];
     const int axis = random.below(robot == 0 ? 2 : 3);
-    to[axis] = std::clamp(to[axis] + random.uniform(-3.0, 3.0), world.bounds.min()[axis] + 1.0,
-                          world.bounds.max()[axis] - 1.0);
+    to[axis] =
+        std::clamp(to[axis] + random.uniform(-3.0, 3.0), bounds.min()[axis] + 1.0, bounds.max()[axis] - 1.0);
     const int half = robot == 0 ? 2 : 1, below = robot == 0 ? 2 : 1, above = robot == 0 ? 0 : 1;
     const auto index = [](double x) { return static_cast<int>(std::floor(x / 0.3)) + Lattice::kOrigin; };
     std::uint64_t expected = 0;
@@ -158,11 +155,9 @@ TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
          k <= std::max(index(at[robot][axis]), index(to[axis])); ++k) {
       Eigen::Vector3i c(index(to.x()), index(to.y()), index(to.z()));
       c[axis] = k;
-      bool hit = false;
-      for (int x = -half; x <= half; ++x)
-        for (int y = -half; y <= half; ++y)
-          for (int z = -below; z <= above; ++z)
-            hit = hit || truth.holds_surface(make_key(c.x() + x, c.y() + y, c.z() + z));
+      const KeyBox box{make_key(c.x() - half, c.y() - half, c.z() - below),
+                       make_key(c.x() + half, c.y() + half, c.z() + above)};
+      const bool hit = !all_of(box, [&](const VoxelKey& key) { return !place.truth.holds_surface(key); });
       expected += static_cast<std::uint64_t>(hit);
     }
     EXPECT_EQ(collisions_of(robots, robot, {to}).lattice, expected) << i;
@@ -174,12 +169,11 @@ TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
 }
 
 TEST(SimulatedRobots, ErrorsDependOnSeedRobotAndNumberOfItsScans) {
-  const World world = pane();
-  const GroundTruth truth(world, 0.3, *world.start);
+  const BesideThePane scene;
   const std::vector<planner::RobotDescription> team(2, planner::ugv_description());
   const RangeErrors errors{.sigma = 0.05, .dropout = 0.1};
-  SimulatedRobots a(world, truth, team, errors, 7), b(world, truth, team, errors, 7),
-      c(world, truth, team, errors, 8);
+  SimulatedRobots a = scene.robots(team, errors, 7), b = scene.robots(team, errors, 7),
+                  c = scene.robots(team, errors, 8);
   const Pose pose{{1.05, 1.05, 0.75}};
   const planner::Scan first = *a.drive(0, pose), second = *a.drive(0, pose), other = *a.drive(1, pose);
   EXPECT_FALSE(same_bits(first, second));
@@ -190,15 +184,14 @@ TEST(SimulatedRobots, ErrorsDependOnSeedRobotAndNumberOfItsScans) {
   EXPECT_TRUE(same_bits(*b.drive(0, pose), second));
   EXPECT_FALSE(same_bits(*c.drive(0, pose), first));
   // Without errors it is what the sensor sees.
-  SimulatedRobots exact(world, truth, {planner::uav_description()}, {}, 1);
+  SimulatedRobots exact = scene.robots({planner::uav_description()});
   EXPECT_TRUE(same_bits(*exact.drive(0, pose),
-                        sense(Surface(world.mesh), sensor_of(planner::uav_description()), pose, 5)));
+                        sense(Surface(scene.world.mesh), sensor_of(planner::uav_description()), pose, 5)));
 }
 
 TEST(SimulatedRobots, StayWhereABumperStopsThem) {
-  const World world = pane();
-  const GroundTruth truth(world, 0.3, *world.start);
-  SimulatedRobots robots(world, truth, {planner::ugv_description()}, {}, 1, AtContact::kStay);
+  const BesideThePane scene;
+  SimulatedRobots robots = scene.robots({planner::ugv_description()}, {}, 1, AtContact::kStay);
   EXPECT_TRUE(robots.drive(0, {{2.25, 3.15, 0.75}}).has_value());
   EXPECT_FALSE(robots.drive(0, {{4.05, 3.15, 0.75}}).has_value());
   // It is still on this side of the pane.
@@ -207,14 +200,12 @@ TEST(SimulatedRobots, StayWhereABumperStopsThem) {
 }
 
 TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
-  const World world = pane();
-  const GroundTruth truth(world, 0.3, *world.start);
-  SimulatedRobots robots(world, truth, {planner::ugv_description()}, {}, 1);
+  const BesideThePane scene;
+  SimulatedRobots robots = scene.robots({planner::ugv_description()});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(robots.drive(1, {{1, 1, 0.75}}), std::invalid_argument);
-  EXPECT_THROW(robots.drive(0, {{1, nan, 0.75}}), std::invalid_argument);
-  EXPECT_THROW(robots.drive(0, {{1, 1, 1e9}}), std::invalid_argument);
-  EXPECT_THROW(robots.drive(0, {{1, 1, 0.75}, nan}), std::invalid_argument);
+  EXPECT_REFUSED(robots.drive(1, {{1, 1, 0.75}}));
+  for (const Pose& bad : {Pose{{1, nan, 0.75}}, Pose{{1, 1, 1e9}}, Pose{{1, 1, 0.75}, nan}})
+    EXPECT_REFUSED(robots.drive(0, bad));
   EXPECT_EQ(robots.total(), Collisions());
 }
 

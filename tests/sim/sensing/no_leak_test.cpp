@@ -1,29 +1,13 @@
 // With exact sensing a map invents nothing: every occupied voxel touches a true surface, and every free one
 // can be seen into from where the robot was, without looking through a wall.
 #include "mesh/triangle_overlap.hpp"
+#include "sim/world/place.hpp"
 #include "support/maps.hpp"
 
 #include <frontlux/key_box.hpp>
-#include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 #include <frontlux/sim/scan_world.hpp>
-#include <frontlux/sim/start_pose.hpp>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <optional>
-#include <set>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace frontlux::sim {
 namespace {
@@ -143,8 +127,9 @@ struct Mapped {
 };
 
 // Checks every voxel of a map.
-Mapped expect_no_leak(const World& world, const GroundTruth& truth, const Eigen::Vector3d& start,
-                      const std::vector<View>& views, const Mapping& mapping) {
+Mapped expect_no_leak(const test::Place& place, const std::vector<View>& views, const Mapping& mapping) {
+  const World& world = place.world;
+  const GroundTruth& truth = place.truth;
   const std::set<VoxelKey> touched = touched_voxels(world, truth);
   std::optional<FinerTruth> finer;
   Mapped mapped;
@@ -169,7 +154,7 @@ Mapped expect_no_leak(const World& world, const GroundTruth& truth, const Eigen:
           ++mapped.cleared;
           return;
         }
-        if (!finer) finer.emplace(world, truth, start, views);
+        if (!finer) finer.emplace(world, truth, place.start, views);
         if (complaints < 5 && !finer->reaches(key)) complain("beyond a wall lies the free", key);
         return;
     }
@@ -180,13 +165,13 @@ Mapped expect_no_leak(const World& world, const GroundTruth& truth, const Eigen:
 
 // What both robots map on a sweep from the world's start, bubbles included.
 Mapped sweep_and_check(const World& world, double resolution, double spacing, bool faces_away) {
-  const Eigen::Vector3d start = free_start(world, resolution, faces_away);
-  const GroundTruth truth(world, resolution, start);
+  const test::Place place(world, faces_away, resolution);
+  const GroundTruth& truth = place.truth;
   Mapping mapping({.resolution = resolution, .bounds = truth.bounds()});
   std::vector<View> views;
   const std::vector<planner::RobotDescription> team = {planner::ugv_description(),
                                                        planner::uav_description()};
-  const auto starts = find_starts(truth, start, std::vector{team[0].robot, team[1].robot});
+  const auto starts = place.starts({team[0].robot, team[1].robot});
   for (std::size_t i = 0; i < team.size(); ++i) {
     if (!starts[i]) continue;
     mapping.mark_free(start_bubble(truth, team[i].robot, *starts[i]));
@@ -195,7 +180,7 @@ Mapped sweep_and_check(const World& world, double resolution, double spacing, bo
   }
   EXPECT_FALSE(views.empty());
   EXPECT_EQ(scan_world(Surface(world.mesh), team, views, {}, mapping), views.size());
-  const Mapped mapped = expect_no_leak(world, truth, start, views, mapping);
+  const Mapped mapped = expect_no_leak(place, views, mapping);
   EXPECT_GT(mapped.free, 0U);
   EXPECT_GT(mapped.occupied, 0U);
   // Rays that graze a surface clear some of its voxels; not many.
@@ -205,7 +190,7 @@ Mapped sweep_and_check(const World& world, double resolution, double spacing, bo
 
 TEST(NoLeak, BuiltInWorlds) {
   for (const auto& [name, description] : built_in_worlds())
-    sweep_and_check(make_world(name, 2), 0.3, test::long_mode() ? 2.0 : 6.0, true);
+    sweep_and_check(make_world(name, 2), 0.3, frontlux::test::long_mode() ? 2.0 : 6.0, true);
   sweep_and_check(make_world("room", 2), 0.1, 4.0, true);
 }
 
@@ -238,7 +223,7 @@ TEST(NoLeak, ExtraWorlds) {
     world.start = start;
     align_ground(world, std::nullopt, 0.3);
     sweep_and_check(world, 0.3, 3.0, false);
-    if (test::long_mode()) sweep_and_check(world, 0.1, 5.0, false);
+    if (frontlux::test::long_mode()) sweep_and_check(world, 0.1, 5.0, false);
   }
   EXPECT_GT(worlds, 0);
 }

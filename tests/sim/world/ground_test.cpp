@@ -2,12 +2,6 @@
 
 #include <frontlux/sim/ground.hpp>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 namespace frontlux::sim {
 namespace {
 

@@ -3,33 +3,22 @@
 #include <frontlux/key_box.hpp>
 #include <frontlux/sim/map_world.hpp>
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
 namespace frontlux::sim {
 namespace {
 
 constexpr int kEdge = 12, kLow = Lattice::kOrigin - 5;  // across the origin and across bricks
+
+constexpr KeyBox kBox = cube({kLow, kLow, kLow}, kEdge);
 
 VoxelKey key(int x, int y, int z) { return make_key(kLow + x, kLow + y, kLow + z); }
 
 VoxelGrid random_grid(std::uint64_t seed, int one_in) {
   VoxelGrid grid(0.25);
   test::Random random(seed);
-  for (int x = 0; x < kEdge; ++x)
-    for (int y = 0; y < kEdge; ++y)
-      for (int z = 0; z < kEdge; ++z) {
-        const bool occupied = random.one_in(one_in);
-        if (occupied || random.one_in(2))
-          grid.set(key(x, y, z), occupied ? Occupancy::kOccupied : Occupancy::kFree);
-      }
+  for_each_key(kBox, [&](const VoxelKey& at) {
+    const bool occupied = random.one_in(one_in);
+    if (occupied || random.one_in(2)) grid.set(at, occupied ? Occupancy::kOccupied : Occupancy::kFree);
+  });
   return grid;
 }
 
@@ -41,21 +30,19 @@ Faces faces_of(const VoxelGrid& grid, std::size_t& occupied) {
   const auto is_occupied = [&](const std::array<int, 3>& c) {
     return grid.at(key(c[0], c[1], c[2])) == Occupancy::kOccupied;
   };
-  for (int x = 0; x < kEdge; ++x)
-    for (int y = 0; y < kEdge; ++y)
-      for (int z = 0; z < kEdge; ++z) {
-        const std::array<int, 3> c = {x, y, z};
-        if (!is_occupied(c)) continue;
-        ++occupied;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          for (const int side : {0, 1}) {
-            auto beyond = c;
-            beyond[axis] += 2 * side - 1;
-            if (!is_occupied(beyond))
-              faces[{static_cast<int>(axis), c[axis] + side, c[(axis + 1) % 3], c[(axis + 2) % 3]}] +=
-                  2 * side - 1;
-          }
+  for_each_key(kBox, [&](const VoxelKey& at) {
+    const std::array<int, 3> c = {at.x - kLow, at.y - kLow, at.z - kLow};
+    if (!is_occupied(c)) return;
+    ++occupied;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1}) {
+        auto beyond = c;
+        beyond[axis] += 2 * side - 1;
+        if (!is_occupied(beyond))
+          faces[{static_cast<int>(axis), c[axis] + side, c[(axis + 1) % 3], c[(axis + 2) % 3]}] +=
+              2 * side - 1;
       }
+  });
   return faces;
 }
 

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <frontlux/sim/world.hpp>
+#include "support/test.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <frontlux/sim/world.hpp>
 
 namespace frontlux::test {
 
@@ -24,11 +20,9 @@ class SolidVoxels {
     }
     solid_.resize(at(size_[0]) * at(size_[1]) * at(size_[2]));
     above_.resize(at(size_[0]) * at(size_[1]));
-    for (const auto& triangle : world.mesh.triangles) {
-      std::array<Eigen::Vector3d, 3> corner;
-      for (std::size_t i = 0; i < 3; ++i) corner[i] = world.mesh.vertices[triangle[i]].cast<double>();
-      touch(corner);
-      note_column(corner);
+    for (std::size_t i = 0; i < world.mesh.triangles.size(); ++i) {
+      touch(sim::corners_of(world.mesh, i));
+      note_column(sim::corners_of(world.mesh, i));
     }
     fill_insides();
   }
@@ -47,14 +41,9 @@ class SolidVoxels {
       if (c[i] < 0 || c[i] >= size_[i]) return true;
     return solid_[index(c)] != 0;
   }
-  /// No voxel from c - half to c + half, by axis, is solid.
-  [[nodiscard]] bool free(const Cell& low, const Cell& high) const {
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = low[2]; z <= high[2]; ++z)
-          if (solid({x, y, z})) return false;
-    return true;
-  }
+  /// All, or none, of the voxels from `low` to `high` are solid.
+  [[nodiscard]] bool all_solid(const Cell& low, const Cell& high) const { return all_are(true, low, high); }
+  [[nodiscard]] bool free(const Cell& low, const Cell& high) const { return all_are(false, low, high); }
 
  private:
   using Triangle = std::array<Eigen::Vector3d, 3>;
@@ -63,6 +52,13 @@ class SolidVoxels {
     int sign;  // 1 if the surface faces up
   };
 
+  [[nodiscard]] bool all_are(bool state, const Cell& low, const Cell& high) const {
+    for (int x = low[0]; x <= high[0]; ++x)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int z = low[2]; z <= high[2]; ++z)
+          if (solid({x, y, z}) != state) return false;
+    return true;
+  }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] std::size_t index(const Cell& c) const {
     return (at(c[0]) * at(size_[1]) + at(c[1])) * at(size_[2]) + at(c[2]);

@@ -1,10 +1,6 @@
+#include "support/test.hpp"
+
 #include <frontlux/sim/world.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 namespace frontlux::sim {
 namespace {
