@@ -259,16 +259,16 @@ struct BoxScene::Embree {
     if (id >= views.size()) views.resize(id + 1);
     views[id] = std::move(view);
   }
-  // Coherent: rays that mostly meet the same boxes. Rays from one place diverge with their length, and large
-  // boxes keep them together. The factor was measured (docs/benchmarking.md); the answers are the same.
-  [[nodiscard]] Query query(const ProbeOrder& order, std::uint8_t* too_close) const {
+  // Rays that mostly meet the same boxes: rays from one place diverge with their length, and large boxes keep
+  // them together. The factor was measured (docs/benchmarking.md); the answers are the same.
+  [[nodiscard]] bool coherent(const ProbeOrder& order) const {
     constexpr float kTogether = 8.0F;
-    return {scene, order.mean_length() < kTogether * mean_edge, too_close};
+    return order.mean_length() < kTogether * mean_edge;
   }
-  // Calls visit<size>() with the size of the packets to ask in, or 1.
+  // Calls visit<size>() with the size of packets, or 1.
   template <class Visit>
-  void with_packets(const ProbeOrder& order, const Visit& visit) const {
-    switch (order.in_packets() ? device->packet_size() : 1) {
+  void visit_size(bool in_packets, const Visit& visit) const {
+    switch (in_packets ? device->packet_size() : 1) {
       case 16:
         return visit.template operator()<16>();
       case 8:
@@ -356,14 +356,16 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
   std::array<std::uint8_t, kMaxBatch> too_close;
   std::fill_n(too_close.begin(), probes.size(), std::uint8_t{0});
   const ProbeOrder order(probes);
-  Query query = embree_->query(order, too_close.data());
+  const bool coherent = embree_->coherent(order);
+  Query query(embree_->scene, coherent, too_close.data());
   const auto sight = [&](std::size_t id, float t_far) {
     sights[id] = t_far == -std::numeric_limits<float>::infinity() ? Sight::kBlocked
                  : too_close[id] != 0                             ? Sight::kTooClose
                                                                   : Sight::kClear;
   };
   const FloatingPointMode flushed(FloatingPointMode::kFlushed);
-  embree_->with_packets(order, [&]<unsigned kSize>() {
+  // A ray that is blocked early leaves a packet with idle lanes, unless its neighbours are too.
+  embree_->visit_size(coherent && order.share_origins(), [&]<unsigned kSize>() {
     if constexpr (kSize == 1) {
       for (std::size_t id = 0; id < probes.size(); ++id) {
         RTCRay ray = make_ray(probes[id], id);
@@ -384,14 +386,14 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
 
 void BoxScene::first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const {
   const ProbeOrder order(probes);
-  Query query = embree_->query(order, nullptr);
+  Query query(embree_->scene, embree_->coherent(order), nullptr);
   const auto box = [&](unsigned geometry, unsigned primitive) {
     return geometry == RTC_INVALID_GEOMETRY_ID
                ? std::nullopt
                : std::optional(embree_->views[geometry]->group->box(primitive));
   };
   const FloatingPointMode flushed(FloatingPointMode::kFlushed);
-  embree_->with_packets(order, [&]<unsigned kSize>() {
+  embree_->visit_size(order.share_origins(), [&]<unsigned kSize>() {
     if constexpr (kSize == 1) {
       for (std::size_t id = 0; id < probes.size(); ++id) {
         RTCRayHit ray;

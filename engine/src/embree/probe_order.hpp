@@ -27,12 +27,13 @@ class ProbeOrder {
       begin = i + 1;
       ++origins;
     }
-    in_packets_ = probes.size() >= kSharing * origins;
+    share_origins_ = probes.size() >= kSharing * origins;
     mean_length_ = length / static_cast<float>(std::max<std::size_t>(probes.size(), 1));
   }
   [[nodiscard]] std::size_t operator[](std::size_t i) const { return order_[i]; }
-  /// Whether so many probes start at one point that packets of neighbours are faster than one after another.
-  [[nodiscard]] bool in_packets() const { return in_packets_; }
+  /// Whether so many probes start at one point that packets of neighbours may be faster than one after
+  /// another.
+  [[nodiscard]] bool share_origins() const { return share_origins_; }
   /// Of a probe, in voxels, along its longest axis.
   [[nodiscard]] float mean_length() const { return mean_length_; }
 
@@ -70,7 +71,7 @@ class ProbeOrder {
 
   std::array<std::uint16_t, BoxScene::kMaxBatch> order_;
   float mean_length_ = 0.0F;
-  bool in_packets_ = false;
+  bool share_origins_ = false;
 };
 
 }  // namespace frontlux::detail
