@@ -1,15 +1,10 @@
 #include "embree/box_scene.hpp"
 
 #include "embree/box_kernel.hpp"
+#include "embree/embree_query.hpp"
 #include "embree/probe_order.hpp"
 
 #include <frontlux/floating_point_mode.hpp>
-
-#if FRONTLUX_EMBREE == 3
-#include <embree3/rtcore.h>
-#else
-#include <embree4/rtcore.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -24,16 +19,6 @@
 
 namespace frontlux::detail {
 namespace {
-
-// What a query hands to the callbacks.
-struct QueryContext {
-#if FRONTLUX_EMBREE == 3
-  RTCIntersectContext embree;
-#else
-  RTCRayQueryContext embree;
-#endif
-  std::uint8_t* too_close = nullptr;
-};
 
 // A group of boxes as the callbacks see it.
 struct View {
@@ -79,114 +64,6 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
   const auto& view = *static_cast<const View*>(args->geometryUserPtr);
   box_kernel().intersect(view.box(args->primID), view.tolerance, args->valid,
                          reinterpret_cast<float*>(args->rayhit), args->N, args->primID, args->geomID);
-}
-
-// Embree's types and calls for packets of one size.
-template <unsigned kSize>
-struct Packet;
-template <>
-struct Packet<4> {
-  using Rays = RTCRay4;
-  using RayHits = RTCRayHit4;
-  static constexpr auto kOccluded = &rtcOccluded4;
-  static constexpr auto kIntersect = &rtcIntersect4;
-};
-template <>
-struct Packet<8> {
-  using Rays = RTCRay8;
-  using RayHits = RTCRayHit8;
-  static constexpr auto kOccluded = &rtcOccluded8;
-  static constexpr auto kIntersect = &rtcIntersect8;
-};
-template <>
-struct Packet<16> {
-  using Rays = RTCRay16;
-  using RayHits = RTCRayHit16;
-  static constexpr auto kOccluded = &rtcOccluded16;
-  static constexpr auto kIntersect = &rtcIntersect16;
-};
-
-template <class Rays>
-void set_ray(Rays& rays, unsigned lane, const Probe& probe, std::size_t id) {
-  rays.org_x[lane] = probe.origin[0];
-  rays.org_y[lane] = probe.origin[1];
-  rays.org_z[lane] = probe.origin[2];
-  rays.tnear[lane] = probe.t_near;
-  rays.dir_x[lane] = probe.direction[0];
-  rays.dir_y[lane] = probe.direction[1];
-  rays.dir_z[lane] = probe.direction[2];
-  rays.time[lane] = 0.0F;
-  rays.tfar[lane] = probe.t_far;
-  rays.mask[lane] = ~0U;
-  rays.id[lane] = static_cast<unsigned>(id);
-  rays.flags[lane] = 0;
-}
-
-RTCRay make_ray(const Probe& probe, std::size_t id) {
-  const auto& [x, y, z] = probe.origin;
-  const auto& [dx, dy, dz] = probe.direction;
-  return {x, y, z, probe.t_near, dx, dy, dz, 0.0F, probe.t_far, ~0U, static_cast<unsigned>(id), 0};
-}
-
-// How both versions of Embree are asked.
-class Query {
- public:
-  Query(RTCScene scene, bool coherent, std::uint8_t* too_close) : scene_(scene) {
-    context_.too_close = too_close;
-#if FRONTLUX_EMBREE == 3
-    rtcInitIntersectContext(&context_.embree);
-    if (coherent) context_.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-#else
-    rtcInitRayQueryContext(&context_.embree);
-    rtcInitOccludedArguments(&occluded_);
-    rtcInitIntersectArguments(&intersect_);
-    occluded_.context = intersect_.context = &context_.embree;
-    if (coherent) occluded_.flags = intersect_.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-#endif
-  }
-
-#if FRONTLUX_EMBREE == 3
-  void occluded(RTCRay& ray) { rtcOccluded1(scene_, &context_.embree, &ray); }
-  void intersect(RTCRayHit& ray) { rtcIntersect1(scene_, &context_.embree, &ray); }
-  template <unsigned kSize>
-  void occluded(const int* valid, typename Packet<kSize>::Rays& rays) {
-    Packet<kSize>::kOccluded(valid, scene_, &context_.embree, &rays);
-  }
-  template <unsigned kSize>
-  void intersect(const int* valid, typename Packet<kSize>::RayHits& rays) {
-    Packet<kSize>::kIntersect(valid, scene_, &context_.embree, &rays);
-  }
-#else
-  void occluded(RTCRay& ray) { rtcOccluded1(scene_, &ray, &occluded_); }
-  void intersect(RTCRayHit& ray) { rtcIntersect1(scene_, &ray, &intersect_); }
-  template <unsigned kSize>
-  void occluded(const int* valid, typename Packet<kSize>::Rays& rays) {
-    Packet<kSize>::kOccluded(valid, scene_, &rays, &occluded_);
-  }
-  template <unsigned kSize>
-  void intersect(const int* valid, typename Packet<kSize>::RayHits& rays) {
-    Packet<kSize>::kIntersect(valid, scene_, &rays, &intersect_);
-  }
-#endif
-
- private:
-  RTCScene scene_;
-  QueryContext context_;
-#if FRONTLUX_EMBREE != 3
-  RTCOccludedArguments occluded_;
-  RTCIntersectArguments intersect_;
-#endif
-};
-
-// Calls visit(first, count, valid) for packets of probes, the last of them perhaps not full.
-template <unsigned kSize, class Visit>
-void for_each_packet(std::size_t size, const Visit& visit) {
-  for (std::size_t first = 0; first < size; first += kSize) {
-    const auto count = static_cast<unsigned>(std::min<std::size_t>(kSize, size - first));
-    alignas(64) int valid[kSize];
-    for (unsigned lane = 0; lane < kSize; ++lane) valid[lane] = lane < count ? -1 : 0;
-    visit(first, count, valid);
-  }
 }
 
 }  // namespace
@@ -357,7 +234,7 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
   std::fill_n(too_close.begin(), probes.size(), std::uint8_t{0});
   const ProbeOrder order(probes);
   const bool coherent = embree_->coherent(order);
-  Query query(embree_->scene, coherent, too_close.data());
+  EmbreeQuery query(embree_->scene, coherent, too_close.data());
   const auto sight = [&](std::size_t id, float t_far) {
     sights[id] = t_far == -std::numeric_limits<float>::infinity() ? Sight::kBlocked
                  : too_close[id] != 0                             ? Sight::kTooClose
@@ -386,7 +263,7 @@ void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) 
 
 void BoxScene::first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const {
   const ProbeOrder order(probes);
-  Query query(embree_->scene, embree_->coherent(order), nullptr);
+  EmbreeQuery query(embree_->scene, embree_->coherent(order), nullptr);
   const auto box = [&](unsigned geometry, unsigned primitive) {
     return geometry == RTC_INVALID_GEOMETRY_ID
                ? std::nullopt
