@@ -1,5 +1,6 @@
 # Parsing Eigen and the standard library is half of what compiling us takes: the engine's precompiled header does it
-# once, for all targets. It is no part of what is installed, and every file still includes what it uses.
+# once, for all targets. It is no part of what is installed, and every file still includes what it uses
+# (tests start from support/test.hpp).
 option(FRONTLUX_PRECOMPILE_HEADERS "Precompile Eigen and the standard library" ${PROJECT_IS_TOP_LEVEL})
 
 # frontlux_target(NAME [PRECOMPILE header... | PRECOMPILED_BY target]): the language level and the warnings that every

@@ -102,7 +102,10 @@ class BoxSceneDevice {
   unsigned packet_size_ = 1;
 };
 
-std::shared_ptr<BoxSceneDevice> make_box_scene_device() { return std::make_shared<BoxSceneDevice>(); }
+std::shared_ptr<BoxSceneDevice> make_box_scene_device() {
+  (void)box_kernel();  // throws here, if it has to, and not in a callback from Embree
+  return std::make_shared<BoxSceneDevice>();
+}
 std::size_t memory_bytes(const BoxSceneDevice& device) { return device.bytes(); }
 
 struct BoxScene::Embree {

@@ -75,16 +75,18 @@ TEST_F(InstructionSetDeathTest, RefusesWhatIsNotThere) {
 }
 
 TEST_F(InstructionSetDeathTest, AVariableThatIsWrongIsToldWhenACasterIsMade) {
-  const auto make = [] {
+  const auto make = [](auto factory) {
     setenv("FRONTLUX_ISA", "wrong", 1);
     try {
-      (void)make_ray_caster(VoxelGrid(0.1));
+      (void)factory(VoxelGrid(0.1));
     } catch (const std::runtime_error&) {
       std::exit(3);
     }
     std::exit(0);
   };
-  EXPECT_EXIT(make(), testing::ExitedWithCode(3), "");
+  EXPECT_EXIT(make([](const VoxelGrid& grid) { return make_ray_caster(grid); }), testing::ExitedWithCode(3),
+              "");
+  EXPECT_EXIT(make(make_embree_ray_caster), testing::ExitedWithCode(3), "");
 }
 
 // A build that lost its vector code would still answer, and only be slow.
