@@ -213,11 +213,11 @@ TEST(Surface, RangeLimitIsInclusiveAndLengthOfTheDirectionDoesNotMatter) {
 TEST(Surface, LeavesTheFloatingPointModeAlone) {
   const Surface surface(test::box_mesh({Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()}));
   std::fesetround(FE_TOWARDZERO);
-  const std::uint64_t unusual = floating_point_control();
+  const std::uint64_t unusual = frontlux::test::floating_point_control();
   const auto hits = cast(surface, {{{0.5F, 0.5F, 0.5F}, {1, 0, 0}}});
-  const std::uint64_t after = floating_point_control();
+  const std::uint64_t after = frontlux::test::floating_point_control();
   std::fesetround(FE_TONEAREST);
-  EXPECT_NE(floating_point_control(), unusual);
+  EXPECT_NE(frontlux::test::floating_point_control(), unusual);
   EXPECT_EQ(after, unusual);
   EXPECT_EQ(hits[0].range, 0.5);
 }
