@@ -29,6 +29,7 @@ std::optional<double> median_of(const Samples& samples, const std::string& row) 
 /// What a reader of the numbers must know. Machine load, number of cores and date are in the JSON already.
 void add_context() {
   benchmark::AddCustomContext("cpu_name", processor_name());
+  benchmark::AddCustomContext("instructions", instruction_set_name());
 #if defined(__clang__)
   benchmark::AddCustomContext("compiler", "clang " __clang_version__);
 #elif defined(__GNUC__)
@@ -48,7 +49,7 @@ class GoogleBenchmark::Recorder : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       const auto rate = run.counters.find("items_per_second");
-      if (run.run_type != Run::RT_Iteration || run.error_occurred || rate == run.counters.end()) continue;
+      if (run.run_type != Run::RT_Iteration || rate == run.counters.end()) continue;
       std::string name = run.run_name.str();
       if (const auto suffix = name.rfind("/real_time"); suffix != std::string::npos) name.resize(suffix);
       rates[name].push_back(rate->second.value);

@@ -20,7 +20,7 @@ TARGETS = {
 
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
-    "engine": ["file", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "view"],
+    "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "view"],
     "planner": ["mapping", "frontier", "corridor", "path", "assignment", "goal", "view_path", "exploration",
                 "recording"],
 }
@@ -29,7 +29,7 @@ FLOW = {
 LIBRARIES = [
     (r"embree[34]/", r"engine/src/embree/|planner/sim/src/sensing/surface\.cpp"),
     (r"octomap/|octomath/", r"engine/src/octomap/|planner/src/mapping/|planner/app/.*\.cpp"),
-    (r"coin(-or)?/", r"planner/src/view_path/gain_ascent\.cpp"),
+    (r"Ip[A-Z]\w+\.hpp", r"planner/src/view_path/gain_ascent\.cpp"),
     (r"ompl/", r"planner/src/path/.*"),
     (r"assimp/", r"planner/sim/src/mesh/mesh_import\.cpp"),
     (r"nlohmann/json_fwd\.hpp", r"planner/(app|io/src|report/src)/"),

@@ -2,6 +2,8 @@
 #include "commands/commands.hpp"
 #include "interrupt.hpp"
 
+#include <frontlux/machine.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <exception>
@@ -55,14 +57,25 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   return kind + stray + "'";
 }
 
+// What a wrong FRONTLUX_ISA makes of every command.
+std::string instructions() {
+  try {
+    return frontlux::instruction_set_name();
+  } catch (const std::runtime_error& error) {
+    throw frontlux::app::BadInput(error.what());
+  }
+}
+
 int run(int argc, const char* const* argv) {
+  const std::string version =
+      std::string("frontlux ").append(FRONTLUX_VERSION) + ", vector instructions: " + instructions();
   CLI::App app("Cast rays in OctoMap maps, make such maps, and let simulated robots explore.");
   app.name("frontlux");
   const auto formatter = std::make_shared<HelpFormatter>();
   formatter->label("SUBCOMMAND", "COMMAND");
   formatter->label("Positionals", "Arguments");
   app.formatter(formatter);
-  app.set_version_flag("--version", std::string("frontlux ") + FRONTLUX_VERSION, "Print the version");
+  app.set_version_flag("--version", version, "Print the version, and the vector instructions in use");
   app.set_help_flag("-h,--help", "Print this help");
   app.require_subcommand(1);
   app.footer(R"(Examples:

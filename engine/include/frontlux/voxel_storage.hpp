@@ -59,7 +59,8 @@ struct alignas(64) Brick {
 
   [[nodiscard]] static constexpr int bit(const VoxelKey& key) { return (key.y & 7) * 8 + (key.x & 7); }
   [[nodiscard]] Occupancy at(const VoxelKey& key) const {
-    const int b = bit(key), z = key.z & 7;
+    const int b = bit(key);
+    const std::size_t z = key.z & 7U;
     return static_cast<Occupancy>(((free[z] >> b) & 1U) | (((occupied[z] >> b) & 1U) << 1U));
   }
   friend bool operator==(const Brick&, const Brick&) = default;
@@ -95,7 +96,9 @@ struct Tile {
   explicit Tile(Occupancy state);
 
   [[nodiscard]] static constexpr int index(const VoxelKey& key) { return child_index<Brick::kLog2, 3>(key); }
-  [[nodiscard]] const Brick& brick(const VoxelKey& key) const { return bricks[slots[index(key)]]; }
+  [[nodiscard]] const Brick& brick(const VoxelKey& key) const {
+    return bricks[slots[static_cast<std::size_t>(index(key))]];
+  }
   [[nodiscard]] bool uniform(Occupancy state) const;
   bool fill(const VoxelKey& corner, int log2_edge, Occupancy state);
 };

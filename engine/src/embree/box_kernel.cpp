@@ -1,6 +1,7 @@
 #include "embree/box_kernel.hpp"
 
-#include <array>
+#include "isa/targets.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -104,50 +105,44 @@ template <unsigned kSize>
   }
 }
 
-// One body, compiled for three instruction sets: the functions above are inlined into each and vectorised
-// there.
-#define FRONTLUX_BOX_KERNEL(NAME, TARGET)                                                               \
-  TARGET void NAME##_occluded(const LocalBox& box, float tolerance, const int* valid, float* rays,      \
-                              unsigned size, std::uint8_t* too_close) {                                 \
-    if (size == 16) return occluded_packet<16>(box, tolerance, valid, rays, too_close);                 \
-    if (size == 8) return occluded_packet<8>(box, tolerance, valid, rays, too_close);                   \
-    if (size == 4) return occluded_packet<4>(box, tolerance, valid, rays, too_close);                   \
-    occluded_packet<1>(box, tolerance, valid, rays, too_close);                                         \
-  }                                                                                                     \
-  TARGET void NAME##_intersect(const LocalBox& box, float tolerance, const int* valid, float* ray_hits, \
-                               unsigned size, unsigned primitive, unsigned geometry) {                  \
-    if (size == 16) return intersect_packet<16>(box, tolerance, valid, ray_hits, primitive, geometry);  \
-    if (size == 8) return intersect_packet<8>(box, tolerance, valid, ray_hits, primitive, geometry);    \
-    if (size == 4) return intersect_packet<4>(box, tolerance, valid, ray_hits, primitive, geometry);    \
-    intersect_packet<1>(box, tolerance, valid, ray_hits, primitive, geometry);                          \
+// One body, compiled for each instruction set: the functions above are inlined into it and vectorised there.
+#define FRONTLUX_BOX_KERNEL(NAME)                                                                          \
+  void NAME##_occluded(const LocalBox& box, float tolerance, const int* valid, float* rays, unsigned size, \
+                       std::uint8_t* too_close) {                                                          \
+    if (size == 16) return occluded_packet<16>(box, tolerance, valid, rays, too_close);                    \
+    if (size == 8) return occluded_packet<8>(box, tolerance, valid, rays, too_close);                      \
+    if (size == 4) return occluded_packet<4>(box, tolerance, valid, rays, too_close);                      \
+    occluded_packet<1>(box, tolerance, valid, rays, too_close);                                            \
+  }                                                                                                        \
+  void NAME##_intersect(const LocalBox& box, float tolerance, const int* valid, float* ray_hits,           \
+                        unsigned size, unsigned primitive, unsigned geometry) {                            \
+    if (size == 16) return intersect_packet<16>(box, tolerance, valid, ray_hits, primitive, geometry);     \
+    if (size == 8) return intersect_packet<8>(box, tolerance, valid, ray_hits, primitive, geometry);       \
+    if (size == 4) return intersect_packet<4>(box, tolerance, valid, ray_hits, primitive, geometry);       \
+    intersect_packet<1>(box, tolerance, valid, ray_hits, primitive, geometry);                             \
   }
 
-FRONTLUX_BOX_KERNEL(baseline, )
-#if defined(__x86_64__) && defined(__GNUC__)
-FRONTLUX_BOX_KERNEL(avx2, [[gnu::target("avx2,fma")]])
-FRONTLUX_BOX_KERNEL(avx512, [[gnu::target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")]])
+FRONTLUX_BOX_KERNEL(none)
+#ifdef FRONTLUX_X86_SETS
+FRONTLUX_BEGIN_AVX512
+FRONTLUX_BOX_KERNEL(avx512)
+FRONTLUX_END_TARGET
+FRONTLUX_BEGIN_AVX2
+FRONTLUX_BOX_KERNEL(avx2)
+FRONTLUX_END_TARGET
 #endif
 #undef FRONTLUX_BOX_KERNEL
 
-constexpr BoxKernel kBaseline{"baseline", &baseline_occluded, &baseline_intersect};
-#if defined(__x86_64__) && defined(__GNUC__)
-constexpr std::array<BoxKernel, 3> kKernels{
-    {{"AVX-512", &avx512_occluded, &avx512_intersect}, {"AVX2", &avx2_occluded, &avx2_intersect}, kBaseline}};
-
-std::size_t first_to_run() {
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return 0;
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? 1 : 2;
-}
-#else
-constexpr std::array<BoxKernel, 1> kKernels{{kBaseline}};
-std::size_t first_to_run() { return 0; }
+constexpr BoxKernel kKernels[] = {
+#ifdef FRONTLUX_X86_SETS
+    {InstructionSet::kAvx512, &avx512_occluded, &avx512_intersect},
+    {InstructionSet::kAvx2, &avx2_occluded, &avx2_intersect},
 #endif
+    {InstructionSet::kNone, &none_occluded, &none_intersect}};
 
 }  // namespace
 
-std::span<const BoxKernel> box_kernels() { return std::span(kKernels).subspan(first_to_run()); }
+std::span<const BoxKernel> box_kernels() { return runnable(std::span<const BoxKernel>(kKernels)); }
 
 const BoxKernel& box_kernel() {
   static const BoxKernel& kernel = box_kernels().front();

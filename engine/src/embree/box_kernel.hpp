@@ -1,5 +1,7 @@
 #pragma once
 
+#include "isa/instruction_set.hpp"
+
 #include <cstdint>
 #include <span>
 
@@ -14,7 +16,7 @@ struct LocalBox {
 /// The test of one box against a packet of `size` rays in Embree's layout: arrays of `size` floats after each
 /// other, in the order of RTCRayN's and RTCHitN's fields. Lanes whose `valid` is 0 do not change.
 struct BoxKernel {
-  const char* instructions;
+  InstructionSet needs;
 
   /// A ray that surely passes through the box ends (t_far = -inf); one that comes within the tolerance of it
   /// without surely passing through gets `too_close[id] = 1`.
@@ -27,7 +29,7 @@ struct BoxKernel {
                     unsigned primitive, unsigned geometry);
 };
 
-/// Those that this processor can run, the widest first.
+/// Those that may run, the widest first.
 [[nodiscard]] std::span<const BoxKernel> box_kernels();
 /// The widest.
 [[nodiscard]] const BoxKernel& box_kernel();

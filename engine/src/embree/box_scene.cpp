@@ -1,9 +1,10 @@
 #include "embree/box_scene.hpp"
 
 #include "embree/box_kernel.hpp"
+#include "embree/embree_query.hpp"
 #include "embree/probe_order.hpp"
 
-#include <embree3/rtcore.h>
+#include <frontlux/floating_point_mode.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,29 +16,9 @@
 #include <unordered_map>
 #include <utility>
 #include <vector>
-#include <xmmintrin.h>
 
 namespace frontlux::detail {
 namespace {
-
-// Embree wants denormals flushed to zero while it works. The caller's mode comes back afterwards: castRay's
-// arithmetic needs it, and it is not ours to change.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | kFlushToZero | kDenormalsAreZero); }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  static constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
-  unsigned saved_;
-};
-
-struct QueryContext {
-  RTCIntersectContext embree;  // first: callbacks get a pointer to it
-  std::uint8_t* too_close = nullptr;
-};
 
 // A group of boxes as the callbacks see it.
 struct View {
@@ -85,23 +66,6 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
                          reinterpret_cast<float*>(args->rayhit), args->N, args->primID, args->geomID);
 }
 
-RTCRay make_ray(const Probe& probe, std::size_t id) {
-  RTCRay ray;
-  ray.org_x = probe.origin[0];
-  ray.org_y = probe.origin[1];
-  ray.org_z = probe.origin[2];
-  ray.tnear = probe.t_near;
-  ray.dir_x = probe.direction[0];
-  ray.dir_y = probe.direction[1];
-  ray.dir_z = probe.direction[2];
-  ray.time = 0.0F;
-  ray.tfar = probe.t_far;
-  ray.mask = ~0U;
-  ray.id = static_cast<unsigned>(id);
-  ray.flags = 0;
-  return ray;
-}
-
 }  // namespace
 
 class BoxSceneDevice {
@@ -115,12 +79,19 @@ class BoxSceneDevice {
           return true;
         },
         &bytes_);
+    const auto native = [this](RTCDeviceProperty size) { return rtcGetDeviceProperty(device_, size) != 0; };
+    packet_size_ = native(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+                   : native(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                   : native(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ? 4
+                                                                       : 1;
   }
   ~BoxSceneDevice() { rtcReleaseDevice(device_); }
   BoxSceneDevice(const BoxSceneDevice&) = delete;
   BoxSceneDevice& operator=(const BoxSceneDevice&) = delete;
 
   [[nodiscard]] RTCDevice get() const { return device_; }
+  /// The widest packets that Embree traverses as such here; it takes wider ones apart, and loses their ids.
+  [[nodiscard]] unsigned packet_size() const { return packet_size_; }
   [[nodiscard]] std::size_t bytes() const {
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes_, 0));
   }
@@ -128,9 +99,13 @@ class BoxSceneDevice {
  private:
   std::atomic<std::ptrdiff_t> bytes_{0};  // outlives the device, which counts down to the end
   RTCDevice device_;
+  unsigned packet_size_ = 1;
 };
 
-std::shared_ptr<BoxSceneDevice> make_box_scene_device() { return std::make_shared<BoxSceneDevice>(); }
+std::shared_ptr<BoxSceneDevice> make_box_scene_device() {
+  (void)box_kernel();  // throws here, if it has to, and not in a callback from Embree
+  return std::make_shared<BoxSceneDevice>();
+}
 std::size_t memory_bytes(const BoxSceneDevice& device) { return device.bytes(); }
 
 struct BoxScene::Embree {
@@ -164,18 +139,26 @@ struct BoxScene::Embree {
     if (id >= views.size()) views.resize(id + 1);
     views[id] = std::move(view);
   }
-  // Embree's packets of sixteen neighbouring rays are faster while such rays mostly meet the same boxes;
-  // where they diverge, single rays are. Rays from one place diverge with their length, and large boxes keep
-  // them together. The factor was measured (docs/benchmarking.md). The answers are the same in both modes.
-  [[nodiscard]] QueryContext make_context(const ProbeOrder& order) const {
+  // Rays that mostly meet the same boxes: rays from one place diverge with their length, and large boxes keep
+  // them together. The factor was measured (docs/benchmarking.md); the answers are the same.
+  [[nodiscard]] bool coherent(const ProbeOrder& order) const {
     constexpr float kTogether = 8.0F;
-    QueryContext context;
-    rtcInitIntersectContext(&context.embree);
-    if (order.mean_length() < kTogether * mean_edge)
-      context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    return context;
+    return order.mean_length() < kTogether * mean_edge;
   }
-
+  // Calls visit<size>() with the size of packets, or 1.
+  template <class Visit>
+  void visit_size(bool in_packets, const Visit& visit) const {
+    switch (in_packets ? device->packet_size() : 1) {
+      case 16:
+        return visit.template operator()<16>();
+      case 8:
+        return visit.template operator()<8>();
+      case 4:
+        return visit.template operator()<4>();
+      default:
+        return visit.template operator()<1>();
+    }
+  }
   void detach(std::size_t id) {
     rtcDetachGeometry(scene, static_cast<unsigned>(id));
     views[id].reset();
@@ -250,45 +233,68 @@ void BoxScene::update(const Blockers& blockers) {
 }
 
 void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) const {
-  std::array<RTCRay, kMaxBatch> rays;
   std::array<std::uint8_t, kMaxBatch> too_close;
-  const std::size_t size = probes.size();
+  std::fill_n(too_close.begin(), probes.size(), std::uint8_t{0});
   const ProbeOrder order(probes);
-  std::fill_n(too_close.begin(), size, std::uint8_t{0});
-  for (std::size_t i = 0; i < size; ++i) rays[i] = make_ray(probes[order[i]], order[i]);
-  QueryContext context = embree_->make_context(order);
-  context.too_close = too_close.data();
-  {
-    const FlushDenormals scope;
-    rtcOccluded1M(embree_->scene, &context.embree, rays.data(), static_cast<unsigned>(size), sizeof(RTCRay));
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const bool hit = rays[i].tfar == -std::numeric_limits<float>::infinity();
-    sights[order[i]] = hit ? Sight::kBlocked : too_close[order[i]] != 0 ? Sight::kTooClose : Sight::kClear;
-  }
+  const bool coherent = embree_->coherent(order);
+  EmbreeQuery query(embree_->scene, coherent, too_close.data());
+  const auto sight = [&](std::size_t id, float t_far) {
+    sights[id] = t_far == -std::numeric_limits<float>::infinity() ? Sight::kBlocked
+                 : too_close[id] != 0                             ? Sight::kTooClose
+                                                                  : Sight::kClear;
+  };
+  const FloatingPointMode flushed(FloatingPointMode::kFlushed);
+  // A ray that is blocked early leaves a packet with idle lanes, unless its neighbours are too.
+  embree_->visit_size(coherent && order.share_origins(), [&]<unsigned kSize>() {
+    if constexpr (kSize == 1) {
+      for (std::size_t id = 0; id < probes.size(); ++id) {
+        RTCRay ray = make_ray(probes[id], id);
+        query.occluded(ray);
+        sight(id, ray.tfar);
+      }
+    } else {
+      typename Packet<kSize>::Rays rays;
+      for_each_packet<kSize>(probes.size(), [&](std::size_t first, unsigned count, const int* valid) {
+        for (unsigned lane = 0; lane < count; ++lane)
+          set_ray(rays, lane, probes[order[first + lane]], order[first + lane]);
+        query.occluded<kSize>(valid, rays);
+        for (unsigned lane = 0; lane < count; ++lane) sight(order[first + lane], rays.tfar[lane]);
+      });
+    }
+  });
 }
 
 void BoxScene::first(std::span<const Probe> probes, std::span<std::optional<KeyBox>> boxes) const {
-  std::array<RTCRayHit, kMaxBatch> rays;
-  const std::size_t size = probes.size();
   const ProbeOrder order(probes);
-  for (std::size_t i = 0; i < size; ++i) {
-    rays[i].ray = make_ray(probes[order[i]], order[i]);
-    rays[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  }
-  QueryContext context = embree_->make_context(order);
-  {
-    const FlushDenormals scope;
-    rtcIntersect1M(embree_->scene, &context.embree, rays.data(), static_cast<unsigned>(size),
-                   sizeof(RTCRayHit));
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const RTCHit& hit = rays[i].hit;
-    boxes[order[i]] = hit.geomID == RTC_INVALID_GEOMETRY_ID
-                          ? std::nullopt
-                          : std::optional(embree_->views[hit.geomID]->group->box(hit.primID));
-  }
+  EmbreeQuery query(embree_->scene, embree_->coherent(order), nullptr);
+  const auto box = [&](unsigned geometry, unsigned primitive) {
+    return geometry == RTC_INVALID_GEOMETRY_ID
+               ? std::nullopt
+               : std::optional(embree_->views[geometry]->group->box(primitive));
+  };
+  const FloatingPointMode flushed(FloatingPointMode::kFlushed);
+  embree_->visit_size(order.share_origins(), [&]<unsigned kSize>() {
+    if constexpr (kSize == 1) {
+      for (std::size_t id = 0; id < probes.size(); ++id) {
+        RTCRayHit ray;
+        ray.ray = make_ray(probes[id], id);
+        ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        query.intersect(ray);
+        boxes[id] = box(ray.hit.geomID, ray.hit.primID);
+      }
+    } else {
+      typename Packet<kSize>::RayHits rays;
+      for_each_packet<kSize>(probes.size(), [&](std::size_t first, unsigned count, const int* valid) {
+        for (unsigned lane = 0; lane < count; ++lane) {
+          set_ray(rays.ray, lane, probes[order[first + lane]], order[first + lane]);
+          rays.hit.geomID[lane] = rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        query.intersect<kSize>(valid, rays);
+        for (unsigned lane = 0; lane < count; ++lane)
+          boxes[order[first + lane]] = box(rays.hit.geomID[lane], rays.hit.primID[lane]);
+      });
+    }
+  });
 }
 
 }  // namespace frontlux::detail

@@ -36,8 +36,8 @@ class BoxSceneDevice;
 /// Bytes that Embree holds for all scenes of a device.
 [[nodiscard]] std::size_t memory_bytes(const BoxSceneDevice& device);
 
-/// Boxes of voxels in a BVH, in single precision, with a bounded error. Only its .cpp includes Embree:
-/// another version or query mode changes that file alone.
+/// Boxes of voxels in a BVH, in single precision, with a bounded error. Embree is asked in
+/// `embree_query.hpp`.
 ///
 /// Thread safety: const members may run at the same time as each other, not as `update`.
 class BoxScene {

@@ -17,7 +17,7 @@ class ProbeOrder {
  public:
   explicit ProbeOrder(std::span<const Probe> probes) {
     float length = 0.0F;
-    std::size_t begin = 0;
+    std::size_t begin = 0, origins = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const Probe& p = probes[i];
       length += std::max(p.t_far - p.t_near, 0.0F) *
@@ -25,14 +25,21 @@ class ProbeOrder {
       if (i + 1 < probes.size() && std::equal(p.origin, p.origin + 3, probes[i + 1].origin)) continue;
       sort_by_direction(probes, begin, i + 1);
       begin = i + 1;
+      ++origins;
     }
+    share_origins_ = probes.size() >= kSharing * origins;
     mean_length_ = length / static_cast<float>(std::max<std::size_t>(probes.size(), 1));
   }
   [[nodiscard]] std::size_t operator[](std::size_t i) const { return order_[i]; }
+  /// Whether so many probes start at one point that packets of neighbours may be faster than one after
+  /// another.
+  [[nodiscard]] bool share_origins() const { return share_origins_; }
   /// Of a probe, in voxels, along its longest axis.
   [[nodiscard]] float mean_length() const { return mean_length_; }
 
  private:
+  static constexpr std::size_t kSharing = 4;  // probes for each origin, on average; measured
+
   void sort_by_direction(std::span<const Probe> probes, std::size_t begin, std::size_t end) {
     constexpr std::size_t kWorthSorting = 32;
     if (end - begin < kWorthSorting) {
@@ -64,6 +71,7 @@ class ProbeOrder {
 
   std::array<std::uint16_t, BoxScene::kMaxBatch> order_;
   float mean_length_ = 0.0F;
+  bool share_origins_ = false;
 };
 
 }  // namespace frontlux::detail

@@ -95,7 +95,7 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
 
   [[nodiscard]] std::size_t do_memory_bytes() const override { return snapshot()->memory_bytes(); }
 
-  const detail::PacketWalk* packets_ = detail::packet_walk();
+  const detail::PacketWalk& packets_ = detail::packet_walk();
 };
 
 // To build the fast caster takes time for each brick of mixed states; each ray then saves a tenth to a third

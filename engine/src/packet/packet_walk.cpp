@@ -1,19 +1,16 @@
 #include "packet/packet_walk.hpp"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define FRONTLUX_PACKETS
-#include <immintrin.h>
-// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
+#include "isa/targets.hpp"
+
+#include <array>
+#include <bit>
 
 namespace frontlux::detail {
-
-#ifdef FRONTLUX_PACKETS
 namespace {
 
 constexpr std::uint32_t kWentThrough = PacketWalk::kWentThrough;
 
+#ifdef FRONTLUX_X86_SETS
 // For AVX2, which cannot expand: which of the next lines' values goes to which lane, by the lanes to fill.
 template <unsigned kLanes>
 constexpr auto make_expansion() {
@@ -49,41 +46,46 @@ alignas(64) constexpr auto kExpand4 = make_expansion<4>();
     return _mm256_or_si256(_mm256_and_si256(where, a), _mm256_andnot_si256(where, b)); \
   }
 
-// A body for each instruction set. The target holds for everything up to the pop, lambdas and templates
-// included, which an attribute on a function does not.
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")
+FRONTLUX_BEGIN_AVX512
 namespace avx512 {
-#include "packet/packet_walk_avx512.inl"
+#include "packet/lanes_avx512.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace avx512
-#pragma GCC pop_options
+FRONTLUX_END_TARGET
 
-#pragma GCC push_options
-#pragma GCC target("avx2")
+FRONTLUX_BEGIN_AVX2
 namespace avx2 {
-#include "packet/packet_walk_avx2.inl"
+#include "packet/lanes_avx2.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace avx2
-#pragma GCC pop_options
+FRONTLUX_END_TARGET
+#endif
 
-std::span<const PacketWalk> choose() {
-  static constexpr std::array<PacketWalk, 2> kWalks{
-      {{"AVX-512", &avx512::segments, &avx512::rays}, {"AVX2", &avx2::segments, &avx2::rays}}};
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  const bool has_avx2 = __builtin_cpu_supports("avx2");
-  return std::span(kWalks).subspan(has_avx512 ? 0 : 1, (has_avx512 ? 1 : 0) + (has_avx2 ? 1 : 0));
-}
+namespace vector {
+constexpr int kVectorBytes = 16;
+#include "packet/lanes_vector.inl"
+#include "packet/packet_walk_body.inl"
+}  // namespace vector
+
+namespace single {
+constexpr int kVectorBytes = 0;
+#include "packet/lanes_vector.inl"
+#include "packet/packet_walk_body.inl"
+}  // namespace single
+
+constexpr PacketWalk kWalks[] = {
+#ifdef FRONTLUX_X86_SETS
+    {InstructionSet::kAvx512, &avx512::segments, &avx512::rays},
+    {InstructionSet::kAvx2, &avx2::segments, &avx2::rays},
+#endif
+    {InstructionSet::kVector, &vector::segments, &vector::rays},
+    {InstructionSet::kNone, &single::segments, &single::rays}};
 
 }  // namespace
 
 std::span<const PacketWalk> packet_walks() {
-  static const std::span<const PacketWalk> walks = choose();
+  static const auto walks = runnable(std::span<const PacketWalk>(kWalks));
   return walks;
 }
-#else
-std::span<const PacketWalk> packet_walks() { return {}; }
-#endif
 
 }  // namespace frontlux::detail

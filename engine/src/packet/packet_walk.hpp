@@ -1,5 +1,6 @@
 #pragma once
 
+#include "isa/instruction_set.hpp"
 #include "packet/open_voxels.hpp"
 
 #include <frontlux/ray.hpp>
@@ -33,7 +34,7 @@ struct PacketLines {
 
 /// The walks of one instruction set.
 struct PacketWalk {
-  const char* instructions;
+  InstructionSet needs;
 
   /// `RayCaster::visible` between voxel centres. Ends lie in the table, at most `kMaxOffset` apart along each
   /// axis and not in one voxel; at most `PacketLines::kMaxSize` of them.
@@ -47,11 +48,9 @@ struct PacketWalk {
   static constexpr std::uint32_t kWentThrough = ~std::uint32_t{0};
 };
 
-/// Those that this processor can run, the widest first.
+/// Those that may run, the widest first.
 [[nodiscard]] std::span<const PacketWalk> packet_walks();
-/// The widest; null if there is none.
-[[nodiscard]] inline const PacketWalk* packet_walk() {
-  return packet_walks().empty() ? nullptr : &packet_walks().front();
-}
+/// The widest.
+[[nodiscard]] inline const PacketWalk& packet_walk() { return packet_walks().front(); }
 
 }  // namespace frontlux::detail

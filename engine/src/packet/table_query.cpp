@@ -8,10 +8,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <emmintrin.h>
 #include <limits>
 #include <numeric>
 #include <optional>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace frontlux::detail {
 namespace {
@@ -48,6 +50,7 @@ std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, c
   return e;
 }
 
+#ifdef __SSE2__
 // The walk of a packet, for one ray, where a packet would have one lane in use. Neither step nor look-up
 // branches on which axis is next, and times stay in vector registers.
 std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray) {
@@ -72,6 +75,7 @@ std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray) {
     if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
   }
 }
+#endif
 
 }  // namespace
 
@@ -115,8 +119,9 @@ std::size_t TableQuery::visible(std::span<const KeySegment> segments, std::span<
 
 std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
                              std::span<std::uint16_t> left) const {
-  constexpr std::size_t kWorthAPacket = 3;
   std::size_t left_size = 0;
+#ifdef __SSE2__
+  constexpr std::size_t kWorthAPacket = 3;
   if (walk_ != nullptr && rays.size() < kWorthAPacket) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const auto ray = enter(grid_.lattice(), table_, rays[i]);
@@ -129,6 +134,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
     }
     return left_size;
   }
+#endif
   struct Walking {
     std::uint32_t ray, origin;  // index of its voxel
     float direction[3];

@@ -19,10 +19,9 @@ class TableQuery {
  public:
   static constexpr std::size_t kMaxBatch = PacketLines<double>::kMaxSize;  ///< most queries in a call
 
-  /// @param walk  null: no query is answered
   TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
-             const PacketWalk* walk = packet_walk())
-      : grid_(grid), table_(table), walk_(table.empty() ? nullptr : walk), unknown_(unknown) {}
+             const PacketWalk& walk = packet_walk())
+      : grid_(grid), table_(table), walk_(table.empty() ? nullptr : &walk), unknown_(unknown) {}
 
   /// @param left  as many places as queries; gets the indices of those not answered
   /// @return how many they are
@@ -38,7 +37,7 @@ class TableQuery {
 
   const VoxelGrid& grid_;
   const OpenVoxels& table_;
-  const PacketWalk* walk_;
+  const PacketWalk* walk_;  // null: no query is answered
   UnknownPolicy unknown_;
 };
 

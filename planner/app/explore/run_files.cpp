@@ -216,6 +216,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"epsilon", exploration.epsilon},
       {"threads", run.threads},
       {"machine", machine_name()},
+      {"instructions", instruction_set_name()},
       {"end", end},
       {"steps", sums.steps},
       {"coverage_observable", sums.observable},

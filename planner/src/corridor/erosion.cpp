@@ -30,7 +30,7 @@ Erosion::Erosion(const KeyBox& box, const VoxelWindow& window)
       words_(static_cast<std::size_t>((box.max.z - base_z_) / 64 + 1)) {
   const std::size_t columns = static_cast<std::size_t>(size_x_) * static_cast<std::size_t>(size_y_);
   for (Bits* bits : {&free_, &free_z_, &free_yz_, &whole_}) bits->assign(columns * words_, 0);
-  for (Flags* flags : {&stale_, &stale_yz_, &stale_xyz_}) flags->assign(columns, 0);
+  for (Flags* flags : {&stale_, &stale_yz_, &stale_xyz_}) flags->resize(columns);
 }
 
 void Erosion::read_brick(const VoxelGrid& grid, const VoxelKey& corner) {

@@ -10,7 +10,7 @@ Ground::Ground(Options options)
       size_x_(options_.box.max.x - options_.box.min.x + 1),
       size_y_(options_.box.max.y - options_.box.min.y + 1) {
   const std::size_t columns = static_cast<std::size_t>(size_x_) * static_cast<std::size_t>(size_y_);
-  for (Flags* flags : {&free_, &occupied_, &carries_}) flags->assign(columns, 0);
+  for (Flags* flags : {&free_, &occupied_, &carries_}) flags->resize(columns);
 }
 
 void Ground::read_voxel(const VoxelGrid& grid, const VoxelKey& key) {

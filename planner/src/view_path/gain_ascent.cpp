@@ -1,7 +1,7 @@
 #include "view_path/gain_ascent.hpp"
 
-#include <coin/IpIpoptApplication.hpp>
-#include <coin/IpTNLP.hpp>
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -115,7 +115,7 @@ void with_packets(const Check& check) {
   ASSERT_FALSE(detail::box_kernels().empty());
   for (const BoxKernel& kernel : detail::box_kernels())
     for (const std::size_t size : {1, 4, 8, 16}) {
-      SCOPED_TRACE(std::string(kernel.instructions) + ", packets of " + std::to_string(size));
+      SCOPED_TRACE(std::string(name_of(kernel.needs)) + ", packets of " + std::to_string(size));
       Random random(size);
       for (int round = 0; round < 3000; ++round) {
         const LocalBox box = random_box(random);

@@ -94,11 +94,11 @@ TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {
 
 TEST(PacketWalk, SeesWhatTheWalkSees) {
   for (const detail::PacketWalk& walk : detail::packet_walks()) {
-    SCOPED_TRACE(walk.instructions);
+    SCOPED_TRACE(name_of(walk.needs));
     for (const VoxelGrid& grid : grids())
       for (const UnknownPolicy unknown : kPolicies) {
         const OpenVoxels table(grid, unknown);
-        const TableQuery query(grid, table, unknown, &walk);
+        const TableQuery query(grid, table, unknown, walk);
         const auto segments = adversarial_key_segments(grid, 20'000, 7);
         std::size_t answered = 0, seen = 0;
         // Batches of all sizes, so that packets start and end full and nearly empty.
@@ -123,11 +123,11 @@ TEST(PacketWalk, SeesWhatTheWalkSees) {
 
 TEST(PacketWalk, StopsWhereTheWalkStops) {
   for (const detail::PacketWalk& walk : detail::packet_walks()) {
-    SCOPED_TRACE(walk.instructions);
+    SCOPED_TRACE(name_of(walk.needs));
     for (const VoxelGrid& grid : grids())
       for (const UnknownPolicy unknown : kPolicies) {
         const OpenVoxels table(grid, unknown);
-        const TableQuery query(grid, table, unknown, &walk);
+        const TableQuery query(grid, table, unknown, walk);
         const auto rays = adversarial_rays(grid, 20'000, 8);
         std::array<std::size_t, 5> answered{};
         for (std::size_t begin = 0, size = 1; begin < rays.size(); begin += size, size = size % 256 + 1) {
@@ -169,7 +169,7 @@ TEST(PacketWalk, HoldsUpToItsLongestOffset) {
   const OpenVoxels spotted(grid, UnknownPolicy::kBlock);
   ASSERT_FALSE(spotted.empty());
   for (const detail::PacketWalk& walk : detail::packet_walks()) {
-    const TableQuery query(grid, spotted, UnknownPolicy::kBlock, &walk);
+    const TableQuery query(grid, spotted, UnknownPolicy::kBlock, walk);
     std::size_t seen = 0, left_over = 0;
     for (int i = 0; i < 2'000; ++i) {
       const auto near = [&] { return random.below(12); };
@@ -190,14 +190,20 @@ TEST(PacketWalk, HoldsUpToItsLongestOffset) {
   }
 }
 
-TEST(PacketWalk, WithoutInstructionsLeavesEverything) {
-  const VoxelGrid grid = corner_grid(0, 1);
+TEST(TableQuery, LeavesEverythingToOthersIfThereIsNoTable) {
+  const VoxelGrid grid(0.25);
   const OpenVoxels table(grid, UnknownPolicy::kBlock);
-  const TableQuery query(grid, table, UnknownPolicy::kBlock, nullptr);
-  const auto rays = adversarial_rays(grid, 10, 1);
+  ASSERT_TRUE(table.empty());
+  const TableQuery query(grid, table, UnknownPolicy::kBlock);
+  const auto rays = adversarial_rays(corner_grid(0, 1), 10, 1);
+  const std::vector<KeySegment> segments(10);
   std::vector<Hit> hits(10);
+  std::vector<std::uint8_t> visible(10);
   std::vector<std::uint16_t> left(10);
   EXPECT_EQ(query.cast(rays, hits, left), 10U);
+  EXPECT_EQ(left[9], 9);
+  left.assign(10, 0);
+  EXPECT_EQ(query.visible(segments, visible, left), 10U);
   EXPECT_EQ(left[9], 9);
 }
 

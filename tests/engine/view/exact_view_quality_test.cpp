@@ -157,13 +157,13 @@ TEST(ExactViewQuality, IsBruteForcesOnRandomMaps) {
 
 TEST(ExactViewQuality, IsTheSameOnEveryInstructionSet) {
   ASSERT_FALSE(detail::trie_walks().empty());
-  EXPECT_STREQ(detail::trie_walks().back().instructions, "none");
+  EXPECT_EQ(detail::trie_walks().back().needs, detail::InstructionSet::kNone);
   for (std::uint64_t seed = 100; seed < 130; ++seed) {
     const Case some = random_case(seed);
     const int bins = seed % 2 == 0 ? 0 : 12;
     const Truth truth = brute_force(some, bins);
     for (const detail::TrieWalk& walk : detail::trie_walks()) {
-      SCOPED_TRACE(some.name + ", instructions " + walk.instructions);
+      SCOPED_TRACE(some.name + ", instructions " + name_of(walk.needs));
       expect_equal(walk_all(some, bins, walk), truth);
       if (HasFatalFailure()) return;
     }

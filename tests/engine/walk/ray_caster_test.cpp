@@ -2,6 +2,7 @@
 
 #include "support/casters.hpp"
 #include "support/complaint.hpp"
+#include "support/floating_point_control.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
@@ -11,7 +12,6 @@
 
 #include <atomic>
 #include <thread>
-#include <xmmintrin.h>
 
 namespace frontlux::test {
 namespace {
@@ -265,10 +265,10 @@ TEST(RayCaster, LeavesTheCallersFloatingPointModeAlone) {
   const auto tree = make_random_tree(1, 0.3);
   const Casters casters(*tree);
   const Questions questions(casters.grid, 1000);
-  const unsigned before = _mm_getcsr() & ~0x3FU;  // but for the sticky exception flags
+  const std::uint64_t before = floating_point_control();
   for (const auto& [name, caster] : casters.all) {
     (void)questions.ask(*caster, 1000);
-    EXPECT_EQ(_mm_getcsr() & ~0x3FU, before);
+    EXPECT_EQ(floating_point_control(), before);
   }
 }
 

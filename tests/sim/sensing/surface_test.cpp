@@ -3,11 +3,10 @@
 
 #include "sim/mesh/box_mesh.hpp"
 #include "support/complaint.hpp"
+#include "support/floating_point_control.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/sim/surface.hpp>
-
-#include <xmmintrin.h>
 
 namespace frontlux::sim {
 namespace {
@@ -213,12 +212,12 @@ TEST(Surface, RangeLimitIsInclusiveAndLengthOfTheDirectionDoesNotMatter) {
 
 TEST(Surface, LeavesTheFloatingPointModeAlone) {
   const Surface surface(test::box_mesh({Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()}));
-  const unsigned saved = _mm_getcsr();
-  const unsigned unusual = 0x1F80 | 0x6000;  // rounds towards zero
-  _mm_setcsr(unusual);
+  std::fesetround(FE_TOWARDZERO);
+  const std::uint64_t unusual = frontlux::test::floating_point_control();
   const auto hits = cast(surface, {{{0.5F, 0.5F, 0.5F}, {1, 0, 0}}});
-  const unsigned after = _mm_getcsr();
-  _mm_setcsr(saved);
+  const std::uint64_t after = frontlux::test::floating_point_control();
+  std::fesetround(FE_TONEAREST);
+  EXPECT_NE(frontlux::test::floating_point_control(), unusual);
   EXPECT_EQ(after, unusual);
   EXPECT_EQ(hits[0].range, 0.5);
 }

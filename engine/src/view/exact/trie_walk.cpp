@@ -1,27 +1,19 @@
 #include "view/exact/trie_walk.hpp"
 
+#include "isa/targets.hpp"
+
 #include <algorithm>
 #include <cstring>
 
 // Vectors are passed among functions of this file only, and those are inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define FRONTLUX_TRIE_WALKS
-#include <immintrin.h>
-// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 namespace frontlux::detail {
 
 namespace {
 
-// A body for each instruction set. The target holds for everything up to the pop, lambdas and templates
-// included, which an attribute on a function does not.
-#ifdef FRONTLUX_TRIE_WALKS
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")
+#ifdef FRONTLUX_X86_SETS
+FRONTLUX_BEGIN_AVX512
 namespace avx512 {
 using Part = __m512i;
 [[gnu::always_inline]] inline bool any_of(const Part& part) {
@@ -29,16 +21,15 @@ using Part = __m512i;
 }
 #include "view/exact/trie_walk_body.inl"
 }  // namespace avx512
-#pragma GCC pop_options
+FRONTLUX_END_TARGET
 
-#pragma GCC push_options
-#pragma GCC target("avx2")
+FRONTLUX_BEGIN_AVX2
 namespace avx2 {
 using Part = __m256i;
 [[gnu::always_inline]] inline bool any_of(const Part& part) { return _mm256_testz_si256(part, part) == 0; }
 #include "view/exact/trie_walk_body.inl"
 }  // namespace avx2
-#pragma GCC pop_options
+FRONTLUX_END_TARGET
 #endif
 
 namespace plain {
@@ -47,26 +38,15 @@ using Part [[gnu::vector_size(16)]] = std::uint64_t;
 #include "view/exact/trie_walk_body.inl"
 }  // namespace plain
 
-std::span<const TrieWalk> choose() {
-  static constexpr TrieWalk kPlain{"none", &plain::gather, &plain::count, &plain::spread};
-#ifdef FRONTLUX_TRIE_WALKS
-  static constexpr std::array<TrieWalk, 3> kWalks{
-      {{"AVX-512", &avx512::gather, &avx512::count, &avx512::spread},
-       {"AVX2", &avx2::gather, &avx2::count, &avx2::spread},
-       kPlain}};
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-  return std::span(kWalks).subspan(has_avx512 ? 0 : __builtin_cpu_supports("avx2") ? 1 : 2);
-#else
-  return {&kPlain, 1};
+constexpr TrieWalk kWalks[] = {
+#ifdef FRONTLUX_X86_SETS
+    {InstructionSet::kAvx512, &avx512::gather, &avx512::count, &avx512::spread},
+    {InstructionSet::kAvx2, &avx2::gather, &avx2::count, &avx2::spread},
 #endif
-}
+    {InstructionSet::kNone, &plain::gather, &plain::count, &plain::spread}};
 
 }  // namespace
 
-std::span<const TrieWalk> trie_walks() {
-  static const std::span<const TrieWalk> walks = choose();
-  return walks;
-}
+std::span<const TrieWalk> trie_walks() { return runnable(std::span<const TrieWalk>(kWalks)); }
 
 }  // namespace frontlux::detail

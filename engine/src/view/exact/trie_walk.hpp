@@ -1,5 +1,6 @@
 #pragma once
 
+#include "isa/instruction_set.hpp"
 #include "view/exact/ray_trie.hpp"
 #include "view/exact/window_layout.hpp"
 
@@ -55,7 +56,7 @@ struct SpreadFrom {
 /// The walk of one instruction set. `free` and `targets` point to the lowest places in reach of a tile, in
 /// windows of the trie's layout.
 struct TrieWalk {
-  const char* instructions;
+  InstructionSet needs;
 
   /// Adds to `counts` how many targets of a sector each viewpoint has in view, visible or not. The viewpoints
   /// that have any go to `groups`, for each group, and to `any`.
@@ -74,7 +75,7 @@ struct TrieWalk {
                  std::uint16_t* out);
 };
 
-/// Those that this processor can run, the widest first; the last is for any.
+/// Those that may run, the widest first; the last is for any processor.
 [[nodiscard]] std::span<const TrieWalk> trie_walks();
 
 }  // namespace frontlux::detail

@@ -157,7 +157,11 @@ void spread(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::
     const std::uint8_t* const middle = low + from.pitch;
     const std::uint8_t* const high = middle + from.pitch;
     const unsigned shift = bit % 8;
+#ifdef __clang__  // rows do not overlap
+#pragma clang loop vectorize(assume_safety)
+#else
 #pragma GCC ivdep
+#endif
     for (std::size_t row = 0; row < rows; ++row) {
       const auto two = static_cast<std::uint16_t>(low[row] | middle[row] << 8U);
       const auto third = static_cast<std::uint16_t>(high[row] << 8U);

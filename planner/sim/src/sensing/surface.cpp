@@ -1,34 +1,23 @@
 #include "sensing/ray_frame.hpp"
 
+#include <frontlux/floating_point_mode.hpp>
 #include <frontlux/parallel.hpp>
 #include <frontlux/sim/surface.hpp>
 
+#if FRONTLUX_EMBREE == 3
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
-#include <xmmintrin.h>
 
 namespace frontlux::sim {
 namespace {
-
-// Sets how floating-point numbers are rounded, and restores the caller's mode, flags included. Our argument
-// about edges needs rounding to nearest; Embree wants denormals flushed to zero while it works.
-class FloatingPointMode {
- public:
-  static constexpr unsigned kToNearest = 0x1F80, kFlushed = kToNearest | 0x8000 | 0x0040;
-
-  explicit FloatingPointMode(unsigned mode) : saved_(_mm_getcsr()) { _mm_setcsr(mode); }
-  ~FloatingPointMode() { _mm_setcsr(saved_); }
-  FloatingPointMode(const FloatingPointMode&) = delete;
-  FloatingPointMode& operator=(const FloatingPointMode&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 // The triangles, and the frame in which Embree sees them: about the middle, where floats are best.
 struct Geometry {
@@ -56,7 +45,11 @@ struct Geometry {
 
 // What a query hands to the callback. Embree's hierarchy only finds the triangles that may be hit.
 struct Query {
+#if FRONTLUX_EMBREE == 3
   RTCIntersectContext embree;  // first: callbacks get a pointer to it
+#else
+  RTCRayQueryContext embree;
+#endif
   RayFrame frame;
   double start;    // where Embree's ray starts, in lengths of the direction
   double nearest;  // hit so far, or how far to look, in the same
@@ -164,7 +157,6 @@ struct Surface::Scene {
     }
     if (!(start <= end)) return {};
     Query query{{}, RayFrame(origin, direction), start, end, kNone};
-    rtcInitIntersectContext(&query.embree);
     // A component so small that its inverse overflows moves the ray by less than the boxes are padded.
     const auto component = [&](Eigen::Index axis) {
       return std::fabs(direction[axis]) < 1e-18 ? 0.0F : static_cast<float>(direction[axis]);
@@ -183,7 +175,16 @@ struct Surface::Scene {
     rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     {
       const FloatingPointMode mode(FloatingPointMode::kFlushed);
+#if FRONTLUX_EMBREE == 3
+      rtcInitIntersectContext(&query.embree);
       rtcIntersect1(scene, &query.embree, &rayhit);
+#else
+      rtcInitRayQueryContext(&query.embree);
+      RTCIntersectArguments arguments;
+      rtcInitIntersectArguments(&arguments);
+      arguments.context = &query.embree;
+      rtcIntersect1(scene, &rayhit, &arguments);
+#endif
     }
     if (query.triangle == kNone) return {};
     return {std::min(query.nearest * length, ray.max_range), query.triangle};

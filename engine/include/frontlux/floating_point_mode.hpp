@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+namespace frontlux {
+
+/// How this thread computes with floating-point numbers, for as long as the object lives; then the caller's
+/// mode comes back, exception flags included.
+class FloatingPointMode {
+ public:
+  enum Mode : std::uint8_t {
+    kToNearest,  ///< as the standard has it: rounded to the nearest, tiny numbers kept
+    kFlushed     ///< as Embree wants it while it works: tiny (denormal) numbers become zero
+  };
+
+  explicit FloatingPointMode(Mode mode);
+  ~FloatingPointMode();
+  FloatingPointMode(const FloatingPointMode&) = delete;
+  FloatingPointMode& operator=(const FloatingPointMode&) = delete;
+
+ private:
+  std::uint64_t saved_;  // the processor's control register
+};
+
+}  // namespace frontlux

@@ -1,0 +1,24 @@
+#pragma once
+
+/// What stands between FRONTLUX_BEGIN_AVX512 or FRONTLUX_BEGIN_AVX2 and FRONTLUX_END_TARGET is compiled for
+/// that instruction set, templates and lambdas included, which an attribute on a function does not reach.
+/// Where there are such sets FRONTLUX_X86_SETS is defined.
+#if defined(__x86_64__) && defined(__GNUC__)  // clang as well
+#define FRONTLUX_X86_SETS
+#include <immintrin.h>
+#define FRONTLUX_PRAGMA(text) _Pragma(#text)
+#define FRONTLUX_AVX512 "avx512f,avx512vl,avx512dq,avx512bw"
+#ifdef __clang__
+#define FRONTLUX_BEGIN(set) \
+  FRONTLUX_PRAGMA(clang attribute push(__attribute__((target(set))), apply_to = function))
+#define FRONTLUX_BEGIN_AVX512 FRONTLUX_BEGIN(FRONTLUX_AVX512)
+#define FRONTLUX_END_TARGET _Pragma("clang attribute pop")
+#else
+// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#define FRONTLUX_BEGIN(set) _Pragma("GCC push_options") FRONTLUX_PRAGMA(GCC target(set))
+#define FRONTLUX_BEGIN_AVX512 FRONTLUX_BEGIN(FRONTLUX_AVX512 ",prefer-vector-width=512")
+#define FRONTLUX_END_TARGET _Pragma("GCC pop_options")
+#endif
+#define FRONTLUX_BEGIN_AVX2 FRONTLUX_BEGIN("avx2,fma")
+#endif
