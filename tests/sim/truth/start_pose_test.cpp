@@ -104,7 +104,7 @@ TEST(StartPose, FindsNothingWhereNothingFits) {
 
 TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
   for (const auto& [name, description] : built_in_worlds())
-    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(seed));
       const Place place(name, seed);
       const auto starts = place.starts({kUgv, kUav});
