@@ -125,7 +125,7 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
   expect_explored("whole");
   const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole/run.frontlux")));
   // A limit on the size of files, told by the signal's absence as an error of the write.
-  for (const std::uint64_t part : {2, 5}) {
+  for (const std::uint64_t part : {2U, 5U}) {
     const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(size * part / 6 / 512) + ";";
     fs::remove_all(path("full"));
     const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);

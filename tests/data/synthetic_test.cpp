@@ -117,7 +117,7 @@ TEST(Scanner, FreesNothingBeyondTheOuterWalls) {
 }
 
 TEST(Scanner, MapsHoldEveryKindOfLeaf) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Scene scene = make_room_scene(seed);
     const auto places = draw_places(scene, 4, 1.0, 1);
     const auto tree = scan(scene, places, {.resolution = 0.2, .max_range = 8.0, .rays = 20'000});

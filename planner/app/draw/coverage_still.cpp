@@ -50,7 +50,7 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
 // 1, 2 or 5 times a power of ten, so that there are at most ten.
 std::uint64_t tick_of(std::uint64_t most) {
   for (std::uint64_t power = 1;; power *= 10)
-    for (const std::uint64_t factor : {1, 2, 5})
+    for (const std::uint64_t factor : {1U, 2U, 5U})
       if (most <= 10 * power * factor) return power * factor;
 }
 

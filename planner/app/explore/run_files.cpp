@@ -22,6 +22,8 @@
 namespace frontlux::app {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 using planner::ExplorationStep, planner::Pose, planner::RecordedStep, planner::RobotStep;
 
 constexpr const char* kSteps = "steps.csv";
@@ -190,7 +192,6 @@ void RunFiles::add(const RecordedStep& recorded) {
 
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
                     const RunSums& sums, const std::string& end, double seconds) {
-  using Json = nlohmann::ordered_json;
   const planner::ExplorationOptions& exploration = setup.exploration;
   Json names = Json::array(), phases = Json::object(), lengths = Json::object();
   for (std::size_t r = 0; r < setup.head.robots.size(); ++r) {

@@ -114,7 +114,7 @@ template <class Check>
 void with_packets(const Check& check) {
   ASSERT_FALSE(detail::box_kernels().empty());
   for (const BoxKernel& kernel : detail::box_kernels())
-    for (const std::size_t size : {1, 4, 8, 16}) {
+    for (const std::size_t size : {1U, 4U, 8U, 16U}) {
       SCOPED_TRACE(std::string(name_of(kernel.needs)) + ", packets of " + std::to_string(size));
       Random random(size);
       for (int round = 0; round < 3000; ++round) {

@@ -54,7 +54,7 @@ TEST(BoxScene, MeetsTheBoxesThatExactSlabsMeet) {
   const auto device = detail::make_box_scene_device();
   BoxScene scene(device);
   std::array<int, 3> seen{};
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const auto blockers =
         detail::make_blockers(make_voxel_grid(*make_noise_tree(seed, 0.3, 16)), UnknownPolicy::kPass);
     scene.update(blockers);  // the second and the third time it already holds other boxes

@@ -46,13 +46,13 @@ void expect_coverage(std::string_view world, std::uint64_t seed,
 
 TEST(ExplorationCoverage, OfARoom) {
   // 97 to 97.4 % or 84.8 % after two steps, 99.5 to 100 % after three, ends after 4 or 5.
-  for (const std::uint64_t seed : {1, 2, 3})
+  for (const std::uint64_t seed : {1U, 2U, 3U})
     expect_coverage("room", seed, {{2, 0.75}, {4, 0.97}, {12, 0.99}}, 15);
 }
 
 TEST(ExplorationCoverage, OfAStorage) {
   // 76.0 to 78.7 % after 10 steps, 94.6 to 96.9 % after 20, 99.6 to 99.9 % after 28, ends after 32 to 38.
-  for (const std::uint64_t seed : {2, 1, 3}) {
+  for (const std::uint64_t seed : {2U, 1U, 3U}) {
     expect_coverage("storage", seed, {{10, 0.70}, {20, 0.90}, {28, 0.97}, {60, 0.99}}, 60);
     if (!test::long_mode()) break;
   }

@@ -123,7 +123,7 @@ std::string house_gltf() {
   std::string bytes;
   for (const auto& v : kHouse) bytes.append(reinterpret_cast<const char*>(v.data()), 12);
   for (const auto& s : kSides)
-    for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) {
+    for (const std::size_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) {
       const auto index = static_cast<std::uint16_t>(s[corner]);
       bytes.append(reinterpret_cast<const char*>(&index), 2);
     }

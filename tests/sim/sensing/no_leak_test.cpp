@@ -196,7 +196,7 @@ TEST(NoLeak, BuiltInWorlds) {
 
 TEST(NoLeakLong, BuiltInWorldsInDetail) {
   for (const auto& [name, description] : built_in_worlds())
-    for (const std::uint64_t seed : {1, 3}) {
+    for (const std::uint64_t seed : {1U, 3U}) {
       sweep_and_check(make_world(name, seed), 0.3, 1.5, true);
       sweep_and_check(make_world(name, seed), 0.1, 3.0, true);
     }

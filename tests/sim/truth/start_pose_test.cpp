@@ -104,7 +104,7 @@ TEST(StartPose, FindsNothingWhereNothingFits) {
 
 TEST(StartPose, BothRobotsStartInEveryBuiltInWorld) {
   for (const auto& [name, description] : built_in_worlds())
-    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(seed));
       const Place place(name, seed);
       const auto starts = place.starts({kUgv, kUav});
@@ -211,14 +211,15 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
     const auto bubble = start_bubble(truth, robot, pose);
     const KeyBox body = body_voxels(truth.lattice(), robot, pose);
     std::set<VoxelKey> expected;
-    for_each_key(
-        {frontlux::test::key_at(-30, -30, 0), frontlux::test::key_at(29, 29, 8)}, [&](const VoxelKey& key) {
-          const Eigen::Vector3d center = truth.lattice().exact_center(key);
-          if (center.x() > 3.9 || center.x() < 0 || center.y() < 0 || center.y() > 6) return;
-          const Eigen::Vector3d off = center - pose.position;
-          const bool in = drives ? off.head<2>().norm() <= radius && center.z() < 0.9 : off.norm() <= radius;
-          if (in || body.contains(key)) expected.insert(key);
-        });
+    for_each_key({frontlux::test::key_at(-30, -30, 0), frontlux::test::key_at(29, 29, 8)},
+                 [&, radius = radius](const VoxelKey& key) {
+                   const Eigen::Vector3d center = truth.lattice().exact_center(key);
+                   if (center.x() > 3.9 || center.x() < 0 || center.y() < 0 || center.y() > 6) return;
+                   const Eigen::Vector3d off = center - pose.position;
+                   const bool in =
+                       drives ? off.head<2>().norm() <= radius && center.z() < 0.9 : off.norm() <= radius;
+                   if (in || body.contains(key)) expected.insert(key);
+                 });
     EXPECT_EQ(std::set<VoxelKey>(bubble.begin(), bubble.end()), expected);
     planner::Mapping mapping({.resolution = 0.3, .bounds = truth.bounds()});
     EXPECT_TRUE(std::ranges::equal(mapping.mark_free(bubble).keys, bubble));

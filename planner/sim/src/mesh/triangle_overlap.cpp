@@ -5,7 +5,7 @@
 namespace frontlux::sim {
 
 TriangleOverlap::TriangleOverlap(const std::array<Eigen::Vector3d, 3>& corners) {
-  const auto& [a, b, c] = corners;
+  const Eigen::Vector3d &a = corners[0], &b = corners[1], &c = corners[2];
   bounds_.extend(a).extend(b).extend(c);
   // Separating axes: two convex bodies are apart if they are apart along a normal of a face of one of them,
   // or along the cross product of an edge of each. The bounds stand for the normals of the box; here are the

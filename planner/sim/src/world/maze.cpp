@@ -140,7 +140,7 @@ class Maze {
       solid.add(rect_of(cell), {height, kHeight});
       solid.add(wall_between(cell, entrance), {height, kHeight});
       at(cell).tunnel = true;
-      for (const std::size_t turn : {2, 1, 3}) {  // straight on, if there is something
+      for (const std::size_t turn : {2U, 1U, 3U}) {  // straight on, if there is something
         const auto exit = (entrance + turn) % 4;
         const Cell beyond = next_to(cell, exit);
         if (!inside(beyond) || at(beyond).tunnel) continue;
