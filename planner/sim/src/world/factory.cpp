@@ -31,7 +31,7 @@ void add_side_rooms(Solid& solid, LayoutRandom& random) {
     const Rect place{{at, at + 18}, {kInside.y.to - 8, kInside.y.to}};
     random.chance(50) ? add_table(solid, place, 0) : solid.add(place, {0, random.whole(10, 20)});
     FloorPlan floor({{from, inner_to}, {kRoomsFrom, kInside.y.to - 8}});
-    if (const auto crate = floor.place(random, random.whole(6, 12), random.whole(6, 10)))
+    if (const auto crate = floor.place(random, Span{6, 12}, Span{6, 10}))
       add_pile(solid, *crate, random.whole(7, 18), random);
     from = to;
   }
@@ -138,13 +138,13 @@ Building build_factory(std::uint64_t seed) {
       add_tank(solid, *tank, random.whole(30, 52));
   }
   for (int i = 0; i < 9; ++i)
-    if (const auto machine = floor.place(random, random.whole(20, 40), random.whole(14, 22)))
+    if (const auto machine = floor.place(random, Span{20, 40}, Span{14, 22}))
       add_machine(solid, *machine, random);
 
   // Under the deck and north of it.
   FloorPlan store({{0, west}, {160, kHall.to}});
   for (int i = 0; i < 3; ++i)
-    if (const auto pile = store.place(random, random.whole(8, 16), random.whole(8, 16)))
+    if (const auto pile = store.place(random, Span{8, 16}, Span{8, 16}))
       add_pile(solid, *pile, random.whole(8, 25), random);
   add_table(solid, {{2, 10}, {4, 24}}, 0);
 

@@ -24,6 +24,12 @@ class FloorPlan {
 
   /// Draws a free rectangle of this size and occupies it; nothing if 300 draws found none.
   std::optional<Rect> place(LayoutRandom& random, int along_x, int along_y);
+  /// The same for a piece whose sides are drawn, from and to inclusive. The order is part of the worlds: y
+  /// before x.
+  std::optional<Rect> place(LayoutRandom& random, Span along_x, Span along_y) {
+    const int y = random.whole(along_y.from, along_y.to);
+    return place(random, random.whole(along_x.from, along_x.to), y);
+  }
 
  private:
   Rect area_;

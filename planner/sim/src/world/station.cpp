@@ -106,7 +106,7 @@ void furnish_platforms(Solid& solid, const Layout& plan, LayoutRandom& random) {
     for (int i = 0; i < 7; ++i)
       if (const auto bench = platform.place(random, 18, 6)) add_bench(solid, *bench);
     for (int i = 0; i < 3; ++i)
-      if (const auto box = platform.place(random, random.whole(6, 14), random.whole(5, 8)))
+      if (const auto box = platform.place(random, Span{6, 14}, Span{5, 8}))
         solid.add(*box, {kPlatform, random.whole(10, 22)});  // vending machines, ticket machines, boards
   }
 }
@@ -128,8 +128,7 @@ void furnish_concourse(Solid& solid, const Layout& plan, LayoutRandom& random, B
   floor.occupy({{plan.deck.x.from, kInside.x.to}, kInside.y});
   building.start = floor.place(random, 12, 12).value().middle();
   for (int i = 0; i < 4; ++i)
-    if (const auto kiosk = floor.place(random, random.whole(32, 44), random.whole(30, 44)))
-      add_kiosk(solid, *kiosk, random);
+    if (const auto kiosk = floor.place(random, Span{32, 44}, Span{30, 44})) add_kiosk(solid, *kiosk, random);
   for (int i = 0; i < 8; ++i)
     if (const auto bench = floor.place(random, 18, 6)) add_bench(solid, *bench);
   for (int i = 0; i < 3; ++i)

@@ -63,7 +63,7 @@ Building build_storage(std::uint64_t seed) {
   FloorPlan yard({{kRacks.to, kInside.x.to - kBay}, yard_y});
   building.start = yard.place(random, 12, 12).value().middle();
   for (int i = 0; i < 4; ++i)
-    if (const auto pallet = yard.place(random, random.whole(8, 14), random.whole(8, 12)))
+    if (const auto pallet = yard.place(random, Span{8, 14}, Span{8, 12}))
       add_pile(solid, *pallet, random.whole(6, 22), random);
 
   for (int x = random.whole(20, 35); x < kInside.x.to; x += 50) solid.add({x, x + 2}, kInside.y, {55, 58});
