@@ -28,7 +28,7 @@ void run(Options given) {
   check(given);
   given.run.resume = !given.resume.empty();
   given.run.folder = given.run.resume ? given.resume : given.output;
-  given.options.max_steps = given.run.max_steps.value_or(given.options.max_steps);
+  if (given.run.max_steps) given.options.max_steps = given.run.max_steps;
   explore(std::move(given.options), given.run);
 }
 
@@ -67,7 +67,15 @@ void add_explore_command(CLI::App& app) {
               "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
   command.add("--report", given->run.report, "Write report.html");
   command.add("--seed", options.seed, "N", "Random seed (layout, planner, noise)", kSeeds);
+  command.group("Clock");
+  command.add_flag("--lockstep", options.lockstep,
+                   "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
+  command.add("--latency", options.latency, "SECONDS", "Time from a planning to the begin of its trajectory",
+              kAboveZero);
   command.group("Stopping");
+  command.add("--stop-coverage", options.stop_coverage, "PART",
+              "Stop when this part of the observable space is mapped, 0 to 1", kProbability);
+  command.add("--stop-time", options.stop_time, "SECONDS", "Stop after this time on the clock", kFromZero);
   command.add("--max-steps", given->run.max_steps, "N", "Stop after this many steps [1000]", Range<int>{0});
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps;\n"
@@ -77,6 +85,7 @@ void add_explore_command(CLI::App& app) {
   command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
   command.add("--robot", options.robot_files, "FILE.json", "Add a robot described in this file; repeatable");
   command.add("--pose", options.poses, "NAME=X,Y,Z,YAW", "Start pose of a robot's sensor; repeatable");
+  command.add("--bumper", options.bumper, "A robot that would touch a surface stops; off: contacts are counted");
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);

@@ -34,6 +34,11 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("advance", options.advance);
   visit("min_distance", options.min_distance);
   visit("samples", options.samples);
+  visit("lockstep", options.lockstep);
+  visit("latency", options.latency);
+  visit("bumper", options.bumper);
+  visit("stop_coverage", options.stop_coverage);
+  visit("stop_time", options.stop_time);
   visit("resolution", options.source.resolution);
   visit("noise", options.errors.sigma);
   visit("dropout", options.errors.dropout);

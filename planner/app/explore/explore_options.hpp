@@ -37,9 +37,13 @@ struct ExploreOptions {
   bool assign = true, optimize = true;
   CasterKind caster = CasterKind::kFast;
   std::uint64_t seed = 1;
-  int max_steps = 1000;
+  std::optional<int> max_steps;
   std::optional<double> epsilon, lambda, advance, min_distance;
   std::optional<int> samples;
+  bool lockstep = false;
+  double latency = 0.1;  ///< [s]
+  bool bumper = true;
+  std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
 };
 

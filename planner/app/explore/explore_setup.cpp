@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -115,6 +116,8 @@ planner::GoalOptions goal_options(const ExploreOptions& options, const planner::
   planner::GoalOptions goal = planner::goal_options(robot, options.mode);
   goal.rule = options.goal.value_or(goal.rule);
   goal.lambda = options.lambda.value_or(goal.lambda);
+  // A robot in motion plans again on its way, and takes what is near as it comes.
+  if (!options.lockstep) goal.advance = goal.min_distance = 0.0;
   goal.advance = options.advance.value_or(goal.advance);
   goal.min_distance = options.min_distance.value_or(goal.min_distance);
   goal.rendering.renderer = options.renderer.value_or(goal.rendering.renderer);
@@ -143,7 +146,10 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;
   exploration.caster = options.caster;
-  exploration.max_steps = options.max_steps;
+  // In motion a step is a planning, a matter of a second.
+  exploration.max_steps = options.max_steps.value_or(
+      options.lockstep ? exploration.max_steps : std::numeric_limits<int>::max());
+  exploration.latency = options.latency;
   exploration.check();
   return exploration;
 }
@@ -170,6 +176,10 @@ ExploreSetup make_setup(const ExploreOptions& options,
                         const std::optional<std::vector<RobotDescription>>& robots) {
   ExploreSetup setup;
   setup.errors = options.errors;
+  setup.lockstep = options.lockstep;
+  setup.at_contact = options.bumper ? sim::AtContact::kStay : sim::AtContact::kGoOn;
+  setup.stop_coverage = options.stop_coverage;
+  setup.stop_time = options.stop_time;
   work_on(options.source.world, "give a coarser --resolution", [&] {
     setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
     setup.exploration = exploration_options(options, setup.head.robots);

@@ -8,6 +8,7 @@
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
 
 #include <memory>
 #include <optional>
@@ -20,6 +21,10 @@ struct ExploreSetup {
   SourcedWorld sourced;
   std::unique_ptr<const sim::GroundTruth> truth;
   sim::RangeErrors errors;
+  bool lockstep = false;
+  sim::AtContact at_contact = sim::AtContact::kStay;
+  std::optional<double> stop_coverage;  // 0 to 1, of the observable voxels
+  std::optional<double> stop_time;      // [s]
   planner::ExplorationOptions exploration;
   planner::RecordingHead head;  // with the robots and their starts
 };

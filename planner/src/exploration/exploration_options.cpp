@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace frontlux::planner {
 namespace {
@@ -19,6 +20,9 @@ void ExplorationOptions::check() const {
   if (caster > CasterKind::kOctomap) refuse("caster is none of the values of CasterKind");
   if (!(epsilon >= 0.0 && std::isfinite(epsilon)))
     refuse("epsilon is " + std::to_string(epsilon) + ", but has to be finite and 0 or more");
+  for (const auto& [name, value] : {std::pair{"latency", latency}, {"period", period}})
+    if (!(value > 0.0 && std::isfinite(value)))
+      refuse(std::string(name) + " is " + std::to_string(value) + " s, but has to be finite and positive");
   const auto at_least = [](const char* name, int value, int low) {
     if (value < low)
       refuse(std::string(name) + " is " + std::to_string(value) + ", but has to be at least " +

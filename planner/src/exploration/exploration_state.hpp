@@ -13,10 +13,10 @@
 #include <span>
 #include <vector>
 
-namespace frontlux::planner {
+namespace frontlux::planner::detail {
 
 /// What an exploration knows between the steps, and the stages of a step.
-struct Exploration::State {
+struct ExplorationState {
   using Keys = std::vector<VoxelKey>;
   using Gains = std::vector<std::optional<InformationGain>>;  // of each robot's path, if it has a goal
 
@@ -24,7 +24,7 @@ struct Exploration::State {
   Mapping mapping;
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
-  detail::AbandonedFrontiers abandoned;
+  AbandonedFrontiers abandoned;
   std::optional<GoalSelection> selection = {};  // from the start on
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
@@ -32,10 +32,11 @@ struct Exploration::State {
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
   Keys changed = {};                           // by the last step, sorted
   std::uint64_t number = 0;                    // of the next step
+  double time = 0.0;                           // [s] in lock-step
   int low_gain_steps = 0;                      // in a row
   bool idle = false;                           // in the last step no robot had a goal or moved
 
-  State(ExplorationOptions given, Mapping map);
+  ExplorationState(ExplorationOptions given, Mapping map);
 
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
@@ -45,22 +46,26 @@ struct Exploration::State {
   void start_from(std::span<const ExplorationStart> starts);
   void look_around(std::span<const ExplorationStart> starts, const Drive& drive, ExplorationStep& step);
   void update_views(ExplorationStep& step);
-  void select_goals(ExplorationStep& step);
+  /// @param choosing  if given: the robot that chooses; the others keep their goals
+  void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
   void plan_paths(ExplorationStep& step) const;
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
+  [[nodiscard]] std::optional<InformationGain> optimize_path(std::size_t robot, ExplorationStep& step) const;
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);
+  void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
   void judge(const ExplorationStep& step);
 
- private:
-  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
   }
   [[nodiscard]] std::vector<Pose> retreat(std::size_t robot) const;
+  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
+
+ private:
   void remember(std::size_t robot, const RobotStep& step);
 };
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::planner::detail

@@ -21,6 +21,9 @@
 #include <vector>
 
 namespace frontlux::planner {
+namespace detail {
+struct ExplorationState;
+}
 
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
@@ -34,6 +37,8 @@ struct ExplorationOptions {
   double epsilon = 10.0;   ///< a step has low gain if its paths are expected to see fewer frontiers than this
   int low_gain_steps = 3;  ///< this many steps of low gain in a row end the exploration
   int max_steps = 1000;    ///< so does this number of steps
+  double latency = 0.1;    ///< [s] that the clock charges for a planning
+  double period = 1.0;     ///< [s] in motion: after at most this time a robot plans anew
   int max_visits = 2;      ///< a frontier that stays unknown after so many visits in view is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
 
@@ -82,6 +87,7 @@ inline constexpr std::size_t kPhases = 6;
 
 struct ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
+  double time = 0.0;              ///< [s] of the clock, at its end
   std::size_t frontiers = 0;      ///< in the map when the step was planned
   std::size_t unassigned = 0;     ///< of them, those that no robot can see
   std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
@@ -150,8 +156,7 @@ class Exploration {
   [[nodiscard]] std::span<const VoxelKey> frontiers() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<detail::ExplorationState> state_;
 };
 
 }  // namespace frontlux::planner

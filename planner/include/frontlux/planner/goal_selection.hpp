@@ -155,14 +155,20 @@ class GoalSelection {
   /// @param change     since the last step
   /// @param frontiers  of the map, in any order
   /// @param poses      of the robots' sensors, one for each robot
+  /// @param choosing   if given: the robot that chooses; the others keep their goals
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,
-                                 std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
+                                 std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
+                                 std::optional<std::size_t> choosing = std::nullopt);
 
   /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()
   void block(std::size_t robot, std::span<const VoxelKey> cells);
+
+  /// At the next step these boxes of cells are impassable for a robot: see `TravelCorridor::keep_out_of`.
+  /// @pre robot < team().size()
+  void keep_out_of(std::size_t robot, std::vector<KeyBox> boxes);
 
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 
