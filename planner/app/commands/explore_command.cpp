@@ -85,7 +85,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
   command.add("--robot", options.robot_files, "FILE.json", "Add a robot described in this file; repeatable");
   command.add("--pose", options.poses, "NAME=X,Y,Z,YAW", "Start pose of a robot's sensor; repeatable");
-  command.add("--bumper", options.bumper, "A robot that would touch a surface stops; off: contacts are counted");
+  command.add("--bumper", options.bumper,
+              "A robot that would touch a surface stops; off: contacts are counted");
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
