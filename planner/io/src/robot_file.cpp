@@ -30,12 +30,6 @@ struct Range {
 };
 constexpr Range kBox{0.01, 100.0}, kHeight{0.0, 100.0}, kSensorRange{0.01, 1000.0}, kAngle{0.1, 179.0};
 
-std::string shortest(double number) {
-  std::string text = json(number).dump();
-  if (text.ends_with(".0")) text.resize(text.size() - 2);
-  return text;
-}
-
 // One object of the file: takes its members one by one and complains about those that are left.
 class Members {
  public:
@@ -112,7 +106,7 @@ class Members {
 
  private:
   [[nodiscard]] static std::string wanted(const char* unit, const Range& range) {
-    return "a number from " + shortest(range.low) + " to " + shortest(range.high) + " " + unit;
+    return "a number from " + decimals_of(range.low) + " to " + decimals_of(range.high) + " " + unit;
   }
 
   const std::filesystem::path& file_;
