@@ -5,13 +5,13 @@
 #include "explore/run_files.hpp"
 #include "explore/run_loop.hpp"
 #include "interrupt.hpp"
-#include "stopwatch.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <tbb/task_arena.h>
 
