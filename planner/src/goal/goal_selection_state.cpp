@@ -50,10 +50,8 @@ void GoalSelection::State::update(const MapChange& change, std::span<const Pose>
     member.position = poses[r].position;
     member.assigned.clear();
     member.released.clear();
-    if (!choosing || *choosing == r) {
-      member.rendered = false;
-      member.targets.clear();
-    }
+    member.rendered = false;
+    if (!choosing || *choosing == r) member.targets.clear();
     if (member.image.size() > 0)
       member.changed = united(member.changed, {change.keys.begin(), change.keys.end()});
     const auto cell = lattice.key(member.position);
