@@ -58,7 +58,7 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
     refuse("the bounds are empty");
   KeyBox box = bounds;
   if (options.motion == Motion::kPlane) box.max.z = box.min.z;
-  if (const std::uint64_t cells = detail::size_of(box); cells > kMaxCells)
+  if (const std::uint64_t cells = size_of(box); cells > kMaxCells)
     refuse("the bounds hold " + std::to_string(cells) + " cells, but at most " + std::to_string(kMaxCells) +
            " are possible; give smaller bounds");
 }
