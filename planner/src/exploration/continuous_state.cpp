@@ -1,5 +1,6 @@
 #include "exploration/continuous_state.hpp"
 
+#include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
 
 #include <frontlux/planner/segment_voxels.hpp>
@@ -19,19 +20,6 @@ constexpr double kSoonest = 0.4;  // of the period, before a robot with such a g
 void sort_once(Keys& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-}
-
-// The frontiers in view from a path's end.
-Keys seen_at_end(const InformationGain& gain, const Pose& end, std::size_t last,
-                 std::span<const VoxelKey> targets) {
-  const auto seen = gain.frontiers_of(last);
-  std::vector<std::uint8_t> in_view(seen.size());
-  gain.in_view(last, end.yaw, in_view);
-  Keys keys;
-  for (std::size_t k = 0; k < seen.size(); ++k)
-    if (in_view[k] != 0) keys.push_back(targets[seen[k]]);
-  std::sort(keys.begin(), keys.end());
-  return keys;
 }
 
 }  // namespace
@@ -180,13 +168,13 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
 }
 
 // Back along the way it came, to the last place from which it can go on.
-Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, RobotStep& step) const {
+Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, RobotStep& step) {
   const Trajectory& old = members[robot].motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   const SegmentTest nowhere = [](const auto&, const auto&, const auto&) { return false; };
   const MotionState now = old.at(start);
   std::vector<Pose> way;
-  if (now.velocity.isZero()) way = team.retreat(robot);
+  if (now.velocity.isZero()) way = team.way_back(robot, step.goal);
   if (way.size() > 1) {
     way.insert(way.begin(), now.pose);
     step.path = PathOutcome::kFound;
@@ -207,6 +195,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     member.going = now.path == PathOutcome::kFound;
     return back;
   }
+  team.came_back[robot] = false;
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
   {
@@ -223,9 +212,10 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   if (!departure) return old.after_stop(start, {}, limits, is_free);
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
-  if (const auto gain = team.optimize_path(robot, step))
-    member.goal_frontiers =
-        seen_at_end(*gain, now.planned.back(), now.planned.size() - 1, team.selection->targets(robot));
+  const std::size_t last = now.planned.size() - 1;
+  const InformationGain gain = team.optimize_path(robot, step);
+  for (const std::uint32_t i : detail::frontiers_in_view(gain, last, now.planned[last].yaw))
+    member.goal_frontiers.push_back(team.selection->targets(robot)[i]);
   departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
@@ -242,7 +232,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
-                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
+                     !member.goal_frontiers.empty() && time - member.chosen < (getenv("FLX_COMMIT") ? atof(getenv("FLX_COMMIT")) : team.options.commitment);
   if (keeps)
     team.keep_goals(step);
   else
@@ -280,7 +270,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 
 // What the end depends on.
 void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
-  const double gain = std::max(step.goal.gain, static_cast<double>(step.gain_predicted));
+  const double gain = std::max(step.goal.gain, team.path_gain(step));
   const bool low = !step.goal.pose || gain < team.options.epsilon;
   member.low_gains = low ? member.low_gains + 1 : 0;
 }

@@ -48,7 +48,7 @@ struct ContinuousExploration::State {
   void note_visit(std::size_t robot, RobotStep& step);
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
-  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step) const;
+  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
   void judge(Member& member, const RobotStep& step) const;
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;

@@ -38,10 +38,12 @@ void ExplorationOptions::check() const {
 
 ExplorationOptions exploration_options(Method method) {
   ExplorationOptions options;
-  if (method == Method::kPaper)
+  if (method == Method::kPaper) {
     options.optimizer = paper_path_options();
-  else
+    options.epsilon = 1.0;  // the paper gives none: the method ends when it expects to see nothing
+  } else {
     options.path.search = PathSearch::kCorridor;
+  }
   return options;
 }
 

@@ -1,11 +1,13 @@
 #include "exploration/exploration_state.hpp"
 
 #include "exploration/execute_path.hpp"
+#include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
 #include "goal/counting_ray_caster.hpp"
 
 #include <frontlux/octomap.hpp>
+#include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/trajectory.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
@@ -24,15 +26,9 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
                                          std::span<const Pose> viewpoints,
                                          std::span<const VoxelKey> targets) {
   std::vector<VoxelKey> keys;
-  std::vector<std::uint8_t> in_view;
-  for (std::size_t i = 1; i < viewpoints.size(); ++i) {
-    const auto seen = gain.frontiers_of(i);
-    in_view.resize(seen.size());
-    gain.in_view(i, viewpoints[i].yaw, in_view);
-    for (std::size_t k = 0; k < seen.size(); ++k)
-      if (in_view[k] != 0 && grid.at(targets[seen[k]]) == Occupancy::kUnknown)
-        keys.push_back(targets[seen[k]]);
-  }
+  for (std::size_t i = 1; i < viewpoints.size(); ++i)
+    for (const std::uint32_t frontier : frontiers_in_view(gain, i, viewpoints[i].yaw))
+      if (grid.at(targets[frontier]) == Occupancy::kUnknown) keys.push_back(targets[frontier]);
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
@@ -70,6 +66,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   trails.resize(size());
+  came_back.resize(size());
 }
 
 // Lines 1 and 2.
@@ -104,7 +101,7 @@ void ExplorationState::update_views(ExplorationStep& step) {
 
 // Lines 4 and 5.
 void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::size_t> choosing) {
-  Keys wanted, large;
+  Keys large;
   {
     const PhaseClock clock(step, Phase::kFrontiers);
     wanted = abandoned.without_abandoned(frontiers.keys());
@@ -138,29 +135,51 @@ void ExplorationState::keep_goals(ExplorationStep& step) {
   step.frontiers = frontiers.size();
 }
 
-// The path on which a robot came, back to the last place that is still in its corridor. A robot beside which
-// a closer look has found something is in none.
-std::vector<Pose> ExplorationState::retreat(std::size_t robot) const {
+// Whether a robot sees frontiers from somewhere that it can go to from a cell.
+bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot,
+                                      const VoxelKey& cell) const {
+  elsewhere.update({mapping.grid()}, cell);
+  const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
+  return !find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers.empty();
+}
+
+// A robot beside which a closer look has found something is in no corridor; it goes back to the last place that
+// is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes back
+// through the passage, if there is something to see from beyond, once for each goal that it had.
+std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal) {
   const std::vector<Pose>& trail = trails[robot];
+  const TravelCorridor& corridor = path_corridor(robot);
+  const bool lost = goal.state == GoalState::kNoCorridor;
+  if (!lost && came_back[robot]) return {};
+  TravelOptions by_voxels = options.team[robot].robot.travel;
+  by_voxels.node_edge = 0.0;
+  std::optional<TravelCorridor> elsewhere;
   for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
     const auto cell = lattice().key(place->position);
-    if (!cell || !path_corridor(robot).passable(*cell)) continue;
-    if (place == trail.rbegin()) return {};
+    if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
+    if (lost && place == trail.rbegin()) return {};
+    if (!lost) {
+      if (elsewhere && elsewhere->contains(*cell)) continue;
+      if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
+      if (!worth_going_to(*elsewhere, robot, *cell)) continue;
+      came_back[robot] = true;
+    }
     return {trail.rbegin(), place + 1};
   }
   return {};
 }
 
 // Line 6.
-void ExplorationState::plan_paths(ExplorationStep& step) const {
+void ExplorationState::plan_paths(ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kPaths);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     if (!robot.goal.pose) {
-      if (robot.goal.state == GoalState::kNoCorridor) robot.planned = retreat(r);
+      robot.planned = way_back(r, robot.goal);
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
+    came_back[r] = false;
     PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
                               {options.seed, number, r}, options.path);
     robot.path = plan.outcome;
@@ -177,7 +196,7 @@ ExplorationState::Gains ExplorationState::optimize_paths(ExplorationStep& step) 
   return gains;
 }
 
-std::optional<InformationGain> ExplorationState::optimize_path(std::size_t r, ExplorationStep& step) const {
+InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& step) const {
   PathOptimizerOptions turning = options.optimizer;
   if (!options.optimize) {
     turning.start = YawStart::kTangent;
@@ -194,7 +213,11 @@ std::optional<InformationGain> ExplorationState::optimize_path(std::size_t r, Ex
   robot.gain_tangent = turned.tangent.distinct;
   robot.gain_predicted = turned.result.distinct;
   step.rays += counting.rays();
-  return InformationGain(robot.planned, target_centers, pairs, view, options.optimizer.gain);
+  InformationGain gain(robot.planned, target_centers, pairs, view, options.optimizer.gain);
+  robot.gain_sum = 0;
+  for (std::size_t i = 0; i < robot.planned.size(); ++i)
+    robot.gain_sum += frontiers_in_view(gain, i, robot.planned[i].yaw).size();
+  return gain;
 }
 
 // Lines 8 to 11.
@@ -273,6 +296,12 @@ void ExplorationState::update_frontiers(ExplorationStep& step) {
   frontiers.update(change());
 }
 
+// What a path is expected to see, as `epsilon` measures it.
+double ExplorationState::path_gain(const RobotStep& robot) const {
+  const bool sum = options.optimizer.gain.mode == GainMode::kSum;
+  return static_cast<double>(sum ? robot.gain_sum : robot.gain_predicted);
+}
+
 // Line 3: what the end depends on.
 void ExplorationState::judge(const ExplorationStep& step) {
   double expected_gain = 0.0;
@@ -281,7 +310,7 @@ void ExplorationState::judge(const ExplorationStep& step) {
   for (const RobotStep& robot : step.robots) {
     const bool moved = robot.travelled > 1;
     if (robot.goal.pose || moved) idle = false;
-    if (moved && robot.goal.pose) expected_gain += static_cast<double>(robot.gain_predicted);
+    if (moved && robot.goal.pose) expected_gain += path_gain(robot);
     retreats = retreats || (moved && !robot.goal.pose);
   }
   if (expected_gain >= options.epsilon)

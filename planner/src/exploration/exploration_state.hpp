@@ -30,6 +30,8 @@ struct ExplorationState {
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
+  std::vector<bool> came_back = {};            // robots that had no goal since they last went back
+  Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
   Keys changed = {};                           // by the last step, sorted
   std::uint64_t number = 0;                    // of the next step
   double time = 0.0;                           // [s] in lock-step
@@ -50,23 +52,27 @@ struct ExplorationState {
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
   /// Brings the corridors up to date; all robots keep their goals.
   void keep_goals(ExplorationStep& step);
-  void plan_paths(ExplorationStep& step) const;
+  void plan_paths(ExplorationStep& step);
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
-  [[nodiscard]] std::optional<InformationGain> optimize_path(std::size_t robot, ExplorationStep& step) const;
+  [[nodiscard]] InformationGain optimize_path(std::size_t robot, ExplorationStep& step) const;
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);
   void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
+  [[nodiscard]] double path_gain(const RobotStep& robot) const;
   void judge(const ExplorationStep& step);
 
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
   }
-  [[nodiscard]] std::vector<Pose> retreat(std::size_t robot) const;
+  /// For a robot without a goal: back along the way it came, from its last place on; empty if that leads to
+  /// nothing.
+  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal);
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
  private:
+  [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell) const;
   void remember(std::size_t robot, const RobotStep& step);
 };
 

@@ -183,6 +183,7 @@ void code_goal(RecordBytes& bytes, Goal& goal) {
 void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds) {
   bytes.whole(robot.gain_tangent);
   bytes.whole(robot.gain_predicted);
+  bytes.whole(robot.gain_sum);
   bytes.whole(robot.gained);
   bytes.whole(robot.travelled);
   code_length(bytes, robot.length, "what it travelled is no length");

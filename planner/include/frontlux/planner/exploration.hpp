@@ -34,7 +34,8 @@ struct ExplorationOptions {
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
-  double epsilon = 10.0;   ///< a step has low gain if its paths are expected to see fewer frontiers than this
+  double epsilon = 10.0;   ///< a step has low gain if its paths are expected to see fewer frontiers than this:
+                           ///< distinct ones, or with `GainMode::kSum` summed over viewpoints
   int low_gain_steps = 3;  ///< this many steps of low gain in a row end the exploration
   int max_steps = 1000;    ///< so does this number of steps
   double latency = 0.1;    ///< [s] that the clock charges for a planning
@@ -72,6 +73,7 @@ struct RobotStep {
   std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
   /// Distinct frontiers of its own that the path has in view: with the robot looking ahead, and as optimised.
   std::uint64_t gain_tangent = 0, gain_predicted = 0;
+  std::uint64_t gain_sum = 0;  ///< of its own frontiers in view, summed over the path's viewpoints
   std::size_t travelled = 0;            ///< viewpoints of `planned` that it reached, the first included
   double length = 0.0;                  ///< [m] that it travelled
   std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans mapped

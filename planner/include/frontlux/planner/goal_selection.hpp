@@ -22,7 +22,7 @@ namespace frontlux::planner {
 enum class GoalRule : std::uint8_t {
   kViewQuality,  ///< the cell of the corridor with the best view quality by eq. 1
   kClusters,     ///< the paper's Sec. VI: a cell that sees the middle of the best cluster of frontiers
-  kNearest,      ///< the nearest cell from which any frontier is visible: the usual baseline
+  kNearest,      ///< the nearest cell that sees the middle of a cluster of frontiers: the usual baseline
 };
 
 /// What eq. 1 takes for the distance between a viewpoint and the robot.
