@@ -29,7 +29,7 @@ def step_line(step):
     known = [step.counts(2) for _ in range(step.count())]
     line = f"step {number} until {time:.1f} s: {frontiers} frontiers"
     for robot in range(step.count()):
-        step.counts(4)  # gains, and the viewpoints travelled
+        step.counts(5)  # gains, and the viewpoints travelled
         (length,) = step.doubles(1)
         step.counts(2)  # path outcome, goal state
         step.doubles(4 if step.take(1)[0] else 0)  # goal: x, y, z, yaw

@@ -260,7 +260,7 @@ class Running(Made):
         calls = sorted(self.reproduce(0))
         self.assertEqual(len(calls), 3)
         self.assertEqual(calls[0], f"explore --resume {self.runs / 'factory_ugv_1'} --report off")
-        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --seed 1 --threads 1 --caster fast "
+        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --lockstep --seed 1 --threads 1 --caster fast "
                          "--max-steps 1000 --team uav --report off")
         self.assertRegex(calls[2], r"^explore station .*--mode paper.* --force$")
         self.assertIn("None.", (self.folder / "docs/results.md").read_text())

@@ -79,6 +79,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     planner::RobotStep robot;
     robot.gain_tangent = random.bits() % 10000;
     robot.gain_predicted = random.bits() >> random.below(64);
+    robot.gain_sum = random.bits() >> random.below(64);
     robot.gained = random.bits() % 10000;
     robot.length = random.uniform(0, 40);
     robot.path = static_cast<planner::PathOutcome>(random.below(7));
@@ -160,8 +161,8 @@ class Listing {
     line("step", s.number, s.time, s.frontiers, s.unassigned, s.abandoned, s.rays);
     for (const auto& r : s.robots) {
       add(r.goal);
-      line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.travelled, r.length,
-           r.gained);
+      line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.gain_sum, r.travelled,
+           r.length, r.gained);
       for (const auto& pose : r.planned) add(pose);
       for (const auto& c : r.changed) {
         add(c.key);
