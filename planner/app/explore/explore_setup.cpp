@@ -150,6 +150,8 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.max_steps =
       options.max_steps.value_or(options.lockstep ? exploration.max_steps : std::numeric_limits<int>::max());
   exploration.latency = options.latency;
+  // In motion a robot looks at its goal all the way to it.
+  if (!options.lockstep) exploration.max_visits = 1;
   exploration.check();
   return exploration;
 }

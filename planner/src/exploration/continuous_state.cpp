@@ -174,7 +174,7 @@ Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start
   const SegmentTest nowhere = [](const auto&, const auto&, const auto&) { return false; };
   const MotionState now = old.at(start);
   std::vector<Pose> way;
-  if (now.velocity.isZero()) way = team.way_back(robot, step.goal);
+  if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
   if (way.size() > 1) {
     way.insert(way.begin(), now.pose);
     step.path = PathOutcome::kFound;
@@ -232,9 +232,9 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
-                     !member.goal_frontiers.empty() && time - member.chosen < (getenv("FLX_COMMIT") ? atof(getenv("FLX_COMMIT")) : team.options.commitment);
+                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   if (keeps)
-    team.keep_goals(step);
+    team.keep_goal(robot, step);
   else
     team.select_goals(step, robot);
   if (!keeps) member.chosen = time;
