@@ -16,14 +16,18 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
+bool Option::given() const { return option_->count() > 0; }
+
 Command::Command(CLI::App& app, const char* name, const char* summary)
-    : app_(app.add_subcommand(name, summary)) {}
+    : app_(app.add_subcommand(name, summary)),
+      readers_(std::make_shared<std::map<std::string, ReadWord>>()) {}
 
 constexpr int kMostWords = 1 << 20;  // of a positional argument that may be repeated
 
 Option Command::add_words(const char* name, const char* type, const char* what,
                           const std::string& default_text, bool repeatable, ReadWord read_word) {
   const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
+  if (label.starts_with("--")) (*readers_)[label.substr(2)] = read_word;
   CLI::Option* option = app_->add_option(
       name,
       [label, read_word = std::move(read_word)](const CLI::results_t& words) {
@@ -62,6 +66,15 @@ void Command::allow_only(Option& option, std::initializer_list<std::string_view>
                 std::find(allowed.begin(), allowed.end(), candidate->get_name()) == allowed.end();
        }))
     option.option_->excludes(other);
+}
+
+Command::ReadOption Command::read_option() const {
+  return [readers = readers_](const std::string& name, std::string_view word) {
+    const auto reader = readers->find(name);
+    if (reader == readers->end()) return false;
+    reader->second(word);
+    return true;
+  };
 }
 
 void Command::examples(const char* text) { app_->footer(text); }
