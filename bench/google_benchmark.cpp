@@ -3,12 +3,12 @@
 #include "table.hpp"
 
 #include <frontlux/machine.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <iostream>
@@ -40,6 +40,10 @@ void add_context() {
 }
 
 }  // namespace
+
+std::string row_name(const std::string& what, const std::string& caster, int threads) {
+  return what + "/" + caster + "/threads:" + std::to_string(threads);
+}
 
 /// Keeps what Google Benchmark measures, and prints nothing: the programs print tables.
 class GoogleBenchmark::Recorder : public benchmark::BenchmarkReporter {
@@ -99,13 +103,13 @@ void GoogleBenchmark::add(const std::string& name, int threads, std::size_t item
   threads_[name] = threads;
   const auto run = [=](benchmark::State& state) {
     tbb::task_arena arena(threads);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::clock_t cpu_start = std::clock();
     for (auto _ : state) arena.execute(pass);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const double seconds = watch.seconds();
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
-    state.counters["busy_processors"] = cpu_seconds / seconds.count();
+    state.counters["busy_processors"] = cpu_seconds / seconds;
     state.counters["cpu_ms"] = 1e3 * cpu_seconds / static_cast<double>(state.iterations());
     for (const auto& [counter, value] : counters) state.counters[counter] = value;
   };

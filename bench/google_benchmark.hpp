@@ -12,6 +12,9 @@
 
 namespace frontlux::bench {
 
+/// `<what>/<caster>/threads:<n>`
+[[nodiscard]] std::string row_name(const std::string& what, const std::string& caster, int threads);
+
 /// Times rows with Google Benchmark: repetitions of all rows in random order, so that a slow moment of the
 /// machine does not affect one caster only.
 class GoogleBenchmark {

@@ -1,8 +1,6 @@
 #include "table.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <span>
 
 namespace frontlux::bench {
@@ -74,12 +72,6 @@ std::string Table::markdown() const {
   text += '\n';
   for (const auto& row : rows_) text += line_of(row);
   return text;
-}
-
-std::string format(const char* pattern, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), pattern, value);
-  return text.data();
 }
 
 std::string digits(double value) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -34,8 +36,13 @@ class Table {
   std::vector<std::vector<std::string>> rows_;  // empty: a line
 };
 
-/// One number by a pattern of printf.
-[[nodiscard]] std::string format(const char* pattern, double value);
+/// Numbers and texts by a pattern of printf.
+template <class... Values>
+[[nodiscard]] std::string format(const char* pattern, Values... values) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
 
 /// Three digits, however large.
 [[nodiscard]] std::string digits(double value);

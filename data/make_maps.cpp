@@ -1,8 +1,8 @@
+#include <frontlux/stopwatch.hpp>
 #include <frontlux/synthetic/maps.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -26,13 +26,13 @@ void list_maps() {
 
 void make_map(const synthetic::MapRecipe& recipe, const std::filesystem::path& folder, std::uint64_t seed) {
   const std::string name(recipe.name);
-  const auto start = std::chrono::steady_clock::now();
+  const frontlux::Stopwatch watch;
   const std::filesystem::path file = folder / recipe.file_name();
   synthetic::write_map(recipe, seed, file, [&](std::size_t done, std::size_t total) {
     if (done == total || done % 20 == 0) std::cerr << name << ": " << done << " of " << total << " scans\n";
   });
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  std::cerr << name << ": " << std::filesystem::file_size(file) << " bytes in " << taken.count() << " s\n";
+  const double seconds = watch.seconds();
+  std::cerr << name << ": " << std::filesystem::file_size(file) << " bytes in " << seconds << " s\n";
 }
 
 }  // namespace

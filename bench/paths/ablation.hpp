@@ -1,6 +1,5 @@
 #pragma once
 
-#include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/voxel_grid.hpp>
 

@@ -156,15 +156,13 @@ int run(int argc, char** argv) {
   PathTrial large;
   tbb::task_arena(1).execute([&] {
     for (const auto& file : files) {
-      const auto grid =
-          std::visit([](const auto& tree) { return make_voxel_grid(*tree); }, read_octree(file));
-      maps.push_back(run_ablation(file.stem().string(), grid, options.seeds));
+      maps.push_back(run_ablation(file.stem().string(), make_voxel_grid(read_octree(file)), options.seeds));
     }
     large = run_large_path();
   });
   const std::string page = page_of(maps, large);
   std::cout << page;
-  if (!options.table.empty()) write_file(options.table, [&](std::ostream& out) { out << page; });
+  if (!options.table.empty()) write_file(options.table, page);
   return 0;
 }
 

@@ -1,12 +1,12 @@
 #include "peers/nanovdb_peer.hpp"
 
 #include <frontlux/parallel.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/HDDA.h>
 #include <nanovdb/util/Ray.h>
 
-#include <chrono>
 #include <memory>
 
 namespace frontlux::bench {
@@ -53,9 +53,9 @@ bool visible(const KeySegment& segment, nanovdb::DefaultReadAccessor<float>& vox
 }  // namespace
 
 Peer make_nanovdb_peer(const VoxelGrid& grid) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const auto handle = std::make_shared<nanovdb::GridHandle<>>(build(grid));
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const double seconds = watch.seconds();
   const auto query = [handle](std::span<const KeySegment> segments, std::span<std::uint8_t> answers) {
     const nanovdb::NanoGrid<float>& voxels = *handle->grid<float>();
     for_each_chunk(segments.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -63,7 +63,7 @@ Peer make_nanovdb_peer(const VoxelGrid& grid) {
       for (std::size_t i = begin; i != end; ++i) answers[i] = visible(segments[i], accessor) ? 1 : 0;
     });
   };
-  return {{"nanovdb", seconds.count(), static_cast<std::size_t>(handle->size())}, query};
+  return {{"nanovdb", seconds, static_cast<std::size_t>(handle->size())}, query};
 }
 
 }  // namespace frontlux::bench

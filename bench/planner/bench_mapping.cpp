@@ -11,6 +11,7 @@
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/surface.hpp>
 #include <frontlux/sim/world.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <benchmark/benchmark.h>
 #include <octomap/OcTree.h>
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -33,19 +33,6 @@ using frontlux::KeyBox, frontlux::Lattice, frontlux::planner::FrontierSet, front
 constexpr double kResolution = 0.3;  // [m]
 constexpr int kSteps = 60;           // of the tour through the hall
 constexpr int kWarmUp = 6;           // of which so many are not timed
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 struct Step {
   Scan lidar, camera;
@@ -119,7 +106,7 @@ class Ours {
   Times insert(const Step& step) {
     Times times;
     std::vector<frontlux::VoxelKey> changed;
-    Stopwatch watch;
+    frontlux::Stopwatch watch;
     double insertion = 0;
     for (const Scan* scan : {&step.lidar, &step.camera}) {
       const frontlux::MapChange change = mapping_.insert(*scan);
@@ -167,9 +154,9 @@ double insert_by_octomap(octomap::OcTree& tree, const Step& step) {
   for (const Scan* scan : {&step.lidar, &step.camera}) {
     const auto cloud = cloud_of(*scan);
     const octomap::point3d origin(scan->origin.x(), scan->origin.y(), scan->origin.z());
-    Stopwatch watch;
+    const frontlux::Stopwatch watch;
     tree.insertPointCloud(cloud, origin, scan->max_range + 0.0011, false, false);
-    seconds += watch.lap();
+    seconds += watch.seconds();
   }
   return seconds;
 }

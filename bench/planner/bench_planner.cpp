@@ -30,32 +30,8 @@ struct Row {
   Counters counters;
 
   [[nodiscard]] std::string name(const std::string& by, int threads) const {
-    return work + "/" + map + "/" + by + detail + "/threads:" + std::to_string(threads);
+    return row_name(work + "/" + map, by + detail, threads);
   }
-};
-
-/// All rows, and what they refer to.
-class Session {
- public:
-  void prepare(const std::filesystem::path& file, const PlannerOptions& options);
-
-  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  [[nodiscard]] bool agreed() const { return agreed_; }
-
- private:
-  void compare(const std::string& what, const std::string& caster, std::size_t different, std::size_t all);
-  void add(const PlannerScene& scene, const std::string& work, const std::string& caster,
-           const std::string& detail, std::size_t items, std::function<void()> pass, Counters counters);
-  void add_on_ground(const PlannerScene& scene, const std::string& work, const std::string& detail,
-                     const std::vector<Rendering>& renderings);
-  void add_in_space(const PlannerScene& scene, const std::string& suffix, const std::string& detail,
-                    const std::vector<Rendering>& renderings);
-  void add_assignments(const PlannerScene& scene);
-
-  std::vector<std::unique_ptr<Subject>> subjects_;
-  std::vector<std::unique_ptr<PlannerScene>> scenes_;
-  std::vector<Row> rows_;
-  bool agreed_ = true;
 };
 
 /// Number of frontiers with different robots.
@@ -81,136 +57,143 @@ std::vector<Rendering> by_casters(const Subject& subject, const std::vector<cons
   return renderings;
 }
 
-/// Prints how many answers differ from those of the first caster. Only OctoMap's may.
-void Session::compare(const std::string& what, const std::string& caster, std::size_t different,
-                      std::size_t all) {
-  const bool wrong = different != 0 && caster != kOctomap;
-  agreed_ = agreed_ && !wrong;
-  std::cout << "  " << what << ", " << caster << ": " << different << " of " << all << " differ"
-            << (wrong ? " DISAGREEMENT" : "") << std::endl;
-}
-
-void Session::add(const PlannerScene& scene, const std::string& work, const std::string& caster,
-                  const std::string& detail, std::size_t items, std::function<void()> pass,
-                  Counters counters) {
-  counters["frontiers"] = static_cast<double>(scene.frontiers.size());
-  rows_.push_back({work, scene.subject.name, caster, detail, items, std::move(pass), std::move(counters)});
-}
-
-/// The ground robot's viewpoints, rendered anew in each pass.
-void Session::add_on_ground(const PlannerScene& scene, const std::string& work, const std::string& detail,
-                            const std::vector<Rendering>& renderings) {
-  std::optional<ViewQualityImage> truth;
-  for (const Rendering& rendering : renderings) {
-    const auto render = [&scene, rendering] {
-      return render_view_quality(*rendering.caster, scene.subject.grid.lattice(), scene.ground_viewpoints,
-                                 scene.frontiers, scene.ground.view, rendering.options);
-    };
-    const ViewQualityImage image = render();
-    if (!truth) truth = image;
-    const std::size_t different = differing(*truth, image);
-    compare(work + detail, rendering.name, different, image.size());
-    double pairs = 0;
-    for (const ViewQuality& value : image.values()) pairs += value.population;
-    add(scene, work, rendering.name, detail, image.size(), [render] { benchmark::DoNotOptimize(render()); },
-        {{"viewpoints", static_cast<double>(image.size())},
-         {"pairs", pairs},
-         {"different", static_cast<double>(different)}});
+/// All rows, and what they refer to.
+class Session {
+ public:
+  void prepare(const std::filesystem::path& file, const PlannerOptions& options) {
+    subjects_.push_back(load_subject(file, file.stem().string()));
+    const Subject& subject = *subjects_.back();
+    std::cout << describe(subject) << std::endl;
+    scenes_.push_back(std::make_unique<PlannerScene>(
+        subject, options.corners ? planner::Adjacency::kCorners : planner::Adjacency::kFaces,
+        options.ground_viewpoints, options.aerial_viewpoints));
+    const PlannerScene& scene = *scenes_.back();
+    std::cout << "  " << scene.frontiers.size() << " frontiers; corridors of " << scene.ground_cells.size()
+              << " and " << scene.aerial_cells.size()
+              << " cells; viewpoints: " << scene.ground_viewpoints.size() << " on the ground, "
+              << scene.aerial_viewpoints.size() << " in space; a scan changes " << scene.changed.size()
+              << " voxels" << std::endl;
+    ViewQualityOptions sampled;
+    for (const int samples : options.samples) {
+      sampled.samples = samples;
+      add_on_ground(scene, "render_view_quality", "/samples:" + std::to_string(samples),
+                    by_casters(subject, {kGrid, kOctomap, kEmbree, kFast}, sampled));
+    }
+    std::vector<Rendering> all;
+    for (const char* name : {kGrid, kOctomap, kEmbree, kFast, kExact})
+      all.push_back(all_frontiers(subject, name, 0));
+    add_on_ground(scene, "render_all", "", all);
+    add_assignments(scene);
+    ViewQualityOptions in_space;
+    in_space.sampling = ViewQualityOptions::Sampling::kBuckets;
+    in_space.azimuth_bins = kAzimuthBins;
+    add_in_space(scene, "", "/samples:64", by_casters(subject, {kGrid, kEmbree, kFast}, in_space));
+    add_in_space(scene, "_all", "",
+                 {all_frontiers(subject, kFast, kAzimuthBins), all_frontiers(subject, kExact, kAzimuthBins)});
   }
-}
 
-/// The aerial robot's viewpoints, from scratch and after one scan.
-void Session::add_in_space(const PlannerScene& scene, const std::string& suffix, const std::string& detail,
-                           const std::vector<Rendering>& renderings) {
-  std::optional<ViewQualityImage> truth;
-  for (const Rendering& rendering : renderings) {
-    // A caster of its own for the map after the scan, so that only rendering is timed.
-    std::shared_ptr<RayCaster> after = make_grid_ray_caster(scene.scanned);
-    if (rendering.name == kFast) after = make_ray_caster(scene.scanned);
-    if (rendering.name == kEmbree) after = make_embree_ray_caster(scene.scanned);
-    const auto render = [&scene, rendering] {
-      ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, rendering.options);
-      image.render(*rendering.caster, scene.aerial_viewpoints, scene.frontiers);
-      return image;
-    };
-    const ViewQualityImage image = render();
-    if (!truth) truth = image;
-    const auto updated = std::make_shared<ViewQualityImage>(image);
-    const auto update = [&scene, rendering, after, updated, scanned = std::make_shared<bool>(false)] {
-      *scanned = !*scanned;
-      return updated->update(*scanned ? *after : *rendering.caster, scene.aerial_viewpoints,
-                             *scanned ? scene.scanned_frontiers : scene.frontiers,
-                             {*scanned ? scene.scanned : scene.subject.grid, scene.changed});
-    };
-    const auto again = static_cast<double>(update());
-    update();
-    compare("render_space" + suffix, rendering.name, differing(*truth, image), image.size());
-    compare("update_space" + suffix, rendering.name, differing(*truth, *updated), image.size());
-    double pairs = 0;
-    for (const ViewQuality& value : image.values()) pairs += value.population;
-    const Counters counters = {{"viewpoints", static_cast<double>(image.size())},
-                               {"pairs", pairs},
-                               {"changed_voxels", static_cast<double>(scene.changed.size())},
-                               {"rendered_again", again}};
-    add(
-        scene, "render_space" + suffix, rendering.name, detail, image.size(),
-        [render] { benchmark::DoNotOptimize(render()); }, counters);
-    add(scene, "update_space" + suffix, rendering.name, detail, image.size(), update, counters);
-  }
-}
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  [[nodiscard]] bool agreed() const { return agreed_; }
 
-void Session::add_assignments(const PlannerScene& scene) {
-  std::optional<planner::FrontierAssignment> truth;
-  for (const char* caster : {kGrid, kOctomap, kEmbree, kFast}) {
-    const auto assign = [&scene, &rays = scene.subject.caster(caster)] {
-      return planner::assign_frontiers(rays, scene.subject.grid, scene.frontiers, scene.agents());
-    };
-    const auto assignment = assign();
-    if (!truth) truth = assignment;
-    const std::size_t different = differing_owners(*truth, assignment, scene.frontiers.size());
-    compare("assign_frontiers", caster, different, scene.frontiers.size());
-    double rays = 0;
-    for (const auto& assigned : assignment.assigned) rays += static_cast<double>(assigned.rays);
-    add(scene, "assign_frontiers", caster, "", scene.frontiers.size(),
-        [assign] { benchmark::DoNotOptimize(assign()); },
-        {{"ground_cells", static_cast<double>(scene.ground_cells.size())},
-         {"aerial_cells", static_cast<double>(scene.aerial_cells.size())},
-         {"rays", rays},
-         {"different", static_cast<double>(different)}});
+ private:
+  // Prints how many answers differ from those of the first caster. Only OctoMap's may.
+  void compare(const std::string& what, const std::string& caster, std::size_t different, std::size_t all) {
+    const bool wrong = different != 0 && caster != kOctomap;
+    agreed_ = agreed_ && !wrong;
+    std::cout << "  " << what << ", " << caster << ": " << different << " of " << all << " differ"
+              << (wrong ? " DISAGREEMENT" : "") << std::endl;
   }
-}
 
-void Session::prepare(const std::filesystem::path& file, const PlannerOptions& options) {
-  subjects_.push_back(load_subject(file, file.stem().string()));
-  const Subject& subject = *subjects_.back();
-  std::cout << describe(subject) << std::endl;
-  scenes_.push_back(std::make_unique<PlannerScene>(
-      subject, options.corners ? planner::Adjacency::kCorners : planner::Adjacency::kFaces,
-      options.ground_viewpoints, options.aerial_viewpoints));
-  const PlannerScene& scene = *scenes_.back();
-  std::cout << "  " << scene.frontiers.size() << " frontiers; corridors of " << scene.ground_cells.size()
-            << " and " << scene.aerial_cells.size()
-            << " cells; viewpoints: " << scene.ground_viewpoints.size() << " on the ground, "
-            << scene.aerial_viewpoints.size() << " in space; a scan changes " << scene.changed.size()
-            << " voxels" << std::endl;
-  ViewQualityOptions sampled;
-  for (const int samples : options.samples) {
-    sampled.samples = samples;
-    add_on_ground(scene, "render_view_quality", "/samples:" + std::to_string(samples),
-                  by_casters(subject, {kGrid, kOctomap, kEmbree, kFast}, sampled));
+  void add(const PlannerScene& scene, const std::string& work, const std::string& caster,
+           const std::string& detail, std::size_t items, std::function<void()> pass, Counters counters) {
+    counters["frontiers"] = static_cast<double>(scene.frontiers.size());
+    rows_.push_back({work, scene.subject.name, caster, detail, items, std::move(pass), std::move(counters)});
   }
-  std::vector<Rendering> all;
-  for (const char* name : {kGrid, kOctomap, kEmbree, kFast, kExact})
-    all.push_back(all_frontiers(subject, name, 0));
-  add_on_ground(scene, "render_all", "", all);
-  add_assignments(scene);
-  ViewQualityOptions in_space;
-  in_space.sampling = ViewQualityOptions::Sampling::kBuckets;
-  in_space.azimuth_bins = kAzimuthBins;
-  add_in_space(scene, "", "/samples:64", by_casters(subject, {kGrid, kEmbree, kFast}, in_space));
-  add_in_space(scene, "_all", "",
-               {all_frontiers(subject, kFast, kAzimuthBins), all_frontiers(subject, kExact, kAzimuthBins)});
-}
+
+  // The ground robot's viewpoints, rendered anew in each pass.
+  void add_on_ground(const PlannerScene& scene, const std::string& work, const std::string& detail,
+                     const std::vector<Rendering>& renderings) {
+    std::optional<ViewQualityImage> truth;
+    for (const Rendering& rendering : renderings) {
+      const auto render = [&scene, rendering] {
+        return render_view_quality(*rendering.caster, scene.subject.grid.lattice(), scene.ground_viewpoints,
+                                   scene.frontiers, scene.ground.view, rendering.options);
+      };
+      const ViewQualityImage image = render();
+      if (!truth) truth = image;
+      const std::size_t different = differing(*truth, image);
+      compare(work + detail, rendering.name, different, image.size());
+      add(scene, work, rendering.name, detail, image.size(), [render] { benchmark::DoNotOptimize(render()); },
+          {{"viewpoints", static_cast<double>(image.size())},
+           {"pairs", total(image, &ViewQuality::population)},
+           {"different", static_cast<double>(different)}});
+    }
+  }
+
+  // The aerial robot's viewpoints, from scratch and after one scan.
+  void add_in_space(const PlannerScene& scene, const std::string& suffix, const std::string& detail,
+                    const std::vector<Rendering>& renderings) {
+    std::optional<ViewQualityImage> truth;
+    for (const Rendering& rendering : renderings) {
+      // A caster of its own for the map after the scan, so that only rendering is timed.
+      std::shared_ptr<RayCaster> after = make_grid_ray_caster(scene.scanned);
+      if (rendering.name == kFast) after = make_ray_caster(scene.scanned);
+      if (rendering.name == kEmbree) after = make_embree_ray_caster(scene.scanned);
+      const auto render = [&scene, rendering] {
+        ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, rendering.options);
+        image.render(*rendering.caster, scene.aerial_viewpoints, scene.frontiers);
+        return image;
+      };
+      const ViewQualityImage image = render();
+      if (!truth) truth = image;
+      const auto updated = std::make_shared<ViewQualityImage>(image);
+      const auto update = [&scene, rendering, after, updated, scanned = std::make_shared<bool>(false)] {
+        *scanned = !*scanned;
+        return updated->update(*scanned ? *after : *rendering.caster, scene.aerial_viewpoints,
+                               *scanned ? scene.scanned_frontiers : scene.frontiers,
+                               {*scanned ? scene.scanned : scene.subject.grid, scene.changed});
+      };
+      const auto again = static_cast<double>(update());
+      update();
+      compare("render_space" + suffix, rendering.name, differing(*truth, image), image.size());
+      compare("update_space" + suffix, rendering.name, differing(*truth, *updated), image.size());
+      const Counters counters = {{"viewpoints", static_cast<double>(image.size())},
+                                 {"pairs", total(image, &ViewQuality::population)},
+                                 {"changed_voxels", static_cast<double>(scene.changed.size())},
+                                 {"rendered_again", again}};
+      add(
+          scene, "render_space" + suffix, rendering.name, detail, image.size(),
+          [render] { benchmark::DoNotOptimize(render()); }, counters);
+      add(scene, "update_space" + suffix, rendering.name, detail, image.size(), update, counters);
+    }
+  }
+
+  void add_assignments(const PlannerScene& scene) {
+    std::optional<planner::FrontierAssignment> truth;
+    for (const char* caster : {kGrid, kOctomap, kEmbree, kFast}) {
+      const auto assign = [&scene, &rays = scene.subject.caster(caster)] {
+        return planner::assign_frontiers(rays, scene.subject.grid, scene.frontiers, scene.agents());
+      };
+      const auto assignment = assign();
+      if (!truth) truth = assignment;
+      const std::size_t different = differing_owners(*truth, assignment, scene.frontiers.size());
+      compare("assign_frontiers", caster, different, scene.frontiers.size());
+      double rays = 0;
+      for (const auto& assigned : assignment.assigned) rays += static_cast<double>(assigned.rays);
+      add(scene, "assign_frontiers", caster, "", scene.frontiers.size(),
+          [assign] { benchmark::DoNotOptimize(assign()); },
+          {{"ground_cells", static_cast<double>(scene.ground_cells.size())},
+           {"aerial_cells", static_cast<double>(scene.aerial_cells.size())},
+           {"rays", rays},
+           {"different", static_cast<double>(different)}});
+    }
+  }
+
+  std::vector<std::unique_ptr<Subject>> subjects_;
+  std::vector<std::unique_ptr<PlannerScene>> scenes_;
+  std::vector<Row> rows_;
+  bool agreed_ = true;
+};
 
 }  // namespace
 

@@ -53,6 +53,14 @@ inline constexpr int kAzimuthBins = 36;
 /// At most `count` of these keys, evenly chosen.
 [[nodiscard]] std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count);
 
+/// The sum of one number over all viewpoints.
+template <class Number>
+[[nodiscard]] double total(const ViewQualityImage& image, Number ViewQuality::*number) {
+  double sum = 0;
+  for (const ViewQuality& value : image.values()) sum += value.*number;
+  return sum;
+}
+
 /// Number of viewpoints with different values.
 [[nodiscard]] std::size_t differing(const ViewQualityImage& a, const ViewQualityImage& b);
 

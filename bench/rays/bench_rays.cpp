@@ -29,20 +29,11 @@ struct Session {
   bool agreed = true;
 };
 
-std::string row_name(const std::string& workload, const std::string& map, const std::string& caster,
-                     int threads) {
-  return workload + "/" + map + "/" + caster + "/threads:" + std::to_string(threads);
-}
-
-std::string row_name(const Trial& trial, const std::string& caster, int threads) {
-  return row_name(trial.workload().name, trial.map(), caster, threads);
-}
-
-/// Whether a row of the workload passes the filter, so that the others need not be prepared.
-bool wanted(const std::string& workload, const std::string& map, const std::vector<int>& threads) {
+/// Whether a row of a trial passes the filter, so that the others need not be prepared.
+bool wanted(const std::string& trial, const std::vector<int>& threads) {
   for (const char* caster : {kOctomap, kFast, kEmbree, kGrid, "nanovdb"})
     for (const int count : threads)
-      if (passes_filter(row_name(workload, map, caster, count) + "/real_time")) return true;
+      if (passes_filter(row_name(trial, caster, count) + "/real_time")) return true;
   return false;
 }
 
@@ -59,7 +50,7 @@ void prepare(const std::filesystem::path& file, const std::string& name, const R
 #endif
   WorkloadSource source(subject.grid, subject.caster(kGrid));
   for (const std::string_view query : kWorkloads) {
-    if (!wanted(std::string(query), name, options.threads)) continue;
+    if (!wanted(std::string(query) + "/" + name, options.threads)) continue;
     Workload workload = source.make(query, options.rays);
     if (workload.size() == 0) {
       std::cout << "  " << query << " skipped: " << workload.skipped << std::endl;
@@ -99,11 +90,10 @@ void print_table(const Session& session, const std::vector<int>& threads, const 
   table.add_columns("agrees", ours);
   table.add_columns("pays off after rays", ours);
   for (const auto& trial : session.trials) {
-    std::vector<std::string> row{trial->workload().name + "/" + trial->map(),
-                                 format("%.1f", trial->mean_voxels()),
+    std::vector<std::string> row{trial->name(), format("%.1f", trial->mean_voxels()),
                                  format("%.1f %%", 100 * trial->positive_fraction())};
     const auto rate = [&](const std::string& caster, int count) {
-      return timed.rate(row_name(*trial, caster, count));
+      return timed.rate(row_name(trial->name(), caster, count));
     };
     for (const int count : threads)
       for (const std::string& caster : casters) {
@@ -159,8 +149,8 @@ int run(int argc, char** argv) {
   for (const auto& trial : session.trials)
     for (const Entry& entry : trial->entries())
       for (const int threads : options.threads)
-        google_benchmark.add(row_name(*trial, entry.caster, threads), threads, trial->workload().size(),
-                             entry.pass, trial->counters(entry));
+        google_benchmark.add(row_name(trial->name(), entry.caster, threads), threads,
+                             trial->workload().size(), entry.pass, trial->counters(entry));
   google_benchmark.run();
   print_table(session, options.threads, google_benchmark);
   return 0;

@@ -1,6 +1,6 @@
 #include "rays/castray_loop.hpp"
 
-#include "quiet_octomap.hpp"
+#include "octomap/quiet_octomap.hpp"
 
 #include <frontlux/parallel.hpp>
 

@@ -38,8 +38,6 @@ class VoxelIndex {
  public:
   explicit VoxelIndex(std::vector<VoxelKey> voxels);
 
-  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
-
   /// Calls `visit` for every voxel whose key differs by at most `radius` along each axis, and for some
   /// others. The order depends only on the set and the place.
   template <class Visit>

@@ -4,9 +4,9 @@
 #include "table.hpp"
 
 #include <frontlux/caster_kind.hpp>
+#include <frontlux/stopwatch.hpp>
 #include <frontlux/synthetic/maps.hpp>
 
-#include <chrono>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -19,15 +19,11 @@ double median_seconds(Build&& build) {
   // The first time pays for pages that the allocator keeps afterwards.
   std::vector<double> seconds(3);
   for (double& s : seconds) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     build();
-    s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    s = watch.seconds();
   }
   return median(std::move(seconds));
-}
-
-VoxelGrid mirror(const Octree& tree) {
-  return std::visit([](const auto& octree) { return make_voxel_grid(*octree); }, tree);
 }
 
 }  // namespace
@@ -42,7 +38,7 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   std::optional<VoxelGrid> grid;
   const double grid_seconds = median_seconds([&] {
     grid.reset();
-    grid = mirror(tree);
+    grid = make_voxel_grid(tree);
   });
   auto subject =
       std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, {}});

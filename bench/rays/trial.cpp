@@ -1,12 +1,11 @@
 #include "rays/trial.hpp"
 
 #include "rays/castray_loop.hpp"
+#include "table.hpp"
 
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <ostream>
@@ -21,13 +20,6 @@ bool same_bits(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
 Answer answer_of(const Hit& hit) {
   const bool untouched = hit.stop == RayStop::kInvalid;
   return {hit.occupied(), untouched ? CastRayAnswers::kUntouched : hit.end, true, hit.stop, hit.key};
-}
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
 }
 
 std::string describe(const Answer& a) {

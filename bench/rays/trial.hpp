@@ -55,6 +55,8 @@ class Trial {
   bool check(std::span<const int> threads, std::ostream& out);
 
   [[nodiscard]] const std::string& map() const { return subject_.name; }
+  /// `<query>/<map>`
+  [[nodiscard]] std::string name() const { return workload_.name + "/" + map(); }
   [[nodiscard]] const Workload& workload() const { return workload_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
   [[nodiscard]] double positive_fraction() const { return positive_fraction_; }

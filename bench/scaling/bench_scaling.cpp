@@ -13,11 +13,6 @@
 namespace frontlux::bench {
 namespace {
 
-/// `<axis>/<query>/<map>/<value>/<caster>/threads:<n>`
-std::string row_name(const Point& point, const Entry& entry, int threads) {
-  return point.name() + "/" + entry.caster + "/threads:" + std::to_string(threads);
-}
-
 /// One line per point and number of threads: rates, speed-up over castRay and agreement.
 void print_rates(const std::vector<Point>& points, const GoogleBenchmark& timed) {
   Table table;
@@ -33,9 +28,9 @@ void print_rates(const std::vector<Point>& points, const GoogleBenchmark& timed)
                                    format("%.1f", point.trial->mean_voxels()),
                                    format("%.1f %%", 100 * point.trial->positive_fraction())};
       std::vector<std::string> ratios, agreements;
-      const auto base = timed.rate(row_name(point, point.trial->entries().front(), threads));
+      const auto base = timed.rate(row_name(point.name(), kOctomap, threads));
       for (const Entry& entry : point.trial->entries()) {
-        const auto rate = timed.rate(row_name(point, entry, threads));
+        const auto rate = timed.rate(row_name(point.name(), entry.caster, threads));
         row.push_back(rate ? digits(*rate * 1e-6) : "-");
         if (entry.caster != kOctomap) ratios.push_back(rate && base ? digits(*rate / *base) : "-");
         agreements.push_back(percent(entry.agreement));
@@ -84,19 +79,19 @@ octree to the caster; every caster includes the grid.
 int run(int argc, char** argv) {
   const ScalingOptions options = read_scaling_options(argc, argv);
   GoogleBenchmark google_benchmark(argv[0], options);
-  Sweep sweep(options, std::cout);
-  if (!google_benchmark.may_run(sweep.prepare())) return 1;
-  for (const Point& point : sweep.points())
+  const Sweep sweep = prepare_sweep(options, std::cout);
+  if (!google_benchmark.may_run(sweep.agreed)) return 1;
+  for (const Point& point : sweep.points)
     for (const Entry& entry : point.trial->entries())
       for (const int threads : point.threads) {
         auto counters = point.trial->counters(entry);
         counters.insert(point.counters.begin(), point.counters.end());
-        google_benchmark.add(row_name(point, entry, threads), threads, point.trial->workload().size(),
-                             entry.pass, std::move(counters));
+        google_benchmark.add(row_name(point.name(), entry.caster, threads), threads,
+                             point.trial->workload().size(), entry.pass, std::move(counters));
       }
   google_benchmark.run();
-  print_rates(sweep.points(), google_benchmark);
-  print_costs(sweep.points());
+  print_rates(sweep.points, google_benchmark);
+  print_costs(sweep.points);
   google_benchmark.print_cautions(std::cout);
   return 0;
 }

@@ -35,13 +35,7 @@ void fill_part(VoxelGrid& grid, const KeyBox& box, Occupancy state, const Block&
   if (common == extent) {
     grid.fill(block, state);
   } else if (common) {
-    const int half = 1 << (block.log2_edge - 1);
-    for (int i = 0; i < 8; ++i) {
-      const auto step = [&](int bit) { return (i >> bit & 1) * half; };
-      const VoxelKey corner =
-          make_key(block.corner.x + step(0), block.corner.y + step(1), block.corner.z + step(2));
-      fill_part(grid, box, state, {corner, block.log2_edge - 1});
-    }
+    for (unsigned i = 0; i < 8; ++i) fill_part(grid, box, state, octant(block, i));
   }
 }
 

@@ -1,6 +1,6 @@
 #include "scaling/octree.hpp"
 
-#include "quiet_octomap.hpp"
+#include "octomap/quiet_octomap.hpp"
 
 #include <optional>
 #include <sstream>
@@ -45,11 +45,8 @@ void grow(octomap::OcTree& tree, octomap::OcTreeNode* node, const Block& block, 
                                                   : tree.getClampingThresMinLog());
     return;
   }
-  const int log2_edge = block.log2_edge - 1;
   for (unsigned i = 0; i < 8; ++i) {
-    const auto step = [&](unsigned bit) { return ((i >> bit) & 1U) << log2_edge; };
-    const Block part{make_key(block.corner.x + step(0), block.corner.y + step(1), block.corner.z + step(2)),
-                     log2_edge};
+    const Block part = octant(block, i);
     if (uniform_state(part, *brick) != Occupancy::kUnknown)
       grow(tree, child(tree, node, i), part, brick, state);
   }

@@ -9,11 +9,11 @@
 
 #include <frontlux/file.hpp>
 #include <frontlux/machine.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <iostream>
 #include <optional>
@@ -55,12 +55,6 @@ Method all_by(const Case& scene, const std::string& name, std::span<const VoxelK
   return {all_frontiers(scene.subject, name, scene.azimuth_bins), "", viewpoints};
 }
 
-double total_gain(const ViewQualityImage& image) {
-  double sum = 0;
-  for (const ViewQuality& value : image.values()) sum += value.gain;
-  return sum;
-}
-
 // Whether the exact image of a sample is that of rays to all frontiers, and part of the whole image.
 bool agrees(const Case& scene, const ViewQualityImage& truth, const std::vector<VoxelKey>& sample) {
   const auto exact = rendered(scene, all_by(scene, kExact, sample));
@@ -71,7 +65,8 @@ bool agrees(const Case& scene, const ViewQualityImage& truth, const std::vector<
     const bool wrong = different != 0 && name != kOctomap;
     equal = equal && !wrong;
     std::cout << "  " << scene.robot << ": " << name << " differs from exact at " << different << " of "
-              << sample.size() << " viewpoints; total gain " << 100.0 * total_gain(image) / total_gain(exact)
+              << sample.size() << " viewpoints; total gain "
+              << 100.0 * total(image, &ViewQuality::gain) / total(exact, &ViewQuality::gain)
               << " % of the exact one" << (wrong ? " DISAGREEMENT" : "") << std::endl;
   }
   std::size_t different = 0, at = 0;
@@ -106,15 +101,13 @@ void measure(const Case& scene, int passes, std::vector<Method>& methods) {
   for (int pass = 0; pass < passes; ++pass)
     for (Method& method : methods) {
       method.options.seed = static_cast<std::uint64_t>(pass) + 1;
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       const std::clock_t cpu_start = std::clock();
       const ViewQualityImage image = rendered(scene, method);
       method.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC);
-      method.ms.push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      method.ms.push_back(watch.milliseconds());
       if (method.errors) method.errors->add(image);
-      method.pairs = 0;
-      for (const ViewQuality& value : image.values()) method.pairs += value.drawn;
+      method.pairs = total(image, &ViewQuality::drawn);
     }
 }
 
@@ -221,7 +214,7 @@ int run(int argc, char** argv) {
         << "\nThe exact values differ from those of rays (see DISAGREEMENT above): nothing is written.\n";
     return 1;
   }
-  if (!options.csv.empty()) write_file(options.csv, [&](std::ostream& out) { out << csv.str(); });
+  if (!options.csv.empty()) write_file(options.csv, csv.str());
   return 0;
 }
 

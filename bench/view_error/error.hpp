@@ -1,7 +1,6 @@
 #pragma once
 
 #include <frontlux/lattice.hpp>
-#include <frontlux/ray.hpp>
 #include <frontlux/view_quality.hpp>
 
 #include <cstddef>

@@ -38,12 +38,7 @@ Survey plan_survey(SceneKind kind, double resolution, std::uint64_t seed) {
     auto drawn = draw_places(scene, places, apart, seed);
     return Survey{std::move(scene), std::move(drawn), {resolution, range, rays, seed}};
   };
-  switch (kind) {
-    case SceneKind::kRoom:
-      return survey(make_room_scene(seed), 3, 1.0, 5.0, resolution);
-    case SceneKind::kBuilding:
-      break;
-  }
+  if (kind == SceneKind::kRoom) return survey(make_room_scene(seed), 3, 1.0, 5.0, resolution);
   // Denser: at a grazing angle a scan must hit every voxel of a surface, lest it clear those it misses.
   return survey(make_building_scene(seed), 100, 3.0, 9.0, std::min(0.5 * resolution, 0.1));
 }
@@ -52,7 +47,7 @@ void write_tree(const MapRecipe& recipe, std::uint64_t seed, const ScanProgress&
                 std::ostream& stream) {
   const Survey survey = plan_survey(recipe.scene, recipe.resolution, seed);
   if (recipe.color) {
-    scan_in_color(survey.scene, survey.places, survey.options, progress)->write(stream);
+    scan<octomap::ColorOcTree>(survey.scene, survey.places, survey.options, progress)->write(stream);
     return;
   }
   const auto tree = scan(survey.scene, survey.places, survey.options, progress);
@@ -97,15 +92,6 @@ std::filesystem::path ensure_map(std::string_view name, const std::filesystem::p
              " scans");
   });
   return file;
-}
-
-std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed,
-                                               const ScanProgress& progress) {
-  if (!(resolution >= 0.02 && resolution <= 2.0))
-    throw std::invalid_argument("make_building: resolution is " + std::to_string(resolution) +
-                                " m, must be from 0.02 to 2 m");
-  const Survey survey = plan_survey(SceneKind::kBuilding, resolution, seed);
-  return scan(survey.scene, survey.places, survey.options, progress);
 }
 
 }  // namespace frontlux::synthetic

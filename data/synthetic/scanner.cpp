@@ -59,9 +59,35 @@ octomap::ColorOcTreeNode::Color color_of(std::size_t box) {
           static_cast<std::uint8_t>(bits >> 16U)};
 }
 
+}  // namespace
+
+std::vector<Eigen::Vector3d> draw_places(const Scene& scene, std::size_t count, double spacing,
+                                         std::uint64_t seed) {
+  Random random(seed, 1);
+  std::vector<Eigen::Vector3d> places;
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kClearance);
+  for (std::size_t attempt = 0; attempt < 200 * count && places.size() < count; ++attempt) {
+    Eigen::Vector3d place;
+    place.x() = random.between(scene.room.min().x(), scene.room.max().x());
+    place.y() = random.between(scene.room.min().y(), scene.room.max().y());
+    const auto storey = static_cast<std::size_t>(random.whole(0, static_cast<int>(scene.floors.size()) - 1));
+    place.z() = scene.floors[storey] + kSensorHeight;
+    const bool crowded = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector3d& other) {
+      const double dx = other.x() - place.x(), dy = other.y() - place.y();
+      return other.z() == place.z() && dx * dx + dy * dy < spacing * spacing;
+    });
+    if (crowded || scene.solids.overlaps(Box(place - margin, place + margin))) continue;
+    // A storey's floor may have a hole, or something standing on it.
+    const auto below = scene.solids.first_hit(place, -Eigen::Vector3d::UnitZ());
+    if (!below || std::abs(below->distance - kSensorHeight) > 0.01) continue;
+    places.push_back(place);
+  }
+  return places;
+}
+
 template <class Tree>
-std::unique_ptr<Tree> scan_into(const Scene& scene, const std::vector<Eigen::Vector3d>& places,
-                                const ScanOptions& options, const ScanProgress& progress) {
+std::unique_ptr<Tree> scan(const Scene& scene, const std::vector<Eigen::Vector3d>& places,
+                           const ScanOptions& options, const ScanProgress& progress) {
   require_positive("resolution", options.resolution);
   require_positive("max_range", options.max_range);
   require_positive("rays", options.rays);
@@ -106,42 +132,9 @@ std::unique_ptr<Tree> scan_into(const Scene& scene, const std::vector<Eigen::Vec
   return tree;
 }
 
-}  // namespace
-
-std::vector<Eigen::Vector3d> draw_places(const Scene& scene, std::size_t count, double spacing,
-                                         std::uint64_t seed) {
-  Random random(seed, 1);
-  std::vector<Eigen::Vector3d> places;
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kClearance);
-  for (std::size_t attempt = 0; attempt < 200 * count && places.size() < count; ++attempt) {
-    Eigen::Vector3d place;
-    place.x() = random.between(scene.room.min().x(), scene.room.max().x());
-    place.y() = random.between(scene.room.min().y(), scene.room.max().y());
-    const auto storey = static_cast<std::size_t>(random.whole(0, static_cast<int>(scene.floors.size()) - 1));
-    place.z() = scene.floors[storey] + kSensorHeight;
-    const bool crowded = std::any_of(places.begin(), places.end(), [&](const Eigen::Vector3d& other) {
-      const double dx = other.x() - place.x(), dy = other.y() - place.y();
-      return other.z() == place.z() && dx * dx + dy * dy < spacing * spacing;
-    });
-    if (crowded || scene.solids.overlaps(Box(place - margin, place + margin))) continue;
-    // A storey's floor may have a hole, or something standing on it.
-    const auto below = scene.solids.first_hit(place, -Eigen::Vector3d::UnitZ());
-    if (!below || std::abs(below->distance - kSensorHeight) > 0.01) continue;
-    places.push_back(place);
-  }
-  return places;
-}
-
-std::unique_ptr<octomap::OcTree> scan(const Scene& scene, const std::vector<Eigen::Vector3d>& places,
-                                      const ScanOptions& options, const ScanProgress& progress) {
-  return scan_into<octomap::OcTree>(scene, places, options, progress);
-}
-
-std::unique_ptr<octomap::ColorOcTree> scan_in_color(const Scene& scene,
-                                                    const std::vector<Eigen::Vector3d>& places,
-                                                    const ScanOptions& options,
-                                                    const ScanProgress& progress) {
-  return scan_into<octomap::ColorOcTree>(scene, places, options, progress);
-}
+template std::unique_ptr<octomap::OcTree> scan(const Scene&, const std::vector<Eigen::Vector3d>&,
+                                               const ScanOptions&, const ScanProgress&);
+template std::unique_ptr<octomap::ColorOcTree> scan(const Scene&, const std::vector<Eigen::Vector3d>&,
+                                                    const ScanOptions&, const ScanProgress&);
 
 }  // namespace frontlux::synthetic

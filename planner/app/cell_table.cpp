@@ -4,12 +4,10 @@
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
-#include <frontlux/io/ply.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <ostream>
 #include <string>
 
 namespace frontlux::app {
@@ -24,7 +22,7 @@ void write_csv(const std::filesystem::path& file, const Lattice& lattice,
       out += to_text(number) + ',';
     out += std::to_string(cell.hits) + ',' + to_text(cell.yaw) + '\n';
   }
-  write_file(file, [&](std::ostream& stream) { stream << out; });
+  write_file(file, out);
 }
 
 void write_ply(const std::filesystem::path& file, const Lattice& lattice,
@@ -41,13 +39,13 @@ void write_ply(const std::filesystem::path& file, const Lattice& lattice,
     for (const double number :
          {lattice.center(cell.cell.x), lattice.center(cell.cell.y), lattice.center(cell.cell.z),
           cell.distance, cell.gain, cell.standard_error, cell.quality, cell.yaw})
-      io::append_number(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
-    io::append_number(out, cell.hits);
+      append_number(out, std::bit_cast<std::uint32_t>(static_cast<float>(number)));
+    append_number(out, cell.hits);
     const Color color = color_of(best > 0.0 ? cell.quality / best : 0.0);
     for (const std::uint8_t part : {color.red, color.green, color.blue})
       out.push_back(static_cast<char>(part));
   }
-  write_file(file, [&](std::ostream& stream) { stream << out; });
+  write_file(file, out);
 }
 
 }  // namespace frontlux::app

@@ -3,7 +3,6 @@
 #include "bad_input.hpp"
 
 #include <frontlux/key_box.hpp>
-#include <frontlux/sim/ground_truth.hpp>
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -42,10 +41,6 @@ TreeSize tree_size(const MapFile& map) {
       map.tree);
 }
 
-VoxelGrid make_voxel_grid(const MapFile& map) {
-  return std::visit([](const auto& tree) { return frontlux::make_voxel_grid(*tree); }, map.tree);
-}
-
 std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, CasterKind kind) {
   return std::visit([&](const auto& tree) { return make_ray_caster(kind, grid, *tree); }, map.tree);
 }
@@ -57,7 +52,7 @@ std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const 
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
     if (brick != nullptr || state != Occupancy::kFree || block.log2_edge <= Brick::kLog2) return;
     const KeyBox free = cube(block.corner, 1 << block.log2_edge);
-    around += sim::volume(*intersection(grown(free, kBrickEdge), bounds)) - sim::volume(free);
+    around += size_of(*intersection(grown(free, kBrickEdge), bounds)) - size_of(free);
   });
   if (around > kMostVoxels) return std::nullopt;
   return planner::FrontierSet(grid, bounds);

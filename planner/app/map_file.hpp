@@ -1,7 +1,7 @@
 #pragma once
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/octomap.hpp>
-#include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -33,8 +33,6 @@ struct TreeSize {
 };
 
 [[nodiscard]] TreeSize tree_size(const MapFile& map);
-
-[[nodiscard]] VoxelGrid make_voxel_grid(const MapFile& map);
 
 /// @param map   outlives the caster
 /// @param grid  of the map

@@ -2,9 +2,7 @@
 
 #include "text.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 namespace frontlux::app {
 namespace {
@@ -12,11 +10,9 @@ namespace {
 template <class Number>
 std::optional<Number> number_in(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars knows no plus
-  Number number{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  const auto number = number_from<Number>(word);
   if constexpr (std::is_floating_point_v<Number>)
-    if (!std::isfinite(number)) return std::nullopt;
+    if (number && !std::isfinite(*number)) return std::nullopt;
   return number;
 }
 

@@ -1,5 +1,7 @@
 #include "text.hpp"
 
+#include <frontlux/file.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -17,16 +19,11 @@ std::string written(Format... format) {
 
 }  // namespace
 
-std::string to_text(float number) { return written(number); }
+std::string to_text(float number) { return decimals_of(number); }
 
-std::string to_text(double number) { return written(number); }
+std::string to_text(double number) { return decimals_of(number); }
 
-double as_written(float number) {
-  const std::string text = to_text(number);
-  double same = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), same);
-  return same;
-}
+double as_written(float number) { return number_from<double>(to_text(number)).value(); }
 
 std::string to_text(const Eigen::Vector3f& point) {
   return to_text(point.x()) + ", " + to_text(point.y()) + ", " + to_text(point.z());

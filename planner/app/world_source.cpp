@@ -45,7 +45,7 @@ void check_options(const WorldSource& source, WorldKind kind) {
 sim::World make_map_world(const std::string& file) {
   const MapFile map = read_map_file(file);
   try {
-    sim::World world = sim::make_map_world(make_voxel_grid(map));
+    sim::World world = sim::make_map_world(make_voxel_grid(map.tree));
     world.name = map.path.filename().string();
     return world;
   } catch (const std::runtime_error& error) {

@@ -2,8 +2,6 @@
 
 #include "app/explore_command.hpp"
 
-#include "support/test.hpp"
-
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/planner/recording.hpp>

@@ -2,7 +2,6 @@
 // every kind of end.
 
 #include "app/explore_command.hpp"
-#include "support/test.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/mesh_file.hpp>

@@ -1,5 +1,5 @@
+#include "octomap/quiet_octomap.hpp"
 #include "support/command_test.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/tree_state.hpp"
 #include "support/voxel_keys.hpp"
 

@@ -1,5 +1,5 @@
+#include "octomap/quiet_octomap.hpp"
 #include "support/command_test.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/io/scan_graph.hpp>

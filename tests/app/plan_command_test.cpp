@@ -1,6 +1,6 @@
+#include "octomap/quiet_octomap.hpp"
 #include "support/command_test.hpp"
 #include "support/plain_frontiers.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/voxel_keys.hpp"
 
 #include <frontlux/io/path_file.hpp>

@@ -1,8 +1,8 @@
 // `frontlux render` from the outside: its files against brute force, and what it refuses.
 
+#include "octomap/quiet_octomap.hpp"
 #include "planner/goal/goal_room.hpp"
 #include "support/command_test.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/tree_state.hpp"
 
 #include <octomap/OcTree.h>

@@ -1,7 +1,7 @@
+#include "octomap/quiet_octomap.hpp"
 #include "scaling/maps.hpp"
 #include "scaling/octree.hpp"
 #include "support/complaint.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 #include "support/tree_state.hpp"
 #include "support/voxel_keys.hpp"

@@ -170,7 +170,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {with("[[-15, -15, 0], [15, 15, 2]]", "[[-15, -15, 0]]"),
        "box_m is an array of 1; give the lowest and"},
       {with("[15, 15, 2]", "[15, 15]"), "box_m is an array of 2; give the lowest and"},
-      {with("[15, 15, 2]", "[15, \"15\", 2]"), "box_m is '15'; give a number from -1000000000"},
+      {with("[15, 15, 2]", "[15, \"15\", 2]"), "box_m is '15'; give a number from -1e+09"},
       {with("[15, 15, 2]", "[15, 15, 0]"), "box_m is [[-15,-15,0],[15,15,0]], where not every number"},
       {with("[15, 15, 2]", "[15, 15, 0.5]"),
        "robots[0].start is [1,0,1,45], outside of box_m; give a start in"},

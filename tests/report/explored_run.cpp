@@ -1,7 +1,6 @@
 #include "report/explored_run.hpp"
 
 #include "planner/exploration/team_in_world.hpp"
-#include "support/test.hpp"
 
 namespace frontlux::test {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "support/folder_test.hpp"
-#include "support/test.hpp"
 
 #include <sys/wait.h>
 

@@ -2,7 +2,6 @@
 
 #include "support/command.hpp"
 #include "support/complaint.hpp"
-#include "support/test.hpp"
 
 #include <concepts>
 

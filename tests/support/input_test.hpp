@@ -2,7 +2,6 @@
 
 #include "support/complaint.hpp"
 #include "support/folder_test.hpp"
-#include "support/test.hpp"
 
 namespace frontlux::test {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/quiet_octomap.hpp"
+#include "octomap/quiet_octomap.hpp"
 #include "support/test.hpp"
 
 #include <frontlux/octomap.hpp>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "support/test.hpp"
 #include "support/views.hpp"
 
 #include <frontlux/key_box.hpp>

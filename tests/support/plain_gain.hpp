@@ -1,7 +1,6 @@
 #pragma once
 
 #include "support/random_view.hpp"
-#include "support/test.hpp"
 
 #include <unsupported/Eigen/AutoDiff>
 

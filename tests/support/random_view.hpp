@@ -1,7 +1,6 @@
 #pragma once
 
 #include "support/random.hpp"
-#include "support/test.hpp"
 #include "support/views.hpp"
 
 #include <frontlux/planner/information_gain.hpp>

@@ -3,6 +3,7 @@
 #include <frontlux/ray.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -73,6 +74,20 @@ inline constexpr KeyBox kAllVoxels{{0, 0, 0}, {0xFFFF, 0xFFFF, 0xFFFF}};
           make_key(up(box.max.x, dx), up(box.max.y, dy), up(box.max.z, dz))};
 }
 [[nodiscard]] constexpr KeyBox grown(const KeyBox& box, int by) { return grown(box, by, by, by); }
+
+/// How many voxels a box holds.
+[[nodiscard]] constexpr std::uint64_t size_of(const KeyBox& box) {
+  const auto along = [](int low, int high) { return static_cast<std::uint64_t>(high - low + 1); };
+  return along(box.min.x, box.max.x) * along(box.min.y, box.max.y) * along(box.min.z, box.max.z);
+}
+
+/// The place of a voxel among those of a box, in the order of `for_each_key`. @pre box.contains(key)
+[[nodiscard]] constexpr std::size_t place_in(const KeyBox& box, const VoxelKey& key) {
+  const std::size_t size_x = box.max.x - box.min.x + std::size_t{1};
+  const std::size_t size_y = box.max.y - box.min.y + std::size_t{1};
+  const std::size_t x = key.x - box.min.x, y = key.y - box.min.y, z = key.z - box.min.z;
+  return (z * size_y + y) * size_x + x;
+}
 
 /// Whether `holds(key)` for every voxel of a box; stops at the first for which it does not hold.
 template <class Holds>

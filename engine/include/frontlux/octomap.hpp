@@ -33,6 +33,7 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 /// A pruned leaf is one entry, however large.
 [[nodiscard]] VoxelGrid make_voxel_grid(const octomap::OcTree& tree);
 [[nodiscard]] VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
+[[nodiscard]] VoxelGrid make_voxel_grid(const Octree& tree);
 
 /// Keeps a VoxelGrid in step with one tree.
 ///

@@ -3,7 +3,6 @@
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/key_box.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

@@ -22,6 +22,14 @@ struct Block {
   int log2_edge = 0;  ///< the edge is 2^log2_edge voxels
 };
 
+/// One of the eight blocks that make up a block, numbered as OctoMap numbers children: x counts 1, y 2, z 4.
+[[nodiscard]] constexpr Block octant(const Block& block, unsigned number) {
+  const int log2_edge = block.log2_edge - 1;
+  const auto step = [&](unsigned axis) { return ((number >> axis) & 1U) << log2_edge; };
+  const VoxelKey& low = block.corner;
+  return {make_key(low.x + step(0), low.y + step(1), low.z + step(2)), log2_edge};
+}
+
 /// Which voxels of a map are unknown, free and occupied: a sparse, ternary mirror of an octree in bricks of 8
 /// x 8 x 8 voxels, over the whole key range. Large uniform regions are one entry, so memory grows with
 /// what is mapped in detail.

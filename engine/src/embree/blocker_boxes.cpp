@@ -6,7 +6,6 @@
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <type_traits>
 

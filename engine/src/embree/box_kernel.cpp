@@ -3,7 +3,6 @@
 #include "isa/targets.hpp"
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 namespace frontlux::detail {

@@ -24,17 +24,15 @@ class EmbreeRayCaster final : public detail::SnapshotRayCaster<detail::BoxSnapsh
     });
   }
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
-    answer(rays, hits, unknown, [](const auto& scene, auto some, auto out) { scene.cast(some, out); });
+    answer(rays, hits, unknown, [](const auto& scene, auto... batch) { scene.cast(batch...); });
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    answer(segments, visible, unknown,
-           [](const auto& scene, auto some, auto out) { scene.visible(some, out); });
+    answer(segments, visible, unknown, [](const auto& scene, auto... batch) { scene.visible(batch...); });
   }
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    answer(segments, visible, unknown,
-           [](const auto& scene, auto some, auto out) { scene.visible(some, out); });
+    answer(segments, visible, unknown, [](const auto& scene, auto... batch) { scene.visible(batch...); });
   }
 
   [[nodiscard]] std::size_t do_memory_bytes() const override { return snapshot()->memory_bytes(); }

@@ -49,31 +49,29 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
  private:
   static constexpr std::size_t kBatch = std::min(detail::BoxScene::kMaxBatch, detail::TableQuery::kMaxBatch);
 
-  // The table answers what it can. The rest goes to the scene.
-  template <class Query, class Answer, class ByTable, class ByScene>
-  static void answer(std::span<const Query> queries, std::span<Answer> answers, const ByTable& by_table,
-                     const ByScene& by_scene) {
+  // The table answers what it can. The rest goes to the scene. `ask` calls the one or the other.
+  template <class Query, class Answer, class Ask>
+  void answer(std::span<const Query> queries, std::span<Answer> answers, UnknownPolicy unknown,
+              const Ask& ask) const {
+    const auto now = snapshot();
+    const detail::TableQuery table(now->grid(), now->table(unknown), unknown, packets_);
+    const detail::SceneQuery scene(now->boxes(), unknown);
     for_each_chunk(queries.size(), kBatch, [&](std::size_t begin, std::size_t end) {
       const auto some = queries.subspan(begin, end - begin);
       const auto some_answers = answers.subspan(begin, end - begin);
       std::array<std::uint16_t, kBatch> rest;
-      const std::size_t size = by_table(some, some_answers, std::span(rest));
+      const std::size_t size = ask(table, some, some_answers, std::span(rest));
       if (size == 0) return;
       std::array<Query, kBatch> long_ones;
       std::array<Answer, kBatch> their_answers;
       for (std::size_t i = 0; i < size; ++i) long_ones[i] = some[rest[i]];
-      by_scene(std::span<const Query>(long_ones.data(), size), std::span(their_answers.data(), size));
+      ask(scene, std::span<const Query>(long_ones.data(), size), std::span(their_answers.data(), size));
       for (std::size_t i = 0; i < size; ++i) some_answers[rest[i]] = their_answers[i];
     });
   }
 
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
-    const auto now = snapshot();
-    const detail::TableQuery table(now->grid(), now->table(unknown), unknown, packets_);
-    const detail::SceneQuery scene(now->boxes(), unknown);
-    answer(
-        rays, hits, [&](auto some, auto out, auto rest) { return table.cast(some, out, rest); },
-        [&](auto some, auto out) { scene.cast(some, out); });
+    answer(rays, hits, unknown, [](const auto& by, auto... batch) { return by.cast(batch...); });
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
@@ -85,12 +83,7 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   }
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    const auto now = snapshot();
-    const detail::TableQuery table(now->grid(), now->table(unknown), unknown, packets_);
-    const detail::SceneQuery scene(now->boxes(), unknown);
-    answer(
-        segments, visible, [&](auto some, auto out, auto rest) { return table.visible(some, out, rest); },
-        [&](auto some, auto out) { scene.visible(some, out); });
+    answer(segments, visible, unknown, [](const auto& by, auto... batch) { return by.visible(batch...); });
   }
 
   [[nodiscard]] std::size_t do_memory_bytes() const override { return snapshot()->memory_bytes(); }

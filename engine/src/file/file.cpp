@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
-#include <system_error>
 #include <unistd.h>
 
 namespace frontlux {
@@ -76,6 +75,10 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   if (!stream) cannot(std::generic_category().message(errno), "check the space left on the disk");
   std::filesystem::rename(part.path(), file, error);
   if (error) cannot(error.message(), "check the permissions of the folder and of the file that is there");
+}
+
+void write_file(const std::filesystem::path& file, std::string_view bytes) {
+  write_file(file, [&](std::ostream& stream) { stream << bytes; });
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

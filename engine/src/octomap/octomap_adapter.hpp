@@ -1,23 +1,11 @@
 #pragma once
 
-// OctoMap reports rays that leave its key range on stderr, from inside the header that holds castRay. A
-// library must not print. So in all files that include OctoMap, and they include it from here, its macros
-// print nothing.
-#include <octomap/octomap_types.h>
-#undef OCTOMAP_WARNING
-#undef OCTOMAP_ERROR
-#undef OCTOMAP_WARNING_STR
-#undef OCTOMAP_ERROR_STR
-#define OCTOMAP_WARNING(...) ((void)0)
-#define OCTOMAP_ERROR(...) ((void)0)
-#define OCTOMAP_WARNING_STR(args) ((void)0)
-#define OCTOMAP_ERROR_STR(args) ((void)0)
+#include "octomap/quiet_octomap.hpp"
+
 #include <frontlux/octomap.hpp>
 #include <frontlux/ray.hpp>
 
 #include <Eigen/Core>
-#include <octomap/ColorOcTree.h>
-#include <octomap/OcTree.h>
 
 #include <variant>
 

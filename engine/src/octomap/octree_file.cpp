@@ -5,15 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace frontlux::detail {
@@ -51,14 +45,6 @@ std::string_view trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 struct Header {
@@ -114,12 +100,12 @@ Header read_header(const std::filesystem::path& file, std::string_view bytes) {
   if (header.tree_type != "OcTree" && header.tree_type != "ColorOcTree")
     fail_at(file, id.offset, "holds a tree of type " + quote(*id.value),
             "only OcTree and ColorOcTree are supported: save the map as one of them");
-  const auto nodes = parse<std::uint32_t>(*size.value);
+  const auto nodes = number_from<std::uint32_t>(*size.value);
   if (!nodes)
     fail_at(file, size.offset, "declares 'size' " + quote(*size.value) + " in its header",
             "the number of nodes must be a whole number from 0 to 4294967295");
   header.declared_nodes = *nodes;
-  const auto resolution = parse<double>(*res.value);
+  const auto resolution = number_from<double>(*res.value);
   if (!resolution || !(*resolution >= kMinResolution && *resolution <= kMaxResolution))
     fail_at(file, res.offset, "declares 'res' " + quote(*res.value) + " in its header",
             "the edge of a voxel must be a number of metres from 1e-9 to 1e9, with a point for decimals");

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace frontlux {
@@ -21,15 +20,8 @@ void mirror_node(const Tree& tree, const typename Tree::NodeType* node, const Bl
     grid.fill(block, state_of(tree, node));
     return;
   }
-  const int log2_edge = block.log2_edge - 1;
-  for (unsigned i = 0; i < 8; ++i) {
-    if (!tree.nodeChildExists(node, i)) continue;
-    const int half = 1 << log2_edge;
-    const VoxelKey& low = block.corner;
-    const VoxelKey corner =
-        make_key(low.x + (i & 1U ? half : 0), low.y + (i & 2U ? half : 0), low.z + (i & 4U ? half : 0));
-    mirror_node(tree, tree.getNodeChild(node, i), {corner, log2_edge}, grid);
-  }
+  for (unsigned i = 0; i < 8; ++i)
+    if (tree.nodeChildExists(node, i)) mirror_node(tree, tree.getNodeChild(node, i), octant(block, i), grid);
 }
 
 template <class Tree>
@@ -51,6 +43,9 @@ VoxelGrid mirror(const detail::OctreePointer& tree) {
 
 VoxelGrid make_voxel_grid(const octomap::OcTree& tree) { return mirror(tree); }
 VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree) { return mirror(tree); }
+VoxelGrid make_voxel_grid(const Octree& tree) {
+  return std::visit([](const auto& t) { return mirror(*t); }, tree);
+}
 
 struct OctreeMirror::Watch {
   detail::OctreePointer tree;

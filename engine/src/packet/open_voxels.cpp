@@ -2,7 +2,6 @@
 
 #include <frontlux/parallel.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <new>

@@ -2,7 +2,6 @@
 
 #include "isa/targets.hpp"
 
-#include <array>
 #include <bit>
 
 namespace frontlux::detail {

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
-#include <optional>
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
@@ -120,17 +117,19 @@ std::size_t TableQuery::visible(std::span<const KeySegment> segments, std::span<
 std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
                              std::span<std::uint16_t> left) const {
   std::size_t left_size = 0;
+  const auto settle = [&](std::size_t i, const std::optional<Hit>& hit) {
+    if (hit)
+      hits[i] = *hit;
+    else
+      left[left_size++] = static_cast<std::uint16_t>(i);
+  };
 #ifdef __SSE2__
   constexpr std::size_t kWorthAPacket = 3;
   if (walk_ != nullptr && rays.size() < kWorthAPacket) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const auto ray = enter(grid_.lattice(), table_, rays[i]);
-      const auto hit = ray ? finish(rays[i], ray->key, ray->direction, walk_alone(table_, *ray), ray->whole)
-                           : std::nullopt;
-      if (hit)
-        hits[i] = *hit;
-      else
-        left[left_size++] = static_cast<std::uint16_t>(i);
+      settle(i, ray ? finish(rays[i], ray->key, ray->direction, walk_alone(table_, *ray), ray->whole)
+                    : std::nullopt);
     }
     return left_size;
   }
@@ -165,12 +164,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
   walk_->rays(table_, lines, stopped_at.data());
   for (std::size_t n = 0; n < lines.size; ++n) {
     const auto& [i, origin, d, whole] = walking[n];
-    const auto hit =
-        finish(rays[i], as_key(table_.layout().key(origin)), {d[0], d[1], d[2]}, stopped_at[n], whole);
-    if (hit)
-      hits[i] = *hit;
-    else
-      left[left_size++] = static_cast<std::uint16_t>(i);
+    settle(i, finish(rays[i], as_key(table_.layout().key(origin)), {d[0], d[1], d[2]}, stopped_at[n], whole));
   }
   return left_size;
 }

@@ -4,7 +4,6 @@
 
 #include <frontlux/view_region.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,7 +1,6 @@
 #include <frontlux/view_region.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 /// Skips cubes of one state: where a path is after thousands of steps, without taking each step. Every time
 /// is exact to the last bit, so that a walk can go on from there.

@@ -6,17 +6,18 @@
 namespace frontlux {
 namespace {
 
-void require_equal_sizes(std::size_t inputs, std::size_t results, const char* what) {
+// Whether there is anything to answer.
+bool any(std::size_t inputs, std::size_t results, const char* what) {
   if (inputs != results)
     throw std::invalid_argument(std::to_string(inputs) + " " + what + " but room for " +
                                 std::to_string(results) + " results: the two spans must be of one size");
+  return inputs != 0;
 }
 
 }  // namespace
 
 void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const {
-  require_equal_sizes(rays.size(), hits.size(), "rays");
-  if (!rays.empty()) do_cast(rays, hits, unknown);
+  if (any(rays.size(), hits.size(), "rays")) do_cast(rays, hits, unknown);
 }
 
 Hit RayCaster::cast(const Ray& ray, UnknownPolicy unknown) const {
@@ -27,31 +28,26 @@ Hit RayCaster::cast(const Ray& ray, UnknownPolicy unknown) const {
 
 void RayCaster::visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                         UnknownPolicy unknown) const {
-  require_equal_sizes(segments.size(), visible.size(), "segments");
-  if (!segments.empty()) do_visible(segments, visible, unknown);
+  if (any(segments.size(), visible.size(), "segments")) do_visible(segments, visible, unknown);
 }
 
 void RayCaster::visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                         UnknownPolicy unknown) const {
-  require_equal_sizes(segments.size(), visible.size(), "segments");
-  if (!segments.empty()) do_visible(segments, visible, unknown);
+  if (any(segments.size(), visible.size(), "segments")) do_visible(segments, visible, unknown);
 }
 
 void RayCaster::count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const {
-  require_equal_sizes(rays.size(), counts.size(), "rays");
-  if (!rays.empty()) do_count(rays, counts, unknown);
+  if (any(rays.size(), counts.size(), "rays")) do_count(rays, counts, unknown);
 }
 
 void RayCaster::count(std::span<const Segment> segments, std::span<PathCount> counts,
                       UnknownPolicy unknown) const {
-  require_equal_sizes(segments.size(), counts.size(), "segments");
-  if (!segments.empty()) do_count(segments, counts, unknown);
+  if (any(segments.size(), counts.size(), "segments")) do_count(segments, counts, unknown);
 }
 
 void RayCaster::count(std::span<const KeySegment> segments, std::span<PathCount> counts,
                       UnknownPolicy unknown) const {
-  require_equal_sizes(segments.size(), counts.size(), "segments");
-  if (!segments.empty()) do_count(segments, counts, unknown);
+  if (any(segments.size(), counts.size(), "segments")) do_count(segments, counts, unknown);
 }
 
 void RayCaster::update(const VoxelGrid& grid) {

@@ -2,7 +2,6 @@
 
 #include "walk/grid_path.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <type_traits>
 

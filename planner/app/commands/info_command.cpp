@@ -30,7 +30,7 @@ struct Info {
 };
 
 Info gather(const MapFile& map) {
-  const VoxelGrid grid = make_voxel_grid(map);
+  const VoxelGrid grid = make_voxel_grid(map.tree);
   Info info;
   info.tree = tree_size(map);
   info.mirror_bytes = grid.memory_bytes();
@@ -40,7 +40,7 @@ Info gather(const MapFile& map) {
   info.free = voxels[static_cast<std::size_t>(Occupancy::kFree)];
   info.frontiers = 0;
   if (info.bounds) {
-    info.unknown = sim::volume(*info.bounds) - info.occupied - info.free;
+    info.unknown = size_of(*info.bounds) - info.occupied - info.free;
     if (info.unknown != 0) {
       const auto frontiers = find_frontiers(grid, *info.bounds);
       info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
@@ -49,27 +49,21 @@ Info gather(const MapFile& map) {
   return info;
 }
 
-// Corner [m] at the lower or, with one voxel added, the upper end of a box.
-Eigen::Vector3d corner(const VoxelKey& key, int added, double resolution) {
-  const auto along = [&](int k) { return (k + added - Lattice::kOrigin) * resolution; };
-  return {along(key.x), along(key.y), along(key.z)};
-}
-
 constexpr const char* kNotCounted = "not counted: the surface of the map's large free blocks is too large";
 
 void print_text(const MapFile& map, const Info& info) {
   std::string out = row("map", map.path.string() + " (" + map.tree_type + ")") +
                     row("resolution", rounded(map.resolution) + " m");
   if (info.bounds) {
-    const Eigen::Vector3d min = corner(info.bounds->min, 0, map.resolution),
-                          max = corner(info.bounds->max, 1, map.resolution);
-    const auto axis = [&](const char* label, int i, int key_min, int key_max) {
-      return row(label, rounded(min[i]) + " to " + rounded(max[i]) + " m, keys " + std::to_string(key_min) +
-                            " to " + std::to_string(key_max));
+    const Lattice lattice(map.resolution);
+    const auto axis = [&](const char* label, int low, int high) {
+      return row(label, rounded(sim::lower_face(lattice, low)) + " to " +
+                            rounded(sim::lower_face(lattice, high + 1)) + " m, keys " + std::to_string(low) +
+                            " to " + std::to_string(high));
     };
     const auto& [low, high] = *info.bounds;
-    out += axis("bounds x", 0, low.x, high.x) + axis("       y", 1, low.y, high.y) +
-           axis("       z", 2, low.z, high.z);
+    out +=
+        axis("bounds x", low.x, high.x) + axis("       y", low.y, high.y) + axis("       z", low.z, high.z);
   } else {
     out += row("bounds", "none: every voxel is unknown");
   }
@@ -93,9 +87,9 @@ void print_json(const MapFile& map, const Info& info) {
                                 {"bounds", nullptr}};
   if (info.bounds) {
     const auto& [min, max] = *info.bounds;
-    const Eigen::Vector3d low = corner(min, 0, map.resolution), high = corner(max, 1, map.resolution);
-    out["bounds"] = {{"min_m", {low.x(), low.y(), low.z()}},
-                     {"max_m", {high.x(), high.y(), high.z()}},
+    const auto face = [lattice = Lattice(map.resolution)](int k) { return sim::lower_face(lattice, k); };
+    out["bounds"] = {{"min_m", {face(min.x), face(min.y), face(min.z)}},
+                     {"max_m", {face(max.x + 1), face(max.y + 1), face(max.z + 1)}},
                      {"min_key", {min.x, min.y, min.z}},
                      {"max_key", {max.x, max.y, max.z}}};
   }

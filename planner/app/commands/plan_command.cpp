@@ -2,12 +2,12 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "map_file.hpp"
-#include "stopwatch.hpp"
 #include "text.hpp"
 
 #include <frontlux/io/path_file.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/position_refinement.hpp>
@@ -15,6 +15,7 @@
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 #include <frontlux/ray_caster.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -149,18 +150,11 @@ void look_ahead(std::vector<Pose>& viewpoints) {
 
 // The part of the known map from which frontiers can be in view somewhere along the path.
 KeyBox surroundings(const VoxelGrid& grid, const std::vector<Pose>& viewpoints, double range) {
-  const KeyBox known = grid.known_bounds().value();
   Eigen::AlignedBox3d box;
   for (const Pose& viewpoint : viewpoints) box.extend(viewpoint.position);
-  const auto key = [&](double coordinate, std::uint16_t beyond) {
-    return grid.lattice().key(coordinate).value_or(beyond);
-  };
-  const auto corner = [&](const Eigen::Vector3d& point, const VoxelKey& beyond) {
-    return VoxelKey{key(point.x(), beyond.x), key(point.y(), beyond.y), key(point.z(), beyond.z)};
-  };
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(range);
-  return {greatest(known.min, corner(box.min() - reach, known.min)),
-          least(known.max, corner(box.max() + reach, known.max))};
+  const KeyBox around = planner::voxels_of(grid.lattice(), {box.min() - reach, box.max() + reach});
+  return intersection(around, grid.known_bounds().value()).value();
 }
 
 // What became of the viewpoints between the ends.
@@ -235,7 +229,7 @@ void plan(const Options& options) {
   check_options(options);
   if (!options.output.empty()) check_output(options.output, {".csv", ".ply"});
   const planner::Robot robot = make_robot(options);
-  const VoxelGrid grid = make_voxel_grid(read_map_file(options.map));
+  const VoxelGrid grid = make_voxel_grid(read_map_file(options.map).tree);
   const VoxelKey start = voxel_of(grid.lattice(), "--from", options.from);
   const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to);
   if (options.robot == RobotKind::kUgv && goal.z != start.z) {

@@ -5,12 +5,11 @@
 #include "draw/png_file.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
-#include "stopwatch.hpp"
 #include "text.hpp"
 
 #include <frontlux/key_box.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/goal_selection.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -229,7 +228,7 @@ void render(const Options& options) {
   check_options(options);
   check_output(options.output, {".png", ".ply", ".csv"});
   const MapFile map = read_map_file(options.map);
-  const VoxelGrid grid = make_voxel_grid(map);
+  const VoxelGrid grid = make_voxel_grid(map.tree);
   const View view = look(map, grid, options, make_member(options));
   const Stopwatch writing;
   const auto ending = std::filesystem::path(options.output).extension();

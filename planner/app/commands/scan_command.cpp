@@ -3,7 +3,6 @@
 #include "commands/commands.hpp"
 #include "interrupt.hpp"
 #include "progress_line.hpp"
-#include "stopwatch.hpp"
 #include "text.hpp"
 #include "world_source.hpp"
 
@@ -13,6 +12,7 @@
 #include <frontlux/sim/coverage.hpp>
 #include <frontlux/sim/scan_world.hpp>
 #include <frontlux/sim/start_pose.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <iostream>
 #include <memory>

@@ -2,10 +2,9 @@
 
 #include <frontlux/file.hpp>
 
-#include <ostream>
 #include <png.h>
 #include <stdexcept>
-#include <vector>
+#include <string>
 
 namespace frontlux::app {
 
@@ -16,13 +15,12 @@ void write_png(const std::filesystem::path& file, const Canvas& image) {
   header.width = static_cast<png_uint_32>(image.width());
   header.height = static_cast<png_uint_32>(image.height());
   header.format = PNG_FORMAT_RGB;
-  std::vector<char> bytes;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
-  bytes.resize(size);
+  std::string bytes(size, '\0');
   if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.bytes().data(), 0, nullptr) == 0)
     throw std::runtime_error(file.string() + ": cannot be made: libpng says " + header.message);
-  write_file(file,
-             [&](std::ostream& stream) { stream.write(bytes.data(), static_cast<std::streamsize>(size)); });
+  bytes.resize(size);
+  write_file(file, bytes);
 }
 
 }  // namespace frontlux::app

@@ -118,9 +118,9 @@ void ContinuousLoop::note_motion(double until) {
 void ContinuousLoop::note_plan(const planner::PlannedMotion& planned) {
   const planner::RobotStep& robot = planned.step.robots[planned.robot];
   events_ += csv_row(planned.step.time, planned.step.number, setup_.head.robots[planned.robot].robot.name,
-                     planner::name_of(planned.reason), planner::name_of(robot.goal.state), robot.gain_predicted,
-                     planned.trajectory.begin(), planned.trajectory.end(), planned.trajectory.length(),
-                     planned.step.planning_seconds());
+                     planner::name_of(planned.reason), planner::name_of(robot.goal.state),
+                     robot.gain_predicted, planned.trajectory.begin(), planned.trajectory.end(),
+                     planned.trajectory.length(), planned.step.planning_seconds());
 }
 
 }  // namespace frontlux::app

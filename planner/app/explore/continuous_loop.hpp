@@ -36,7 +36,7 @@ class ContinuousLoop final : public RunLoop {
   RunNumbers numbers_;
   std::optional<RunEnd> end_;
   bool begun_ = false;
-  double time_ = 0.0;  // [s] of the last scan
+  double time_ = 0.0;          // [s] of the last scan
   std::uint64_t samples_ = 0;  // of the motion
   std::string events_, motion_;
 };

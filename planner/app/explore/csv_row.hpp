@@ -19,9 +19,7 @@ namespace frontlux::app {
 }
 template <class Number>
 requires std::is_arithmetic_v<Number>
-[[nodiscard]] std::string csv_cell(Number number) {
-  return to_text(number);
-}
+[[nodiscard]] std::string csv_cell(Number number) { return to_text(number); }
 /// Four cells: x, y, z, yaw.
 [[nodiscard]] inline std::string csv_cell(const planner::Pose& pose) {
   const Eigen::Vector3d& p = pose.position;

@@ -152,9 +152,10 @@ void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSu
                                                     fixed(robot.idle, 1) + " s, held back " +
                                                     std::to_string(robot.held_back) + " times");
   }
-  out += row("contacts", std::to_string(numbers.contacts) +
-                             (numbers.clearance ? ", least clearance " + fixed(*numbers.clearance, 2) + " m" : "") +
-                             (numbers.separation ? ", between robots " + fixed(*numbers.separation, 2) + " m" : "")) +
+  out += row("contacts",
+             std::to_string(numbers.contacts) +
+                 (numbers.clearance ? ", least clearance " + fixed(*numbers.clearance, 2) + " m" : "") +
+                 (numbers.separation ? ", between robots " + fixed(*numbers.separation, 2) + " m" : "")) +
          row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, 99 % below " +
                              fixed(sums.planning_percentile(0.99), 3) + " s, max " +
                              fixed(sums.planning_percentile(1.0), 3) + " s; the clock charges " +

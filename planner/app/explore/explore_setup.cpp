@@ -127,8 +127,8 @@ planner::GoalOptions goal_options(const ExploreOptions& options, const planner::
   planner::GoalOptions goal = planner::goal_options(robot, options.mode);
   goal.rule = options.goal.value_or(goal.rule);
   goal.lambda = options.lambda.value_or(goal.lambda);
-  // A robot in motion plans again on its way, and takes what is near as it comes.
-  if (!options.lockstep) goal.advance = goal.min_distance = 0.0;
+  // A robot in motion plans again before it arrives, so that near goals cost it less.
+  if (!options.lockstep && options.mode == Method::kDefault) goal.advance = 2.0;
   goal.advance = options.advance.value_or(goal.advance);
   goal.min_distance = options.min_distance.value_or(goal.min_distance);
   goal.rendering.renderer = options.renderer.value_or(goal.rendering.renderer);

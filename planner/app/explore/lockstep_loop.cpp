@@ -19,11 +19,13 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
 }
 
 planner::Drive LockstepLoop::drive() {
-  return [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
+  return
+      [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
 }
 
 ExplorationStep LockstepLoop::step() {
-  ExplorationStep step = begun_ ? exploration_.step(drive()) : exploration_.begin(setup_.head.starts, drive());
+  ExplorationStep step =
+      begun_ ? exploration_.step(drive()) : exploration_.begin(setup_.head.starts, drive());
   begun_ = true;
   note(step);
   return step;

@@ -98,7 +98,8 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       sums_{.seconds = std::vector<double>(planner::kPhases),
             .travelled = std::vector<double>(head.robots.size())} {
   std::string header =
-      "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
+      "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
+      "abandoned,"
       "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
       "path,"
       "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays";
@@ -153,7 +154,8 @@ void RunFiles::add(const RecordedStep& recorded) {
         seconds += ',' + csv_cell(step.planning_seconds());
       seconds += ',' + csv_cell(step.seconds[phase]);
     }
-    const std::string goal = robot.goal.pose ? csv_cell(*robot.goal.pose) + ',' + csv_cell(robot.goal.gain) : ",,,,";
+    const std::string goal =
+        robot.goal.pose ? csv_cell(*robot.goal.pose) + ',' + csv_cell(robot.goal.gain) : ",,,,";
     std::string row =
         csv_row(step.number, step.time, head_.robots[r].robot.name, sums_.observable, sums_.bounding,
                 fraction(recorded.known[r].observable, head_.observable),
@@ -173,9 +175,9 @@ void RunFiles::add(const RecordedStep& recorded) {
 }
 
 double RunSums::planning_mean() const {
-  return planning.empty() ? 0.0
-                          : std::accumulate(planning.begin(), planning.end(), 0.0) /
-                                static_cast<double>(planning.size());
+  return planning.empty()
+             ? 0.0
+             : std::accumulate(planning.begin(), planning.end(), 0.0) / static_cast<double>(planning.size());
 }
 
 double RunSums::planning_percentile(double part) const {

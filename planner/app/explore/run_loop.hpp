@@ -21,9 +21,9 @@ struct RunEnd {
 
 /// How much is mapped at a moment.
 struct Mapped {
-  double time = 0.0;                            ///< [s]
-  std::uint64_t observable = 0, bounding = 0;   ///< voxels
-  double length = 0.0;                          ///< [m] travelled by all robots
+  double time = 0.0;                           ///< [s]
+  std::uint64_t observable = 0, bounding = 0;  ///< voxels
+  double length = 0.0;                         ///< [m] travelled by all robots
 };
 
 /// What one robot did, up to now.
@@ -37,8 +37,8 @@ struct RobotNumbers {
 struct RunNumbers {
   std::vector<Mapped> mapped;  ///< whenever it became more, by time
   std::vector<RobotNumbers> robots;
-  std::uint64_t contacts = 0;                         ///< of bodies with surfaces
-  std::optional<double> clearance, separation;        ///< [m] if measured, and of more than one robot
+  std::uint64_t contacts = 0;                   ///< of bodies with surfaces
+  std::optional<double> clearance, separation;  ///< [m] if measured, and of more than one robot
 };
 
 /// A simulated team and the exploration that moves it, step by step.

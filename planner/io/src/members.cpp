@@ -18,17 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-std::string shortest(double number) {
-  std::string text = json(number).dump();
-  if (text.ends_with(".0")) text.resize(text.size() - 2);
-  return text;
-}
-
 std::string describe(const char* unit, const Range& range) {
   const std::string end = *unit == '\0' ? "" : std::string(" ") + unit;
   if (range.high < kAboveZero.high)
-    return "a number from " + shortest(range.low) + " to " + shortest(range.high) + end;
-  return (range.low == kAboveZero.low ? "a number above 0" : "a number of at least " + shortest(range.low)) +
+    return "a number from " + decimals_of(range.low) + " to " + decimals_of(range.high) + end;
+  return (range.low == kAboveZero.low ? "a number above 0"
+                                      : "a number of at least " + decimals_of(range.low)) +
          end;
 }
 

@@ -1,9 +1,7 @@
 #include "parsing.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 namespace frontlux::io {
 namespace {
@@ -11,10 +9,7 @@ namespace {
 template <class Number>
 std::optional<Number> parsed(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
+  return number_from<Number>(text);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
+#include <frontlux/file.hpp>
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -18,15 +17,6 @@ namespace frontlux::io {
 
 /// Infinite if it is too large for a float.
 [[nodiscard]] float to_float(double number);
-
-/// A number of `sizeof(Number)` bytes, in this order.
-template <class Number>
-[[nodiscard]] Number from_bytes(const char* bytes, std::endian order) {
-  std::array<char, sizeof(Number)> raw;
-  std::memcpy(raw.data(), bytes, raw.size());
-  if (order != std::endian::native) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<Number>(raw);
-}
 
 /// How a number is stored in a binary file.
 struct NumberType {

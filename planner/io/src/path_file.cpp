@@ -1,12 +1,9 @@
 #include <frontlux/file.hpp>
 #include <frontlux/io/path_file.hpp>
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -15,17 +12,10 @@ namespace {
 
 constexpr double kArrow = 0.3;  // [m]
 
-// The shortest decimals that read back as the same number, in every locale.
 template <class Number>
-void append(std::string& line, std::initializer_list<Number> numbers, char between) {
-  std::array<char, 64> text;
-  bool first = true;
-  for (const Number number : numbers) {
-    if (!first) line += between;
-    first = false;
-    line.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr);
-  }
-  line += '\n';
+void append(std::string& text, std::initializer_list<Number> numbers, char between) {
+  for (const Number number : numbers) text += decimals_of(number) + between;
+  text.back() = '\n';
 }
 
 std::string csv_of(std::span<const planner::Pose> viewpoints) {
@@ -61,9 +51,7 @@ void write_path(const std::filesystem::path& file, std::span<const planner::Pose
   const bool csv = file.extension() == ".csv";
   if (!csv && file.extension() != ".ply")
     throw std::invalid_argument(file.string() + " is no name for a path; give one that ends in .csv or .ply");
-  const std::string text = csv ? csv_of(viewpoints) : ply_of(viewpoints);
-  write_file(file,
-             [&](std::ostream& out) { out.write(text.data(), static_cast<std::streamsize>(text.size())); });
+  write_file(file, csv ? csv_of(viewpoints) : ply_of(viewpoints));
 }
 
 }  // namespace frontlux::io

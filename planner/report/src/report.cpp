@@ -70,8 +70,7 @@ std::string base64(std::string_view bytes) {
 std::string packed(const ReportedRun& run, const std::string& version) {
   const std::string facts = detail::run_facts(run, version);
   std::string bytes;
-  for (unsigned shift = 0; shift < 32; shift += 8)
-    bytes += static_cast<char>(static_cast<std::uint8_t>(facts.size() >> shift));
+  append_number(bytes, static_cast<std::uint32_t>(facts.size()));
   bytes.append(facts).append(detail::run_data(*run.recording));
   return base64(compressed(bytes));
 }

@@ -1,5 +1,7 @@
 #include "parts.hpp"
 
+#include <frontlux/file.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -30,10 +32,7 @@ class ByteWriter {
     count((static_cast<std::uint64_t>(number) << 1U) ^ static_cast<std::uint64_t>(number >> 63));
   }
 
-  void f32(double number) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(number));
-    for (unsigned shift = 0; shift < 32; shift += 8) u8(static_cast<std::uint8_t>(bits >> shift));
-  }
+  void f32(double number) { append_number(bytes_, std::bit_cast<std::uint32_t>(static_cast<float>(number))); }
 
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 

@@ -199,8 +199,8 @@ struct TravelCorridor::State {
   std::optional<detail::Ground> ground;
   std::optional<detail::PathDistances> distances;
   std::vector<VoxelKey> cells;
-  std::vector<VoxelKey> blocked;    // sorted
-  std::vector<KeyBox> kept_out;     // of other robots
+  std::vector<VoxelKey> blocked;  // sorted
+  std::vector<KeyBox> kept_out;   // of other robots
   CorridorState state = CorridorState::kNotUpdated;
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }

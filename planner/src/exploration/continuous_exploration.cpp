@@ -100,10 +100,11 @@ MotionState ContinuousExploration::at(std::size_t robot, double time) const {
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
-  const int plans = state.team.options.low_gain_steps * static_cast<int>(state.members.size());
   if (std::ranges::none_of(state.members, [](const auto& m) { return !m.planned || m.going; }))
     return ExplorationEnd::kNothingToDo;
-  if (state.low_gain_plans >= plans) return ExplorationEnd::kLowGain;
+  if (std::ranges::all_of(state.members,
+                          [&](const auto& m) { return m.low_gains >= state.team.options.low_gain_steps; }))
+    return ExplorationEnd::kLowGain;
   if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))
     return ExplorationEnd::kStepLimit;
   return std::nullopt;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <cstdlib>
 
 namespace frontlux::planner {
 namespace {
@@ -53,14 +52,14 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (member.stopped) return PlanReason::kStopped;
   if (member.blocked) return PlanReason::kBlocked;
   if (member.going && time + team.options.latency >= member.motion.last().end()) return PlanReason::kArrival;
-  if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * (getenv("FLX_SOON") ? atof(getenv("FLX_SOON")) : kSoonest)) {
+  if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
       return team.mapping.grid().at(key) == Occupancy::kUnknown;
     });
-    if (static_cast<double>(unknown) <= (getenv("FLX_UNSEEN") ? atof(getenv("FLX_UNSEEN")) : kUnseen) * static_cast<double>(member.goal_frontiers.size()))
+    if (static_cast<double>(unknown) <= kUnseen * static_cast<double>(member.goal_frontiers.size()))
       return PlanReason::kGoalSeen;
   }
-  if (age >= (getenv("FLX_PERIOD") ? atof(getenv("FLX_PERIOD")) : team.options.period)) return PlanReason::kPeriod;
+  if (age >= team.options.period) return PlanReason::kPeriod;
   return std::nullopt;
 }
 
@@ -115,16 +114,22 @@ void ContinuousExploration::State::note_visit(std::size_t robot, RobotStep& step
   team.abandoned.visited(step.still_unknown);
 }
 
-// The cells in which a robot would be too near to where another one will come to rest.
+// The cells in whose middle a robot would be too near to where another one will come to rest.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot) const {
   std::vector<KeyBox> places;
   const auto body = body_of(team.options.team[robot].robot.travel);
   for (std::size_t other = 0; other < members.size(); ++other) {
     if (other == robot) continue;
     const Trajectory& last = members[other].motion.last();
-    const auto box = detail::positions_too_near(body, body_of(team.options.team[other].robot.travel),
-                                                last.at(last.end()).pose.position, kGap);
-    const auto low = team.lattice().key(box.min()), high = team.lattice().key(box.max());
+    auto box = detail::positions_too_near(body, body_of(team.options.team[other].robot.travel),
+                                          last.at(last.end()).pose.position, kGap);
+    if (team.options.team[robot].robot.travel.motion == Motion::kPlane) {
+      const double height = team.poses[robot].position.z();
+      if (height <= box.min().z() || height >= box.max().z()) continue;
+    }
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(team.lattice().resolution() / 2);
+    const auto low = team.lattice().key(Eigen::Vector3d(box.min() + half)),
+               high = team.lattice().key(Eigen::Vector3d(box.max() - half));
     if (low && high) places.push_back({*low, *high});
   }
   return places;
@@ -197,7 +202,6 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const Trajectory& old = member.motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   member.goal_frontiers.clear();
-  member.gain = 0;
   if (!now.goal.pose) {
     Trajectory back = go_back(robot, start, now);
     member.going = now.path == PathOutcome::kFound;
@@ -220,9 +224,8 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
   if (const auto gain = team.optimize_path(robot, step))
-    member.goal_frontiers = seen_at_end(*gain, now.planned.back(), now.planned.size() - 1,
-                                        team.selection->targets(robot));
-  member.gain = now.gain_predicted;
+    member.goal_frontiers =
+        seen_at_end(*gain, now.planned.back(), now.planned.size() - 1, team.selection->targets(robot));
   departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
@@ -238,17 +241,13 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
-  static const double keep = getenv("FLX_KEEP") ? atof(getenv("FLX_KEEP")) : 0.0;
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
-                     !member.goal_frontiers.empty() && time - member.chosen < keep;
-  if (keeps) {
-    team.selection->select(*team.caster, team.change(), {}, team.poses, members.size());
-    for (std::size_t r = 0; r < members.size(); ++r) step.robots[r].goal = members[r].goal;
-    step.frontiers = team.frontiers.size();
-  } else {
+                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
+  if (keeps)
+    team.keep_goals(step);
+  else
     team.select_goals(step, robot);
-    member.chosen = time;
-  }
+  if (!keeps) member.chosen = time;
 
   if (member.going && start >= member.motion.last().end())
     member.reached_frontiers = std::move(member.goal_frontiers);
@@ -262,7 +261,8 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   }
   member.planned = time;
   member.blocked = member.stopped = false;
-  judge();
+  if (!keeps) judge(member, step.robots[robot]);
+  ++team.number;
   return {robot, reason, std::move(trajectory), std::move(step)};
 }
 
@@ -279,12 +279,10 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 }
 
 // What the end depends on.
-void ContinuousExploration::State::judge() {
-  double expected_gain = 0.0;
-  for (const Member& member : members)
-    if (member.going) expected_gain += static_cast<double>(member.gain);
-  low_gain_plans = expected_gain >= team.options.epsilon ? 0 : low_gain_plans + 1;
-  ++team.number;
+void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
+  const double gain = std::max(step.goal.gain, static_cast<double>(step.gain_predicted));
+  const bool low = !step.goal.pose || gain < team.options.epsilon;
+  member.low_gains = low ? member.low_gains + 1 : 0;
 }
 
 }  // namespace frontlux::planner

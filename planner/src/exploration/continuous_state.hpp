@@ -21,23 +21,22 @@ struct ContinuousExploration::State {
   struct Member {
     detail::Follower motion;
     std::optional<double> planned = {};  // [s] when it planned last
-    double chosen = 0.0;
+    double chosen = 0.0;                 // [s] when it chose its goal
     bool stopped = false, blocked = false;
-    bool going = false;          // it has a goal, or goes back
-    std::uint64_t gain = 0;      // frontiers that it expects to see on its way
-    Goal goal = {};              // the last one
-    Keys goal_frontiers = {};    // in view at the goal; sorted
-    Keys reached_frontiers = {}; // the same of a goal that it reaches before it plans again
-    Keys needed = {};            // voxels that its trajectory needs free; sorted
+    bool going = false;             // it has a goal, or goes back
+    int low_gains = 0;              // goals in a row with which it expects to see next to nothing
+    Goal goal = {};                 // the last one
+    Keys goal_frontiers = {};       // in view at the goal; sorted
+    Keys reached_frontiers = {};    // the same of a goal that it reaches before it plans again
+    Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
   };
 
   detail::ExplorationState team;
   std::vector<Member> members = {};
-  VoxelGrid before;                                     // the map at the last planning
+  VoxelGrid before;                                            // the map at the last planning
   std::vector<std::pair<VoxelKey, std::size_t>> touched = {};  // since then, and by whom
-  int low_gain_plans = 0;                               // in a row
 
   void settle(double time);
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
@@ -51,7 +50,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step) const;
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
-  void judge();
+  void judge(Member& member, const RobotStep& step) const;
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;

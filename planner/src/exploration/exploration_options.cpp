@@ -20,7 +20,8 @@ void ExplorationOptions::check() const {
   if (caster > CasterKind::kOctomap) refuse("caster is none of the values of CasterKind");
   if (!(epsilon >= 0.0 && std::isfinite(epsilon)))
     refuse("epsilon is " + std::to_string(epsilon) + ", but has to be finite and 0 or more");
-  for (const auto& [name, value] : {std::pair{"latency", latency}, {"period", period}})
+  for (const auto& [name, value] :
+       {std::pair{"latency", latency}, {"period", period}, {"commitment", commitment}})
     if (!(value > 0.0 && std::isfinite(value)))
       refuse(std::string(name) + " is " + std::to_string(value) + " s, but has to be finite and positive");
   const auto at_least = [](const char* name, int value, int low) {

@@ -74,7 +74,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
 
 // Lines 1 and 2.
 void ExplorationState::look_around(std::span<const ExplorationStart> starts, const Drive& drive,
-                                     ExplorationStep& step) {
+                                   ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kMoving);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
@@ -131,6 +131,13 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   }
 }
 
+void ExplorationState::keep_goals(ExplorationStep& step) {
+  const PhaseClock clock(step, Phase::kGoals);
+  TeamGoals goals = selection->select(*caster, change(), {}, poses, size());
+  for (std::size_t r = 0; r < size(); ++r) step.robots[r].goal = std::move(goals.goals[r]);
+  step.frontiers = frontiers.size();
+}
+
 // The path on which a robot came, back to the last place that is still in its corridor. A robot beside which
 // a closer look has found something is in none.
 std::vector<Pose> ExplorationState::retreat(std::size_t robot) const {
@@ -182,8 +189,7 @@ std::optional<InformationGain> ExplorationState::optimize_path(std::size_t r, Ex
   const auto targets = selection->targets(r);
   const auto target_centers = centers(lattice(), targets);
   const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets, view);
-  const OptimizedPath turned =
-      planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
+  const OptimizedPath turned = planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
   for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
   robot.gain_tangent = turned.tangent.distinct;
   robot.gain_predicted = turned.result.distinct;
@@ -215,7 +221,7 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
 
 // Repeats recorded paths. False if the robots do not map what they mapped then.
 bool ExplorationState::execute_again(const ExplorationStep& recorded, const Drive& drive,
-                                       ExplorationStep& step) {
+                                     ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {
     const RobotStep& then = recorded.robots[r];
     if (then.travelled > then.planned.size()) return false;

@@ -48,6 +48,8 @@ struct ExplorationState {
   void update_views(ExplorationStep& step);
   /// @param choosing  if given: the robot that chooses; the others keep their goals
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
+  /// Brings the corridors up to date; all robots keep their goals.
+  void keep_goals(ExplorationStep& step);
   void plan_paths(ExplorationStep& step) const;
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
   [[nodiscard]] std::optional<InformationGain> optimize_path(std::size_t robot, ExplorationStep& step) const;

@@ -84,7 +84,7 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
       result.goals[r] = state.members[r].goal;
     else
       set_no_goal(result.goals[r], state.members[r].corridor.state());
-  if (sorted.empty()) return result;  // FLX
+  if (sorted.empty()) return result;
   const detail::CountingRayCaster counting(caster, state.lattice);
   State::Step step{counting, change.grid, result, choosing};
   state.assign(step, sorted);

@@ -3,16 +3,11 @@
 #include <frontlux/key_box.hpp>
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace frontlux::planner::detail {
 
-/// How many keys a box holds.
-[[nodiscard]] constexpr std::uint64_t size_of(const KeyBox& box) {
-  const auto along = [](int low, int high) { return static_cast<std::uint64_t>(high - low + 1); };
-  return along(box.min.x, box.max.x) * along(box.min.y, box.max.y) * along(box.min.z, box.max.z);
-}
+using frontlux::size_of;
 
 /// A value for every key of a box.
 template <class T>

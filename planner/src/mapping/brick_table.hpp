@@ -1,7 +1,5 @@
 #pragma once
 
-#include <frontlux/ray.hpp>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -3,30 +3,15 @@
 
 #include <frontlux/file.hpp>
 #include <frontlux/planner/mapping.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 
 namespace frontlux::planner {
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string shortest(double number) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-}
-
-}  // namespace
-
 void check(const Scan& scan) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("scan: " + what); };
   if (scan.directions.size() != scan.ranges.size())
@@ -86,17 +71,16 @@ struct Mapping::State {
   }
 
   MapChange insert_rays(const Eigen::Vector3f& origin) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     const auto updates = detail::voxels_of_scan(grid.lattice(), bounds, origin, rays);
-    time.rays = seconds_since(start);
-    const auto before_tree = std::chrono::steady_clock::now();
+    time.rays = watch.lap();
     tree.update(updates, changes);
-    time.tree = seconds_since(before_tree);
+    time.tree = watch.lap();
     return write_to_grid();
   }
 
   MapChange write_to_grid() {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     keys.clear();
     for (const auto& [key, state] : changes) {
       grid.set(key, state);
@@ -104,7 +88,7 @@ struct Mapping::State {
     }
     changes.clear();
     std::sort(keys.begin(), keys.end());
-    time.mirror = seconds_since(start);
+    time.mirror = watch.seconds();
     return {grid, keys};
   }
 };
@@ -177,7 +161,7 @@ void Mapping::write(const std::filesystem::path& file) const {
   const auto write_tree = [&](const octomap::OcTree& tree) {
     write_file(file, [&](std::ostream& out) {
       out << (binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file") << "\nid "
-          << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << shortest(tree.getResolution())
+          << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << decimals_of(tree.getResolution())
           << "\ndata\n";
       if (tree.size() == 0) return;
       binary ? tree.writeBinaryNode(out, tree.getRoot()) : tree.writeData(out);

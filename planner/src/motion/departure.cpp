@@ -8,7 +8,7 @@ namespace frontlux::planner::detail {
 
 std::optional<Departure> best_departure(const Trajectory& old, double time, const PathFrom& path_from,
                                         const MotionLimits& limits, const SegmentTest& is_free) {
-  constexpr double kRest = 1e-6;  // [m/s]
+  constexpr double kRest = 1e-6;                   // [m/s]
   constexpr std::array kLeads = {0.1, 0.4, 1.01};  // of the way on which the robot can stop
   const MotionState start = old.at(time);
   const double speed = start.velocity.norm();
@@ -41,8 +41,7 @@ std::optional<Departure> best_departure(const Trajectory& old, double time, cons
 Trajectory depart(const Trajectory& old, double time, const Departure& departure, const MotionLimits& limits,
                   const SegmentTest& is_free) {
   if (!departure.stops)
-    if (auto trajectory =
-            Trajectory::through(old.at(time), time, departure.viewpoints, limits, is_free))
+    if (auto trajectory = Trajectory::through(old.at(time), time, departure.viewpoints, limits, is_free))
       return *std::move(trajectory);
   return old.after_stop(time, departure.viewpoints, limits, is_free);
 }

@@ -93,7 +93,8 @@ std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, const Mo
     corner.at = places[i];
     corner.before = (places[i] - places[i - 1]) / lengths[i - 1];
     corner.after = (places[i + 1] - places[i]) / lengths[i];
-    corner.angle = 2 * std::atan2((corner.after - corner.before).norm(), (corner.after + corner.before).norm());
+    corner.angle =
+        2 * std::atan2((corner.after - corner.before).norm(), (corner.after + corner.before).norm());
     if (corner.angle < kStraight) continue;
     const double before = i == 1 ? lengths[i - 1] : lengths[i - 1] / 2,
                  after = i + 2 == places.size() ? lengths[i] : lengths[i] / 2;

@@ -108,7 +108,8 @@ void Trajectory::turn_to(std::span<const Look> looks, double rate) {
     const YawNode before = yaws_.back();
     if (look.time <= before.time || look.time >= end) continue;
     const double now = rate * (look.time - before.time), later = rate * (end - look.time);
-    const double low = std::max(before.yaw - now, last - later), high = std::min(before.yaw + now, last + later);
+    const double low = std::max(before.yaw - now, last - later),
+                 high = std::min(before.yaw + now, last + later);
     yaws_.push_back({look.time, low < high ? std::clamp(wanted, low, high) : (low + high) / 2});
   }
   if (end > yaws_.back().time) yaws_.push_back({end, last});
@@ -177,8 +178,8 @@ double Trajectory::time_at(double along) const {
   if (next == nodes_.end()) return nodes_.back().time;
   const Node& before = *(next - 1);
   const double part = along - before.along, step = next->along - before.along;
-  const double squared = before.speed * before.speed +
-                         (next->speed * next->speed - before.speed * before.speed) * part / step;
+  const double squared =
+      before.speed * before.speed + (next->speed * next->speed - before.speed * before.speed) * part / step;
   return before.time + 2 * part / (before.speed + std::sqrt(std::max(squared, 0.0)));
 }
 

@@ -2,6 +2,8 @@
 
 #include "recording/record_bytes.hpp"
 
+#include <frontlux/file.hpp>
+
 #include <cstdint>
 #include <new>
 #include <stdexcept>
@@ -20,14 +22,8 @@ std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), as_zlib(bytes), bytes.size()));
 }
 
-void append_number(std::string& bytes, std::uint32_t number) {
-  for (unsigned shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((number >> shift) & 0xFFU);
-}
-
 std::uint32_t number_at(std::string_view bytes, std::size_t at) {
-  std::uint32_t number = 0;
-  for (std::size_t i = kNumber; i-- > 0;) number = (number << 8U) | static_cast<unsigned char>(bytes[at + i]);
-  return number;
+  return from_bytes<std::uint32_t>(bytes.substr(at, kNumber).data(), std::endian::little);
 }
 
 std::string compressed(const std::string& bytes) {

@@ -1,5 +1,7 @@
 #include "recording/record_bytes.hpp"
 
+#include <frontlux/file.hpp>
+
 namespace frontlux::planner::detail {
 
 void RecordBytes::end() const {
@@ -65,13 +67,10 @@ char RecordBytes::byte_of(double number, unsigned shift) {
 
 void RecordBytes::number(double& value) {
   if (!reading_) {
-    for (unsigned shift = 0; shift < 64; shift += 8) written_ += byte_of(value, shift);
+    append_number(written_, std::bit_cast<std::uint64_t>(value));
     return;
   }
-  const std::string_view bytes = take(8);
-  std::uint64_t bits = 0;
-  for (std::size_t i = 8; i-- > 0;) bits = (bits << 8U) | static_cast<unsigned char>(bytes[i]);
-  value = std::bit_cast<double>(bits);
+  value = from_bytes<double>(take(8).data(), std::endian::little);
 }
 
 void RecordBytes::text(std::string& text) {

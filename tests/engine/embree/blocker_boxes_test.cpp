@@ -8,10 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
-#include <vector>
-
 namespace frontlux::test {
 namespace {
 

@@ -7,15 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <vector>
-
 namespace frontlux::test {
 namespace {
 

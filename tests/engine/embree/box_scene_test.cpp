@@ -10,11 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <limits>
-#include <optional>
-#include <vector>
-
 namespace frontlux::test {
 namespace {
 

@@ -1,5 +1,4 @@
 #include "engine/octomap/octree_bytes.hpp"
-#include "support/test.hpp"
 
 #include <locale>
 

@@ -14,10 +14,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstring>
-#include <vector>
-
 namespace frontlux::test {
 namespace {
 

@@ -1,4 +1,4 @@
-#include "support/quiet_octomap.hpp"
+#include "octomap/quiet_octomap.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/lattice.hpp>

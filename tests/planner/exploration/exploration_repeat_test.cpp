@@ -2,7 +2,6 @@
 // recorded steps are gone through.
 
 #include "planner/exploration/team_in_world.hpp"
-#include "support/test.hpp"
 
 #include <tbb/task_arena.h>
 

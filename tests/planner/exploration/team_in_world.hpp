@@ -1,7 +1,6 @@
 #pragma once
 
 #include "planner/recording/random_recording.hpp"
-#include "support/test.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/robot.hpp>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "planner/goal/goal_room.hpp"
-#include "support/test.hpp"
 
 namespace frontlux::test {
 

@@ -3,7 +3,6 @@
 #include "goal/viewpoint_candidates.hpp"
 
 #include "planner/goal/goal_room.hpp"
-#include "support/test.hpp"
 
 namespace frontlux::test {
 namespace {

@@ -1,6 +1,6 @@
+#include "octomap/quiet_octomap.hpp"
 #include "support/complaint.hpp"
 #include "support/folder_test.hpp"
-#include "support/quiet_octomap.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 

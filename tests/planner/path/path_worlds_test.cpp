@@ -19,8 +19,9 @@ struct KnownWorld {
   explicit KnownWorld(const std::string& name)
       : world(sim::make_world(name, 1)),
         truth(world, kResolution, *world.start + Eigen::Vector3d(0, 0, 0.8)) {
-    truth.for_each_observable([this](const VoxelKey& key, sim::Truth state) {
-      grid.set(key, state == sim::Truth::kFree ? Occupancy::kFree : Occupancy::kOccupied);
+    for_each_key(truth.bounds(), [this](const VoxelKey& key) {
+      if (truth.contains(key))
+        grid.set(key, truth.at(key) == sim::Truth::kFree ? Occupancy::kFree : Occupancy::kOccupied);
     });
   }
 };

@@ -56,8 +56,9 @@ TEST(Coverage, IsMeasuredAsCounted) {
 TEST(Coverage, FullMapsCoverAll) {
   const GroundTruth truth = room_with_a_vault();
   VoxelGrid grid(0.1);
-  truth.for_each_observable([&](const VoxelKey& key, Truth state) {
-    grid.set(key, state == Truth::kFree ? Occupancy::kFree : Occupancy::kOccupied);
+  for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+    if (truth.contains(key))
+      grid.set(key, truth.at(key) == Truth::kFree ? Occupancy::kFree : Occupancy::kOccupied);
   });
   const Coverage coverage = measure(truth, grid);
   EXPECT_EQ(coverage.of_observable(), 1.0);

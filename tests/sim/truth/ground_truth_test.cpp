@@ -26,6 +26,14 @@ World world_of(const std::vector<Eigen::AlignedBox3f>& boxes, const Eigen::Align
 
 using frontlux::test::key_at;
 
+std::vector<std::pair<VoxelKey, Truth>> observable_voxels(const GroundTruth& truth) {
+  std::vector<std::pair<VoxelKey, Truth>> voxels;
+  for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+    if (truth.contains(key)) voxels.emplace_back(key, truth.at(key));
+  });
+  return voxels;
+}
+
 // The truth of a world of boxes (their surfaces; a box may be flat) over [0, n) voxels on each axis, with the
 // definitions taken by the word: nothing here knows of triangles.
 class BoxTruth {
@@ -180,12 +188,7 @@ TEST(GroundTruth, CountsOfARoom) {
     EXPECT_EQ(truth.at(key_at(0, 0, 5)), Truth::kHidden);
     EXPECT_EQ(truth.at(key_at(-1, 5, 5)), Truth::kHidden);
     EXPECT_EQ(truth.holds_surface(key_at(0, 5, 5)), wall == 0.15F);
-    std::uint64_t visited = 0;
-    truth.for_each_observable([&](const VoxelKey& key, Truth state) {
-      ++visited;
-      ASSERT_EQ(state, truth.at(key));
-    });
-    EXPECT_EQ(visited, truth.observable_voxels());
+    EXPECT_EQ(observable_voxels(truth).size(), truth.observable_voxels());
   }
 }
 
@@ -197,11 +200,8 @@ TEST(GroundTruth, SealedRoomsAreNotObservable) {
   const Lattice lattice(0.1);
   EXPECT_FALSE(outside.contains(*lattice.key(Eigen::Vector3f(6, 2, 1))));
   EXPECT_FALSE(inside.contains(*lattice.key(Eigen::Vector3f(1, 1, 1))));
-  outside.for_each_observable([&](const VoxelKey& key, Truth truth) {
-    if (truth == Truth::kFree) {
-      ASSERT_NE(inside.at(key), Truth::kFree);
-    }
-  });
+  for (const auto& [key, state] : observable_voxels(outside))
+    ASSERT_FALSE(state == Truth::kFree && inside.at(key) == Truth::kFree);
   EXPECT_GT(inside.free_voxels(), 10'000U);
 }
 
@@ -259,13 +259,13 @@ TEST(GroundTruth, FreeNeighboursSeeEachOther) {
   ASSERT_TRUE(truth);
   ASSERT_GT(truth->free_voxels(), 3'000U);
   std::vector<Surface::Ray> segments;
-  truth->for_each_observable([&](const VoxelKey& key, Truth state) {
-    if (state != Truth::kFree) return;
+  for (const auto& [key, state] : observable_voxels(*truth)) {
+    if (state != Truth::kFree) continue;
     for (int axis = 0; axis < 3; ++axis) {
       if (truth->at(*offset_key(key, axis == 0, axis == 1, axis == 2)) != Truth::kFree) continue;
       segments.push_back({truth->lattice().center(key), Eigen::Vector3f::Unit(axis), 0.2});
     }
-  });
+  }
   std::vector<Surface::Hit> hits(segments.size());
   surface.cast(segments, hits);
   ASSERT_GT(hits.size(), 5'000U);
@@ -288,9 +288,7 @@ TEST(GroundTruth, SameOnAnyNumberOfThreads) {
       std::vector<std::pair<VoxelKey, Truth>> found;
       for (int i = 0; i < 60 && found.empty(); ++i)
         frontlux::test::complaint_of([&] {
-          const GroundTruth truth(world, kEdge, Eigen::Vector3d::Constant((i + 0.5) * kEdge));
-          truth.for_each_observable(
-              [&](const VoxelKey& key, Truth state) { found.emplace_back(key, state); });
+          found = observable_voxels({world, kEdge, Eigen::Vector3d::Constant((i + 0.5) * kEdge)});
         });
       return found;
     });
@@ -334,7 +332,7 @@ TEST(VoxelsWithin, FacesBelongToTheInside) {
                             max = Eigen::Vector3d::Constant(0.3 * high);
       const KeyBox exact = voxels_within({min, max}, lattice);
       EXPECT_EQ(exact, (KeyBox{at(low), at(high - 1)}));
-      EXPECT_EQ(volume(exact), static_cast<std::uint64_t>((high - low) * (high - low) * (high - low)));
+      EXPECT_EQ(size_of(exact), static_cast<std::uint64_t>((high - low) * (high - low) * (high - low)));
       EXPECT_EQ(voxels_within({min - more, max + more}, lattice), (KeyBox{at(low - 1), at(high)}));
     }
 }

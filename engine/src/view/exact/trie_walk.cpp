@@ -2,7 +2,6 @@
 
 #include "isa/targets.hpp"
 
-#include <algorithm>
 #include <cstring>
 
 // Vectors are passed among functions of this file only, and those are inlined.

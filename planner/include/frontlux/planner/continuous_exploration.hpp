@@ -37,9 +37,9 @@ struct PlannedMotion {
 /// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.
 /// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
 /// thread. Each robot plans for itself: when it is about to arrive, when what it was going for has been
-/// mapped by anybody, when its way is blocked, and at least every `ExplorationOptions::period`. It knows the others' plans:
-/// frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the others for all
-/// time to come. If there is none such, the robot keeps the one it has.
+/// mapped by anybody, when its way is blocked, and at least every `ExplorationOptions::period`. It knows the
+/// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
+/// others for all time to come. If there is none such, the robot keeps the one it has.
 ///
 ///     ContinuousExploration exploration(options, std::move(mapping));
 ///     exploration.begin(starts, now());
@@ -79,8 +79,8 @@ class ContinuousExploration {
   /// Where a robot is by its trajectories.
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
-  /// Why the exploration is over; nothing while it goes on. Of low gain are `low_gain_steps` plannings for each
-  /// robot.
+  /// Why the exploration is over; nothing while it goes on. Of low gain is an
+  /// exploration in which each robot chose `low_gain_steps` goals of low gain in a row, or none.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   [[nodiscard]] const ExplorationOptions& options() const;

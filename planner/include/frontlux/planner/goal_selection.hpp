@@ -155,7 +155,8 @@ class GoalSelection {
   /// @param change     since the last step
   /// @param frontiers  of the map, in any order
   /// @param poses      of the robots' sensors, one for each robot
-  /// @param choosing   if given: the robot that chooses; the others keep their goals
+  /// @param choosing   if given: the only robot that chooses; the others keep their goals, and without
+  ///                   frontiers nothing but the corridors is brought up to date
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,

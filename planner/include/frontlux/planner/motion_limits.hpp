@@ -8,9 +8,9 @@ namespace frontlux::planner {
 
 /// How fast a robot may move and turn.
 struct MotionLimits {
-  double speed = 1.0;                       ///< [m/s]
-  double acceleration = 2.0;                ///< [m/s2], curves included
-  double yaw_rate = std::numbers::pi / 3;   ///< [rad/s]
+  double speed = 1.0;                      ///< [m/s]
+  double acceleration = 2.0;               ///< [m/s2], curves included
+  double yaw_rate = std::numbers::pi / 3;  ///< [rad/s]
   /// Speed and acceleration hold for x, y and z each, so that diagonals are faster; else for the norm.
   bool per_axis = false;
 

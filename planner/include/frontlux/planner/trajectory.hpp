@@ -22,11 +22,11 @@ struct MotionState {
 
 /// A line or a circular arc, by the length along it.
 struct PathPiece {
-  Eigen::Vector3d begin = Eigen::Vector3d::Zero();      ///< [m]
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX(); ///< at the begin, of length 1
-  Eigen::Vector3d inwards = Eigen::Vector3d::Zero();    ///< at the begin, of length 1, towards an arc's centre
-  double curvature = 0.0;                               ///< [1/m] 0: a line
-  double length = 0.0;                                  ///< [m]
+  Eigen::Vector3d begin = Eigen::Vector3d::Zero();       ///< [m]
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< at the begin, of length 1
+  Eigen::Vector3d inwards = Eigen::Vector3d::Zero();  ///< at the begin, of length 1, towards an arc's centre
+  double curvature = 0.0;                             ///< [1/m] 0: a line
+  double length = 0.0;                                ///< [m]
 
   [[nodiscard]] Eigen::Vector3d position(double along) const;
   [[nodiscard]] Eigen::Vector3d direction_at(double along) const;

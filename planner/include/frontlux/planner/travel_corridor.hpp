@@ -31,9 +31,9 @@ enum class PathMetric : std::uint8_t {
 /// Where a robot fits.
 ///
 /// Its collision box is made of whole voxels and does not turn with the yaw. Along each axis it is the
-/// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the box
-/// stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution) above
-/// that face, and the box has the fewest layers that cover its height and hold the sensor.
+/// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the
+/// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
+/// above that face, and the box has the fewest layers that cover its height and hold the sensor.
 struct TravelOptions {
   Motion motion = Motion::kSpace;
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z

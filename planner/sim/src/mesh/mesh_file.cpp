@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <new>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -94,10 +93,10 @@ std::string ply_of(const TriangleMesh& mesh) {
       std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 12 * mesh.vertices.size() + 13 * mesh.triangles.size());
   for (const auto& vertex : mesh.vertices)
-    for (const float coordinate : vertex) io::append_number(bytes, std::bit_cast<std::uint32_t>(coordinate));
+    for (const float coordinate : vertex) append_number(bytes, std::bit_cast<std::uint32_t>(coordinate));
   for (const auto& triangle : mesh.triangles) {
     bytes.push_back(3);
-    for (const std::uint32_t index : triangle) io::append_number(bytes, index);
+    for (const std::uint32_t index : triangle) append_number(bytes, index);
   }
   return bytes;
 }
@@ -123,9 +122,7 @@ World read_mesh_world(const std::filesystem::path& file, const MeshOptions& opti
 }
 
 void write_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  const std::string bytes = ply_of(mesh);
-  write_file(file,
-             [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+  write_file(file, ply_of(mesh));
 }
 
 }  // namespace frontlux::sim

@@ -17,9 +17,7 @@ using planner::Motion, planner::Pose;
 
 constexpr double kTick = 0.02;  // [s] bodies move straight in between
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument("moving robots: " + what);
-}
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("moving robots: " + what); }
 
 // The voxels that a sensor enters on a straight motion, but for that which it begins in.
 std::vector<VoxelKey> cells_ahead(const Lattice& lattice, const Eigen::Vector3d& from,

@@ -3,6 +3,7 @@
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/sim/scan_world.hpp>
+#include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -61,25 +61,18 @@ float widened(double length) { return static_cast<float>(std::max(length, 0.0) *
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
-  const Corners& corners = geometry.triangles[args->primID];
-  const auto coordinate = [&](std::size_t corner, Eigen::Index axis) {
-    return static_cast<double>(corners[corner][axis]) - geometry.middle[axis];
-  };
-  const auto low = [&](Eigen::Index i) {
-    return static_cast<float>(std::min({coordinate(0, i), coordinate(1, i), coordinate(2, i)}) -
-                              geometry.pad);
-  };
-  const auto high = [&](Eigen::Index i) {
-    return static_cast<float>(std::max({coordinate(0, i), coordinate(1, i), coordinate(2, i)}) +
-                              geometry.pad);
-  };
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& corner : geometry.triangles[args->primID])
+    box.extend(corner.cast<double>() - geometry.middle);
+  const Eigen::Array3f low = (box.min().array() - geometry.pad).cast<float>(),
+                       high = (box.max().array() + geometry.pad).cast<float>();
   RTCBounds& bounds = *args->bounds_o;
-  bounds.lower_x = low(0);
-  bounds.lower_y = low(1);
-  bounds.lower_z = low(2);
-  bounds.upper_x = high(0);
-  bounds.upper_y = high(1);
-  bounds.upper_z = high(2);
+  bounds.lower_x = low.x();
+  bounds.lower_y = low.y();
+  bounds.lower_z = low.z();
+  bounds.upper_x = high.x();
+  bounds.upper_y = high.y();
+  bounds.upper_z = high.z();
 }
 
 void intersect_callback(const RTCIntersectFunctionNArguments* args) {

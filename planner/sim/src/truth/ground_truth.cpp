@@ -62,13 +62,6 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
   return {make_key(low[0], low[1], low[2]), make_key(high[0], high[1], high[2])};
 }
 
-std::uint64_t volume(const KeyBox& box) {
-  const auto edge = [](std::uint16_t low, std::uint16_t high) {
-    return static_cast<std::uint64_t>(high) - low + 1;
-  };
-  return edge(box.min.x, box.max.x) * edge(box.min.y, box.max.y) * edge(box.min.z, box.max.z);
-}
-
 GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start)
     : lattice_(resolution), bounds_(voxels_within(world.bounds, lattice_)) {
   check(world.mesh);
@@ -89,13 +82,6 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
            triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel");
   }
   flood(index(*first));
-}
-
-std::size_t GroundTruth::index(const VoxelKey& key) const {
-  const std::size_t size_x = bounds_.max.x - bounds_.min.x + std::size_t{1};
-  const std::size_t size_y = bounds_.max.y - bounds_.min.y + std::size_t{1};
-  const std::size_t x = key.x - bounds_.min.x, y = key.y - bounds_.min.y, z = key.z - bounds_.min.z;
-  return (z * size_y + y) * size_x + x;
 }
 
 void GroundTruth::flood(std::size_t start) {
@@ -152,12 +138,6 @@ bool GroundTruth::open(const VoxelKey& key, std::size_t axis) const {
   const std::uint8_t above = cells_[index(*next)];
   const unsigned wall = unsigned{cell::kWallBelow} << axis;
   return (cells_[index(key)] & above & cell::kReached) != 0 && (above & wall) == 0;
-}
-
-void GroundTruth::for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const {
-  for_each_key(bounds_, [&](const VoxelKey& key) {
-    if (const Truth truth = at(key); truth != Truth::kHidden) visit(key, truth);
-  });
 }
 
 }  // namespace frontlux::sim

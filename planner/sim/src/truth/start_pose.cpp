@@ -1,10 +1,9 @@
-#include "truth/free_flood.hpp"
-
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace frontlux::sim {
 namespace {
@@ -18,6 +17,35 @@ constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane
 KeyBox search_box(const GroundTruth& truth, const VoxelKey& center) {
   const int reach = static_cast<int>(std::min(kSearched / truth.lattice().resolution(), 65535.0));
   return intersection(grown({center, center}, reach), truth.bounds()).value_or(KeyBox{center, center});
+}
+
+// Calls `visit(key)` for the free voxels of a box that can be reached from one of them within the box,
+// without crossing a wall, through voxels for which `may_enter(key)`. Voxels of fewer steps come first; the
+// order depends on nothing else. Ends when `visit` returns true.
+template <class MayEnter, class Visit>
+void flood_free(const GroundTruth& truth, const VoxelKey& from, const KeyBox& box, const MayEnter& may_enter,
+                const Visit& visit) {
+  if (!box.contains(from) || truth.at(from) != Truth::kFree || !may_enter(from)) return;
+  std::vector<bool> seen(size_of(box));
+  std::vector<VoxelKey> front{from}, next;
+  seen[place_in(box, from)] = true;
+  while (!front.empty()) {
+    next.clear();
+    for (const VoxelKey& here : front) {
+      if (visit(here)) return;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) {
+          const auto there =
+              offset_key(here, axis == 0 ? step : 0, axis == 1 ? step : 0, axis == 2 ? step : 0);
+          if (!there || !box.contains(*there) || !truth.open(step < 0 ? *there : here, axis)) continue;
+          auto is_seen = seen[place_in(box, *there)];
+          if (is_seen || !may_enter(*there)) continue;
+          is_seen = true;
+          next.push_back(*there);
+        }
+    }
+    std::swap(front, next);
+  }
 }
 
 // The pose at the nearest voxel for which there is one.

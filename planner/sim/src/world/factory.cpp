@@ -109,10 +109,8 @@ void add_ducts(Solid& solid, LayoutRandom& random) {
 
 Building build_factory(std::uint64_t seed) {
   LayoutRandom random(seed);
-  Building building;
-  building.inside = kInside;
+  Building building = make_hall(kInside, kHeight);
   Solid& solid = building.solid;
-  add_hall(solid, kInside, kHeight);
   add_side_rooms(solid, random);
   const Rect flight = add_mezzanine(solid, random);
 

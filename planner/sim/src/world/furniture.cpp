@@ -26,9 +26,12 @@ std::optional<Rect> FloorPlan::place(LayoutRandom& random, int along_x, int alon
   return std::nullopt;
 }
 
-void add_hall(Solid& solid, const Rect& inside, int height) {
-  solid.add(inside.grown(kOuterWall), {-kOuterWall, height + kOuterWall});
-  solid.cut(inside, {0, height});
+Building make_hall(const Rect& inside, int height) {
+  Building hall;
+  hall.inside = inside;
+  hall.solid.add(inside.grown(kOuterWall), {-kOuterWall, height + kOuterWall});
+  hall.solid.cut(inside, {0, height});
+  return hall;
 }
 
 void add_room(Solid& solid, const Rect& inside, int height) {

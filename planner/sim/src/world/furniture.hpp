@@ -36,8 +36,8 @@ class FloorPlan {
   std::vector<Rect> taken_;
 };
 
-/// The inside of a world: walls, floor and ceiling 3 dm thick around it.
-void add_hall(Solid& solid, const Rect& inside, int height);
+/// A world that is still empty: walls, floor and ceiling 3 dm thick around its inside.
+[[nodiscard]] Building make_hall(const Rect& inside, int height);
 
 /// A room of walls 2 dm thick and a ceiling slab of the same around `inside`. Cut its doors afterwards.
 void add_room(Solid& solid, const Rect& inside, int height);

@@ -11,10 +11,8 @@ constexpr int kHeight = 30;
 
 Building build_room(std::uint64_t seed) {
   LayoutRandom random(seed);
-  Building building;
-  building.inside = kInside;
+  Building building = make_hall(kInside, kHeight);
   Solid& solid = building.solid;
-  add_hall(solid, kInside, kHeight);
 
   // A partition across the room with one door; the start is south of it.
   const int wall = random.whole(60, 75);

@@ -15,10 +15,8 @@ constexpr Span kRacks = {22, 178};  // along x
 
 Building build_storage(std::uint64_t seed) {
   LayoutRandom random(seed);
-  Building building;
-  building.inside = kInside;
+  Building building = make_hall(kInside, kHeight);
   Solid& solid = building.solid;
-  add_hall(solid, kInside, kHeight);
 
   // Racks along the walls, pairs between the aisles; a cross aisle cuts through all but the outermost.
   std::vector<int> aisle(kAisles, kNarrowAisle);

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,13 +44,5 @@ void write_map(const MapRecipe& recipe, std::uint64_t seed, const std::filesyste
 /// @throws std::runtime_error naming the file, if it cannot be written
 [[nodiscard]] std::filesystem::path ensure_map(std::string_view name, const std::filesystem::path& directory,
                                                const std::function<void(std::string_view)>& progress = {});
-
-/// `make_building_scene` seen up to 9 m from each of 100 places: 77 x 77 x 10 m, a quarter of it unknown.
-/// Takes some seconds at 0.3 m, about a minute at 0.1 m. The tree holds probabilities; the file of the same
-/// map only their maximum likelihood.
-/// @param resolution [m]
-/// @throws std::invalid_argument unless it is from 0.02 to 2 m
-[[nodiscard]] std::unique_ptr<octomap::OcTree> make_building(double resolution, std::uint64_t seed = 1,
-                                                             const ScanProgress& progress = {});
 
 }  // namespace frontlux::synthetic

@@ -33,16 +33,10 @@ using ScanProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// What a range sensor sees from these places [m], in their order, as OctoMap inserts it with its default
 /// sensor model: the tree has its inner nodes updated and is pruned.
+/// @tparam Tree  an OcTree, or a ColorOcTree: with a colour for each solid, in the voxels where it was hit
 /// @throws std::invalid_argument if an option is not positive, or a place lies within a solid
-[[nodiscard]] std::unique_ptr<octomap::OcTree> scan(const Scene& scene,
-                                                    const std::vector<Eigen::Vector3d>& places,
-                                                    const ScanOptions& options,
-                                                    const ScanProgress& progress = {});
-
-/// The same with a colour for each solid, in the voxels where it was hit.
-[[nodiscard]] std::unique_ptr<octomap::ColorOcTree> scan_in_color(const Scene& scene,
-                                                                  const std::vector<Eigen::Vector3d>& places,
-                                                                  const ScanOptions& options,
-                                                                  const ScanProgress& progress = {});
+template <class Tree = octomap::OcTree>
+[[nodiscard]] std::unique_ptr<Tree> scan(const Scene& scene, const std::vector<Eigen::Vector3d>& places,
+                                         const ScanOptions& options, const ScanProgress& progress = {});
 
 }  // namespace frontlux::synthetic

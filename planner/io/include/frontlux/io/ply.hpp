@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace frontlux::io {
@@ -24,11 +23,5 @@ struct RawMesh {
 /// whatever its header says.
 /// @throws std::runtime_error naming the file, the line or byte, what is wrong there, and what to do
 [[nodiscard]] RawMesh read_ply(const std::filesystem::path& file, std::uint64_t max_bytes = kMaxFileBytes);
-
-/// Appends a number to a binary PLY file: lowest byte first, on every machine.
-inline void append_number(std::string& bytes, std::uint32_t number) {
-  for (unsigned shift = 0; shift < 32; shift += 8)
-    bytes.push_back(static_cast<char>((number >> shift) & 0xFFU));
-}
 
 }  // namespace frontlux::io

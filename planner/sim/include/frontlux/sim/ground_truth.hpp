@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace frontlux::sim {
@@ -30,9 +29,6 @@ enum class Truth : std::uint8_t {
 [[nodiscard]] inline double lower_face(const Lattice& lattice, int key) {
   return (key - Lattice::kOrigin) * lattice.resolution();
 }
-
-/// Number of voxels in a box of keys.
-[[nodiscard]] std::uint64_t volume(const KeyBox& box);
 
 /// The voxels of a world that robots can observe. Coverage is measured against them.
 ///
@@ -69,13 +65,10 @@ class GroundTruth {
   [[nodiscard]] std::uint64_t free_voxels() const { return free_voxels_; }
   [[nodiscard]] std::uint64_t surface_voxels() const { return surface_voxels_; }
   [[nodiscard]] std::uint64_t observable_voxels() const { return free_voxels_ + surface_voxels_; }
-  [[nodiscard]] std::uint64_t bounding_voxels() const { return volume(bounds_); }
-
-  /// Calls `visit` for every observable voxel: x fastest, z slowest.
-  void for_each_observable(const std::function<void(const VoxelKey&, Truth)>& visit) const;
+  [[nodiscard]] std::uint64_t bounding_voxels() const { return size_of(bounds_); }
 
  private:
-  [[nodiscard]] std::size_t index(const VoxelKey& key) const;
+  [[nodiscard]] std::size_t index(const VoxelKey& key) const { return place_in(bounds_, key); }
   void flood(std::size_t start);
 
   Lattice lattice_;

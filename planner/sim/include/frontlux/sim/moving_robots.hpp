@@ -66,8 +66,8 @@ class MovingRobots {
   /// [s] of the next scan
   [[nodiscard]] double next_time() const;
 
-  /// Moves all robots to the time of the next scan, and takes it. A robot that its bumper stops stays where it
-  /// is until the end of the call, whatever `where` says.
+  /// Moves all robots to the time of the next scan, and takes it. A robot that its bumper stops stays where
+  /// it is until the end of the call, whatever `where` says.
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }

@@ -5,7 +5,6 @@
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
-#include <frontlux/sim/start_pose.hpp>
 #include <frontlux/sim/surface.hpp>
 
 #include <cstddef>
