@@ -19,15 +19,13 @@ Option& Option::excludes(const Option& other) {
 bool Option::given() const { return option_->count() > 0; }
 
 Command::Command(CLI::App& app, const char* name, const char* summary)
-    : app_(app.add_subcommand(name, summary)),
-      readers_(std::make_shared<std::map<std::string, ReadWord>>()) {}
+    : app_(app.add_subcommand(name, summary)) {}
 
 constexpr int kMostWords = 1 << 20;  // of a positional argument that may be repeated
 
 Option Command::add_words(const char* name, const char* type, const char* what,
                           const std::string& default_text, bool repeatable, ReadWord read_word) {
   const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
-  if (label.starts_with("--")) (*readers_)[label.substr(2)] = read_word;
   CLI::Option* option = app_->add_option(
       name,
       [label, read_word = std::move(read_word)](const CLI::results_t& words) {
@@ -68,12 +66,19 @@ void Command::allow_only(Option& option, std::initializer_list<std::string_view>
     option.option_->excludes(other);
 }
 
+Option Command::add_action(const char* name, const char* type, const char* what, ReadWord read_word) {
+  return add_words(name, type, what, "", false, std::move(read_word));
+}
+
 Command::ReadOption Command::read_option() const {
-  return [readers = readers_](const std::string& name, std::string_view word) {
-    const auto reader = readers->find(name);
-    if (reader == readers->end()) return false;
-    reader->second(word);
-    return true;
+  return [app = app_](const std::string& name, std::string_view word) {
+    CLI::Option* option = app->get_option("--" + name);
+    const CLI::results_t given = option->results();  // on the command line, and read later
+    option->clear();
+    option->add_result(std::string(word));
+    option->run_callback();
+    option->clear();
+    for (const std::string& one : given) option->add_result(one);
   };
 }
 

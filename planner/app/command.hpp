@@ -5,12 +5,9 @@
 
 #include <functional>
 #include <initializer_list>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -67,9 +64,7 @@ class Command {
     return add(name, value, names_of<Value>().c_str(), what);
   }
   /// An option whose word a function takes, before the values of the options that are added after it.
-  Option add_action(const char* name, const char* type, const char* what, ReadWord read_word) {
-    return add_words(name, type, what, "", false, std::move(read_word));
-  }
+  Option add_action(const char* name, const char* type, const char* what, ReadWord read_word);
   /// A switch without a value.
   Option add_flag(const char* name, bool& value, const char* what);
 
@@ -78,9 +73,9 @@ class Command {
   /// Nothing but these may be given beside an option.
   void allow_only(Option& option, std::initializer_list<std::string_view> others);
 
-  /// Reads a word as the value of an option, by its name without dashes; false if there is no such option.
-  /// May be called when the command itself is gone.
-  using ReadOption = std::function<bool(const std::string& name, std::string_view word)>;
+  /// Reads a word as the value of an option, by its name without dashes. May be called when the command
+  /// itself is gone, as long as the command line is there.
+  using ReadOption = std::function<void(const std::string& name, std::string_view word)>;
   [[nodiscard]] ReadOption read_option() const;
 
   /// Shown below the options.
@@ -121,7 +116,6 @@ class Command {
   CLI::App* app_;
   std::string group_ = "Options";
   std::vector<std::function<void()>> checks_;
-  std::shared_ptr<std::map<std::string, ReadWord>> readers_;  // by the long names of the options
 };
 
 }  // namespace frontlux::app

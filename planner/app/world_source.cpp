@@ -62,7 +62,8 @@ double count_voxels(const WorldSource& source, const sim::World& world, WorldKin
                            rounded(size.z()) + " m are " + rounded(voxels) + " voxels of " +
                            rounded(source.resolution) + " m";
   const std::string advice =
-      kind == WorldKind::kMesh
+      source.box ? "give a larger resolution or a smaller box"
+      : kind == WorldKind::kMesh
           ? "give a larger --resolution, or --scale (0.001 if the file is in millimetres)"
           : "give a larger --resolution";
   if (voxels > kMostVoxels) throw BadInput(what + ", too many to map; " + advice);
