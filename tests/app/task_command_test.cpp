@@ -197,7 +197,7 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
                   {"the start of the robot 'uav' is not a free place", "beyond the world's bounds"});
   refuse_in_world(
       test::replaced(court_with("[1.5, 1.5, 1, 30]", "[6, 1.5, 1, 30]"), "[6, 6, 2]", "[7.1, 6, 2]"),
-      {"wall"});
+      {"the start of the robot 'uav' is not a free place", "give another one"});
   refuse_in_world(
       test::replaced(court_with("\"box_m\": [[0, 0, 0], [6, 6, 2]], ", ""), "1.5, 1.5, 1,", "99, 1, 1,"),
       {"the start of the robot 'uav'", "outside the world"});

@@ -85,8 +85,8 @@ TEST_F(TaskFile, NeedsOnlyAWorld) {
 }
 
 TEST_F(TaskFile, TakesRobotsFromFiles) {
-  save("r.json",
-       R"({"name": "r", "motion": "space", "box_m": [1, 1, 0.7], "limits": {"speed_m_s": 3}, "margin_m": 0.1,
+  write("r.json",
+        R"({"name": "r", "motion": "space", "box_m": [1, 1, 0.7], "limits": {"speed_m_s": 3}, "margin_m": 0.1,
            "sensor": {"kind": "cone", "horizontal_deg": 30, "range_m": 5, "columns": 9, "rows": 1}})");
   const Task task =
       read(R"({"world": "room", "robots": [{"file": "r.json", "start": [1, 2, 3, 0]}, {"file": "r.json"}]})");
@@ -116,8 +116,9 @@ TEST_F(TaskFile, IsReadAsItWasWritten) {
   expect_equal(read(task_text(built_in)), built_in);
   Task robots;
   robots.robots = robots_of(robots_text(built_in.robots));
-  built_in = Task{.robots = built_in.robots};
-  expect_equal(robots, built_in);
+  Task same;
+  same.robots = built_in.robots;
+  expect_equal(robots, same);
 }
 
 TEST_F(TaskFile, ThoseThatShipAreOfThePapersRobots) {
@@ -181,9 +182,9 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {robots("3"), "robots is 3; give an array"},
       {robots("[" + many + "]"), "robots is an array of 33; give an array of 1 to 32 robots"},
       {robots("[" + kUav + ", 3]"), "robots[1] is 3; give an object"},
-      {robots(R"([{"file": "none.json"}])"), ""},  // of another file
+      {robots(R"([{"file": "none.json"}])"), "robots[0].file: "},
       {robots(R"([{"file": ""}])"), "robots[0].file is ''; give the name of a robot's file"},
-      {robots(R"([{"file": "t.json", "name": "x"}])"), ""},
+      {robots(R"([{"file": "t.json"}])"), "t.json: 'robots' is nested too deeply"},
       {with(R"("robots":)", R"("team": "uav", "robots":)"), "team is for a task without robots; leave one"},
       {with(R"("kind": "box")", R"("kind": "sphere")"),
        R"(robots[0].body.kind is 'sphere'; give "box", the one that is known)"},
@@ -219,10 +220,6 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {kGood + "x", "this is not JSON"},
   };
   for (const auto& [text, expected] : cases) {
-    if (expected.empty()) {
-      EXPECT_THROW(static_cast<void>(read(text)), std::runtime_error) << text;
-      continue;
-    }
     const std::string what = complaint("t.json", text);
     test::expect_parts(what, {expected});
     for (const char c : what) EXPECT_TRUE(c >= ' ' && c <= '~') << what;

@@ -8,7 +8,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace frontlux::io {
 namespace {
@@ -91,7 +92,11 @@ TaskRobot read_robot_of_task(const std::filesystem::path& file, const json& valu
     const std::string wanted = "the name of a robot's file, relative to the task's folder";
     const std::string other = members.text("file", wanted);
     if (other.empty()) members.refuse("file", "is ''", "give " + wanted);
-    robot.description = read_robot_file(file.parent_path() / other, RobotForm::kTask);
+    try {
+      robot.description = read_robot_file(file.parent_path() / other, RobotForm::kTask);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(file.string() + ": " + name + ".file: " + error.what());
+    }
   } else {
     robot.description = read_robot_members(members, RobotForm::kTask);
   }
