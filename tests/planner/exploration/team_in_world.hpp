@@ -35,7 +35,7 @@ struct TeamInWorld {
         truth(world, 0.3, around),
         robots(std::move(team)) {
     std::vector<planner::Robot> bodies;
-    for (auto& [robot, columns, rows] : robots) {
+    for (auto& [robot, columns, rows, rate] : robots) {
       robot.travel.floor = sim::ground_below(truth, around);
       bodies.push_back(robot);
     }

@@ -123,12 +123,15 @@ class Listing {
   }
 
   void add(const planner::RobotDescription& description) {
-    const auto& [robot, columns, rows] = description;
+    const auto& [robot, columns, rows, rate] = description;
     const auto& t = robot.travel;
     line("robot", robot.name, columns, rows, static_cast<int>(robot.view.shape), robot.view.horizontal,
-         robot.view.vertical, robot.view.max_range);
+         robot.view.vertical, robot.view.max_range, rate);
+    line("limits", robot.limits.speed, robot.limits.acceleration, robot.limits.yaw_rate,
+         robot.limits.per_axis);
     line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(),
-         static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
+         static_cast<int>(t.metric), t.margin, t.sensor_height, t.require_ground,
+         t.ground_extents.has_value());
     if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
     line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
     for (const KeyBox& box : t.without_ground) add(box);
