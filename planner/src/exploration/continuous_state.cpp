@@ -175,7 +175,7 @@ Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start
   const MotionState now = old.at(start);
   std::vector<Pose> way;
   if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
-  if (way.size() > 1) {
+  if (!way.empty()) {
     way.insert(way.begin(), now.pose);
     step.path = PathOutcome::kFound;
   }
@@ -192,7 +192,8 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   member.goal_frontiers.clear();
   if (!now.goal.pose) {
     Trajectory back = go_back(robot, start, now);
-    member.going = now.path == PathOutcome::kFound;
+    // When it has come to rest, it plans again.
+    member.going = now.path == PathOutcome::kFound || !old.at(start).velocity.isZero();
     return back;
   }
   team.came_back[robot] = false;

@@ -155,7 +155,7 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
   for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
     const auto cell = lattice().key(place->position);
     if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
-    if (lost && place == trail.rbegin()) return {};
+    if (lost && place->position == poses[robot].position) return {};
     if (!lost) {
       if (elsewhere && elsewhere->contains(*cell)) continue;
       if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
