@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,6 +38,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (state.team.selection) refuse("it has begun already");
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
+  if (!std::isfinite(time)) refuse("the time is not finite");
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
@@ -100,11 +102,14 @@ MotionState ContinuousExploration::at(std::size_t robot, double time) const {
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
-  if (std::ranges::none_of(state.members, [](const auto& m) { return !m.planned || m.going; }))
-    return ExplorationEnd::kNothingToDo;
-  if (std::ranges::all_of(state.members,
-                          [&](const auto& m) { return m.low_gains >= state.team.options.low_gain_steps; }))
-    return ExplorationEnd::kLowGain;
+  const auto idle = [](const auto& member) { return member.planned && !member.going; };
+  const auto low = [&](const auto& member) { return member.low_gains >= state.team.options.low_gain_steps; };
+  const bool all_idle = std::ranges::all_of(state.members, idle);
+  if (all_idle || std::ranges::all_of(state.members, low)) {
+    for (std::size_t r = 0; r < state.members.size(); ++r)
+      if (state.team.is_cut_off(r, state.members[r].goal)) return ExplorationEnd::kCutOff;
+    return all_idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+  }
   if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))
     return ExplorationEnd::kStepLimit;
   return std::nullopt;
