@@ -15,7 +15,7 @@ COMPARED, COMPARED_SEEDS = ("team", "uav"), 5  # with at least so many seeds
 LONGEST_RUN = 3600  # [s], after which a run counts as hanging
 
 DEFAULTS = {"mode": "default", "goal": "render", "assign": "on", "optimize": "on", "caster": "fast",
-            "robots": {"uav", "ugv"}}
+            "robots": {"uav", "ugv"}, "lockstep": "on"}
 
 
 class Variant(NamedTuple):

@@ -86,12 +86,13 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
       result.goals[r] = state.members[r].goal;
     else
       set_no_goal(result.goals[r], state.members[r].corridor.state());
-  if (sorted.empty()) return result;
-  const detail::CountingRayCaster counting(caster, state.lattice);
-  State::Step step{counting, change.grid, result, choosing};
-  state.assign(step, sorted);
-  state.decide(step);
-  result.rays = counting.rays();
+  if (!sorted.empty()) {
+    const detail::CountingRayCaster counting(caster, state.lattice);
+    State::Step step{counting, change.grid, result, choosing};
+    state.assign(step, sorted);
+    state.decide(step);
+    result.rays = counting.rays();
+  }
   for (std::size_t r = 0; r < poses.size(); ++r) state.members[r].goal = result.goals[r];
   return result;
 }
