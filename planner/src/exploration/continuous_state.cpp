@@ -252,7 +252,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   }
   member.planned = time;
   member.blocked = member.stopped = false;
-  if (!keeps) judge(member, step.robots[robot]);
+  judge(member, step.robots[robot]);
   ++team.number;
   return {robot, reason, std::move(trajectory), std::move(step)};
 }

@@ -68,10 +68,11 @@ void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& g
 
 void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {
   for (std::size_t r = 0; r < members.size(); ++r) {
-    members[r].assigned.clear();
-    members[r].released.clear();
-    members[r].rendered = false;
-    if (!choosing || *choosing == r) members[r].targets.clear();
+    Member& member = members[r];
+    member.assigned.clear();
+    member.released.clear();
+    member.rendered = false;
+    if (!choosing || *choosing == r) member.targets.clear();
   }
 }
 

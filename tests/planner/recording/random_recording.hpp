@@ -135,9 +135,8 @@ class Listing {
          robot.view.vertical, robot.view.max_range, rate);
     line("limits", robot.limits.speed, robot.limits.acceleration, robot.limits.yaw_rate,
          robot.limits.per_axis);
-    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(),
-         static_cast<int>(t.metric), t.margin, t.sensor_height, t.require_ground,
-         t.ground_extents.has_value());
+    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(), t.margin,
+         static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
     if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
     line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
     for (const KeyBox& box : t.without_ground) add(box);
