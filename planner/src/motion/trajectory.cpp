@@ -126,22 +126,26 @@ void Trajectory::append(const Trajectory& next) {
     yaws_.push_back({next.yaws_[i].time, turned + next.yaws_[i].yaw});
 }
 
-// It keeps its yaw. Where braking sooner than planned is not possible it stops as planned.
+// It keeps its yaw, and goes no farther than to the next place where it was to rest: there the path may turn.
+// Where braking sooner than planned is not possible it stops as planned.
 Trajectory Trajectory::braking(double time, const MotionLimits& limits) const {
   const Node now = node_at(time);
+  const auto next = std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& n) { return n.time > time; });
+  const auto rest = std::find_if(next, nodes_.end(), [](const Node& node) { return node.speed == 0.0; });
   Trajectory stopping(at(time).pose, time);
-  const std::vector<PathPiece> pieces = pieces_from(now.along);
+  if (rest == nodes_.end() || now.speed == 0.0) return stopping;
+  const std::vector<PathPiece> pieces = cut_off(pieces_from(now.along), rest->along - now.along);
   const double distance = detail::braking_distance(pieces, now.speed, limits);
-  if (Trajectory sooner = stopping; sooner.extend(cut_off(pieces, distance), now.speed, limits) &&
-                                    sooner.nodes_.back().time <= std::max(time, nodes_.back().time))
+  if (Trajectory sooner = stopping;
+      sooner.extend(cut_off(pieces, distance), now.speed, limits) && sooner.nodes_.back().time <= rest->time)
     return sooner;
   stopping.nodes_.back().speed = now.speed;
   for (const PathPiece& piece : pieces) {
     stopping.pieces_.push_back(piece);
     stopping.ends_.push_back(stopping.ends_.back() + piece.length);
   }
-  for (const Node& node : nodes_)
-    if (node.time > time) stopping.nodes_.push_back({node.along - now.along, node.speed, node.time});
+  for (auto node = next; node != rest + 1; ++node)
+    stopping.nodes_.push_back({node->along - now.along, node->speed, node->time});
   stopping.yaws_.push_back({stopping.nodes_.back().time, stopping.yaws_.back().yaw});
   return stopping;
 }
