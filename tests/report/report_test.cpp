@@ -222,6 +222,8 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
     const auto& reported = facts["steps"][s];
     const auto& [step, known, collisions] = room().steps[s];
     EXPECT_EQ(reported["number"], step.number);
+    EXPECT_EQ(reported["time"], step.time);
+    if (s > 0) EXPECT_GT(step.time, room().steps[s - 1].step.time);
     EXPECT_EQ(reported["frontiers"], step.frontiers);
     EXPECT_EQ(reported["unassigned"], step.unassigned);
     EXPECT_EQ(reported["abandoned"], step.abandoned);
