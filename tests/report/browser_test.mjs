@@ -298,7 +298,9 @@ async function commandIsRight(browser) {
     const first = rows.filter((row) => row.robot === rows[0].robot);
     [0.5, 0.9, 0.95, 0.99].forEach((part, k) => {
       const row = first.find(({ coverage_observable: coverage }) => coverage >= part);
-      assert.equal(cells[5 + k], row ? `${row.time_s.toFixed(1)} s` : "never");
+      const begin = runs[0].rows.find(({ coverage_observable: coverage }) => coverage >= part);
+      const change = row && begin && i > 0 ? Math.round(100 * (row.time_s / begin.time_s - 1)) : null;
+      assert.equal(cells[5 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
     });
     // The legend's value of the other run is that at the same time.
     const { rows: theirs } = runs[1 - i], other = theirs.filter((row) => row.robot === theirs[0].robot);

@@ -38,11 +38,11 @@ void write_numbers(const std::filesystem::path& file, const Recording& recording
     for (std::size_t r = 0; r < head.robots.size(); ++r) {
       const auto& robot = step.robots[r];
       travelled[r] += robot.length;
-      out << step.number << ',' << step.time << ',' << head.robots[r].robot.name << ',' << of(observable, head.observable) << ','
-          << of(bounding, head.bounding) << ',' << of(known[r].observable, head.observable) << ','
-          << of(known[r].bounding, head.bounding) << ',' << step.frontiers << ',' << step.unassigned << ','
-          << step.abandoned << ',' << robot.length << ',' << travelled[r] << ',' << robot.gain_predicted
-          << ',' << robot.gained;
+      out << step.number << ',' << step.time << ',' << head.robots[r].robot.name << ','
+          << of(observable, head.observable) << ',' << of(bounding, head.bounding) << ','
+          << of(known[r].observable, head.observable) << ',' << of(known[r].bounding, head.bounding) << ','
+          << step.frontiers << ',' << step.unassigned << ',' << step.abandoned << ',' << robot.length << ','
+          << travelled[r] << ',' << robot.gain_predicted << ',' << robot.gained;
       for (std::size_t phase = 0; phase + 1 < step.seconds.size(); ++phase) out << ',' << step.seconds[phase];
       out << ',' << step.planning_seconds() << '\n';
     }

@@ -72,8 +72,8 @@ export class Charts {
 
   /** Of long runs, each bar is the mean of some steps that follow each other. */
   planning(numbers, facts, x) {
-    const ends = barEnds(x.xs, MOST_BARS), together = ends.length < x.xs.length;
-    const note = `${numbers.motion ? "of one robot's planning" : "stacked, whole team"}${together ? `, mean of ${Math.ceil(x.xs.length / MOST_BARS)} steps` : ""}`;
+    const each = Math.ceil(x.xs.length / MOST_BARS), ends = barEnds(x.xs, each);
+    const note = `stacked, ${numbers.motion ? "one robot's planning" : "whole team"}${each > 1 ? `, mean of ${each} steps` : ""}`;
     return {
       id: "planning", title: "Planning time by phase", note, unit: seconds, x, stacked: true, ends,
       series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: x.xs, ys, color: PHASES[this.theme][p] })),
@@ -103,7 +103,7 @@ export class Charts {
     const integers = (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? String(tick) : ""));
     const axis = { stroke: ink, grid, ticks: { show: false }, font, labelFont: font };
     return {
-      width: this.width, height: HEIGHT, padding: [8, 12, 0, 0], legend: { show: false },
+      width: this.width, height: HEIGHT, padding: [8, 20, 0, 0], legend: { show: false },
       hooks: { ready: [() => this.mark(this.timeline.position.step)] },
       cursor: { y: false, drag: { x: false, y: false }, points: { show: !spec.stacked } },
       scales: { x: { time: false, range: (_, low, high) => [Math.min(0, low), high > 0 ? high : 1] }, y: { range: (_, low, high) => [0, spec.fraction ? 1 : high > 0 ? high * 1.06 : 1] } },
@@ -147,9 +147,9 @@ export class Charts {
   }
 }
 
-/** The last step of each bar: at most so many of them, each with a greater x than the one before. */
-function barEnds(xs, most) {
-  const each = Math.ceil(xs.length / most), ends = [];
+/** The last step of each bar: of so many steps, and with a greater x than the bar before. */
+function barEnds(xs, each) {
+  const ends = [];
   for (let begin = 0; begin < xs.length; ) {
     let end = Math.min(begin + each, xs.length) - 1;
     while (end + 1 < xs.length && xs[end + 1] <= xs[end]) ++end;

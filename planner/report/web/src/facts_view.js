@@ -84,18 +84,21 @@ export function header(runs) {
   ].filter(Boolean);
 }
 
-/** One row per run; percentages compare it with the first. */
+/** One row per run; changes in percent compare it with the first. */
 export function comparison(runs) {
-  const first = runs[0].numbers.result;
-  const against = (result, name) => (result === first || !(first[name] > 0) ? "" : ` (${signed(result[name], first[name])})`);
-  const timeTo = (numbers, part) => (numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
+  const first = runs[0].numbers;
+  // Only between runs that have mapped the same can less time or path be better.
+  const to = (numbers, list, part, format) => reached(numbers, part, (s) => {
+    const reference = first[list][stepOfCoverage(first, part)];
+    return `${format(numbers[list][s])}${numbers === first || !(reference > 0) ? "" : ` (${signed(numbers[list][s], reference)})`}`;
+  });
+  const timeTo = (numbers, part) => (numbers.clock && first.clock ? to(numbers, "time", part, clockTime) : numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
   const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path length", "path length to 90 %", "mean planning", "collisions"];
   return table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
     name, teamName(facts), numbers.motion ? "in motion" : "in lock-step", percent(numbers.result.coverage),
-    numbers.clock ? `${clockTime(numbers.result.time)}${against(numbers.result, "time")}` : "not recorded",
+    numbers.clock ? clockTime(numbers.result.time) : "not recorded",
     ...MILESTONES.map((part) => timeTo(numbers, part)), cubicMetres(numbers.result.volume),
-    `${metres(numbers.result.length)}${against(numbers.result, "length")}`,
-    reached(numbers, 0.9, (s) => metres(numbers.teamTravelled[s])),
+    metres(numbers.result.length), to(numbers, "teamTravelled", 0.9, metres),
     seconds(numbers.result.planningMean), whole(numbers.result.collisions),
   ]));
 }

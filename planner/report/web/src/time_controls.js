@@ -17,7 +17,7 @@ function icon(name) {
 }
 
 const SPEEDS = [1, 2, 5, 10, 20, 50, 100];
-const LONGEST = 60; // [s] to play a run at the speed that is chosen for it
+const LONGEST = 30; // [s] to play a run at the speed that is chosen for it
 
 /** The time line's buttons and slider. */
 export function makeTimeControls(timeline, current) {
