@@ -42,7 +42,7 @@ async function open(browser, folder, options = {}) {
 async function timeLineWorks(page, rows) {
   const times = [...new Map(rows.map((row) => [row.step, row.time_s])).values()], last = times.length - 1;
   const label = () => page.textContent("#step-label"), seconds = (time) => `${time.toFixed(1)} s`;
-  const says = async (step, what) => assert.ok((await label()).startsWith(`${seconds(times[step])} of ${seconds(times[last])} · step ${step} of ${last} · `), `${what ?? step}: ${await label()}`);
+  const says = async (step, what) => assert.ok((await label()).startsWith(`${times[step].toFixed(1)} of ${seconds(times[last])} · step ${step} of ${last} · `), `${what ?? step}: ${await label()}`);
   await says(last, "begins at the end");
   await page.keyboard.press("Home");
   await says(0);
@@ -293,7 +293,7 @@ async function commandIsRight(browser) {
     await page.selectOption("#run", String(i));
     await chartsAreRight(page, rows);
     const cells = await page.locator(`.comparison tbody tr:nth-child(${i + 1}) > *`).allTextContents();
-    assert.equal(cells[2], json.lockstep ? "in lock-step" : "in motion");
+    assert.equal(cells[2], json.lockstep ? "lock-step" : "in motion");
     assert.ok(cells[4].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[4]);
     const first = rows.filter((row) => row.robot === rows[0].robot);
     [0.5, 0.9, 0.95, 0.99].forEach((part, k) => {

@@ -93,9 +93,9 @@ export function comparison(runs) {
     return `${format(numbers[list][s])}${numbers === first || !(reference > 0) ? "" : ` (${signed(numbers[list][s], reference)})`}`;
   });
   const timeTo = (numbers, part) => (numbers.clock && first.clock ? to(numbers, "time", part, clockTime) : numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
-  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path length", "path length to 90 %", "mean planning", "collisions"];
+  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path", "path to 90 %", "planning", "collisions"];
   return table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
-    name, teamName(facts), numbers.motion ? "in motion" : "in lock-step", percent(numbers.result.coverage),
+    name, teamName(facts), numbers.motion ? "in motion" : "lock-step", percent(numbers.result.coverage),
     numbers.clock ? clockTime(numbers.result.time) : "not recorded",
     ...MILESTONES.map((part) => timeTo(numbers, part)), cubicMetres(numbers.result.volume),
     metres(numbers.result.length), to(numbers, "teamTravelled", 0.9, metres),
@@ -166,7 +166,7 @@ function comparedWithPaper(facts, numbers, paper) {
   const uav = facts.robots.findIndex((robot) => !robot.plane);
   const block = table("Compared with the paper", ["", "here", "paper"], [
     ["coverage, team", percent(result.coverage), paper.coverage],
-    ["steps", numbers.motion ? "not in lock-step" : whole(result.steps), paper.steps],
+    ...(numbers.motion ? [] : [["steps", whole(result.steps), paper.steps]]), // the paper's robots move in lock-step
     [`planning, whole team (per ${numbers.motion ? "planning" : "step"})`, `${seconds(result.planningTotal)} (${seconds(result.planningMean)})`, `UAV ${paper.uav}, UGV ${paper.ugv}`],
     ["UAV's fraction of the coverage", uav < 0 ? "no UAV" : percent(result.fractions[uav], 0), `${paper.fraction} *`],
     ["UAV's path length", uav < 0 ? "no UAV" : metres(result.lengths[uav]), `${paper.path} *`],

@@ -46,7 +46,7 @@ class Page {
     this.makeScene();
     const choose = runs.length > 1 ? el("label", { class: "field" }, el("span", { text: "Replay" }), el("select", { id: "run", on: { change: (event) => this.select(Number(event.target.value)) } }, ...runs.map((run, i) => el("option", { value: i, text: run.name })))) : null;
     this.themeButton = el("button", { type: "button", id: "theme", on: { click: () => this.switchTheme() } });
-    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of all steps" }), el("div", { class: "body" }));
+    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of steps" }), el("div", { class: "body" }));
     document.getElementById("app").replaceChildren(
       el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs)),
       runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, comparison(runs)) : null,

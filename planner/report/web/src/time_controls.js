@@ -37,7 +37,7 @@ export function makeTimeControls(timeline, current) {
     slider.style.setProperty("--done", `${timeline.steps > 1 ? (100 * step) / (timeline.steps - 1) : 100}%`);
     // While robots move, the map is the one at the start of the step.
     const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], mapped = Number.isFinite(known) ? `${percent(known)} mapped` : "";
-    const time = numbers.clock ? `${clockTime(timeline.time)} of ${clockTime(timeline.times.at(-1))}` : "", steps = `${numbers.clock ? "step" : "Step"} ${number} of ${last}`;
+    const time = numbers.clock ? `${timeline.time.toFixed(1)} of ${clockTime(timeline.times.at(-1))}` : "", steps = `${numbers.clock ? "step" : "Step"} ${number} of ${last}`;
     const text = [time, steps, mapped].filter(Boolean).join(" · ");
     label.textContent = text;
     slider.setAttribute("aria-valuetext", text);
@@ -52,9 +52,10 @@ export function makeTimeControls(timeline, current) {
   /** Chooses a speed for the run. */
   const chooseSpeed = () => {
     const { clock } = current().numbers, whole = timeline.times.at(-1) ?? 0;
-    for (const option of speed.options) option.textContent = clock ? `${option.value} × real time` : `${option.value} steps/s`;
+    for (const option of speed.options) option.textContent = clock ? `${option.value} ×` : `${option.value} steps/s`;
     timeline.speed = clock ? (SPEEDS.find((value) => whole / value <= LONGEST) ?? SPEEDS.at(-1)) : 2;
     speed.value = String(timeline.speed);
+    speed.title = clock ? "seconds of the run in one second" : "";
   };
   const bar = el("div", { class: "timeline", role: "group", "aria-label": "Time line" },
     el("div", { class: "buttons" },
