@@ -164,6 +164,18 @@ void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSu
   std::cout << out;
 }
 
+// A run that its user did not end himself, and that left much unseen.
+void warn_if_far_from_done(const RunEnd& end, double observable) {
+  constexpr double kDone = 0.95;
+  const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };
+  if (is(planner::ExplorationEnd::kCutOff))
+    std::cerr << "warning: " << end.text << '\n';
+  else if (observable < kDone &&
+           (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)))
+    std::cerr << "warning: the run has ended with " << percent(observable)
+              << " of the observable space mapped; the robots found no way to see the rest\n";
+}
+
 }  // namespace
 
 void explore(ExploreOptions options, const ExploreRun& run) {
@@ -219,6 +231,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
             fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole};
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
+      if (reason) warn_if_far_from_done(*reason, exploring.files().sums().observable);
       print_summary(run, setup, exploring.files().sums(), loop.numbers(),
                     reason ? end + ": " + reason->text : end, watch.seconds());
     } catch (const BadInput&) {

@@ -10,8 +10,11 @@
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
+#include <Eigen/Core>
+
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace frontlux::app {
@@ -27,7 +30,14 @@ struct ExploreSetup {
   std::optional<double> stop_time;      // [s]
   planner::ExplorationOptions exploration;
   planner::RecordingHead head;  // with the robots and their starts
+  std::optional<Eigen::Vector3f>
+      given_start;  // [m] in the world's frame before the ground is aligned; so are
+  std::vector<std::optional<planner::Pose>> given_starts;  // those of the robots that are not looked for
 };
+
+/// The robots of a word like "2uav+ugv", two aerial robots and a ground robot; none if it is empty.
+/// @throws BadInput
+[[nodiscard]] std::vector<planner::RobotDescription> team_of(const std::string& word, planner::Method method);
 
 /// Makes or reads the world, puts the robots at their starts, and checks all options.
 /// @param robots  of a resumed run; nothing: those that the options name

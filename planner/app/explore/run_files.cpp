@@ -3,6 +3,7 @@
 #include "explore/csv_row.hpp"
 #include "explore/explore_run.hpp"
 #include "explore/explore_setup.hpp"
+#include "explore/explore_task.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
@@ -267,6 +268,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"wall_s", seconds},
       {"memory_mb", peak_memory_mb()},
       {"options", Json::parse(json_text(options))},
+      {"task", Json::parse(task_text(options, setup))},
   };
   // File names are bytes, JSON is Unicode.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -100,11 +100,14 @@ MotionState ContinuousExploration::at(std::size_t robot, double time) const {
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
-  if (std::ranges::none_of(state.members, [](const auto& m) { return !m.planned || m.going; }))
-    return ExplorationEnd::kNothingToDo;
-  if (std::ranges::all_of(state.members,
-                          [&](const auto& m) { return m.low_gains >= state.team.options.low_gain_steps; }))
-    return ExplorationEnd::kLowGain;
+  const auto idle = [](const auto& member) { return member.planned && !member.going; };
+  const auto low = [&](const auto& member) { return member.low_gains >= state.team.options.low_gain_steps; };
+  const bool all_idle = std::ranges::all_of(state.members, idle);
+  if (all_idle || std::ranges::all_of(state.members, low)) {
+    for (std::size_t r = 0; r < state.members.size(); ++r)
+      if (state.team.is_cut_off(r, state.members[r].goal)) return ExplorationEnd::kCutOff;
+    return all_idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+  }
   if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))
     return ExplorationEnd::kStepLimit;
   return std::nullopt;

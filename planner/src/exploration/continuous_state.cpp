@@ -174,8 +174,8 @@ Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start
   const SegmentTest nowhere = [](const auto&, const auto&, const auto&) { return false; };
   const MotionState now = old.at(start);
   std::vector<Pose> way;
-  if (now.velocity.isZero()) way = team.way_back(robot, step.goal);
-  if (way.size() > 1) {
+  if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
+  if (!way.empty()) {
     way.insert(way.begin(), now.pose);
     step.path = PathOutcome::kFound;
   }
@@ -192,7 +192,8 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   member.goal_frontiers.clear();
   if (!now.goal.pose) {
     Trajectory back = go_back(robot, start, now);
-    member.going = now.path == PathOutcome::kFound;
+    // When it has come to rest, it plans again.
+    member.going = now.path == PathOutcome::kFound || !old.at(start).velocity.isZero();
     return back;
   }
   team.came_back[robot] = false;
@@ -232,9 +233,9 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
-                     !member.goal_frontiers.empty() && time - member.chosen < (getenv("FLX_COMMIT") ? atof(getenv("FLX_COMMIT")) : team.options.commitment);
+                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   if (keeps)
-    team.keep_goals(step);
+    team.keep_goal(robot, step);
   else
     team.select_goals(step, robot);
   if (!keeps) member.chosen = time;
@@ -251,7 +252,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   }
   member.planned = time;
   member.blocked = member.stopped = false;
-  if (!keeps) judge(member, step.robots[robot]);
+  judge(member, step.robots[robot]);
   ++team.number;
   return {robot, reason, std::move(trajectory), std::move(step)};
 }

@@ -24,7 +24,7 @@ struct ContinuousExploration::State {
     double chosen = 0.0;                 // [s] when it chose its goal
     bool stopped = false, blocked = false;
     bool going = false;             // it has a goal, or goes back
-    int low_gains = 0;              // goals in a row with which it expects to see next to nothing
+    int low_gains = 0;              // plannings in a row that expect to see next to nothing
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys reached_frontiers = {};    // the same of a goal that it reaches before it plans again

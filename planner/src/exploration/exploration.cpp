@@ -75,8 +75,11 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
 // Alg. 1, line 3.
 std::optional<ExplorationEnd> Exploration::end() const {
   const State& state = *state_;
-  if (state.idle) return ExplorationEnd::kNothingToDo;
-  if (state.low_gain_steps >= state.options.low_gain_steps) return ExplorationEnd::kLowGain;
+  if (state.idle || state.low_gain_steps >= state.options.low_gain_steps) {
+    for (std::size_t r = 0; r < state.last_goals.size(); ++r)
+      if (state.is_cut_off(r, state.last_goals[r])) return ExplorationEnd::kCutOff;
+    return state.idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+  }
   if (state.number > static_cast<std::uint64_t>(state.options.max_steps)) return ExplorationEnd::kStepLimit;
   return std::nullopt;
 }

@@ -59,7 +59,7 @@ std::string_view name_of(Phase phase) {
 }
 
 std::string_view name_of(ExplorationEnd end) {
-  constexpr std::array<std::string_view, 3> kNames = {"low_gain", "nothing_to_do", "step_limit"};
+  constexpr std::array<std::string_view, 4> kNames = {"low_gain", "nothing_to_do", "step_limit", "cut_off"};
   return kNames.at(static_cast<std::size_t>(end));
 }
 
@@ -67,6 +67,8 @@ std::string describe(ExplorationEnd end, const ExplorationOptions& options) {
   if (end == ExplorationEnd::kNothingToDo) return "no robot can see a frontier from anywhere it can go";
   if (end == ExplorationEnd::kStepLimit)
     return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
+  if (end == ExplorationEnd::kCutOff)
+    return "a robot is where it cannot leave, and there is more to see from where it came from";
   std::ostringstream text;  // 10 without zeros behind it
   text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
        << " steps";

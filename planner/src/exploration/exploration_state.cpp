@@ -128,10 +128,9 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   }
 }
 
-void ExplorationState::keep_goals(ExplorationStep& step) {
+void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kGoals);
-  TeamGoals goals = selection->select(*caster, change(), {}, poses, size());
-  for (std::size_t r = 0; r < size(); ++r) step.robots[r].goal = std::move(goals.goals[r]);
+  selection->keep_goal(change(), robot, poses[robot]);
   step.frontiers = frontiers.size();
 }
 
@@ -143,30 +142,41 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
   return !find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers.empty();
 }
 
-// A robot beside which a closer look has found something is in no corridor; it goes back to the last place that
-// is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes back
-// through the passage, if there is something to see from beyond, once for each goal that it had.
-std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal) {
+// A robot beside which a closer look has found something is in no corridor; it goes back to the last place
+// that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes
+// back through the passage, if there is something to see from beyond.
+std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal) const {
   const std::vector<Pose>& trail = trails[robot];
   const TravelCorridor& corridor = path_corridor(robot);
   const bool lost = goal.state == GoalState::kNoCorridor;
-  if (!lost && came_back[robot]) return {};
   TravelOptions by_voxels = options.team[robot].robot.travel;
   by_voxels.node_edge = 0.0;
   std::optional<TravelCorridor> elsewhere;
   for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
     const auto cell = lattice().key(place->position);
     if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
-    if (lost && place == trail.rbegin()) return {};
+    if (lost && place->position == poses[robot].position) return {};
     if (!lost) {
       if (elsewhere && elsewhere->contains(*cell)) continue;
       if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
       if (!worth_going_to(*elsewhere, robot, *cell)) continue;
-      came_back[robot] = true;
     }
     return {trail.rbegin(), place + 1};
   }
   return {};
+}
+
+// Once for each goal that the robot had, or it would go back and forth.
+std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
+  const bool lost = goal.state == GoalState::kNoCorridor;
+  if (!lost && came_back[robot]) return {};
+  std::vector<Pose> way = way_back(robot, goal);
+  if (!lost && !way.empty()) came_back[robot] = true;
+  return way;
+}
+
+bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
+  return goal.state == GoalState::kNoCorridor || (!goal.pose && !way_back(robot, goal).empty());
 }
 
 // Line 6.
@@ -175,7 +185,7 @@ void ExplorationState::plan_paths(ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     if (!robot.goal.pose) {
-      robot.planned = way_back(r, robot.goal);
+      robot.planned = take_way_back(r, robot.goal);
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
@@ -307,7 +317,9 @@ void ExplorationState::judge(const ExplorationStep& step) {
   double expected_gain = 0.0;
   bool retreats = false;
   idle = true;
+  last_goals.clear();
   for (const RobotStep& robot : step.robots) {
+    last_goals.push_back(robot.goal);
     const bool moved = robot.travelled > 1;
     if (robot.goal.pose || moved) idle = false;
     if (moved && robot.goal.pose) expected_gain += path_gain(robot);

@@ -30,6 +30,7 @@ struct ExplorationState {
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
+  std::vector<Goal> last_goals = {};           // of the last step
   std::vector<bool> came_back = {};            // robots that had no goal since they last went back
   Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
   Keys changed = {};                           // by the last step, sorted
@@ -50,8 +51,8 @@ struct ExplorationState {
   void update_views(ExplorationStep& step);
   /// @param choosing  if given: the robot that chooses; the others keep their goals
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
-  /// Brings the corridors up to date; all robots keep their goals.
-  void keep_goals(ExplorationStep& step);
+  /// Brings a robot's corridor up to date; all robots keep their goals.
+  void keep_goal(std::size_t robot, ExplorationStep& step);
   void plan_paths(ExplorationStep& step);
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
   [[nodiscard]] InformationGain optimize_path(std::size_t robot, ExplorationStep& step) const;
@@ -68,7 +69,10 @@ struct ExplorationState {
   }
   /// For a robot without a goal: back along the way it came, from its last place on; empty if that leads to
   /// nothing.
-  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal);
+  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal) const;
+  [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
+  /// Whether a robot cannot get to where it came from, although there is something to see.
+  [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
  private:

@@ -78,20 +78,28 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
   TeamGoals result;
   result.frontiers = sorted.size();
   result.goals.resize(poses.size());
-  state.update(change, poses, choosing);
+  state.note(change);
+  state.begin_step(choosing);
+  for (std::size_t r = 0; r < poses.size(); ++r) state.update_corridor(r, change.grid, poses[r]);
   for (std::size_t r = 0; r < poses.size(); ++r)
     if (choosing && *choosing != r)
       result.goals[r] = state.members[r].goal;
     else
       set_no_goal(result.goals[r], state.members[r].corridor.state());
-  if (sorted.empty()) return result;
-  const detail::CountingRayCaster counting(caster, state.lattice);
-  State::Step step{counting, change.grid, result, choosing};
-  state.assign(step, sorted);
-  state.decide(step);
-  result.rays = counting.rays();
+  if (!sorted.empty()) {
+    const detail::CountingRayCaster counting(caster, state.lattice);
+    State::Step step{counting, change.grid, result, choosing};
+    state.assign(step, sorted);
+    state.decide(step);
+    result.rays = counting.rays();
+  }
   for (std::size_t r = 0; r < poses.size(); ++r) state.members[r].goal = result.goals[r];
   return result;
+}
+
+void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose) {
+  state_->note(change);
+  state_->update_corridor(robot, change.grid, pose);
 }
 
 void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {

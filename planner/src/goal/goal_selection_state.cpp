@@ -43,28 +43,36 @@ std::string frontiers_text(std::size_t count) {
 
 }  // namespace
 
-void GoalSelection::State::update(const MapChange& change, std::span<const Pose> poses,
-                                  std::optional<std::size_t> choosing) {
+void GoalSelection::State::note(const MapChange& change) {
+  const Keys keys(change.keys.begin(), change.keys.end());
+  for (Member& member : members) {
+    member.missed = united(member.missed, keys);
+    if (member.image.size() > 0) member.changed = united(member.changed, keys);
+  }
+}
+
+void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose) {
+  Member& member = members[robot];
+  member.position = pose.position;
+  const Keys missed = std::exchange(member.missed, {});
+  const auto cell = lattice.key(member.position);
+  if (!cell) {
+    renew_corridor(robot);  // without an update it has no cells
+    return;
+  }
+  member.cell = *cell;
+  member.corridor.update({grid, missed}, member.cell);
+  member.unseen.update({grid, missed}, member.corridor.cells(),
+                       ViewRegion(team[robot].robot.view, lattice.resolution()));
+}
+
+void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
-    member.position = poses[r].position;
     member.assigned.clear();
     member.released.clear();
-    if (!choosing || *choosing == r) {
-      member.rendered = false;
-      member.targets.clear();
-    }
-    if (member.image.size() > 0)
-      member.changed = united(member.changed, {change.keys.begin(), change.keys.end()});
-    const auto cell = lattice.key(member.position);
-    if (!cell) {
-      renew_corridor(r);  // without an update it has no cells
-      continue;
-    }
-    member.cell = *cell;
-    member.corridor.update(change, member.cell);
-    member.unseen.update(change, member.corridor.cells(),
-                         ViewRegion(team[r].robot.view, lattice.resolution()));
+    member.rendered = false;
+    if (!choosing || *choosing == r) member.targets.clear();
   }
 }
 

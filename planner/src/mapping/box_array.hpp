@@ -7,7 +7,6 @@
 
 namespace frontlux::planner::detail {
 
-
 /// A value for every key of a box.
 template <class T>
 class BoxArray {

@@ -1,5 +1,7 @@
 #include "motion/rounded_path.hpp"
 
+#include "motion/speed_profile.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -65,7 +67,9 @@ bool is_arc_free(const PathPiece& arc, const SegmentTest& is_free) {
 }
 
 // The widest arc that helps: on a wider one the robot would not be faster.
-double useful_radius(const MotionLimits& limits) { return limits.speed * limits.speed / limits.acceleration; }
+double useful_radius(const MotionLimits& limits) {
+  return limits.speed * limits.speed / (kSideways * limits.acceleration);
+}
 
 void round_corner(Corner& corner, double room, const MotionLimits& limits, const SegmentTest& is_free) {
   corner.radius = std::min(room / std::tan(corner.angle / 2), useful_radius(limits));

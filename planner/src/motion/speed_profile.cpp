@@ -27,7 +27,7 @@ struct Interval {
 
 double allowed_speed(const PathPiece& piece, const MotionLimits& limits) {
   if (piece.curvature == 0.0) return limits.speed_along(piece.direction);
-  return std::min(limits.speed, std::sqrt(limits.acceleration / piece.curvature));
+  return std::min(limits.speed, std::sqrt(kSideways * limits.acceleration / piece.curvature));
 }
 
 double allowed_acceleration(const PathPiece& piece, const MotionLimits& limits) {

@@ -7,6 +7,9 @@
 
 namespace frontlux::planner::detail {
 
+/// The part of the acceleration that curves may take. With all of it a robot could not brake on a curve.
+inline constexpr double kSideways = 0.95;
+
 /// A robot's speed at a place of its path; from one to the next its acceleration along the path is constant.
 struct SpeedNode {
   double along;  ///< [m]

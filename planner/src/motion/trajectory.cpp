@@ -126,13 +126,15 @@ void Trajectory::append(const Trajectory& next) {
     yaws_.push_back({next.yaws_[i].time, turned + next.yaws_[i].yaw});
 }
 
-// It keeps its yaw. Where braking harder than planned is not possible it stops where it was to rest.
+// It keeps its yaw. Where braking sooner than planned is not possible it stops as planned.
 Trajectory Trajectory::braking(double time, const MotionLimits& limits) const {
   const Node now = node_at(time);
   Trajectory stopping(at(time).pose, time);
-  std::vector<PathPiece> pieces = pieces_from(now.along);
+  const std::vector<PathPiece> pieces = pieces_from(now.along);
   const double distance = detail::braking_distance(pieces, now.speed, limits);
-  if (stopping.extend(cut_off(pieces, distance), now.speed, limits)) return stopping;
+  if (Trajectory sooner = stopping; sooner.extend(cut_off(pieces, distance), now.speed, limits) &&
+                                    sooner.nodes_.back().time <= std::max(time, nodes_.back().time))
+    return sooner;
   stopping.nodes_.back().speed = now.speed;
   for (const PathPiece& piece : pieces) {
     stopping.pieces_.push_back(piece);

@@ -96,7 +96,8 @@ void code_description(RecordBytes& bytes, RobotDescription& description) {
   code_travel(bytes, description.robot.travel);
   code_view(bytes, description.robot.view);
   code_limits(bytes, description.robot.limits);
-  code_length(bytes, description.rate, "scans have no finite rate");
+  bytes.number(description.rate);
+  bytes.require(std::isfinite(description.rate) && description.rate > 0.0, "scans have no finite rate");
   bytes.whole(description.columns);
   bytes.whole(description.rows);
   bytes.require(description.columns > 0 && description.rows > 0 && description.columns <= kMostRays &&
@@ -105,7 +106,7 @@ void code_description(RecordBytes& bytes, RobotDescription& description) {
 }
 
 void code_head(RecordBytes& bytes, RecordingHead& head) {
-  constexpr std::size_t kRobotBytes = 90, kStartBytes = 33;  // at least
+  constexpr std::size_t kRobotBytes = 130, kStartBytes = 33;  // at least
   bytes.text(head.world);
   bytes.number(head.resolution);
   bytes.require(passes([&] { static_cast<void>(Lattice(head.resolution)); }),

@@ -80,7 +80,8 @@ class ContinuousExploration {
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
   /// Why the exploration is over; nothing while it goes on. Of low gain is an
-  /// exploration in which each robot chose `low_gain_steps` goals of low gain in a row, or none.
+  /// exploration in which each robot has had a goal of low gain, or none, for `low_gain_steps` plannings in a
+  /// row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   [[nodiscard]] const ExplorationOptions& options() const;

@@ -155,13 +155,16 @@ class GoalSelection {
   /// @param change     since the last step
   /// @param frontiers  of the map, in any order
   /// @param poses      of the robots' sensors, one for each robot
-  /// @param choosing   if given: the only robot that chooses; the others keep their goals, and without
-  ///                   frontiers nothing but the corridors is brought up to date
+  /// @param choosing   if given: the only robot that chooses; the others keep their goals
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
                                  std::optional<std::size_t> choosing = std::nullopt);
+
+  /// In the place of a step: takes the change, and brings up to date no more than one robot's corridor. All
+  /// robots keep their goals. @pre robot < team().size()
+  void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose);
 
   /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()

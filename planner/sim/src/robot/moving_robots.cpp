@@ -83,6 +83,7 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   const bool contact = !motion.isZero(0.0) && solids_.count({body(robot, from), motion}) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
     ++record.held_back;
+    record.idle += seconds;
     now.halted = true;
     stopped.push_back({robot, now.pose, cells_ahead(truth_->lattice(), from, to.pose.position)});
     return;
@@ -98,10 +99,16 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
 void MovingRobots::measure_clearance(std::size_t robot) {
   constexpr int kHalvings = 12;
   double& clearance = records_[robot].clearance;
-  const Eigen::AlignedBox3d box = body(robot, progress_[robot].pose.position);
-  const double upwards = robots_[robot].robot.travel.motion == Motion::kPlane ? 0.0 : 1.0;
+  const Eigen::Vector3d& at = progress_[robot].pose.position;
+  const planner::TravelOptions& travel = robots_[robot].robot.travel;
+  const bool stands = travel.motion == Motion::kPlane;  // and touches the floor
+  Eigen::AlignedBox3d box = planner::body_of(travel).translated(at);
+  if (stands) {
+    box.min().z() = body(robot, at).min().z();
+    box.max().z() = body(robot, at).max().z();
+  }
   const auto touches = [&](double by) {
-    const Eigen::Vector3d around = by * Eigen::Vector3d(1.0, 1.0, upwards);
+    const Eigen::Vector3d around = by * Eigen::Vector3d(1.0, 1.0, stands ? 0.0 : 1.0);
     return solids_.count({{box.min() - around, box.max() + around}, Eigen::Vector3d::Zero()}) > 0;
   };
   if (!touches(clearance)) return;
@@ -131,7 +138,10 @@ MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopp
   for (int i = 1; i <= ticks; ++i) {
     const double time = begin + (next - begin) * i / ticks;
     for (std::size_t r = 0; r < robots_.size(); ++r)
-      if (!progress_[r].halted) move(r, where(r, time), time - time_, stopped);
+      if (progress_[r].halted)
+        records_[r].idle += time - time_;
+      else
+        move(r, where(r, time), time - time_, stopped);
     measure_separation();
     time_ = time;
   }

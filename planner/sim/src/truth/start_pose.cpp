@@ -191,8 +191,8 @@ std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eig
     std::vector<KeyBox> taken;
     for (std::size_t i = 0; i < robots.size(); ++i)
       if (starts[i])
-        taken.push_back(
-            grown(taken_by(truth.lattice(), robots[i], *starts[i]), drives(robots[i]) == drives(robot) ? 1 : 0));
+        taken.push_back(grown(taken_by(truth.lattice(), robots[i], *starts[i]),
+                              drives(robots[i]) == drives(robot) ? 1 : 0));
     return taken;
   };
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -204,7 +204,8 @@ std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eig
   }
   if (!ground) ground = ground_below(truth, around);
   for (std::size_t i = 0; i < robots.size(); ++i)
-    if (!drives(robots[i])) starts[i] = find_in_space(truth, around, robots[i], *ground, taken_for(robots[i]));
+    if (!drives(robots[i]))
+      starts[i] = find_in_space(truth, around, robots[i], *ground, taken_for(robots[i]));
   return starts;
 }
 
