@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,6 +38,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (state.team.selection) refuse("it has begun already");
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
+  if (!std::isfinite(time)) refuse("the time is not finite");
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);

@@ -11,25 +11,27 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// Of each cluster of targets that touch each other, the target nearest to their mean. Sorted.
+// Of each cluster of targets that touch each other, the target nearest to their mean; of equals that with the
+// smallest key. Sorted.
 std::vector<VoxelKey> middles_of_clusters(const GoalQuery& query) {
   std::set<VoxelKey> left(query.targets.begin(), query.targets.end());
   std::vector<VoxelKey> middles, cluster;
   while (!left.empty()) {
     cluster.assign(1, *left.begin());
     left.erase(left.begin());
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // [m]
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // in whole numbers, so that equals are equal
+    const auto place = [&](const VoxelKey& key) { return Eigen::Vector3d(key.x, key.y, key.z); };
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const VoxelKey key = cluster[i];
-      mean += query.lattice.exact_center(key);
+      sum += place(key);
       static_cast<void>(all_of(grown({key, key}, 1), [&](const VoxelKey& neighbor) {
         if (left.erase(neighbor) > 0) cluster.push_back(neighbor);
         return true;
       }));
     }
-    mean /= static_cast<double>(cluster.size());
+    const auto count = static_cast<double>(cluster.size());
     middles.push_back(std::ranges::min(cluster, {}, [&](const VoxelKey& key) {
-      return std::pair((query.lattice.exact_center(key) - mean).squaredNorm(), key);
+      return std::pair((count * place(key) - sum).squaredNorm(), key);
     }));
   }
   std::sort(middles.begin(), middles.end());

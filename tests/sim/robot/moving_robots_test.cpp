@@ -176,7 +176,7 @@ TEST(MovingRobots, StayWhereABumperStopsThem) {
   EXPECT_TRUE(scene.stopped.empty());
   scene.go_on(1.5, where);
   ASSERT_EQ(scene.stopped.size(), 1U);
-  const auto& [robot, pose, blocked] = scene.stopped[0];
+  const auto [robot, pose, blocked] = scene.stopped[0];
   EXPECT_EQ(robot, 0U);
   // It is as near as a step of a fiftieth of a second allows.
   EXPECT_LE(pose.position.x(), 2.6 + GroundTruth::kMargin);
