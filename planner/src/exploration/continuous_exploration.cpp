@@ -91,6 +91,7 @@ ExplorationStep ContinuousExploration::finish(double time) {
   if (!state.team.selection) refuse("a finish before its beginning");
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
+  step.frontiers = state.team.frontiers.size();
   ++state.team.number;
   return step;
 }
