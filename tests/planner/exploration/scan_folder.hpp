@@ -13,7 +13,7 @@ class ScanFolder : public FolderTest {
     std::filesystem::create_directories(folder_ / "scans");
     write("robot.json", R"({"name": "uav", "motion": "space", "box_m": [0.8, 0.8, 0.8],
               "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 8,
-                         "columns": 100, "rows": 75}})");
+                         "columns": 60, "rows": 45}})");
   }
 
   [[nodiscard]] pid_t begin(const Pose& start, const std::string& seconds) const {
