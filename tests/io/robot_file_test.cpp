@@ -47,7 +47,8 @@ TEST_F(RobotFile, ReadsAConeAndWhatIsLeftOut) {
 }
 
 TEST_F(RobotFile, ReadsLimitsMarginAndRate) {
-  const RobotDescription plain = read_robot(kRobots / "sonar.json"), camera = read_robot(kRobots / "uav.json");
+  const RobotDescription plain = read_robot(kRobots / "sonar.json"),
+                         camera = read_robot(kRobots / "uav.json");
   EXPECT_EQ(plain.robot.limits, planner::MotionLimits());
   EXPECT_EQ(plain.robot.travel.margin, 0.0);
   EXPECT_EQ(plain.rate, 10.0);
@@ -105,7 +106,8 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with("\"columns\"", "\"colums\""), "sensor.columns is missing"},
       {with("0.75", "0.75, \"margin_m\": -1"), "margin_m is -1; give a number from 0 to 100 m"},
       {with("0.75", "0.75, \"limits\": 3"), "limits is 3; give an object"},
-      {with("0.75", "0.75, \"limits\": {\"speed_m_s\": 0}"), "limits.speed_m_s is 0; give a number from 0.001"},
+      {with("0.75", "0.75, \"limits\": {\"speed_m_s\": 0}"),
+       "limits.speed_m_s is 0; give a number from 0.001"},
       {with("\"rows\": 12", "\"rows\": 12, \"rate_hz\": \"5\""), "sensor.rate_hz is '5'; give a number"},
       {with("\"rows\": 12", "\"rows\": 12, \"fps\": 3"),
        "the member 'sensor.fps' is not known; known here: kind,"},
