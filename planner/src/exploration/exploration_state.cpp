@@ -176,7 +176,10 @@ std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal&
 }
 
 bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
-  return goal.state == GoalState::kNoCorridor || (!goal.pose && !way_back(robot, goal).empty());
+  if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
+    return std::ranges::any_of(trails[robot],
+                               [&](const Pose& place) { return place.position != poses[robot].position; });
+  return !goal.pose && !way_back(robot, goal).empty();
 }
 
 // Line 6.
