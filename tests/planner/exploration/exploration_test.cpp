@@ -131,7 +131,7 @@ TEST(Exploration, EndsWhenNoRobotHasAGoal) {
   Exploration exploration = lone.begun(see_nothing);
   const auto steps = lone.all_steps(exploration, see_nothing);
   ASSERT_EQ(steps.size(), 1U);
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo) << "it is where it cannot leave";
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
   EXPECT_EQ(steps[0].robots[0].goal.state, GoalState::kNoCorridor);
   EXPECT_TRUE(steps[0].robots[0].planned.empty());
 }
