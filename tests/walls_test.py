@@ -21,7 +21,7 @@ TARGETS = {
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
     "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "view"],
-    "planner": ["mapping", "frontier", "corridor", "path", "assignment", "goal", "view_path", "exploration",
+    "planner": ["mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "view_path", "exploration",
                 "recording"],
 }
 

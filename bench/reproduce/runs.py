@@ -15,7 +15,7 @@ COMPARED, COMPARED_SEEDS = ("team", "uav"), 5  # with at least so many seeds
 LONGEST_RUN = 3600  # [s], after which a run counts as hanging
 
 DEFAULTS = {"mode": "default", "goal": "render", "assign": "on", "optimize": "on", "caster": "fast",
-            "robots": {"uav", "ugv"}}
+            "robots": {"uav", "ugv"}, "lockstep": "on"}
 
 
 class Variant(NamedTuple):
@@ -50,7 +50,7 @@ class Run(NamedTuple):
         return f"{self.world}_{self.caster}_timed" if self.timed else f"{self.world}_{self.variant}_{self.seed}"
 
     def arguments(self, folder):
-        return ["explore", self.world, "--seed", str(self.seed), "--threads", str(self.threads), "--caster",
+        return ["explore", self.world, "--lockstep", "--seed", str(self.seed), "--threads", str(self.threads), "--caster",
                 self.caster, "--max-steps", str(STEP_LIMIT), *VARIANTS[self.variant].arguments, "--report", "off",
                 "-o", str(folder)]
 

@@ -10,8 +10,9 @@
 // all for SECONDS. What is in the folder already is taken at once: the same folder can be explored again
 // without a robot. The map comes to FOLDER/map.bt.
 
+#include "recorded_scan.hpp"
+
 #include <frontlux/io/path_file.hpp>
-#include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/exploration.hpp>
@@ -21,7 +22,6 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <thread>
@@ -31,26 +31,9 @@ using namespace frontlux::planner;
 
 namespace {
 
-// The scan of a file, as the mapping takes it.
-Scan scan_of(const io::RecordedPose& recorded, const std::filesystem::path& folder, double max_range) {
-  Scan scan;
-  scan.origin = recorded.T_world_sensor.translation().cast<float>();
-  scan.max_range = max_range;
-  for (const Eigen::Vector3f& point : io::read_point_cloud(folder / recorded.file)) {
-    const Eigen::Vector3d ray = recorded.T_world_sensor.linear() * point.cast<double>();
-    const double range = ray.norm();
-    if (!std::isfinite(range) || range == 0.0) continue;  // not measured
-    scan.directions.push_back((ray / range).cast<float>());
-    scan.ranges.push_back(range <= max_range ? static_cast<float>(range)
-                                             : std::numeric_limits<float>::infinity());
-  }
-  return scan;
-}
-
 bool is_near(const Eigen::Isometry3d& T_world_sensor, const Pose& viewpoint) {
   constexpr double kMetres = 0.05, kRadians = 0.05;
-  const Eigen::Vector3d forward = T_world_sensor.linear().col(0);
-  const double turn = std::atan2(forward.y(), forward.x()) - viewpoint.yaw;
+  const double turn = yaw_of(T_world_sensor) - viewpoint.yaw;
   return (T_world_sensor.translation() - viewpoint.position).norm() < kMetres &&
          std::abs(std::remainder(turn, 2 * std::numbers::pi)) < kRadians;
 }

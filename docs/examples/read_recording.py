@@ -24,11 +24,12 @@ class Bytes:
 
 def step_line(step):
     number, frontiers, _unassigned, _abandoned, _rays, _collisions = step.counts(6)
-    step.doubles(6)  # seconds
+    (time,) = step.doubles(1)
+    step.doubles(6)  # that each phase took
     known = [step.counts(2) for _ in range(step.count())]
-    line = f"step {number}: {frontiers} frontiers"
+    line = f"step {number} until {time:.1f} s: {frontiers} frontiers"
     for robot in range(step.count()):
-        step.counts(4)  # gains, and the viewpoints travelled
+        step.counts(5)  # gains, and the viewpoints travelled
         (length,) = step.doubles(1)
         step.counts(2)  # path outcome, goal state
         step.doubles(4 if step.take(1)[0] else 0)  # goal: x, y, z, yaw
@@ -49,8 +50,8 @@ def step_line(step):
 
 
 with open(sys.argv[1], "rb") as file:
-    if (title := file.readline()) != b"frontlux recording, format 2\n":
-        sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 2'; read it with the frontlux that wrote it")
+    if (title := file.readline()) != b"frontlux recording, format 3\n":
+        sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 3'; read it with the frontlux that wrote it")
     while len(header := file.read(16)) == 16:
         tag, packed, _plain, _checksum = struct.unpack("<4s3I", header)
         payload, checksum = file.read(packed), file.read(4)

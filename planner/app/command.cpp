@@ -16,6 +16,8 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
+bool Option::given() const { return option_->count() > 0; }
+
 Command::Command(CLI::App& app, const char* name, const char* summary)
     : app_(app.add_subcommand(name, summary)) {}
 
@@ -62,6 +64,22 @@ void Command::allow_only(Option& option, std::initializer_list<std::string_view>
                 std::find(allowed.begin(), allowed.end(), candidate->get_name()) == allowed.end();
        }))
     option.option_->excludes(other);
+}
+
+Option Command::add_action(const char* name, const char* type, const char* what, ReadWord read_word) {
+  return add_words(name, type, what, "", false, std::move(read_word));
+}
+
+Command::ReadOption Command::read_option() const {
+  return [app = app_](const std::string& name, std::string_view word) {
+    CLI::Option* option = app->get_option("--" + name);
+    const CLI::results_t given = option->results();  // on the command line, and read later
+    option->clear();
+    option->add_result(std::string(word));
+    option->run_callback();
+    option->clear();
+    for (const std::string& one : given) option->add_result(one);
+  };
 }
 
 void Command::examples(const char* text) { app_->footer(text); }

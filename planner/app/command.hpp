@@ -23,6 +23,8 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
   Option& required();
   Option& excludes(const Option& other);
+  /// Whether it stands on the command line. @pre that has been read
+  [[nodiscard]] bool given() const;
 
  private:
   friend class Command;
@@ -34,6 +36,8 @@ class Option {
 /// source file only, since it takes long to compile.
 class Command {
  public:
+  using ReadWord = std::function<void(std::string_view word)>;
+
   /// @param summary  what it does, in an imperative sentence without a full stop
   Command(CLI::App& app, const char* name, const char* summary);
 
@@ -59,6 +63,8 @@ class Command {
   Option add(const char* name, std::optional<Value>& value, const char* what) {
     return add(name, value, names_of<Value>().c_str(), what);
   }
+  /// An option whose word a function takes, before the values of the options that are added after it.
+  Option add_action(const char* name, const char* type, const char* what, ReadWord read_word);
   /// A switch without a value.
   Option add_flag(const char* name, bool& value, const char* what);
 
@@ -67,13 +73,17 @@ class Command {
   /// Nothing but these may be given beside an option.
   void allow_only(Option& option, std::initializer_list<std::string_view> others);
 
+  /// Reads a word as the value of an option, by its name without dashes. May be called when the command
+  /// itself is gone, as long as the command line is there.
+  using ReadOption = std::function<void(const std::string& name, std::string_view word)>;
+  [[nodiscard]] ReadOption read_option() const;
+
   /// Shown below the options.
   void examples(const char* text);
   /// What the command does, once all its options are read.
   void run(std::function<void()> work);
 
  private:
-  using ReadWord = std::function<void(std::string_view word)>;
   Option add_words(const char* name, const char* type, const char* what, const std::string& default_text,
                    bool repeatable, ReadWord read_word);
 

@@ -62,7 +62,8 @@ double count_voxels(const WorldSource& source, const sim::World& world, WorldKin
                            rounded(size.z()) + " m are " + rounded(voxels) + " voxels of " +
                            rounded(source.resolution) + " m";
   const std::string advice =
-      kind == WorldKind::kMesh
+      source.box ? "give a larger resolution or a smaller box"
+      : kind == WorldKind::kMesh
           ? "give a larger --resolution, or --scale (0.001 if the file is in millimetres)"
           : "give a larger --resolution";
   if (voxels > kMostVoxels) throw BadInput(what + ", too many to map; " + advice);
@@ -70,10 +71,10 @@ double count_voxels(const WorldSource& source, const sim::World& world, WorldKin
   return voxels;
 }
 
-void put_start(const Eigen::Vector3f& start, sim::World& world) {
+void put_start(const Eigen::Vector3f& start, const std::string& giver, sim::World& world) {
   world.start = start.cast<double>();
   if (!world.bounds.contains(*world.start))
-    throw BadInput("--start: " + to_text(start) + " is outside the world, which extends from " +
+    throw BadInput(giver + ": " + to_text(start) + " is outside the world, which extends from " +
                    to_text(Eigen::Vector3f(world.bounds.min().cast<float>())) + " to " +
                    to_text(Eigen::Vector3f(world.bounds.max().cast<float>())));
 }
@@ -122,9 +123,15 @@ SourcedWorld make_world(const WorldSource& source) {
                           ? make_map_world(source.world)
                           : sim::read_mesh_world(source.world, {source.scale.value_or(1.0), source.up});
     }
+    if (source.box) sourced.world.bounds = *source.box;
     sourced.voxels = count_voxels(source, sourced.world, sourced.kind);
-    if (source.start) put_start(*source.start, sourced.world);
+    const auto& own = sourced.world.start;
+    if (source.start)
+      put_start(*source.start, "--start", sourced.world);
+    else if (source.start_otherwise && !(own && sourced.world.bounds.contains(*own)))
+      put_start(*source.start_otherwise, source.start_giver, sourced.world);
     if (!source.ground || !source.ground->align) return;
+    if (source.box) throw BadInput("--ground: a world within a box stays where it is; leave the option out");
     if (!source.ground->height && !sourced.world.start)
       throw BadInput(
           "--ground: auto looks for the floor below the start; give --start, or the floor's height");

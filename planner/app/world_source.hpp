@@ -6,6 +6,7 @@
 #include <frontlux/sim/world.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <optional>
@@ -24,13 +25,17 @@ void read(std::string_view word, GroundAlignment& ground);
 
 /// Where a world comes from, as the user names it.
 struct WorldSource {
-  std::string world;                      ///< a built-in world, or a mesh or OctoMap file
-  std::optional<std::uint64_t> seed;      ///< of a built-in world; 1 if not given
-  std::optional<double> scale;            ///< of a mesh file: metres per unit
-  std::optional<sim::UpAxis> up;          ///< of a mesh file
-  std::optional<Eigen::Vector3f> start;   ///< [m] in the world's frame before the ground is aligned
-  std::optional<GroundAlignment> ground;  ///< off if not given
-  double resolution = 0.3;                ///< [m] of the map that the world is for
+  std::string world;                     ///< a built-in world, or a mesh or OctoMap file
+  std::optional<std::uint64_t> seed;     ///< of a built-in world; 1 if not given
+  std::optional<double> scale;           ///< of a mesh file: metres per unit
+  std::optional<sim::UpAxis> up;         ///< of a mesh file
+  std::optional<Eigen::Vector3f> start;  ///< [m] in the world's frame before the ground is aligned
+  /// [m] The start where the world knows none within its bounds, and who gives it, in messages.
+  std::optional<Eigen::Vector3f> start_otherwise;
+  std::string start_giver;
+  std::optional<Eigen::AlignedBox3d> box;  ///< [m] the bounds, if not those of the mesh; the floor stays then
+  std::optional<GroundAlignment> ground;   ///< off if not given
+  double resolution = 0.3;                 ///< [m] of the map that the world is for
 };
 
 enum class WorldKind { kBuiltIn, kMesh, kMap };

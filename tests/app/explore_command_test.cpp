@@ -34,8 +34,9 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   const std::string csv = content_of(path("run/steps.csv"));
   EXPECT_EQ(
       csv.substr(0, csv.find('\n')),
-      "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
-      "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+      "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
+      "abandoned,goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,"
+      "goal_gain,"
       "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
       "frontiers_s,caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s");
   std::vector<double> travelled(2);
@@ -52,6 +53,7 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
         return static_cast<double>(known) / static_cast<double>(all);
       };
       EXPECT_EQ(cell("step"), std::to_string(recorded.step.number));
+      EXPECT_EQ(std::stod(cell("time_s")), recorded.step.time);
       EXPECT_EQ(cell("robot"), r == 0 ? "ugv" : "uav");
       const auto& known = recorded.known;
       EXPECT_EQ(std::stod(cell("coverage_observable")),
@@ -114,8 +116,8 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   EXPECT_EQ(json.at("steps"), 4);
   EXPECT_EQ(json.at("collisions"), 0);
   EXPECT_EQ(json.at("resolution_m"), 0.3);
-  EXPECT_EQ(json.at("coverage_observable"), std::stod(rows.back()[2]));
-  EXPECT_EQ(json.at("coverage_box"), std::stod(rows.back()[3]));
+  EXPECT_EQ(json.at("coverage_observable"), std::stod(rows.back()[3]));
+  EXPECT_EQ(json.at("coverage_box"), std::stod(rows.back()[4]));
   EXPECT_EQ(json.at("path_length_m").at("ugv"), travelled[0]);
   EXPECT_EQ(json.at("path_length_m").at("uav"), travelled[1]);
   double sum = 0.0, most = 0.0;
@@ -131,7 +133,7 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   const std::string out = content_of(path("out"));
   for (int step = 0; step <= 4; ++step)
     EXPECT_NE(out.find("step " + std::to_string(step) + ": "), std::string::npos) << out;
-  test::expect_parts(out, {"\nend          step_limit", "\nsteps        4\n", "\ncollisions   0\n"});
+  test::expect_parts(out, {"\nend          step_limit", "\nsteps        4\n", "\ncontacts     0\n"});
 }
 
 TEST_F(ExploreCommand, RefusesWhatCannotBe) {

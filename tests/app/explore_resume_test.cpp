@@ -25,7 +25,7 @@ TEST_F(ExploreCommand, GivesTheSameResultHoweverItIsRun) {
   expect_explored("grid", {"--caster", "grid"});
   expect_same_runs("one", "grid");
   // Stopped at a limit, and with another limit gone on.
-  ASSERT_EQ(run({"room", "--max-steps", "2", "-o", path("cut")}).code, 0);
+  ASSERT_EQ(run({"room", "--lockstep", "--max-steps", "2", "-o", path("cut")}).code, 0);
   EXPECT_EQ(json_in("cut").at("steps"), 2);
   expect_resumed("cut", {"--max-steps", kSteps, "--threads", "1"});
   expect_same_runs("one", "cut");
@@ -75,8 +75,8 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
   std::ostringstream at;
   at << room.start->x() << ',' << room.start->y() << ',' << room.start->z();
   for (const auto& [output, steps] : {std::pair("whole", "4"), std::pair("cut", "2")})
-    expect_answer({path("poles.ply"), "--start", at.str(), "--ground", "off", "--max-steps", steps,
-                   "--report", "off", "-o", path(output)});
+    expect_answer({path("poles.ply"), "--start", at.str(), "--ground", "off", "--lockstep", "--max-steps",
+                   steps, "--report", "off", "-o", path(output)});
   const std::uint64_t before = json_in("cut").at("held_back");
   EXPECT_GT(before, 0U);
   EXPECT_GT(json_in("whole").at("held_back"), before);
@@ -87,7 +87,8 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
 // A world that is large enough to be caught in the middle of.
 TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
   const auto to = [&](const std::string& output) {
-    return std::vector<std::string>{"storage", "--max-steps", "6", "--report", "off", "-o", path(output)};
+    return std::vector<std::string>{"storage",  "--lockstep", "--max-steps", "6",
+                                    "--report", "off",        "-o",          path(output)};
   };
   ASSERT_EQ(run(to("whole")).code, 0);
 
@@ -127,7 +128,7 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
   for (const std::uint64_t part : {2U, 5U}) {
     const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(size * part / 6 / 512) + ";";
     fs::remove_all(path("full"));
-    const Answer answer = run({"room", "--max-steps", kSteps, "-o", path("full")}, limit);
+    const Answer answer = run({"room", "--lockstep", "--max-steps", kSteps, "-o", path("full")}, limit);
     EXPECT_EQ(answer.code, 2) << answer.err;
     test::expect_parts(answer.err, {path("full/run.frontlux") + ": cannot be written",
                                     "frontlux explore --resume " + path("full") + " continues the run"});
@@ -159,8 +160,8 @@ TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
   const Eigen::Vector3d start = *sim::make_world("room", 1).start;
   std::ostringstream at;
   at << start.x() << ',' << start.y() << ',' << start.z();
-  expect_answer(
-      {path("room.ply"), "--start", at.str(), "--ground", "off", "--max-steps", "1", "-o", path("run")});
+  expect_answer({path("room.ply"), "--start", at.str(), "--ground", "off", "--lockstep", "--max-steps", "1",
+                 "-o", path("run")});
   ASSERT_EQ(world("2").code, 0);
   expect_refused({"--resume", path("run"), "--max-steps", "2"},
                  {"--resume: ", "is not what room.ply is now"});

@@ -13,10 +13,10 @@ import sys
 import time
 from pathlib import Path
 
-HEADER = ("step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
-          "goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,path,"
-          "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,frontiers_s,"
-          "caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s")
+HEADER = ("step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
+          "abandoned,goal_state,assigned,released,received,left_over,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
+          "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
+          "frontiers_s,caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s")
 FAILURE = 'no "maze" <script>alert(1)</script> | [here](x) `x`'
 
 
@@ -34,15 +34,15 @@ def write_run(folder, world, seed, coverage, robots=("ugv", "uav"), uav_part=0.7
             gain = "{},{},{}".format(*gains) if step else "0,0,0"
             times = ",".join(map(str, (*phases, sum(phases), 0.05)))
             part = covered * parts[robot]
-            lines.append(f"{step},{robot},{covered},{covered * 0.8},{part},{part * 0.8},900,3,0,"
+            lines.append(f"{step},{12.5 * step},{robot},{covered},{covered * 0.8},{part},{part * 0.8},900,3,0,"
                          f"chosen,400,0,0,50,{goal},planned,{9 if step else 0},{length},{length * step},{gain},0,0,"
                          f"50000,{times}")
     (folder / "steps.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     total = {"version": "9.9", "world": world, "seed": seed, "mode": "default", "goal": "render", "assign": True,
-             "optimize": True, "caster": "fast", "threads": 1, "resolution_m": 0.3, "robots": list(robots),
-             "machine": "A|B <cpu>", "end": "low_gain", "steps": len(coverage) - 1, "coverage_observable": coverage[-1],
-             "coverage_box": coverage[-1] * 0.8, "planning_mean_s": sum(phases), "planning_max_s": 2 * sum(phases),
-             "wall_s": 36.0, "memory_mb": 300.0, "collisions": 0,
+             "optimize": True, "lockstep": True, "caster": "fast", "threads": 1, "resolution_m": 0.3,
+             "robots": list(robots), "machine": "A|B <cpu>", "end": "low_gain", "steps": len(coverage) - 1,
+             "coverage_observable": coverage[-1], "coverage_box": coverage[-1] * 0.8, "planning_mean_s": sum(phases),
+             "planning_max_s": 2 * sum(phases), "wall_s": 36.0, "memory_mb": 300.0, "collisions": 0,
              "path_length_m": {r: metres[r] * (len(coverage) - 1) for r in robots}, **facts}
     (folder / "run.json").write_text(json.dumps(total), encoding="utf-8")
     (folder / "run.frontlux").write_text(json.dumps(total), encoding="utf-8")
@@ -50,7 +50,8 @@ def write_run(folder, world, seed, coverage, robots=("ugv", "uav"), uav_part=0.7
 
 def explore(arguments):
     """Curves that look like those of a run."""
-    given = dict(zip(arguments[2::2], arguments[3::2])) if arguments[1] != "--resume" else None
+    options = [word for word in arguments[2:] if word != "--lockstep"]
+    given = dict(zip(options[::2], options[1::2])) if arguments[1] != "--resume" else None
     if given is None:
         folder = Path(arguments[2])
         facts = json.loads((folder / "run.frontlux").read_text())
@@ -59,7 +60,7 @@ def explore(arguments):
         team = given.get("--team", "uav+ugv")
         facts = {"world": arguments[1], "seed": int(given["--seed"]), "threads": int(given["--threads"]),
                  "caster": given["--caster"], "mode": given.get("--mode", "default"),
-                 "goal": given.get("--goal", "render"), "assign": given.get("--assign", "on") == "on",
+                 "goal": given.get("--goal", "render"), "lockstep": "--lockstep" in arguments, "assign": given.get("--assign", "on") == "on",
                  "optimize": given.get("--optimize", "on") == "on",
                  "robots": ["ugv", "uav"] if team == "uav+ugv" else [team]}
     world, seed = facts["world"], facts["seed"]
@@ -67,7 +68,7 @@ def explore(arguments):
     slow *= 1.6 if len(facts["robots"]) == 1 else 1.25 if facts["goal"] != "render" else 1.0
     limit = 0.55 if facts["robots"] == ["ugv"] else 0.975 - 0.004 * seed
     coverage = [round(limit * (1 - 0.93 * math.exp(-i / slow)), 6) for i in range(int(4.5 * slow))]
-    kept = {k: facts[k] for k in ("threads", "caster", "mode", "goal", "assign", "optimize")}
+    kept = {k: facts[k] for k in ("threads", "caster", "mode", "goal", "lockstep", "assign", "optimize")}
     if folder.name in os.environ.get("MADE_UP_STOPS", "").split() and given is not None:
         kept["end"] = "stopped"
     write_run(folder, world, seed, coverage, tuple(facts["robots"]), 0.7 if facts["optimize"] else 0.6, **kept)

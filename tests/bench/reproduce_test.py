@@ -166,12 +166,12 @@ class Document(Made):
             file.write_text(edit(file.read_text(encoding="utf-8")), encoding="utf-8")
 
         change(bad[0], "steps.csv", lambda t: t[:-40])
-        change(bad[1], "steps.csv", lambda t: t[:t.rindex("3,uav")])
+        change(bad[1], "steps.csv", lambda t: t[:t.rindex("3,37.5,uav")])
         change(bad[2], "steps.csv", lambda t: t.replace("0.95,", "nan,"))
         change(bad[3], "steps.csv", lambda t: t.replace("0.95,", "1.5,"))
         change(bad[4], "steps.csv", lambda t: t.replace("planning_s", "thinking_s"))
         change(bad[5], "steps.csv", lambda t: "")
-        change(bad[6], "steps.csv", lambda t: t[:t.index("\n2,ugv")] + "\n")
+        change(bad[6], "steps.csv", lambda t: t[:t.index("\n2,25.0,ugv")] + "\n")
         change(bad[7], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": NaN'))
         change(bad[8], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": 1e999'))
         change(bad[9], "run.json", lambda t: t.replace('"low_gain"', '"stopped"'))
@@ -260,7 +260,7 @@ class Running(Made):
         calls = sorted(self.reproduce(0))
         self.assertEqual(len(calls), 3)
         self.assertEqual(calls[0], f"explore --resume {self.runs / 'factory_ugv_1'} --report off")
-        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --seed 1 --threads 1 --caster fast "
+        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --lockstep --seed 1 --threads 1 --caster fast "
                          "--max-steps 1000 --team uav --report off")
         self.assertRegex(calls[2], r"^explore station .*--mode paper.* --force$")
         self.assertIn("None.", (self.folder / "docs/results.md").read_text())

@@ -46,6 +46,23 @@ TEST_F(RobotFile, ReadsAConeAndWhatIsLeftOut) {
   EXPECT_EQ(nodes.robot.view.horizontal, 0.0);
 }
 
+TEST_F(RobotFile, ReadsLimitsMarginAndRate) {
+  const RobotDescription plain = read_robot(kRobots / "sonar.json"),
+                         camera = read_robot(kRobots / "uav.json");
+  EXPECT_EQ(plain.robot.limits, planner::MotionLimits());
+  EXPECT_EQ(plain.robot.travel.margin, 0.0);
+  EXPECT_EQ(plain.rate, 10.0);
+  EXPECT_EQ(camera.rate, 15.0);
+  EXPECT_EQ(camera.robot.limits, planner::uav().limits);
+  const RobotDescription all = read(
+      R"({"name":"n","motion":"plane","box_m":[0.5,0.6,0.7],"mount_height_m":0.4,"margin_m":0.2,
+          "limits":{"speed_m_s":3,"acceleration_m_s2":4,"yaw_rate_deg_s":180,"per_axis":true},
+          "sensor":{"kind":"spinning","vertical_deg":30,"range_m":4.5,"columns":8,"rows":2,"rate_hz":2.5}})");
+  EXPECT_EQ(all.robot.travel.margin, 0.2);
+  EXPECT_EQ(all.robot.limits, (planner::MotionLimits{3.0, 4.0, std::numbers::pi, true}));
+  EXPECT_EQ(all.rate, 2.5);
+}
+
 TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
   const std::string good =
       R"({"name": "r", "motion": "plane", "box_m": [1, 1, 0.7], "mount_height_m": 0.75, "sensor": )"
@@ -87,6 +104,11 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with("\"columns\": 16, \"rows\": 12", "\"columns\": 60000, \"rows\": 60000"),
        "sensor.rows is 60000, too many with 60000 columns; give at most 67108864 rays in all"},
       {with("\"columns\"", "\"colums\""), "sensor.columns is missing"},
+      {with("0.75", "0.75, \"margin_m\": -1"), "margin_m is -1; give a number from 0 to 100 m"},
+      {with("0.75", "0.75, \"limits\": 3"), "limits is 3; give an object"},
+      {with("0.75", "0.75, \"limits\": {\"speed_m_s\": 0}"),
+       "limits.speed_m_s is 0; give a number from 0.001"},
+      {with("\"rows\": 12", "\"rows\": 12, \"rate_hz\": \"5\""), "sensor.rate_hz is '5'; give a number"},
       {with("\"rows\": 12", "\"rows\": 12, \"fps\": 3"),
        "the member 'sensor.fps' is not known; known here: kind,"},
       {with("\"name\": \"r\"", "\"name\": \"r\", \"mass\": 3"),

@@ -1,17 +1,20 @@
-// Opens reports in headless Chromium: browser_test.mjs WEB CHROMIUM SHOTS REPORTS EVIL EXPLORED
+// Opens reports in headless Chromium: browser_test.mjs WEB CHROMIUM SHOTS REPORTS EVIL EXPLORED LOCKSTEP BOTH LONG
 //   WEB      planner/report/web, where playwright-core is
 //   SHOTS    folder for screenshots
 //   REPORTS  what make_report has written: report.html and <number>/steps.csv for each run
 //   EVIL     the same of a run whose names are markup
-//   EXPLORED  a folder that frontlux explore has written
+//   EXPLORED, LOCKSTEP  folders that frontlux explore has written
+//   BOTH     the report of both
+//   LONG     the same as REPORTS, of a run of thousands of steps
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { mkdir, readFile } from "node:fs/promises";
+import { mkdir, readFile, stat } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { chartsAreRight, milestonesAreRight, near, readTable } from "./number_checks.mjs";
 
-const [web, executablePath, shots, reports, evil, explored] = process.argv.slice(2).map((path) => resolve(path));
+const [web, executablePath, shots, reports, evil, explored, lockstep, both, long] = process.argv.slice(2).map((path) => resolve(path));
 const { chromium } = createRequire(`${web}/package.json`)("playwright-core");
 const kWithGraphics = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const kWithout = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"];
@@ -36,51 +39,49 @@ async function open(browser, folder, options = {}) {
   return { page, trouble, seconds: (Date.now() - began) / 1000 };
 }
 
-/** The rows of a CSV file as objects, numbers as numbers. */
-async function readTable(file) {
-  const [head, ...lines] = (await readFile(file, "utf8")).trim().split("\n").map((line) => line.split(","));
-  return lines.map((line) => Object.fromEntries(head.map((name, i) => [name, line[i] !== "" && !Number.isNaN(Number(line[i])) ? Number(line[i]) : line[i]])));
-}
-
-function near(actual, expected, what) {
-  assert.ok(Math.abs(actual - expected) <= 1e-9 * Math.max(1, Math.abs(expected)), `${what}: ${actual} instead of ${expected}`);
-}
-
-async function timeLineWorks(page, steps) {
-  const label = () => page.textContent("#step-label");
-  assert.match(await label(), new RegExp(`^Step ${steps - 1} of ${steps - 1}`), "begins at the end");
+async function timeLineWorks(page, rows) {
+  const times = [...new Map(rows.map((row) => [row.step, row.time_s])).values()], last = times.length - 1;
+  const label = () => page.textContent("#step-label"), seconds = (time) => `${time.toFixed(1)} s`;
+  const says = async (step, what) => assert.ok((await label()).startsWith(`${times[step].toFixed(1)} of ${seconds(times[last])} · step ${step} of ${last} · `), `${what ?? step}: ${await label()}`);
+  await says(last, "begins at the end");
   await page.keyboard.press("Home");
-  assert.match(await label(), /^Step 0 of/);
+  await says(0);
   await page.keyboard.press("ArrowRight");
-  assert.match(await label(), /^Step 1 of/);
+  await says(1);
   await page.click("#forward");
-  assert.match(await label(), /^Step 2 of/);
+  await says(2);
   await page.click("#back");
   await page.click("#back");
-  assert.match(await label(), /^Step 0 of/);
+  await says(0);
   await page.click("#last");
-  assert.match(await label(), new RegExp(`^Step ${steps - 1} of`));
+  await says(last);
   await page.locator("#time").fill("3");
-  assert.match(await label(), /^Step 3 of/);
-  assert.match(await page.getAttribute("#time", "aria-valuetext"), /^Step 3 of/);
-  await page.selectOption("#speed", "4");
+  await says(3);
+  assert.equal(await page.getAttribute("#time", "aria-valuetext"), await label());
+  // It plays by the clock.
+  await page.selectOption("#speed", "10");
   await page.locator("#view canvas").focus();
   await page.keyboard.press("Space");
+  const [from, began] = await page.evaluate(() => [window.frontlux.page.timeline.time, performance.now()]);
   await page.waitForFunction(() => window.frontlux.page.timeline.step >= 5);
+  const [to, ended] = await page.evaluate(() => [window.frontlux.page.timeline.time, performance.now()]);
+  const speed = (1000 * (to - from)) / (ended - began);
+  assert.ok(speed > 5 && speed < 15, `${speed} seconds of the run in a second, instead of 10`);
   assert.equal(await page.getAttribute("#play", "aria-label"), "Pause (space)");
   await page.keyboard.press("Space");
   const paused = await label();
   await page.waitForTimeout(600);
   assert.equal(await label(), paused, "it goes on although it was paused");
-  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage-step .chart-mark").style.transform);
+  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage-time .chart-mark").style.transform);
   const before = await mark();
   await page.keyboard.press("Home");
   assert.notEqual(await mark(), before, "the charts' line stays behind");
   // A click in a chart goes to the step that is nearest.
-  const box = await page.locator("#chart-coverage-step .u-over").boundingBox();
+  const box = await page.locator("#chart-coverage-time .u-over").boundingBox();
   await page.mouse.click(box.x + box.width * 0.5, box.y + box.height / 2);
   const middle = await page.evaluate(() => window.frontlux.page.timeline.step);
-  assert.ok(Math.abs(middle - (steps - 1) / 2) <= 1, `a click in the middle went to ${middle}`);
+  const away = (step) => Math.abs(times[step] - times[last] / 2);
+  assert.ok(times.every((_, step) => away(middle) <= away(step) + 0.02 * times[last]), `a click in the middle went to ${middle}`);
 }
 
 async function layersWork(page) {
@@ -157,51 +158,6 @@ async function voxelsAreRight(page, rows) {
   }
 }
 
-/** The charts hold what the table of steps holds. */
-async function chartsAreRight(page, rows) {
-  const charts = await page.evaluate(() => Object.fromEntries(window.frontlux.page.charts.charts.map(({ spec, plot }) => [spec.id, { data: plot.data.map((list) => Array.from(list)), names: spec.series.map((series) => series.name), other: spec.series.map((series) => series.other === true) }])));
-  const robots = [...new Set(rows.map((row) => row.robot))], of = (robot) => rows.filter((row) => row.robot === robot), first = of(robots[0]);
-  const equal = (actual, expected, what) => {
-    assert.equal(actual.length, expected.length, what);
-    actual.forEach((value, i) => near(value, expected[i], `${what}, ${i}`));
-  };
-  const column = (list, name) => list.map((row) => row[name]);
-  const coverage = charts["coverage-step"], team = robots.length > 1 ? 1 : 0;
-  if (!coverage.other.some(Boolean)) equal(coverage.data[0], column(first, "step"), "steps");
-  const short = (list) => list.slice(0, first.length);
-  equal(short(coverage.data[1]), column(first, "coverage_observable"), "coverage");
-  if (team) robots.forEach((robot, r) => equal(short(coverage.data[2 + r]), column(of(robot), "robot_observable"), `${robot}'s part`));
-  equal(charts.frontiers.data[1], column(first, "frontiers"), "frontiers");
-  equal(charts.frontiers.data[2], column(first, "unassigned"), "unassigned");
-  equal(charts.frontiers.data[3], column(first, "abandoned"), "abandoned");
-  const phases = ["frontiers_s", "caster_s", "goals_s", "paths_s", "optimization_s"], { data } = charts.planning;
-  equal(data[1], column(first, "planning_s"), "planning");
-  phases.forEach((phase, p) => equal(data[phases.length - p].map((sum, i) => sum - (p > 0 ? data[phases.length - p + 1][i] : 0)), column(first, phase), phase));
-  robots.forEach((robot, r) => {
-    equal(charts.gain.data[1 + 2 * r], column(of(robot), "gain_predicted"), `${robot} predicted`);
-    equal(charts.gain.data[2 + 2 * r], column(of(robot), "gained"), `${robot} gained`);
-  });
-  // Coverage by length: at each length of the path the value at the last step with it.
-  const [lengths, ...curves] = charts["coverage-length"].data;
-  const curve = (values, xs, ys, what) => {
-    const wanted = new Map(xs.map((x, i) => [x, ys[i]]));
-    const got = lengths.map((x, i) => [x, values[i]]).filter(([, y]) => y !== null && y !== undefined);
-    assert.equal(got.length, wanted.size, what);
-    for (const [x, y] of got) {
-      const nearest = [...wanted.keys()].reduce((a, b) => (Math.abs(b - x) < Math.abs(a - x) ? b : a));
-      near(x, nearest, `${what}, length`);
-      near(y, wanted.get(nearest), what);
-    }
-  };
-  const together = first.map((_, s) => robots.reduce((sum, robot) => sum + of(robot)[s].travelled_m, 0));
-  curve(curves[0], together, column(first, "coverage_observable"), "coverage by length");
-  if (team) robots.forEach((robot, r) => curve(curves[1 + r], column(of(robot), "travelled_m"), column(of(robot), "robot_observable"), `${robot} by length`));
-  // And the legend says what holds at the step that is shown.
-  await page.evaluate(() => window.frontlux.page.timeline.seek(3));
-  const shown = await page.locator("#chart-frontiers .legend .value").allTextContents();
-  assert.deepEqual(shown.map((text) => Number(text.replaceAll(",", ""))), [first[3].frontiers, first[3].unassigned, first[3].abandoned]);
-}
-
 /** From above, a click on the highest voxel of a column reads that voxel. */
 async function picksAreRight(page) {
   // Later on the ceiling is known, and whatever lies below it is covered.
@@ -269,7 +225,7 @@ async function withGraphics() {
     const { page, trouble, seconds } = await open(browser, reports);
     assert.ok(seconds < 5, `loading took ${seconds} s`);
     const rows = await readTable(`${reports}/0/steps.csv`), steps = rows.at(-1).step + 1;
-    await timeLineWorks(page, steps);
+    await timeLineWorks(page, rows);
     await layersWork(page);
     await voxelsAreRight(page, rows);
     await chartsAreRight(page, rows);
@@ -309,18 +265,80 @@ async function withGraphics() {
         assert.deepEqual(shown.trouble, []);
         await shown.page.close();
       }
+    await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
     await browser.close();
   }
 }
 
-/** A report of the command, compared with the steps.csv that the command has written. */
+/** Reports of the command, compared with the steps.csv and run.json that the command has written. */
 async function commandIsRight(browser) {
-  const { page, trouble } = await open(browser, explored);
-  await chartsAreRight(page, await readTable(`${explored}/steps.csv`));
+  const runs = [];
+  for (const folder of [explored, lockstep]) {
+    const { page, trouble } = await open(browser, folder), rows = await readTable(`${folder}/steps.csv`);
+    const json = JSON.parse(await readFile(`${folder}/run.json`, "utf8"));
+    await chartsAreRight(page, rows);
+    await milestonesAreRight(page, rows, json.time_s);
+    const text = await page.textContent("header");
+    for (const part of [`${json.time_s.end.toFixed(1)} s`, `${json.explored_m3.toFixed(json.explored_m3 < 100 ? 1 : 0)} m³`]) assert.ok(text.includes(part), `${part} is not in ${text}`);
+    const few = ["low_gain", "nothing_to_do"].includes(json.end) && json.coverage_observable < 0.95;
+    assert.equal(await page.locator(".warning").count(), few || json.end === "cut_off" ? 1 : 0, `warnings after ${json.end}`);
+    assert.deepEqual(trouble, []);
+    await page.close();
+    runs.push({ rows, json });
+  }
+  const { page, trouble } = await open(browser, both);
+  for (const [i, { rows, json }] of runs.entries()) {
+    await page.selectOption("#run", String(i));
+    await chartsAreRight(page, rows);
+    const cells = await page.locator(`.comparison tbody tr:nth-child(${i + 1}) > *`).allTextContents();
+    assert.equal(cells[2], json.lockstep ? "lock-step" : "in motion");
+    assert.ok(cells[4].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[4]);
+    const first = rows.filter((row) => row.robot === rows[0].robot);
+    [0.5, 0.9, 0.95, 0.99].forEach((part, k) => {
+      const row = first.find(({ coverage_observable: coverage }) => coverage >= part);
+      const begin = runs[0].rows.find(({ coverage_observable: coverage }) => coverage >= part);
+      const change = row && begin && i > 0 ? Math.round(100 * (row.time_s / begin.time_s - 1)) : null;
+      assert.equal(cells[5 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
+    });
+    // The legend's value of the other run is that at the same time.
+    const { rows: theirs } = runs[1 - i], other = theirs.filter((row) => row.robot === theirs[0].robot);
+    const step = Math.floor(first.length / 2), now = first[step].time_s;
+    await page.evaluate((s) => window.frontlux.page.timeline.seek(s), step);
+    const shown = (await page.locator("#chart-coverage-time .legend .value").allTextContents()).at(-1);
+    assert.equal(shown, await page.evaluate((value) => window.frontlux.percent(value), other.findLast((row) => row.time_s <= now).coverage_observable));
+  }
   assert.deepEqual(trouble, []);
   await page.close();
+}
+
+/** A run of thousands of steps is as quick as others. */
+async function longRunIsQuick(browser) {
+  const { page, trouble, seconds } = await open(browser, long), rows = await readTable(`${long}/0/steps.csv`);
+  assert.ok(rows.length > 6000);
+  assert.ok(seconds < 5, `loading took ${seconds} s`);
+  await chartsAreRight(page, rows);
+  await milestonesAreRight(page, rows);
+  const slowest = await page.evaluate(() => {
+    const { timeline } = window.frontlux.page, times = [];
+    for (let i = 0; i < 40; ++i) {
+      const began = performance.now();
+      timeline.seek(1000 + 20 * i);
+      times.push(performance.now() - began);
+    }
+    return times.sort((a, b) => b - a)[1];
+  });
+  assert.ok(slowest < 250, `a step takes ${slowest} ms`);
+  await page.locator("summary").first().click();
+  await page.waitForSelector("details tbody tr");
+  const shown = await page.locator("details tbody tr").count(), bytes = (await stat(`${long}/report.html`)).size;
+  assert.ok(shown > 250 && shown <= 502, `${shown} rows of ${rows.length / 2} steps`);
+  assert.ok(bytes < 8e6, `${bytes} bytes`);
+  await page.screenshot({ path: `${shots}/long.png` });
+  assert.deepEqual(trouble, []);
+  await page.close();
+  console.log(`${rows.length / 2} steps in ${(bytes / 1e6).toFixed(1)} MB loaded in ${seconds} s, slowest step ${slowest.toFixed(0)} ms`);
 }
 
 async function namesAreNoMarkup(browser) {
@@ -339,7 +357,7 @@ async function withoutGraphics() {
     assert.equal(await page.isVisible("#no-webgl"), true, "the page does not say that WebGL is missing");
     await chartsAreRight(page, await readTable(`${reports}/0/steps.csv`));
     await page.keyboard.press("Home");
-    assert.match(await page.textContent("#step-label"), /^Step 0 of/);
+    assert.match(await page.textContent("#step-label"), / · step 0 of /);
     await page.screenshot({ path: `${shots}/no_webgl.png` });
     assert.deepEqual(trouble, []);
     await namesAreNoMarkup(browser);

@@ -12,7 +12,11 @@ rm -rf "$folder"
 mkdir -p "$folder"
 "$make_report" "$folder/runs" 9 storage 'alone=+storage'
 "$make_report" "$folder/evil" 2 '<img src=x onerror=window.evil=1></script><script>window.evil=1</script>=room'
+"$make_report" "$folder/long" 9 storage/400
 "$frontlux" explore room -o "$folder/explored" --threads 2 >/dev/null
+"$frontlux" explore room -o "$folder/lockstep" --lockstep --threads 2 >/dev/null
 "$frontlux" report "$folder/explored" >/dev/null
+mkdir "$folder/both"
+"$frontlux" report "$folder/explored" "$folder/lockstep" -o "$folder/both/report.html" >/dev/null
 exec node "$(dirname "$0")/browser_test.mjs" "$web" "$chromium" "$folder/screenshots" "$folder/runs" "$folder/evil" \
-  "$folder/explored"
+  "$folder/explored" "$folder/lockstep" "$folder/both" "$folder/long"

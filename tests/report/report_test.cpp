@@ -121,6 +121,7 @@ class ReportTest : public test::FolderTest {
   }
 };
 
+using Cells = std::vector<planner::RenderedCell>;
 using Changes = std::map<VoxelKey, Occupancy>;
 
 Changes read_changes(Reader& data) {
@@ -200,6 +201,34 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   EXPECT_GT(shown.size(), 10'000U);
 }
 
+TEST_F(ReportTest, OfManyImagesSomeAreShown) {
+  Recording recording = room();
+  const auto with_image =
+      std::find_if(room().steps.begin(), room().steps.end(),
+                   [](const planner::RecordedStep& step) { return !step.step.robots[0].image.empty(); });
+  ASSERT_NE(with_image, room().steps.end());
+  recording.steps.assign(1001, *with_image);
+  recording.steps[0].step.robots[0].image.clear();
+  recording.steps[7].step.robots[1].image = with_image->step.robots[0].image;
+  Decoded run = decode(packed_runs(page_of({{"room", &recording}})).at(0));
+  std::array<std::vector<std::size_t>, 2> shown;
+  for (std::size_t s = 0; s < recording.steps.size(); ++s)
+    for (std::size_t r = 0; r < 2; ++r) {
+      read_changes(run.data);
+      const bool here = run.data.bytes.at(run.data.at) != 0;
+      if (here) shown.at(r).push_back(s);
+      expect_image(run.data, here ? recording.steps[s].step.robots[r].image : Cells{});
+      const std::uint64_t poses = run.data.count();
+      run.data.count();  // of them, those that it reached
+      run.data.at += 16 * poses;
+    }
+  EXPECT_EQ(run.data.at, run.data.bytes.size());
+  // Of a thousand, every third one.
+  ASSERT_EQ(shown[0].size(), 334U);
+  for (std::size_t i = 0; i < shown[0].size(); ++i) EXPECT_EQ(shown[0][i], 1 + 3 * i);
+  EXPECT_EQ(shown[1], std::vector<std::size_t>{7});
+}
+
 TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
   const nlohmann::json facts = decode(packed_runs(page_of({{"a \"room\"", &room()}})).at(0)).facts;
   EXPECT_EQ(facts["name"], "a \"room\"");
@@ -222,6 +251,8 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
     const auto& reported = facts["steps"][s];
     const auto& [step, known, collisions] = room().steps[s];
     EXPECT_EQ(reported["number"], step.number);
+    EXPECT_EQ(reported["time"], step.time);
+    EXPECT_GT(step.time, s > 0 ? room().steps[s - 1].step.time : 0.0);
     EXPECT_EQ(reported["frontiers"], step.frontiers);
     EXPECT_EQ(reported["unassigned"], step.unassigned);
     EXPECT_EQ(reported["abandoned"], step.abandoned);

@@ -44,8 +44,11 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     fail(file, "cannot be opened: " + std::generic_category().message(errno), "check its permissions");
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) fail(file, "has no size: " + error.message(), "check the path and its permissions");
+  // Of the file that is open: another one may have taken its name.
+  const std::streamoff end = stream.seekg(0, std::ios::end).tellg();
+  if (end < 0) fail(file, "has no size", "check the path and its permissions");
+  const auto size = static_cast<std::uint64_t>(end);
+  stream.seekg(0);
   if (size > max_bytes)
     fail(file,
          "has " + std::to_string(size) + " bytes, more than the " + std::to_string(max_bytes) +
@@ -53,7 +56,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes
          "split it, or make it coarser");
   std::string bytes(static_cast<std::size_t>(size), '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size)
+  if (static_cast<std::uint64_t>(stream.gcount()) != size)
     fail(file, "gave " + std::to_string(stream.gcount()) + " of its " + std::to_string(size) + " bytes",
          "try again when nothing writes to it");
   return bytes;

@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "explore/explore_options.hpp"
 #include "explore/explore_run.hpp"
+#include "explore/explore_task.hpp"
 
 #include <memory>
 #include <string>
@@ -20,22 +21,32 @@ struct Options {
 void check(const Options& given) {
   if (!given.resume.empty()) return;
   if (given.options.source.world.empty())
-    throw BadInput("WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map");
+    throw BadInput(
+        "WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map; or a "
+        "--task");
   if (given.output.empty()) throw BadInput("--output: give a folder for the files of the run");
+}
+
+// Of what a task gives, an option replaces all that it stands for.
+void replace_in_task(ExploreOptions& options, bool team, bool mode, bool goal) {
+  if (team) options.robots.clear();
+  if (mode && !goal) options.goal.reset();
 }
 
 void run(Options given) {
   check(given);
   given.run.resume = !given.resume.empty();
   given.run.folder = given.run.resume ? given.resume : given.output;
-  given.options.max_steps = given.run.max_steps.value_or(given.options.max_steps);
+  if (given.run.max_steps) given.options.max_steps = given.run.max_steps;
   explore(std::move(given.options), given.run);
 }
 
-void add_method_options(Command& command, ExploreOptions& options) {
+// @return --mode and --goal
+std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& options) {
   command.group("Method");
-  command.add("--mode", options.mode, "What works best, or as printed in the paper");
-  command.add("--goal", options.goal, "Goals by view quality, clusters of frontiers, or distance [by mode]");
+  Option mode = command.add("--mode", options.mode, "What works best, or as printed in the paper");
+  Option goal = command.add("--goal", options.goal,
+                            "Goals by view quality, clusters of frontiers, or distance [by mode]");
   command.add("--planner", options.search, "Path search; corridor: shortest paths [by mode]");
   command.add("--renderer", options.renderer,
               "View quality of all frontiers, or by rays to drawn ones [by mode]");
@@ -49,6 +60,7 @@ void add_method_options(Command& command, ExploreOptions& options) {
   command.add("--advance", options.advance, "METRES",
               "Goals nearer than this lose value in proportion; 0: they do not [by mode]", kFromZero);
   command.add("--min-distance", options.min_distance, "METRES", "Least distance of a goal [0.6]", kFromZero);
+  return {mode, goal};
 }
 
 }  // namespace
@@ -57,8 +69,13 @@ void add_explore_command(CLI::App& app) {
   Command command(app, "explore", "Let simulated robots explore a world");
   const auto given = std::make_shared<Options>();
   ExploreOptions& options = given->options;
-  command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
   command.group("Run");
+  command.add_action("--task", "FILE.json",
+                     "What to explore, how and with whom (docs/tasks.md); other options win over it",
+                     [&options, read_option = command.read_option()](std::string_view file) {
+                       read_task(std::string(file), read_option, options);
+                     });
+  command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
   command.add("-o,--output", given->output, "DIR", "Folder for the files of the run; created if missing");
   command.add_flag("--force", given->run.force, "Replace the run in the folder");
   Option resume =
@@ -67,29 +84,45 @@ void add_explore_command(CLI::App& app) {
               "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
   command.add("--report", given->run.report, "Write report.html");
   command.add("--seed", options.seed, "N", "Random seed (layout, planner, noise)", kSeeds);
+  command.add("--world-seed", options.source.seed, "N", "Random seed of a built-in world's layout [--seed]",
+              kSeeds);
+  command.group("Clock");
+  command.add_flag("--lockstep", options.lockstep,
+                   "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
+  command.add("--latency", options.latency, "SECONDS", "Time from a planning to the begin of its trajectory",
+              kAboveZero);
   command.group("Stopping");
+  command.add("--stop-coverage", options.stop_coverage, "PART",
+              "Stop when this part of the observable space is mapped, 0 to 1", kProbability);
+  command.add("--stop-time", options.stop_time, "SECONDS", "Stop after this time on the clock", kFromZero);
   command.add("--max-steps", given->run.max_steps, "N", "Stop after this many steps [1000]", Range<int>{0});
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps;\n"
               "goals of at least this gain come first [10; --goal nearest: 1]",
               kFromZero);
   command.group("Robots");
-  command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
+  Option team = command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
   command.add("--robot", options.robot_files, "FILE.json", "Add a robot described in this file; repeatable");
   command.add("--pose", options.poses, "NAME=X,Y,Z,YAW", "Start pose of a robot's sensor; repeatable");
+  command.add("--bumper", options.bumper,
+              "A robot that would touch a surface stops; off: contacts are counted");
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
-  add_method_options(command, options);
+  const auto [mode, goal] = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
   command.allow_only(resume, {"--threads", "--max-steps", "--report"});
   command.examples(R"(Examples:
   frontlux explore station --seed 3 -o station_run
   frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run
+  frontlux explore --task data/tasks/maze.json -o maze_run
   frontlux explore --resume station_run
 Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux (the
 recording) and report.html. Ctrl-C ends a run after the current step.)");
-  command.run([given] { run(*given); });
+  command.run([given, team, mode = mode, goal = goal] {
+    replace_in_task(given->options, team.given(), mode.given(), goal.given());
+    run(*given);
+  });
 }
 
 }  // namespace frontlux::app

@@ -12,12 +12,16 @@ using Json = nlohmann::ordered_json;
 // Every member with its name, in one place for both directions.
 template <class Options, class Visit>
 void for_each_member(Options& options, const Visit& visit) {
+  visit("name", options.name);
   visit("world", options.source.world);
+  visit("world_seed", options.source.seed);
+  visit("box_m", options.source.box);
   visit("scale", options.source.scale);
   visit("up", options.source.up);
   visit("start", options.source.start);
   visit("ground", options.source.ground);
   visit("team", options.team);
+  visit("task_robots", options.robots);
   visit("robot_files", options.robot_files);
   visit("poses", options.poses);
   visit("mode", options.mode);
@@ -34,6 +38,11 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("advance", options.advance);
   visit("min_distance", options.min_distance);
   visit("samples", options.samples);
+  visit("lockstep", options.lockstep);
+  visit("latency", options.latency);
+  visit("bumper", options.bumper);
+  visit("stop_coverage", options.stop_coverage);
+  visit("stop_time", options.stop_time);
   visit("resolution", options.source.resolution);
   visit("noise", options.errors.sigma);
   visit("dropout", options.errors.dropout);
@@ -54,6 +63,13 @@ Json json_of(const Eigen::Vector3f& point) {
 Json json_of(const GroundAlignment& ground) {
   if (ground.height) return *ground.height;
   return ground.align ? "auto" : "off";
+}
+Json json_of(const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+}
+Json json_of(const std::vector<io::TaskRobot>& robots) {
+  return robots.empty() ? Json() : Json::parse(io::robots_text(robots));
 }
 template <class Value>
 Json json_of(const std::vector<Value>& values) {
@@ -83,6 +99,13 @@ void take(const Json& json, GroundAlignment& ground) {
   else
     read(json.get<std::string>(), ground);
 }
+void take(const Json& json, Eigen::AlignedBox3d& box) {
+  for (int i = 0; i < 3; ++i) {
+    box.min()[i] = json.at(0).at(static_cast<std::size_t>(i)).get<double>();
+    box.max()[i] = json.at(1).at(static_cast<std::size_t>(i)).get<double>();
+  }
+}
+void take(const Json& json, std::vector<io::TaskRobot>& robots) { robots = io::robots_of(json.dump()); }
 template <class Value>
 void take(const Json& json, std::vector<Value>& values) {
   for (const Json& item : json) take(item, values.emplace_back());

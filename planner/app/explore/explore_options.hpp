@@ -2,6 +2,7 @@
 
 #include "world_source.hpp"
 
+#include <frontlux/io/task_file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/sim/sensor.hpp>
@@ -26,8 +27,11 @@ void read(std::string_view word, StartPose& start);
 /// A run of `frontlux explore` as the user asks for it; everything that its result depends on. What is not
 /// given depends on the mode, or on the goal.
 struct ExploreOptions {
-  WorldSource source;  ///< its seed is not used
+  std::string task;                 ///< the file that it comes from, in messages; not recorded
+  std::optional<std::string> name;  ///< for people; if not given, the world's
+  WorldSource source;               ///< its seed, if not given, is `seed`
   std::string team = "uav+ugv";
+  std::vector<io::TaskRobot> robots;  ///< of a task; the team is empty then
   std::vector<std::string> robot_files;
   std::vector<StartPose> poses;
   planner::Method mode = planner::Method::kDefault;
@@ -37,9 +41,13 @@ struct ExploreOptions {
   bool assign = true, optimize = true;
   CasterKind caster = CasterKind::kFast;
   std::uint64_t seed = 1;
-  int max_steps = 1000;
+  std::optional<int> max_steps;
   std::optional<double> epsilon, lambda, advance, min_distance;
   std::optional<int> samples;
+  bool lockstep = false;
+  double latency = 0.1;  ///< [s]
+  bool bumper = true;
+  std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
 };
 

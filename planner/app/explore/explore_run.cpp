@@ -3,15 +3,15 @@
 #include "bad_input.hpp"
 #include "explore/explore_setup.hpp"
 #include "explore/run_files.hpp"
+#include "explore/run_loop.hpp"
 #include "interrupt.hpp"
-#include "stopwatch.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
-#include <frontlux/sim/simulated_robots.hpp>
+#include <frontlux/stopwatch.hpp>
 
 #include <tbb/task_arena.h>
 
@@ -27,12 +27,12 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using planner::Exploration, planner::ExplorationStep, planner::RecordedStep, planner::Recording;
+using planner::ExplorationStep, planner::RecordedStep, planner::Recording;
 
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";
-constexpr std::array kFiles = {kRecording, "run.json", "steps.csv",  "paths.csv",
-                               "map.ot",   "map.bt",   "report.html"};
+constexpr std::array kFiles = {kRecording,   "run.json", "steps.csv", "paths.csv",  "events.csv",
+                               "motion.csv", "map.ot",   "map.bt",    "report.html"};
 
 void prepare_folder(const ExploreRun& run) {
   std::error_code error;
@@ -72,68 +72,45 @@ void show(const ExplorationStep& step, const RunSums& sums, const planner::Recor
   std::cout << line << std::endl;
 }
 
-// A run in progress: the robots, the exploration that moves them, and the files that record it.
+// A run in progress: the loop, and the files that record it.
 class Run {
  public:
   Run(ExploreSetup& setup, const ExploreRun& run)
-      : setup_(setup),
-        robots_(setup.sourced.world, *setup.truth, setup.head.robots, setup.errors, setup.exploration.seed,
-                sim::AtContact::kStay),
-        exploration_(setup.exploration,
-                     planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
-        folder_(run.folder) {}
+      : setup_(setup), loop_(make_run_loop(setup)), folder_(run.folder) {}
 
-  /// Writes the tables up to now. @pre called before `begin` and `step`
+  /// Writes the tables up to now. @pre called before `step`
   void open_files(std::span<const RecordedStep> steps) {
     files_.emplace(folder_, setup_.head);
     for (const RecordedStep& step : steps) files_->add(step);
+    files_->add_motion(loop_->take_events(), loop_->take_motion());
   }
 
-  void begin() { note(exploration_.begin(setup_.head.starts, drive())); }
-  void step() { note(exploration_.step(drive())); }
+  void step() {
+    const std::uint64_t before = loop_->numbers().contacts;
+    last_ = with_known_voxels(loop_->step(), last_ ? &*last_ : nullptr, *setup_.truth);
+    last_->collisions = loop_->numbers().contacts - before;
+    files_->add(*last_);
+    files_->add_motion(loop_->take_events(), loop_->take_motion());
+  }
   /// @throws BadInput if the world is another one now
   void repeat(const RecordedStep& recorded) {
-    bool same = true;
-    if (recorded.step.number == 0) {
-      const ExplorationStep begun = exploration_.begin(setup_.head.starts, drive());
-      for (std::size_t r = 0; r < begun.robots.size(); ++r)
-        same = same && begun.robots[r].changed == recorded.step.robots[r].changed;
-    } else {
-      same = exploration_.repeat(recorded.step, drive());
-    }
-    if (!same)
+    if (loop_->end() || !loop_->repeat(recorded.step))
       throw BadInput("--resume: in step " + std::to_string(recorded.step.number) +
                      " the robots see another world than the recorded one; has " + setup_.head.world +
                      " changed since?");
     last_ = recorded;
-    collisions_ = robots_.total().physical;
   }
 
-  [[nodiscard]] const Exploration& exploration() const { return exploration_; }
+  [[nodiscard]] const RunLoop& loop() const { return *loop_; }
   [[nodiscard]] const RunFiles& files() const { return *files_; }
   [[nodiscard]] const RecordedStep& last() const { return *last_; }
 
  private:
-  [[nodiscard]] planner::Drive drive() {
-    return
-        [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
-  }
-
-  void note(ExplorationStep step) {
-    const std::uint64_t before = collisions_;
-    collisions_ = robots_.total().physical;
-    last_ = with_known_voxels(std::move(step), last_ ? &*last_ : nullptr, *setup_.truth);
-    last_->collisions = collisions_ - before;
-    files_->add(*last_);
-  }
-
   ExploreSetup& setup_;
-  sim::SimulatedRobots robots_;
-  Exploration exploration_;
+  std::unique_ptr<RunLoop> loop_;
   fs::path folder_;
   std::optional<RunFiles> files_;
   std::optional<RecordedStep> last_;
-  std::uint64_t collisions_ = 0;
 };
 
 Recording read_run(const ExploreRun& run) {
@@ -159,18 +136,44 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
 }
 
 void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSums& sums,
-                   const std::string& end, double seconds) {
+                   const RunNumbers& numbers, const std::string& end, double seconds) {
+  std::string times;
+  for (const int part : {50, 90, 95, 99})
+    if (const auto time = time_to(numbers, setup.head.observable, part / 100.0))
+      times += fixed(*time, 1) + " s to " + std::to_string(part) + " %, ";
   std::string out = row("run", run.folder.string()) + row("world", setup.head.world) + row("end", end) +
                     row("steps", std::to_string(sums.steps)) +
                     row("mapped", percent(sums.observable) + " of the observable space, " +
-                                      percent(sums.bounding) + " of the world's box");
-  for (std::size_t r = 0; r < setup.head.robots.size(); ++r)
-    out += row(setup.head.robots[r].robot.name, "travelled " + fixed(sums.travelled[r], 1) + " m");
-  out += row("collisions", std::to_string(sums.collisions)) +
-         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, max " + fixed(sums.planning_max, 3) +
-                             " s per step") +
-         row("time", fixed(seconds, 1) + " s");
+                                      percent(sums.bounding) + " of the world's box") +
+                    row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
+  for (std::size_t r = 0; r < setup.head.robots.size(); ++r) {
+    const RobotNumbers& robot = numbers.robots[r];
+    out += row(setup.head.robots[r].robot.name, "travelled " + fixed(robot.length, 1) + " m, idle " +
+                                                    fixed(robot.idle, 1) + " s, held back " +
+                                                    std::to_string(robot.held_back) + " times");
+  }
+  out += row("contacts",
+             std::to_string(numbers.contacts) +
+                 (numbers.clearance ? ", least clearance " + fixed(*numbers.clearance, 2) + " m" : "") +
+                 (numbers.separation ? ", between robots " + fixed(*numbers.separation, 2) + " m" : "")) +
+         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, 99 % below " +
+                             fixed(sums.planning_percentile(0.99), 3) + " s, max " +
+                             fixed(sums.planning_percentile(1.0), 3) + " s; the clock charges " +
+                             fixed(setup.exploration.latency, 3) + " s") +
+         row("wall time", fixed(seconds, 1) + " s");
   std::cout << out;
+}
+
+// A run that its user did not end himself, and that left much unseen.
+void warn_if_far_from_done(const RunEnd& end, double observable) {
+  constexpr double kDone = 0.95;
+  const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };
+  if (is(planner::ExplorationEnd::kCutOff))
+    std::cerr << "warning: " << end.text << '\n';
+  else if (observable < kDone &&
+           (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)))
+    std::cerr << "warning: the run has ended with " << percent(observable)
+              << " of the observable space mapped; the robots found no way to see the rest\n";
 }
 
 }  // namespace
@@ -210,30 +213,27 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         writer.write(exploring.last());
         show(exploring.last().step, exploring.files().sums(), setup.head, watch.seconds());
       };
-      if (!recording || recording->steps.empty()) {
-        exploring.begin();
-        record();
-      }
-      while (!exploring.exploration().end() && !InterruptNote::taken()) {
+      const RunLoop& loop = exploring.loop();
+      while (!loop.end() && !InterruptNote::taken()) {
         exploring.step();
         record();
       }
-      const auto reason = exploring.exploration().end();
+      const auto reason = loop.end();
       stopped = !reason;
-      const std::string end = reason ? std::string(planner::name_of(*reason)) : kStopped;
+      const std::string end = reason ? reason->word : kStopped;
       writer.write_end(end);
-      exploring.exploration().mapping().write(run.folder / "map.ot");
-      exploring.exploration().mapping().write(run.folder / "map.bt");
-      write_run_json(run, options, setup, exploring.files().sums(), end, watch.seconds());
+      loop.mapping().write(run.folder / "map.ot");
+      loop.mapping().write(run.folder / "map.bt");
+      write_run_json(run, options, setup, exploring.files().sums(), loop.numbers(), end, watch.seconds());
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{
             fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole};
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
-      print_summary(run, setup, exploring.files().sums(),
-                    reason ? end + ": " + planner::describe(*reason, exploring.exploration().options()) : end,
-                    watch.seconds());
+      if (reason) warn_if_far_from_done(*reason, exploring.files().sums().observable);
+      print_summary(run, setup, exploring.files().sums(), loop.numbers(),
+                    reason ? end + ": " + reason->text : end, watch.seconds());
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {

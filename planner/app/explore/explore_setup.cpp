@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -21,31 +22,17 @@ namespace {
 
 using planner::Method, planner::Motion, planner::Pose, planner::RobotDescription;
 
-constexpr std::size_t kMaxRobots = 32;
-
-// "2uav+ugv": two aerial robots and a ground robot.
-std::vector<RobotDescription> parse_team(const std::string& text, Method method) {
-  std::vector<RobotDescription> robots;
-  if (text.empty()) return robots;
-  for (std::string_view rest = text;; rest.remove_prefix(rest.find('+') + 1)) {
-    const std::string_view word = rest.substr(0, rest.find('+'));
-    std::size_t count = 1;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-    const std::string_view name = word.substr(static_cast<std::size_t>(end - word.data()));
-    if ((error != std::errc{} && end != word.data()) || count < 1 || count > kMaxRobots ||
-        (name != "uav" && name != "ugv"))
-      throw BadInput(
-          "--team: " + quote(text) +
-          " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
-    for (std::size_t i = 0; i < count; ++i)
-      robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
-    if (rest.find('+') == std::string_view::npos) return robots;
-  }
-}
+constexpr std::size_t kMaxRobots = io::kMostRobots;
 
 // Robots of the same name get numbers; those on the ground come first, since they choose first.
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
-  auto robots = parse_team(options.team, method);
+  std::vector<RobotDescription> robots;
+  try {
+    robots = team_of(options.team, method);
+  } catch (const BadInput& error) {
+    throw BadInput(std::string("--team: ") + error.what());
+  }
+  for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);
   for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
   if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");
   if (robots.size() > kMaxRobots)
@@ -63,38 +50,63 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   return robots;
 }
 
-void place_by_hand(const StartPose& start, double shift, const sim::GroundTruth& truth,
-                   std::span<const RobotDescription> robots, std::vector<std::optional<Pose>>& starts) {
-  const auto refuse = [&](const std::string& why) {
-    throw BadInput("--pose: " + quote(start.word) + " " + why);
-  };
-  const auto robot = std::find_if(robots.begin(), robots.end(),
-                                  [&](const RobotDescription& r) { return r.robot.name == start.robot; });
-  if (robot == robots.end()) {
-    std::string names;
-    for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
-    refuse("is for a robot that is not in the team; its robots are " + names);
+// Where the robots are to start, and who says so, in messages. A task's robots come first among those that
+// move as they do, as in `gather_robots`.
+struct GivenStarts {
+  std::vector<std::optional<Pose>> poses;
+  std::vector<std::string> givers;
+};
+GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
+  GivenStarts given{std::vector<std::optional<Pose>>(robots.size()), std::vector<std::string>(robots.size())};
+  std::size_t on_plane = 0, in_space = static_cast<std::size_t>(
+                                std::count_if(robots.begin(), robots.end(), [](const RobotDescription&robot) {
+                                  return robot.robot.travel.motion == Motion::kPlane;
+                                }));
+  for (const io::TaskRobot& robot : options.robots) {
+    const bool drives = robot.description.robot.travel.motion == Motion::kPlane;
+    const std::size_t r = drives ? on_plane++ : in_space++;
+    given.poses.at(r) = robot.start;
+    given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }
-  Pose pose = start.pose;
+  for (const StartPose& start : options.poses) {
+    const auto robot = std::find_if(robots.begin(), robots.end(),
+                                    [&](const RobotDescription& r) { return r.robot.name == start.robot; });
+    if (robot == robots.end()) {
+      std::string names;
+      for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
+      throw BadInput("--pose: " + quote(start.word) +
+                     " is for a robot that is not in the team; its robots are " + names);
+    }
+    const auto r = static_cast<std::size_t>(robot - robots.begin());
+    given.poses[r] = start.pose;
+    given.givers[r] = "--pose: " + quote(start.word);
+  }
+  return given;
+}
+
+Pose place_by_hand(Pose pose, const std::string& giver, double shift, const sim::GroundTruth& truth,
+                   const RobotDescription& robot) {
   pose.position.z() += shift;
   std::optional<std::string> obstacle;
   try {
-    obstacle = sim::obstacle_at(truth, robot->robot, pose);
+    obstacle = sim::obstacle_at(truth, robot.robot, pose);
   } catch (const std::invalid_argument& error) {
     obstacle = error.what();
   }
-  if (obstacle) refuse("is not a free place: " + *obstacle);
-  starts[static_cast<std::size_t>(robot - robots.begin())] = pose;
+  if (obstacle) throw BadInput(giver + " is not a free place: " + *obstacle + "; give another one");
+  return pose;
 }
 
-// Where the robots start, and how high above which floor those in the air have to be.
-void find_starts(const ExploreOptions& options, const Eigen::Vector3d& around, ExploreSetup& setup) {
+// Where the robots do start, and how high above which floor those in the air have to be.
+void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, ExploreSetup& setup) {
   std::vector<RobotDescription>& robots = setup.head.robots;
   std::vector<planner::Robot> bodies;
   for (const RobotDescription& robot : robots) bodies.push_back(robot.robot);
   auto starts = sim::find_starts(*setup.truth, around, bodies);
-  for (const StartPose& pose : options.poses)
-    place_by_hand(pose, setup.sourced.ground_shift, *setup.truth, robots, starts);
+  for (std::size_t r = 0; r < robots.size(); ++r)
+    if (given.poses[r])
+      starts[r] = place_by_hand(*given.poses[r], given.givers[r], setup.sourced.ground_shift, *setup.truth,
+                                robots[r]);
   std::optional<double> ground;
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (!starts[r])
@@ -115,6 +127,8 @@ planner::GoalOptions goal_options(const ExploreOptions& options, const planner::
   planner::GoalOptions goal = planner::goal_options(robot, options.mode);
   goal.rule = options.goal.value_or(goal.rule);
   goal.lambda = options.lambda.value_or(goal.lambda);
+  // A robot in motion plans again before it arrives, so that near goals cost it less.
+  if (!options.lockstep && options.mode == Method::kDefault) goal.advance = 2.0;
   goal.advance = options.advance.value_or(goal.advance);
   goal.min_distance = options.min_distance.value_or(goal.min_distance);
   goal.rendering.renderer = options.renderer.value_or(goal.rendering.renderer);
@@ -143,20 +157,34 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;
   exploration.caster = options.caster;
-  exploration.max_steps = options.max_steps;
+  // In motion a step is a planning, a matter of a second.
+  exploration.max_steps =
+      options.max_steps.value_or(options.lockstep ? exploration.max_steps : std::numeric_limits<int>::max());
+  exploration.latency = options.latency;
+  // In motion a robot looks at its goal all the way to it.
+  if (!options.lockstep) exploration.max_visits = 1;
   exploration.check();
   return exploration;
 }
 
 // The source with what the options leave open.
-WorldSource source_of(const ExploreOptions& options) {
+WorldSource source_of(const ExploreOptions& options, const GivenStarts& given) {
   WorldSource source = options.source;
+  const auto first =
+      std::find_if(given.poses.begin(), given.poses.end(), [](const auto& pose) { return pose.has_value(); });
+  if (!source.start && first != given.poses.end() && !options.robots.empty()) {
+    source.start_otherwise = (*first)->position.cast<float>();
+    source.start_giver = given.givers[static_cast<std::size_t>(first - given.poses.begin())];
+  }
   if (is_built_in_world(source.world)) {
-    source.seed = options.seed;
+    source.seed = source.seed.value_or(options.seed);
     return source;
   }
-  // The floors of worlds that others have made may lie at any height.
-  if (!source.ground) source.ground = GroundAlignment{true};
+  if (source.seed)
+    throw BadInput("--world-seed: " + source.world + " is not a built-in world; leave the option out");
+  // The floors of worlds that others have made may lie at any height. Who gives a box knows the floor.
+  if (!source.ground) source.ground = GroundAlignment{!source.box};
+  if (source.start_otherwise) return source;
   std::error_code ignored;  // of a file that is missing make_world says so
   if (std::filesystem::exists(source.world, ignored) && source.ground->align && !source.ground->height &&
       !source.start)
@@ -164,21 +192,55 @@ WorldSource source_of(const ExploreOptions& options) {
   return source;
 }
 
+// The start that was put into the world, before its shift; nothing if it has its own.
+std::optional<Eigen::Vector3f> start_in(const SourcedWorld& sourced, const WorldSource& source) {
+  if (source.start || !source.start_otherwise) return source.start;
+  const bool own =
+      sourced.kind == WorldKind::kBuiltIn && sourced.world.start != source.start_otherwise->cast<double>();
+  return own ? std::nullopt : source.start_otherwise;
+}
+
 }  // namespace
+
+std::vector<RobotDescription> team_of(const std::string& word, Method method) {
+  std::vector<RobotDescription> robots;
+  if (word.empty()) return robots;
+  for (std::string_view rest = word;; rest.remove_prefix(rest.find('+') + 1)) {
+    const std::string_view part = rest.substr(0, rest.find('+'));
+    std::size_t count = 1;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), count);
+    const std::string_view name = part.substr(static_cast<std::size_t>(end - part.data()));
+    if ((error != std::errc{} && end != part.data()) || count < 1 || count > kMaxRobots ||
+        (name != "uav" && name != "ugv"))
+      throw BadInput(
+          quote(word) +
+          " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
+    for (std::size_t i = 0; i < count; ++i)
+      robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
+    if (rest.find('+') == std::string_view::npos) return robots;
+  }
+}
 
 ExploreSetup make_setup(const ExploreOptions& options,
                         const std::optional<std::vector<RobotDescription>>& robots) {
   ExploreSetup setup;
   setup.errors = options.errors;
-  work_on(options.source.world, "give a coarser --resolution", [&] {
+  setup.lockstep = options.lockstep;
+  setup.at_contact = options.bumper ? sim::AtContact::kStay : sim::AtContact::kGoOn;
+  setup.stop_coverage = options.stop_coverage;
+  setup.stop_time = options.stop_time;
+  work_on(options.task.empty() ? options.source.world : options.task, "give a coarser --resolution", [&] {
     setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
     setup.exploration = exploration_options(options, setup.head.robots);
-    const WorldSource source = source_of(options);
+    const GivenStarts given = given_starts(options, setup.head.robots);
+    const WorldSource source = source_of(options, given);
+    setup.given_starts = given.poses;
     setup.sourced = make_world(source);
+    setup.given_start = start_in(setup.sourced, source);
     const Eigen::Vector3d around =
         sim::free_start(setup.sourced.world, source.resolution, setup.sourced.kind != WorldKind::kMesh);
     setup.truth = std::make_unique<const sim::GroundTruth>(setup.sourced.world, source.resolution, around);
-    find_starts(options, around, setup);
+    find_starts(given, around, setup);
     for (std::size_t r = 0; r < setup.head.robots.size(); ++r)
       setup.exploration.team[r].robot = setup.head.robots[r].robot;
     setup.head.world = setup.sourced.world.name;

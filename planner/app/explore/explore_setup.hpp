@@ -8,9 +8,13 @@
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/sensor.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
+
+#include <Eigen/Core>
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace frontlux::app {
@@ -20,9 +24,20 @@ struct ExploreSetup {
   SourcedWorld sourced;
   std::unique_ptr<const sim::GroundTruth> truth;
   sim::RangeErrors errors;
+  bool lockstep = false;
+  sim::AtContact at_contact = sim::AtContact::kStay;
+  std::optional<double> stop_coverage;  // 0 to 1, of the observable voxels
+  std::optional<double> stop_time;      // [s]
   planner::ExplorationOptions exploration;
   planner::RecordingHead head;  // with the robots and their starts
+  std::optional<Eigen::Vector3f>
+      given_start;  // [m] in the world's frame before the ground is aligned; so are
+  std::vector<std::optional<planner::Pose>> given_starts;  // those of the robots that are not looked for
 };
+
+/// The robots of a word like "2uav+ugv", two aerial robots and a ground robot; none if it is empty.
+/// @throws BadInput
+[[nodiscard]] std::vector<planner::RobotDescription> team_of(const std::string& word, planner::Method method);
 
 /// Makes or reads the world, puts the robots at their starts, and checks all options.
 /// @param robots  of a resumed run; nothing: those that the options name

@@ -1,7 +1,9 @@
 #include "explore/run_files.hpp"
 
+#include "explore/csv_row.hpp"
 #include "explore/explore_run.hpp"
 #include "explore/explore_setup.hpp"
+#include "explore/explore_task.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <numeric>
 #include <ostream>
 #include <stdexcept>
@@ -28,47 +31,16 @@ using planner::ExplorationStep, planner::Pose, planner::RecordedStep, planner::R
 
 constexpr const char* kSteps = "steps.csv";
 constexpr const char* kPaths = "paths.csv";
-
-// A line of a table with commas.
-class Row {
- public:
-  template <class... Cells>
-  Row& add(const Cells&... cells) {
-    (line_.append(line_.empty() ? "" : ",").append(cell_text(cells)), ...);
-    return *this;
-  }
-  [[nodiscard]] std::string line() const { return line_ + '\n'; }
-
- private:
-  static std::string cell_text(std::string_view text) { return std::string(text); }
-  static std::string cell_text(const Pose& pose) {
-    const Eigen::Vector3d& p = pose.position;
-    return Row().add(p.x(), p.y(), p.z(), pose.yaw).line_;
-  }
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  static std::string cell_text(Number number) { return to_text(number); }
-
-  std::string line_;
-};
-
-// A name may hold anything.
-std::string quoted_cell(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string text = "\"";
-  for (const char c : name) text.append(c == '"' ? 2 : 1, c);
-  return text + '"';
-}
+constexpr const char* kEvents = "events.csv";
+constexpr const char* kMotion = "motion.csv";
 
 std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead& head) {
   std::string rows;
   for (std::size_t r = 0; r < recorded.step.robots.size(); ++r) {
     const RobotStep& robot = recorded.step.robots[r];
     for (std::size_t i = 0; i < robot.planned.size(); ++i)
-      rows += Row()
-                  .add(recorded.step.number, quoted_cell(head.robots[r].robot.name), i,
-                       i < robot.travelled ? 1 : 0, robot.planned[i])
-                  .line();
+      rows += csv_row(recorded.step.number, head.robots[r].robot.name, i, i < robot.travelled ? 1 : 0,
+                      robot.planned[i]);
   }
   return rows;
 }
@@ -121,10 +93,13 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       head_(head),
       steps_file_(folder / kSteps, std::ios::binary | std::ios::trunc),
       paths_file_(folder / kPaths, std::ios::binary | std::ios::trunc),
+      events_file_(folder / kEvents, std::ios::binary | std::ios::trunc),
+      motion_file_(folder / kMotion, std::ios::binary | std::ios::trunc),
       sums_{.seconds = std::vector<double>(planner::kPhases),
             .travelled = std::vector<double>(head.robots.size())} {
   std::string header =
-      "step,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,abandoned,"
+      "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
+      "abandoned,"
       "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
       "path,"
       "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays";
@@ -135,6 +110,14 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
   }
   write(steps_file_, kSteps, header + '\n');
   write(paths_file_, kPaths, "step,robot,viewpoint,reached,x_m,y_m,z_m,yaw_rad\n");
+  write(events_file_, kEvents,
+        "time_s,step,robot,reason,goal_state,gain_predicted,begin_s,end_s,length_m,planning_s\n");
+  write(motion_file_, kMotion, "time_s,robot,x_m,y_m,z_m,yaw_rad,vx_m_s,vy_m_s,vz_m_s,yaw_rate_rad_s\n");
+}
+
+void RunFiles::add_motion(const std::string& events, const std::string& motion) {
+  write(events_file_, kEvents, events);
+  write(motion_file_, kMotion, motion);
 }
 
 void RunFiles::write(std::ofstream& file, const char* name, const std::string& rows) {
@@ -157,8 +140,7 @@ void RunFiles::add(const RecordedStep& recorded) {
   sums_.collisions += recorded.collisions;
   if (step.number > 0) {
     ++sums_.steps;
-    sums_.planning_total += step.planning_seconds();
-    sums_.planning_max = std::max(sums_.planning_max, step.planning_seconds());
+    sums_.planning.push_back(step.planning_seconds());
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
       sums_.seconds[phase] += step.seconds[phase];
   }
@@ -166,41 +148,85 @@ void RunFiles::add(const RecordedStep& recorded) {
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
     const RobotStep& robot = step.robots[r];
     sums_.travelled[r] += robot.length;
-    if (!robot.blocked.empty()) ++sums_.held_back;
-    Row row;
-    row.add(step.number, quoted_cell(head_.robots[r].robot.name), sums_.observable, sums_.bounding,
-            fraction(recorded.known[r].observable, head_.observable),
-            fraction(recorded.known[r].bounding, head_.bounding), step.frontiers, step.unassigned,
-            step.abandoned, step.number == 0 ? "start" : planner::name_of(robot.goal.state),
-            robot.goal.assigned, robot.goal.released, robot.goal.received, robot.goal.uncovered);
-    if (robot.goal.pose)
-      row.add(*robot.goal.pose, robot.goal.gain);
-    else
-      row.add("", "", "", "", "");
-    row.add(planner::name_of(robot.path), robot.planned.size(), robot.length, sums_.travelled[r],
-            robot.gain_tangent, robot.gain_predicted, robot.gained, robot.still_unknown.size(),
-            recorded.collisions, step.rays);
+    std::string seconds;
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
-      if (planner::name_of(static_cast<planner::Phase>(phase)) == "moving") row.add(step.planning_seconds());
-      row.add(step.seconds[phase]);
+      if (static_cast<planner::Phase>(phase) == planner::Phase::kMoving)
+        seconds += ',' + csv_cell(step.planning_seconds());
+      seconds += ',' + csv_cell(step.seconds[phase]);
     }
-    rows += row.line();
+    const std::string goal =
+        robot.goal.pose ? csv_cell(*robot.goal.pose) + ',' + csv_cell(robot.goal.gain) : ",,,,";
+    std::string row =
+        csv_row(step.number, step.time, head_.robots[r].robot.name, sums_.observable, sums_.bounding,
+                fraction(recorded.known[r].observable, head_.observable),
+                fraction(recorded.known[r].bounding, head_.bounding), step.frontiers, step.unassigned,
+                step.abandoned, step.number == 0 ? "start" : planner::name_of(robot.goal.state),
+                robot.goal.assigned, robot.goal.released, robot.goal.received, robot.goal.uncovered);
+    row.back() = ',';
+    row += goal + ',' +
+           csv_row(planner::name_of(robot.path), robot.planned.size(), robot.length, sums_.travelled[r],
+                   robot.gain_tangent, robot.gain_predicted, robot.gained, robot.still_unknown.size(),
+                   recorded.collisions, step.rays);
+    row.pop_back();
+    rows += row + seconds + '\n';
   }
   write(steps_file_, kSteps, rows);
   write(paths_file_, kPaths, path_rows(recorded, head_));
 }
 
+double RunSums::planning_mean() const {
+  return planning.empty()
+             ? 0.0
+             : std::accumulate(planning.begin(), planning.end(), 0.0) / static_cast<double>(planning.size());
+}
+
+double RunSums::planning_percentile(double part) const {
+  if (planning.empty()) return 0.0;
+  std::vector<double> sorted = planning;
+  std::sort(sorted.begin(), sorted.end());
+  const double place = std::ceil(part * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(place, 1.0)) - 1];
+}
+
+std::optional<double> time_to(const RunNumbers& numbers, std::uint64_t observable, double part) {
+  for (const Mapped& mapped : numbers.mapped)
+    if (static_cast<double>(mapped.observable) >= part * static_cast<double>(observable)) return mapped.time;
+  return std::nullopt;
+}
+
+double mean_coverage(const RunNumbers& numbers, std::uint64_t observable) {
+  const double end = numbers.mapped.back().time;
+  if (end <= 0.0) return fraction(numbers.mapped.back().observable, observable);
+  double area = 0.0;
+  for (std::size_t i = 1; i < numbers.mapped.size(); ++i)
+    area += (numbers.mapped[i].time - numbers.mapped[i - 1].time) *
+            fraction(numbers.mapped[i - 1].observable, observable);
+  return area / end;
+}
+
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const std::string& end, double seconds) {
+                    const RunSums& sums, const RunNumbers& numbers, const std::string& end, double seconds) {
   const planner::ExplorationOptions& exploration = setup.exploration;
-  Json names = Json::array(), phases = Json::object(), lengths = Json::object();
+  Json names = Json::array(), phases = Json::object(), lengths = Json::object(), robots = Json::object(),
+       times = Json::object();
+  for (const int part : {50, 90, 95, 99})
+    if (const auto time = time_to(numbers, setup.head.observable, part / 100.0))
+      times[std::to_string(part)] = *time;
+  times["end"] = numbers.mapped.back().time;
+  std::uint64_t held_back = 0;
   for (std::size_t r = 0; r < setup.head.robots.size(); ++r) {
     const std::string& name = setup.head.robots[r].robot.name;
     names.push_back(name);
     lengths[name] = sums.travelled[r];
+    const RobotNumbers& robot = numbers.robots[r];
+    robots[name] = {{"length_m", robot.length}, {"idle_s", robot.idle}, {"held_back", robot.held_back}};
+    held_back += robot.held_back;
   }
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
     phases[std::string(planner::name_of(static_cast<planner::Phase>(phase)))] = sums.seconds[phase];
+  const double edge = setup.head.resolution;
+  const auto volume = static_cast<double>(numbers.mapped.back().bounding) * edge * edge * edge;
+  const auto or_null = [](const std::optional<double>& number) { return number ? Json(*number) : Json(); };
   const Json json = {
       {"version", FRONTLUX_VERSION},
       {"world", setup.head.world},
@@ -222,16 +248,27 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"steps", sums.steps},
       {"coverage_observable", sums.observable},
       {"coverage_box", sums.bounding},
+      {"lockstep", setup.lockstep},
+      {"time_s", times},
+      {"auc", mean_coverage(numbers, setup.head.observable)},
+      {"explored_m3", volume},
+      {"latency_s", exploration.latency},
       {"planning_mean_s", sums.planning_mean()},
-      {"planning_max_s", sums.planning_max},
+      {"planning_p99_s", sums.planning_percentile(0.99)},
+      {"planning_max_s", sums.planning_percentile(1.0)},
+      {"clearance_min_m", or_null(numbers.clearance)},
+      {"contacts", numbers.contacts},
+      {"separation_min_m", or_null(numbers.separation)},
+      {"by_robot", robots},
       {"phases_s", phases},
       {"collisions", sums.collisions},
       {"path_length_total_m", std::accumulate(sums.travelled.begin(), sums.travelled.end(), 0.0)},
       {"path_length_m", lengths},
-      {"held_back", sums.held_back},
+      {"held_back", held_back},
       {"wall_s", seconds},
       {"memory_mb", peak_memory_mb()},
       {"options", Json::parse(json_text(options))},
+      {"task", Json::parse(task_text(options, setup))},
   };
   // File names are bytes, JSON is Unicode.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "explore/run_loop.hpp"
+
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 
@@ -29,15 +31,13 @@ struct ExploreSetup;
 struct RunSums {
   double observable = 0.0, bounding = 0.0;  ///< mapped fractions, 0 to 1, at the end of the last step
   std::uint64_t steps = 0;                  ///< without the look around at the start
-  std::uint64_t collisions = 0, held_back = 0;
-  double planning_max = 0.0;      ///< [s] of a step
-  std::vector<double> seconds;    ///< by planner::Phase
-  std::vector<double> travelled;  ///< [m] of each robot
-  double planning_total = 0.0;    ///< [s]
+  std::uint64_t collisions = 0;
+  std::vector<double> seconds;        ///< by planner::Phase
+  std::vector<double> travelled;      ///< [m] of each robot
+  std::vector<double> planning = {};  ///< [s] of each step
 
-  [[nodiscard]] double planning_mean() const {  ///< [s] of a step
-    return steps == 0 ? 0.0 : planning_total / static_cast<double>(steps);
-  }
+  [[nodiscard]] double planning_mean() const;                   ///< [s] of a step
+  [[nodiscard]] double planning_percentile(double part) const;  ///< [s] at a part of the sorted steps, 0 to 1
 };
 
 /// The tables of a run, steps.csv and paths.csv, which grow with every step, and its sums.
@@ -48,6 +48,8 @@ class RunFiles {
   RunFiles(const std::filesystem::path& folder, const planner::RecordingHead& head);
 
   void add(const planner::RecordedStep& step);
+  /// Rows of events.csv and motion.csv.
+  void add_motion(const std::string& events, const std::string& motion);
 
   [[nodiscard]] const RunSums& sums() const { return sums_; }
 
@@ -56,15 +58,21 @@ class RunFiles {
 
   std::filesystem::path folder_;
   const planner::RecordingHead& head_;
-  std::ofstream steps_file_, paths_file_;
+  std::ofstream steps_file_, paths_file_, events_file_, motion_file_;
   RunSums sums_;
 };
+
+/// [s] when this part of the observable voxels was mapped; nothing if it was not.
+[[nodiscard]] std::optional<double> time_to(const RunNumbers& numbers, std::uint64_t observable, double part);
+
+/// The mapped part of the observable voxels, 0 to 1, on average over the run's time.
+[[nodiscard]] double mean_coverage(const RunNumbers& numbers, std::uint64_t observable);
 
 /// Writes run.json: what was asked for and what came out.
 /// @param end      why the run ended, in one word
 /// @param seconds  that it took
 /// @throws std::runtime_error naming the file, if it cannot be written
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const std::string& end, double seconds);
+                    const RunSums& sums, const RunNumbers& numbers, const std::string& end, double seconds);
 
 }  // namespace frontlux::app

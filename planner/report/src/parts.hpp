@@ -17,7 +17,8 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 /// each step. Numbers that are not finite become null, bytes that are not UTF-8 the replacement character.
 [[nodiscard]] std::string run_facts(const ReportedRun& run, const std::string& version);
 
-/// Changed voxels, images and paths of a run, as bytes that web/src/run_data.js reads. For each step and each
+/// Changed voxels, images and paths of a run, as bytes that web/src/run_data.js reads. Of a robot with more
+/// than 400 images, only every second one is in it, or every third one, and so on. For each step and each
 /// robot:
 ///
 ///     count of chunks (cubes of 32^3 voxels that hold a change), sorted by x, then y, then z; for each:

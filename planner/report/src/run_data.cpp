@@ -16,6 +16,7 @@ namespace {
 
 constexpr unsigned kChunkBits = 5;
 constexpr unsigned kInChunk = (1U << kChunkBits) - 1;
+constexpr std::size_t kMostImages = 400;  // of a robot: those of long runs would be most of the file
 
 // Numbers as bytes, in the order in which the page reads them (web/src/byte_reader.js).
 class ByteWriter {
@@ -118,14 +119,28 @@ void write_path(ByteWriter& out, const planner::RobotStep& robot) {
   }
 }
 
+// Of each robot, every how many-th image goes into the report.
+std::vector<std::size_t> image_strides(const planner::Recording& recording) {
+  std::vector<std::size_t> strides(recording.head.robots.size());
+  for (const planner::RecordedStep& step : recording.steps)
+    for (std::size_t r = 0; r < strides.size(); ++r) strides[r] += step.step.robots[r].image.empty() ? 0 : 1;
+  for (std::size_t& stride : strides)
+    stride = std::max<std::size_t>(1, (stride + kMostImages - 1) / kMostImages);
+  return strides;
+}
+
 }  // namespace
 
 std::string run_data(const planner::Recording& recording) {
   ByteWriter out;
+  const std::vector<std::size_t> strides = image_strides(recording);
+  std::vector<std::size_t> images(strides.size());
   for (const planner::RecordedStep& step : recording.steps)
-    for (const planner::RobotStep& robot : step.step.robots) {
+    for (std::size_t r = 0; r < strides.size(); ++r) {
+      const planner::RobotStep& robot = step.step.robots[r];
+      const bool shown = !robot.image.empty() && images[r]++ % strides[r] == 0;
       write_changes(out, robot.changed);
-      write_image(out, robot.image);
+      write_image(out, shown ? robot.image : std::vector<planner::RenderedCell>());
       write_path(out, robot);
     }
   return out.bytes();

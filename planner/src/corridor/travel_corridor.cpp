@@ -33,6 +33,7 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
   constexpr double kSmallest = 1e-6;
   for (const auto& [name, i] : {std::pair{"extents.x", 0}, {"extents.y", 1}, {"extents.z", 2}})
     size(name, options.extents[i], kSmallest);
+  size("margin", options.margin, 0.0);
   if (options.motion == Motion::kPlane) {
     size("sensor_height", options.sensor_height, 0.0);
     if (options.ground_extents) {
@@ -57,7 +58,7 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
     refuse("the bounds are empty");
   KeyBox box = bounds;
   if (options.motion == Motion::kPlane) box.max.z = box.min.z;
-  if (const std::uint64_t cells = detail::size_of(box); cells > kMaxCells)
+  if (const std::uint64_t cells = size_of(box); cells > kMaxCells)
     refuse("the bounds hold " + std::to_string(cells) + " cells, but at most " + std::to_string(kMaxCells) +
            " are possible; give smaller bounds");
 }
@@ -79,8 +80,9 @@ detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
     return {{-half, -half, -half}, {edge - 1 - half, edge - 1 - half, edge - 1 - half}};
   }
   detail::VoxelWindow window;
+  const Eigen::Vector3d box = options.box();
   for (std::size_t a = 0; a < 3; ++a) {
-    window.high[a] = half_width(options.extents[static_cast<Eigen::Index>(a)], resolution);
+    window.high[a] = half_width(box[static_cast<Eigen::Index>(a)], resolution);
     window.low[a] = -window.high[a];
   }
   if (options.motion == Motion::kPlane) {
@@ -124,17 +126,26 @@ TravelOptions uav_node_travel() {
   return options;
 }
 
-Robot ugv() { return {"ugv", ugv_travel(), {FieldOfView::Shape::kSpinning, 0.0, 40.0 * kDegree, 6.0}}; }
+Robot ugv() { return {"ugv", ugv_travel(), {FieldOfView::Shape::kSpinning, 0.0, 40.0 * kDegree, 6.0}, {}}; }
 
 Robot uav(Method method) {
   return {"uav",
           method == Method::kPaper ? uav_node_travel() : uav_travel(),
-          {FieldOfView::Shape::kPyramid, 90.0 * kDegree, 72.0 * kDegree, 10.0}};
+          {FieldOfView::Shape::kPyramid, 90.0 * kDegree, 72.0 * kDegree, 10.0},
+          {.speed = 1.5}};
 }
 
-RobotDescription ugv_description() { return {ugv(), 720, 32}; }
+RobotDescription ugv_description() { return {ugv(), 720, 32, 10.0}; }
 
-RobotDescription uav_description(Method method) { return {uav(method), 160, 120}; }
+RobotDescription uav_description(Method method) { return {uav(method), 160, 120, 15.0}; }
+
+Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
+  const Eigen::Vector3d half = travel.extents / 2;
+  if (travel.motion == Motion::kSpace) return {-half, half};
+  const double bottom = -travel.sensor_height;
+  return {Eigen::Vector3d(-half.x(), -half.y(), bottom),
+          Eigen::Vector3d(half.x(), half.y(), bottom + travel.extents.z())};
+}
 
 VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
   return aligned(options, window_of(options, lattice.resolution()), voxel);
@@ -152,7 +163,8 @@ Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
   if (options.node_edge > 0.0) return reach;
   const double resolution = lattice.resolution();
   for (Eigen::Index a = 0; a < (options.motion == Motion::kPlane ? 2 : 3); ++a) {
-    const double beyond = options.extents[a] / 2 - half_width(options.extents[a], resolution) * resolution;
+    const double edge = options.box()[a];
+    const double beyond = edge / 2 - half_width(edge, resolution) * resolution;
     if (beyond > kIgnored * resolution) reach[a] = std::min(beyond, (0.5 - kIgnored) * resolution);
   }
   return reach;
@@ -188,6 +200,7 @@ struct TravelCorridor::State {
   std::optional<detail::PathDistances> distances;
   std::vector<VoxelKey> cells;
   std::vector<VoxelKey> blocked;  // sorted
+  std::vector<KeyBox> kept_out;   // of other robots
   CorridorState state = CorridorState::kNotUpdated;
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
@@ -195,7 +208,8 @@ struct TravelCorridor::State {
   void read(const MapChange& change, const VoxelKey& robot);
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
     return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
-           (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell));
+           (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell)) &&
+           std::ranges::none_of(kept_out, [&](const KeyBox& box) { return box.contains(cell); });
   }
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
@@ -279,6 +293,7 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot) {
   if (grid.resolution() != state_->lattice.resolution())
     refuse("the grid has a resolution of " + std::to_string(grid.resolution()) + " m, the corridor " +
            std::to_string(state_->lattice.resolution()) + " m");
+  std::erase_if(state_->kept_out, [&](const KeyBox& box) { return box.contains(state_->cell_of(robot)); });
   state_->read(change, robot);
   state_->state = state_->find_state(grid, robot);
   state_->cells.clear();
@@ -292,6 +307,8 @@ void TravelCorridor::block(std::span<const VoxelKey> cells) {
   blocked.insert(blocked.end(), cells.begin(), cells.end());
   std::sort(blocked.begin(), blocked.end());
 }
+
+void TravelCorridor::keep_out_of(std::vector<KeyBox> boxes) { state_->kept_out = std::move(boxes); }
 
 CorridorState TravelCorridor::state() const { return state_->state; }
 std::span<const VoxelKey> TravelCorridor::cells() const { return state_->cells; }

@@ -9,6 +9,8 @@
 namespace frontlux::planner {
 namespace {
 
+using State = detail::ExplorationState;
+
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("exploration: " + what); }
 
 }  // namespace
@@ -33,6 +35,7 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
   state.start_from(starts);
   ExplorationStep step = state.new_step();
   state.look_around(starts, drive, step);  // Alg. 1, lines 1 and 2
+  state.advance_clock(step);
   state.update_frontiers(step);
   state.number = 1;
   return step;
@@ -48,6 +51,7 @@ ExplorationStep Exploration::step(const Drive& drive) {
   state.plan_paths(step);                                 // Alg. 1, line 6
   const State::Gains gains = state.optimize_paths(step);  // Alg. 1, line 7
   state.execute_paths(gains, drive, step);                // Alg. 1, lines 8 to 11
+  state.advance_clock(step);
   state.update_frontiers(step);
   state.judge(step);  // Alg. 1, line 3
   return step;
@@ -62,6 +66,7 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   state.update_views(step);
   state.select_goals(step);  // how many rays the next selection casts depends on this one
   if (!state.execute_again(recorded, drive, step)) return false;
+  state.advance_clock(step);
   state.update_frontiers(step);
   state.judge(step);
   return true;
@@ -70,8 +75,11 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
 // Alg. 1, line 3.
 std::optional<ExplorationEnd> Exploration::end() const {
   const State& state = *state_;
-  if (state.idle) return ExplorationEnd::kNothingToDo;
-  if (state.low_gain_steps >= state.options.low_gain_steps) return ExplorationEnd::kLowGain;
+  if (state.idle || state.low_gain_steps >= state.options.low_gain_steps) {
+    for (std::size_t r = 0; r < state.last_goals.size(); ++r)
+      if (state.is_cut_off(r, state.last_goals[r])) return ExplorationEnd::kCutOff;
+    return state.idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+  }
   if (state.number > static_cast<std::uint64_t>(state.options.max_steps)) return ExplorationEnd::kStepLimit;
   return std::nullopt;
 }

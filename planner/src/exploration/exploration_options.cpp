@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace frontlux::planner {
 namespace {
@@ -19,6 +20,10 @@ void ExplorationOptions::check() const {
   if (caster > CasterKind::kOctomap) refuse("caster is none of the values of CasterKind");
   if (!(epsilon >= 0.0 && std::isfinite(epsilon)))
     refuse("epsilon is " + std::to_string(epsilon) + ", but has to be finite and 0 or more");
+  for (const auto& [name, value] :
+       {std::pair{"latency", latency}, {"period", period}, {"commitment", commitment}})
+    if (!(value > 0.0 && std::isfinite(value)))
+      refuse(std::string(name) + " is " + std::to_string(value) + " s, but has to be finite and positive");
   const auto at_least = [](const char* name, int value, int low) {
     if (value < low)
       refuse(std::string(name) + " is " + std::to_string(value) + ", but has to be at least " +
@@ -33,10 +38,12 @@ void ExplorationOptions::check() const {
 
 ExplorationOptions exploration_options(Method method) {
   ExplorationOptions options;
-  if (method == Method::kPaper)
+  if (method == Method::kPaper) {
     options.optimizer = paper_path_options();
-  else
+    options.epsilon = 1.0;  // the paper gives none: the method ends when it expects to see nothing
+  } else {
     options.path.search = PathSearch::kCorridor;
+  }
   return options;
 }
 
@@ -52,7 +59,7 @@ std::string_view name_of(Phase phase) {
 }
 
 std::string_view name_of(ExplorationEnd end) {
-  constexpr std::array<std::string_view, 3> kNames = {"low_gain", "nothing_to_do", "step_limit"};
+  constexpr std::array<std::string_view, 4> kNames = {"low_gain", "nothing_to_do", "step_limit", "cut_off"};
   return kNames.at(static_cast<std::size_t>(end));
 }
 
@@ -60,6 +67,8 @@ std::string describe(ExplorationEnd end, const ExplorationOptions& options) {
   if (end == ExplorationEnd::kNothingToDo) return "no robot can see a frontier from anywhere it can go";
   if (end == ExplorationEnd::kStepLimit)
     return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
+  if (end == ExplorationEnd::kCutOff)
+    return "a robot is where it cannot leave, and there is more to see from where it came from";
   std::ostringstream text;  // 10 without zeros behind it
   text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
        << " steps";

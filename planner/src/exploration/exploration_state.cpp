@@ -1,52 +1,34 @@
 #include "exploration/exploration_state.hpp"
 
 #include "exploration/execute_path.hpp"
+#include "exploration/frontiers_in_view.hpp"
+#include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
 #include "goal/counting_ray_caster.hpp"
 
 #include <frontlux/octomap.hpp>
+#include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/look_around.hpp>
+#include <frontlux/planner/trajectory.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <utility>
 
-namespace frontlux::planner {
+namespace frontlux::planner::detail {
 namespace {
-
-// Adds the time that it lives to a phase.
-class PhaseClock {
- public:
-  PhaseClock(ExplorationStep& step, Phase phase) : seconds_(step.seconds[static_cast<std::size_t>(phase)]) {}
-  ~PhaseClock() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-  PhaseClock(const PhaseClock&) = delete;
-  PhaseClock& operator=(const PhaseClock&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 // Targets that are in view from where the robot has been, the first viewpoint left out, and still unknown.
 std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const InformationGain& gain,
                                          std::span<const Pose> viewpoints,
                                          std::span<const VoxelKey> targets) {
   std::vector<VoxelKey> keys;
-  std::vector<std::uint8_t> in_view;
-  for (std::size_t i = 1; i < viewpoints.size(); ++i) {
-    const auto seen = gain.frontiers_of(i);
-    in_view.resize(seen.size());
-    gain.in_view(i, viewpoints[i].yaw, in_view);
-    for (std::size_t k = 0; k < seen.size(); ++k)
-      if (in_view[k] != 0 && grid.at(targets[seen[k]]) == Occupancy::kUnknown)
-        keys.push_back(targets[seen[k]]);
-  }
+  for (std::size_t i = 1; i < viewpoints.size(); ++i)
+    for (const std::uint32_t frontier : frontiers_in_view(gain, i, viewpoints[i].yaw))
+      if (grid.at(targets[frontier]) == Occupancy::kUnknown) keys.push_back(targets[frontier]);
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
@@ -54,21 +36,21 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
 
 }  // namespace
 
-Exploration::State::State(ExplorationOptions given, Mapping map)
+ExplorationState::ExplorationState(ExplorationOptions given, Mapping map)
     : options(std::move(given)),
       mapping(std::move(map)),
       frontiers(mapping.grid(), mapping.bounds()),
       caster(make_ray_caster(options.caster, mapping.grid(), mapping.tree())),
       abandoned(options.max_visits) {}
 
-ExplorationStep Exploration::State::new_step() const {
+ExplorationStep ExplorationState::new_step() const {
   ExplorationStep step;
   step.number = number;
   step.robots.resize(size());
   return step;
 }
 
-void Exploration::State::start_from(std::span<const ExplorationStart> starts) {
+void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   std::vector<TeamMember> team = options.team;
   for (std::size_t r = 0; r < size(); ++r) {
     TravelOptions& travel = team[r].robot.travel;
@@ -84,11 +66,12 @@ void Exploration::State::start_from(std::span<const ExplorationStart> starts) {
   selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   trails.resize(size());
+  came_back.resize(size());
 }
 
 // Lines 1 and 2.
-void Exploration::State::look_around(std::span<const ExplorationStart> starts, const Drive& drive,
-                                     ExplorationStep& step) {
+void ExplorationState::look_around(std::span<const ExplorationStart> starts, const Drive& drive,
+                                   ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kMoving);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
@@ -99,13 +82,13 @@ void Exploration::State::look_around(std::span<const ExplorationStart> starts, c
       robot.planned.push_back(look);
     }
     if (robot.planned.size() > 2) robot.planned.push_back(starts[r].pose);  // it goes on from how it stood
-    detail::execute_path(r, robot, nullptr, drive, mapping, starts[r].known_free);
+    execute_path(r, robot, nullptr, drive, mapping, starts[r].known_free);
     remember(r, robot);
   }
 }
 
 // Brings up to date what answers questions about the map, but for the selection's own corridors.
-void Exploration::State::update_views(ExplorationStep& step) {
+void ExplorationState::update_views(ExplorationStep& step) {
   {
     const PhaseClock clock(step, Phase::kFrontiers);
     for (std::size_t r = 0; r < size(); ++r)
@@ -117,12 +100,12 @@ void Exploration::State::update_views(ExplorationStep& step) {
 }
 
 // Lines 4 and 5.
-void Exploration::State::select_goals(ExplorationStep& step) {
-  Keys wanted, large;
+void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::size_t> choosing) {
+  Keys large;
   {
     const PhaseClock clock(step, Phase::kFrontiers);
     wanted = abandoned.without_abandoned(frontiers.keys());
-    large = detail::in_large_clusters(frontiers, wanted, options.min_cluster_size);
+    large = in_large_clusters(frontiers, wanted, options.min_cluster_size);
     step.frontiers = frontiers.size();
     step.abandoned = frontiers.size() - wanted.size();
   }
@@ -130,44 +113,86 @@ void Exploration::State::select_goals(ExplorationStep& step) {
   {
     const PhaseClock clock(step, Phase::kGoals);
     const auto has_goal = [](const Goal& goal) { return goal.pose.has_value(); };
-    goals = selection->select(*caster, change(), large, poses);
+    goals = selection->select(*caster, change(), large, poses, choosing);
     step.rays += goals.rays;
     if (large.size() < wanted.size() && std::ranges::none_of(goals.goals, has_goal)) {
-      goals = selection->select(*caster, {mapping.grid()}, wanted, poses);
+      goals = selection->select(*caster, {mapping.grid()}, wanted, poses, choosing);
       step.rays += goals.rays;
     }
   }
   step.unassigned = goals.unassigned;
   for (std::size_t r = 0; r < size(); ++r) {
     step.robots[r].goal = std::move(goals.goals[r]);
-    if (options.team[r].robot.travel.motion == Motion::kPlane)
+    if (options.team[r].robot.travel.motion == Motion::kPlane && (!choosing || *choosing == r))
       step.robots[r].image = selection->rendered_cells(r);
   }
 }
 
-// The path on which a robot came, back to the last place that is still in its corridor. A robot beside which
-// a closer look has found something is in none.
-std::vector<Pose> Exploration::State::retreat(std::size_t robot) const {
+void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
+  const PhaseClock clock(step, Phase::kGoals);
+  selection->keep_goal(change(), robot, poses[robot]);
+  step.frontiers = frontiers.size();
+}
+
+// Whether a robot sees frontiers from somewhere that it can go to from a cell.
+bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot,
+                                      const VoxelKey& cell) const {
+  elsewhere.update({mapping.grid()}, cell);
+  const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
+  return !find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers.empty();
+}
+
+// A robot beside which a closer look has found something is in no corridor; it goes back to the last place
+// that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes
+// back through the passage, if there is something to see from beyond.
+std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal) const {
   const std::vector<Pose>& trail = trails[robot];
+  const TravelCorridor& corridor = path_corridor(robot);
+  const bool lost = goal.state == GoalState::kNoCorridor;
+  TravelOptions by_voxels = options.team[robot].robot.travel;
+  by_voxels.node_edge = 0.0;
+  std::optional<TravelCorridor> elsewhere;
   for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
     const auto cell = lattice().key(place->position);
-    if (!cell || !path_corridor(robot).passable(*cell)) continue;
-    if (place == trail.rbegin()) return {};
+    if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
+    if (lost && place->position == poses[robot].position) return {};
+    if (!lost) {
+      if (elsewhere && elsewhere->contains(*cell)) continue;
+      if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
+      if (!worth_going_to(*elsewhere, robot, *cell)) continue;
+    }
     return {trail.rbegin(), place + 1};
   }
   return {};
 }
 
+// Once for each goal that the robot had, or it would go back and forth.
+std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
+  const bool lost = goal.state == GoalState::kNoCorridor;
+  if (!lost && came_back[robot]) return {};
+  std::vector<Pose> way = way_back(robot, goal);
+  if (!lost && !way.empty()) came_back[robot] = true;
+  return way;
+}
+
+bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
+  if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
+    return std::ranges::any_of(trails[robot],
+                               [&](const Pose& place) { return place.position != poses[robot].position; });
+  return !goal.pose && !way_back(robot, goal).empty();
+}
+
 // Line 6.
-void Exploration::State::plan_paths(ExplorationStep& step) const {
+void ExplorationState::plan_paths(ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kPaths);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     if (!robot.goal.pose) {
-      if (robot.goal.state == GoalState::kNoCorridor) robot.planned = retreat(r);
+      robot.planned = take_way_back(r, robot.goal);
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
+    came_back[r] = false;
     PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
                               {options.seed, number, r}, options.path);
     robot.path = plan.outcome;
@@ -176,41 +201,47 @@ void Exploration::State::plan_paths(ExplorationStep& step) const {
 }
 
 // Line 7.
-Exploration::State::Gains Exploration::State::optimize_paths(ExplorationStep& step) const {
+ExplorationState::Gains ExplorationState::optimize_paths(ExplorationStep& step) const {
   const PhaseClock clock(step, Phase::kOptimization);
+  Gains gains(size());
+  for (std::size_t r = 0; r < size(); ++r)
+    if (step.robots[r].goal.pose && !step.robots[r].planned.empty()) gains[r] = optimize_path(r, step);
+  return gains;
+}
+
+InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& step) const {
   PathOptimizerOptions turning = options.optimizer;
   if (!options.optimize) {
     turning.start = YawStart::kTangent;
     turning.ascend = false;
   }
-  const detail::CountingRayCaster counting(*caster, lattice());
-  Gains gains(size());
-  for (std::size_t r = 0; r < size(); ++r) {
-    RobotStep& robot = step.robots[r];
-    if (!robot.goal.pose || robot.planned.empty()) continue;
-    const FieldOfView& view = options.team[r].robot.view;
-    const auto targets = selection->targets(r);
-    const auto target_centers = centers(lattice(), targets);
-    const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets, view);
-    gains[r].emplace(robot.planned, target_centers, pairs, view, options.optimizer.gain);
-    const OptimizedPath turned = optimize_path(robot.planned, target_centers, pairs, view, turning);
-    for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
-    robot.gain_tangent = turned.tangent.distinct;
-    robot.gain_predicted = turned.result.distinct;
-  }
+  const CountingRayCaster counting(*caster, lattice());
+  RobotStep& robot = step.robots[r];
+  const FieldOfView& view = options.team[r].robot.view;
+  const auto targets = selection->targets(r);
+  const auto target_centers = centers(lattice(), targets);
+  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets, view);
+  const OptimizedPath turned = planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
+  for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
+  robot.gain_tangent = turned.tangent.distinct;
+  robot.gain_predicted = turned.result.distinct;
   step.rays += counting.rays();
-  return gains;
+  InformationGain gain(robot.planned, target_centers, pairs, view, options.optimizer.gain);
+  robot.gain_sum = 0;
+  for (std::size_t i = 0; i < robot.planned.size(); ++i)
+    robot.gain_sum += frontiers_in_view(gain, i, robot.planned[i].yaw).size();
+  return gain;
 }
 
 // Lines 8 to 11.
-void Exploration::State::execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step) {
+void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kMoving);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     TravelOptions body = options.team[r].robot.travel;
     body.node_edge = 0.0;
     // A retreat need not be free: the robot came on it.
-    detail::execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
+    execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
     robot.gained =
         static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& voxel) {
           return voxel.before == Occupancy::kUnknown && frontiers.contains(voxel.key);
@@ -225,14 +256,14 @@ void Exploration::State::execute_paths(const Gains& gains, const Drive& drive, E
 }
 
 // Repeats recorded paths. False if the robots do not map what they mapped then.
-bool Exploration::State::execute_again(const ExplorationStep& recorded, const Drive& drive,
-                                       ExplorationStep& step) {
+bool ExplorationState::execute_again(const ExplorationStep& recorded, const Drive& drive,
+                                     ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {
     const RobotStep& then = recorded.robots[r];
     if (then.travelled > then.planned.size()) return false;
     RobotStep& now = step.robots[r] = then;
     now.planned.resize(then.travelled);
-    detail::execute_path(r, now, nullptr, drive, mapping);
+    execute_path(r, now, nullptr, drive, mapping);
     if (now.travelled != then.travelled || now.changed != then.changed) return false;
     remember(r, then);
   }
@@ -240,7 +271,7 @@ bool Exploration::State::execute_again(const ExplorationStep& recorded, const Dr
 }
 
 // What a robot's part of a step leaves behind.
-void Exploration::State::remember(std::size_t robot, const RobotStep& step) {
+void ExplorationState::remember(std::size_t robot, const RobotStep& step) {
   abandoned.visited(step.still_unknown);
   if (!step.blocked.empty()) {
     selection->block(robot, step.blocked);
@@ -251,7 +282,19 @@ void Exploration::State::remember(std::size_t robot, const RobotStep& step) {
   if (step.travelled > 0) poses[robot] = step.planned[step.travelled - 1];
 }
 
-void Exploration::State::update_frontiers(ExplorationStep& step) {
+// All robots wait for the slowest. The first step has no planning.
+void ExplorationState::advance_clock(ExplorationStep& step) {
+  double longest = 0.0;
+  for (std::size_t r = 0; r < size(); ++r) {
+    const RobotStep& robot = step.robots[r];
+    longest = std::max(longest, stop_and_go_time(std::span(robot.planned).first(robot.travelled),
+                                                 options.team[r].robot.limits));
+  }
+  time += longest + (number == 0 ? 0.0 : options.latency);
+  step.time = time;
+}
+
+void ExplorationState::update_frontiers(ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kFrontiers);
   std::vector<VoxelChange> all;
   for (const RobotStep& robot : step.robots)
@@ -266,15 +309,23 @@ void Exploration::State::update_frontiers(ExplorationStep& step) {
   frontiers.update(change());
 }
 
+// What a path is expected to see, as `epsilon` measures it.
+double ExplorationState::path_gain(const RobotStep& robot) const {
+  const bool sum = options.optimizer.gain.mode == GainMode::kSum;
+  return static_cast<double>(sum ? robot.gain_sum : robot.gain_predicted);
+}
+
 // Line 3: what the end depends on.
-void Exploration::State::judge(const ExplorationStep& step) {
+void ExplorationState::judge(const ExplorationStep& step) {
   double expected_gain = 0.0;
   bool retreats = false;
   idle = true;
+  last_goals.clear();
   for (const RobotStep& robot : step.robots) {
+    last_goals.push_back(robot.goal);
     const bool moved = robot.travelled > 1;
     if (robot.goal.pose || moved) idle = false;
-    if (moved && robot.goal.pose) expected_gain += static_cast<double>(robot.gain_predicted);
+    if (moved && robot.goal.pose) expected_gain += path_gain(robot);
     retreats = retreats || (moved && !robot.goal.pose);
   }
   if (expected_gain >= options.epsilon)
@@ -284,4 +335,4 @@ void Exploration::State::judge(const ExplorationStep& step) {
   ++number;
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::planner::detail

@@ -13,10 +13,10 @@
 #include <span>
 #include <vector>
 
-namespace frontlux::planner {
+namespace frontlux::planner::detail {
 
 /// What an exploration knows between the steps, and the stages of a step.
-struct Exploration::State {
+struct ExplorationState {
   using Keys = std::vector<VoxelKey>;
   using Gains = std::vector<std::optional<InformationGain>>;  // of each robot's path, if it has a goal
 
@@ -24,18 +24,22 @@ struct Exploration::State {
   Mapping mapping;
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
-  detail::AbandonedFrontiers abandoned;
+  AbandonedFrontiers abandoned;
   std::optional<GoalSelection> selection = {};  // from the start on
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
+  std::vector<Goal> last_goals = {};           // of the last step
+  std::vector<bool> came_back = {};            // robots that had no goal since they last went back
+  Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
   Keys changed = {};                           // by the last step, sorted
   std::uint64_t number = 0;                    // of the next step
+  double time = 0.0;                           // [s] in lock-step
   int low_gain_steps = 0;                      // in a row
   bool idle = false;                           // in the last step no robot had a goal or moved
 
-  State(ExplorationOptions given, Mapping map);
+  ExplorationState(ExplorationOptions given, Mapping map);
 
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
@@ -45,22 +49,35 @@ struct Exploration::State {
   void start_from(std::span<const ExplorationStart> starts);
   void look_around(std::span<const ExplorationStart> starts, const Drive& drive, ExplorationStep& step);
   void update_views(ExplorationStep& step);
-  void select_goals(ExplorationStep& step);
-  void plan_paths(ExplorationStep& step) const;
+  /// @param choosing  if given: the robot that chooses; the others keep their goals
+  void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
+  /// Brings a robot's corridor up to date; all robots keep their goals.
+  void keep_goal(std::size_t robot, ExplorationStep& step);
+  void plan_paths(ExplorationStep& step);
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
+  [[nodiscard]] InformationGain optimize_path(std::size_t robot, ExplorationStep& step) const;
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);
+  void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
+  [[nodiscard]] double path_gain(const RobotStep& robot) const;
   void judge(const ExplorationStep& step);
 
- private:
-  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
   }
-  [[nodiscard]] std::vector<Pose> retreat(std::size_t robot) const;
+  /// For a robot without a goal: back along the way it came, from its last place on; empty if that leads to
+  /// nothing.
+  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal) const;
+  [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
+  /// Whether a robot cannot get to where it came from, although there is something to see.
+  [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
+  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
+
+ private:
+  [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell) const;
   void remember(std::size_t robot, const RobotStep& step);
 };
 
-}  // namespace frontlux::planner
+}  // namespace frontlux::planner::detail

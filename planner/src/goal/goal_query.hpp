@@ -70,9 +70,10 @@ struct GoalQuery {
 /// azimuths that holds the target.
 [[nodiscard]] std::optional<RenderedCell> find_cluster_goal(const GoalQuery& query);
 
-/// `GoalRule::kNearest`. The cell with the shortest path to it from which any target is visible; of equals
-/// the one with the smallest key. Its yaw looks at the target nearest to it. Its gain counts the targets that
-/// are visible at that yaw.
+/// `GoalRule::kNearest`, as Yamauchi has it: to the nearest cluster of targets that touch each other. The
+/// cell with the shortest path to it from which the middle of any cluster is visible, or, if no middle is,
+/// any target; of equals the one with the smallest key. Its yaw looks at the nearest of these. Its gain
+/// counts the targets that are visible at that yaw.
 [[nodiscard]] std::optional<RenderedCell> find_nearest_goal(const GoalQuery& query);
 
 }  // namespace frontlux::planner::detail

@@ -60,7 +60,8 @@ GoalSelection::GoalSelection(GoalSelection&&) noexcept = default;
 GoalSelection& GoalSelection::operator=(GoalSelection&&) noexcept = default;
 
 TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change,
-                                std::span<const VoxelKey> frontiers, std::span<const Pose> poses) {
+                                std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
+                                std::optional<std::size_t> choosing) {
   State& state = *state_;
   if (poses.size() != state.team.size())
     refuse(std::to_string(poses.size()) + " poses for " + std::to_string(state.team.size()) + " robots");
@@ -77,22 +78,38 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
   TeamGoals result;
   result.frontiers = sorted.size();
   result.goals.resize(poses.size());
-  state.update(change, poses);
+  state.note(change);
+  state.begin_step(choosing);
+  for (std::size_t r = 0; r < poses.size(); ++r) state.update_corridor(r, change.grid, poses[r]);
   for (std::size_t r = 0; r < poses.size(); ++r)
-    set_no_goal(result.goals[r], state.members[r].corridor.state());
-  if (sorted.empty()) return result;
-  const detail::CountingRayCaster counting(caster, state.lattice);
-  State::Step step{counting, change.grid, result};
-  state.assign(step, sorted);
-  state.decide(step);
-  result.rays = counting.rays();
+    if (choosing && *choosing != r)
+      result.goals[r] = state.members[r].goal;
+    else
+      set_no_goal(result.goals[r], state.members[r].corridor.state());
+  if (!sorted.empty()) {
+    const detail::CountingRayCaster counting(caster, state.lattice);
+    State::Step step{counting, change.grid, result, choosing};
+    state.assign(step, sorted);
+    state.decide(step);
+    result.rays = counting.rays();
+  }
+  for (std::size_t r = 0; r < poses.size(); ++r) state.members[r].goal = result.goals[r];
   return result;
+}
+
+void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose) {
+  state_->note(change);
+  state_->update_corridor(robot, change.grid, pose);
 }
 
 void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
   State::Member& member = state_->members[robot];
   member.blocked.insert(member.blocked.end(), cells.begin(), cells.end());
   member.corridor.block(cells);
+}
+
+void GoalSelection::keep_out_of(std::size_t robot, std::vector<KeyBox> boxes) {
+  state_->members[robot].corridor.keep_out_of(std::move(boxes));
 }
 
 const std::vector<TeamMember>& GoalSelection::team() const { return state_->team; }

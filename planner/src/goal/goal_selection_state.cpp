@@ -43,25 +43,36 @@ std::string frontiers_text(std::size_t count) {
 
 }  // namespace
 
-void GoalSelection::State::update(const MapChange& change, std::span<const Pose> poses) {
+void GoalSelection::State::note(const MapChange& change) {
+  const Keys keys(change.keys.begin(), change.keys.end());
+  for (Member& member : members) {
+    member.missed = united(member.missed, keys);
+    if (member.image.size() > 0) member.changed = united(member.changed, keys);
+  }
+}
+
+void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose) {
+  Member& member = members[robot];
+  member.position = pose.position;
+  const Keys missed = std::exchange(member.missed, {});
+  const auto cell = lattice.key(member.position);
+  if (!cell) {
+    renew_corridor(robot);  // without an update it has no cells
+    return;
+  }
+  member.cell = *cell;
+  member.corridor.update({grid, missed}, member.cell);
+  member.unseen.update({grid, missed}, member.corridor.cells(),
+                       ViewRegion(team[robot].robot.view, lattice.resolution()));
+}
+
+void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
-    member.position = poses[r].position;
-    member.rendered = false;
     member.assigned.clear();
     member.released.clear();
-    member.targets.clear();
-    if (member.image.size() > 0)
-      member.changed = united(member.changed, {change.keys.begin(), change.keys.end()});
-    const auto cell = lattice.key(member.position);
-    if (!cell) {
-      renew_corridor(r);  // without an update it has no cells
-      continue;
-    }
-    member.cell = *cell;
-    member.corridor.update(change, member.cell);
-    member.unseen.update(change, member.corridor.cells(),
-                         ViewRegion(team[r].robot.view, lattice.resolution()));
+    member.rendered = false;
+    if (!choosing || *choosing == r) member.targets.clear();
   }
 }
 
@@ -110,7 +121,7 @@ GoalSelection::State::Keys GoalSelection::State::seen_by(const Step& step, std::
 
 // Alg. 1, line 5, and what follows when a robot sees none of its frontiers.
 void GoalSelection::State::decide(Step& step) {
-  for (std::size_t r = 0; r < members.size(); ++r) step.pending.push_back(can_move(r));
+  for (std::size_t r = 0; r < members.size(); ++r) step.pending.push_back(step.chooses(r) && can_move(r));
   // A robot releases a frontier at most once, so this ends.
   for (;;) {
     const auto next = std::find(step.pending.begin(), step.pending.end(), true);
@@ -119,7 +130,7 @@ void GoalSelection::State::decide(Step& step) {
     decide(step, static_cast<std::size_t>(next - step.pending.begin()));
   }
   for (std::size_t r = 0; r < members.size(); ++r)
-    if (can_move(r) && !step.result.goals[r].pose) take_uncovered(step, r);
+    if (step.chooses(r) && can_move(r) && !step.result.goals[r].pose) take_uncovered(step, r);
 }
 
 void GoalSelection::State::decide(Step& step, std::size_t robot) {
@@ -205,7 +216,7 @@ std::size_t GoalSelection::State::release(Step& step, std::size_t robot) {
     if (accepted.empty()) continue;
     members[other].assigned = united(members[other].assigned, accepted);
     step.result.goals[other].received += accepted.size();
-    step.pending[other] = true;
+    step.pending[other] = step.chooses(other);
     taken = united(taken, accepted);
   }
   step.result.unassigned += released.size() - taken.size();

@@ -21,6 +21,7 @@ struct GoalSelection::State {
     TravelCorridor corridor;
     ViewQualityImage image;
     Keys changed = {};                                        // since the image was last rendered
+    Keys missed = {};                                         // changed since the corridor's last update
     Eigen::Vector3d position = Eigen::Vector3d::Zero();       // [m]
     VoxelKey cell = {};                                       // of the position
     Keys assigned = {};                                       // frontiers to choose a goal for
@@ -30,6 +31,7 @@ struct GoalSelection::State {
     detail::UnseenFrontiers unseen = {};
     Keys blocked = {};      // cells it does not go through, in any order
     bool rendered = false;  // whether the image is that of `targets`
+    Goal goal = {};         // the last one
   };
 
   // One step.
@@ -37,7 +39,10 @@ struct GoalSelection::State {
     const RayCaster& caster;
     const VoxelGrid& grid;
     TeamGoals& result;
-    std::vector<bool> pending = {};  // robots that have to choose, or to choose again
+    std::optional<std::size_t> choosing = {};  // nothing: all robots
+    std::vector<bool> pending = {};            // robots that have to choose, or to choose again
+
+    [[nodiscard]] bool chooses(std::size_t robot) const { return !choosing || *choosing == robot; }
   };
 
   std::vector<TeamMember> team;
@@ -46,7 +51,9 @@ struct GoalSelection::State {
   bool exclusive;  // a frontier is one robot's; else every robot goes for all that it sees
   std::vector<Member> members = {};
 
-  void update(const MapChange& change, std::span<const Pose> poses);
+  void note(const MapChange& change);
+  void update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose);
+  void begin_step(std::optional<std::size_t> choosing);
   void assign(Step& step, const Keys& frontiers);
   void decide(Step& step);
 

@@ -41,10 +41,33 @@ std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQuality
   return candidates;
 }
 
+// A window of azimuths holds all that some yaw shows; at the edges of one yaw's view less height is in view.
+RenderedCell in_true_view(const GoalQuery& query, RenderedCell rated) {
+  const std::vector<std::uint8_t> visible = query.visible_targets(rated.cell, rated.yaw);
+  rated.hits = static_cast<std::uint32_t>(std::count(visible.begin(), visible.end(), std::uint8_t{1}));
+  rated.gain = rated.hits;
+  rated.quality = query.quality(rated.distance, rated.gain);
+  return rated;
+}
+
+// The best by what it truly sees at its yaw. Candidates that were worse before cannot be better by that.
 std::optional<RenderedCell> best_of(const GoalQuery& query, std::span<const Candidate> candidates) {
-  std::optional<RenderedCell> best;
+  std::vector<RenderedCell> cells;
   for (const auto& [rated, most, undecided] : candidates)
-    if (rated.gain > 0.0 && (!best || better(query, rated, *best))) best = rated;
+    if (rated.gain > 0.0) cells.push_back(rated);
+  const auto is_better = [&](const RenderedCell& a, const RenderedCell& b) { return better(query, a, b); };
+  if (query.bins() == 0) {
+    const auto best = std::min_element(cells.begin(), cells.end(), is_better);
+    return best == cells.end() ? std::nullopt : std::optional(*best);
+  }
+  std::make_heap(cells.begin(), cells.end(), [&](const auto& a, const auto& b) { return is_better(b, a); });
+  std::optional<RenderedCell> best;
+  for (auto end = cells.end(); end != cells.begin(); --end) {
+    if (best && !is_better(cells.front(), *best)) break;
+    const RenderedCell counted = in_true_view(query, cells.front());
+    if (counted.gain > 0.0 && (!best || is_better(counted, *best))) best = counted;
+    std::pop_heap(cells.begin(), end, [&](const auto& a, const auto& b) { return is_better(b, a); });
+  }
   return best;
 }
 

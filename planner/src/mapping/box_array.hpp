@@ -7,8 +7,6 @@
 
 namespace frontlux::planner::detail {
 
-using frontlux::size_of;
-
 /// A value for every key of a box.
 template <class T>
 class BoxArray {

@@ -70,6 +70,7 @@ void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   for (double& extent : travel.extents)
     code_length(bytes, extent, "an extent of the collision box is no length");
   bytes.whole(travel.metric, "path metric", 1);
+  code_length(bytes, travel.margin, "the margin around the body is no length");
   code_finite(bytes, travel.sensor_height, "the sensor's height is not finite");
   bytes.whole(travel.require_ground, "a flag", 1);
   bytes.maybe(travel.ground_extents, [&](Eigen::Vector2d& extents) {
@@ -83,11 +84,20 @@ void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   code_length(bytes, travel.node_edge, "the edge of the nodes is no length");
 }
 
+void code_limits(RecordBytes& bytes, MotionLimits& limits) {
+  for (double* limit : {&limits.speed, &limits.acceleration, &limits.yaw_rate}) bytes.number(*limit);
+  bytes.whole(limits.per_axis, "a flag", 1);
+  bytes.require(passes([&] { limits.check(); }), "a limit of the motion is out of bounds");
+}
+
 void code_description(RecordBytes& bytes, RobotDescription& description) {
   constexpr std::size_t kMostRays = 100'000'000;  // in a scan
   bytes.text(description.robot.name);
   code_travel(bytes, description.robot.travel);
   code_view(bytes, description.robot.view);
+  code_limits(bytes, description.robot.limits);
+  bytes.number(description.rate);
+  bytes.require(std::isfinite(description.rate) && description.rate > 0.0, "scans have no finite rate");
   bytes.whole(description.columns);
   bytes.whole(description.rows);
   bytes.require(description.columns > 0 && description.rows > 0 && description.columns <= kMostRays &&
@@ -96,7 +106,7 @@ void code_description(RecordBytes& bytes, RobotDescription& description) {
 }
 
 void code_head(RecordBytes& bytes, RecordingHead& head) {
-  constexpr std::size_t kRobotBytes = 90, kStartBytes = 33;  // at least
+  constexpr std::size_t kRobotBytes = 130, kStartBytes = 33;  // at least
   bytes.text(head.world);
   bytes.number(head.resolution);
   bytes.require(passes([&] { static_cast<void>(Lattice(head.resolution)); }),
@@ -173,6 +183,7 @@ void code_goal(RecordBytes& bytes, Goal& goal) {
 void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds) {
   bytes.whole(robot.gain_tangent);
   bytes.whole(robot.gain_predicted);
+  bytes.whole(robot.gain_sum);
   bytes.whole(robot.gained);
   bytes.whole(robot.travelled);
   code_length(bytes, robot.length, "what it travelled is no length");
@@ -217,6 +228,7 @@ void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& 
                 "more frontiers are unassigned or abandoned than there are");
   bytes.whole(step.rays);
   bytes.whole(recorded.collisions);
+  code_length(bytes, step.time, "a step ends at no finite time");
   for (double& seconds : step.seconds) code_length(bytes, seconds, "a phase takes no finite time");
   bytes.part(name + ", known voxels");
   code_known(bytes, recorded.known, head);

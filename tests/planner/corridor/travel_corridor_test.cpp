@@ -36,6 +36,7 @@ struct Rule {
   int lowest = std::numeric_limits<int>::min();  // key along z
   int ground = -1;                               // floor voxels beside the middle that must not be free
   std::vector<KeyBox> without_ground;
+  std::vector<KeyBox> kept_out = {};
 
   [[nodiscard]] bool passable(const VoxelGrid& grid, const VoxelKey& cell, bool plane) const {
     KeyBox inside = kBounds;
@@ -44,6 +45,8 @@ struct Rule {
     const bool fits =
         all_of(box, [&](const VoxelKey& v) { return inside.contains(v) && grid.at(v) == Occupancy::kFree; });
     if (cell.z < lowest || !fits) return false;
+    for (const KeyBox& box_of_others : kept_out)
+      if (box_of_others.contains(cell)) return false;
     if (ground < 0) return true;
     for (const KeyBox& exempt : without_ground)
       if (exempt.contains({cell.x, cell.y, exempt.min.z})) return true;
@@ -112,7 +115,17 @@ std::vector<Robot> robots() {
   ugv.extents = {0.1, 0.1, 0.1};  // far below its sensor
   ugv.sensor_height = 0.75;
   robots.push_back({ugv, 0.3, {{0, 0, -2}, {0, 0, 0}, 1, 0, -1, {}}, key_at(0, 0, 2)});
+  // 1.0 x 1.0 m with their margin, and no higher than without.
+  TravelOptions with_margin = robots[0].options;
+  with_margin.extents = {0.7, 0.7, 0.7};
+  with_margin.margin = 0.15;
+  robots.push_back({with_margin, 0.3, robots[0].rule, key_at(0, 0, 2)});
   TravelOptions uav = uav_travel();
+  robots.push_back({uav, 0.3, {{-1, -1, -1}, {1, 1, 1}, 1, 32768 + 4, -1, {}}, key_at(0, 0, 6)});
+  uav.extents = {0.2, 0.1, 0.4};
+  uav.margin = 0.2;  // 0.6 m, 0.5 m, 0.8 m
+  robots.push_back({uav, 0.3, {{-1, -1, -1}, {1, 1, 1}, 1, 32768 + 4, -1, {}}, key_at(0, 0, 6)});
+  uav = uav_travel();
   robots.push_back({uav, 0.3, {{-1, -1, -1}, {1, 1, 1}, 1, 32768 + 4, -1, {}}, key_at(0, 0, 6)});
   uav.min_height = 0.3 * 2 + 0.15;  // a centre: just high enough
   uav.extents = {0.3, 0.31, 1.0};
@@ -182,6 +195,62 @@ TEST(TravelCorridor, EqualsANewCorridorAfterEveryChange) {
         ASSERT_EQ(corridor.distance(key), fresh.distance(key));
       });
     }
+  }
+}
+
+// The boxes of the last call, but for those that hold the robot's own cell.
+TEST(TravelCorridor, KeepsOutOfBoxes) {
+  std::size_t cells = 0;
+  for (const Robot& robot : robots()) {
+    Random random(5);
+    VoxelGrid grid = random_map(2, robot.resolution, 400);
+    TravelCorridor corridor(robot.options, grid.lattice(), kBounds);
+    clear_around(grid, robot, corridor);
+    corridor.update({grid}, robot.at);
+    for (int step = 0; step < 6; ++step) {
+      std::vector<KeyBox> boxes;
+      for (int n = random.below(4); n > 0; --n) {
+        const VoxelKey low = random.key_in(kBounds);
+        boxes.push_back({low, moved(low, random.below(6), random.below(6), random.below(6))});
+      }
+      const std::size_t before = corridor.cells().size();
+      corridor.keep_out_of(boxes);
+      EXPECT_EQ(corridor.cells().size(), before) << "until the next update";
+      corridor.update({grid}, robot.at);
+      Robot expected = robot;
+      for (const KeyBox& box : boxes)
+        if (!box.contains(corridor.cell_of(robot.at))) expected.rule.kept_out.push_back(box);
+      expect_as_defined(corridor, grid, expected);
+      if (testing::Test::HasFatalFailure()) return;
+      cells += corridor.cells().size();
+    }
+    const KeyBox own{corridor.cell_of(robot.at), corridor.cell_of(robot.at)};
+    corridor.keep_out_of({own});
+    corridor.update({grid}, robot.at);
+    expect_as_defined(corridor, grid, robot);
+  }
+  EXPECT_GT(cells, 5'000U);
+}
+
+// A body with a margin is one that is larger by it, also off the middle of a cell.
+TEST(TravelCorridor, MarginIsAsIfTheBodyWereLarger) {
+  const Lattice lattice(0.1);
+  for (const double margin : {0.0, 0.03, 0.05, 0.12}) {
+    TravelOptions slim = uav_travel(), wide = uav_travel();
+    slim.extents = {0.4, 0.5, 0.33};
+    slim.margin = margin;
+    wide.extents = slim.extents + Eigen::Vector3d::Constant(2 * margin);
+    EXPECT_EQ(slim.box(), wide.extents);
+    EXPECT_TRUE(reach_of(slim, lattice).isApprox(reach_of(wide, lattice)) ||
+                (reach_of(slim, lattice) - reach_of(wide, lattice)).norm() < 1e-12);
+    EXPECT_EQ(voxels_of_cell(slim, lattice, key_at(0, 0, 9)), voxels_of_cell(wide, lattice, key_at(0, 0, 9)));
+    EXPECT_EQ(body_of(slim).sizes(), slim.extents);
+    TravelOptions low = ugv_travel();
+    low.margin = margin;
+    EXPECT_EQ(low.box(), low.extents + Eigen::Vector3d(2 * margin, 2 * margin, 0.0));
+    // The body stands on the floor, its sensor at the origin.
+    EXPECT_NEAR(body_of(low).min().z(), -low.sensor_height, 1e-12);
+    EXPECT_NEAR(body_of(low).max().z(), low.extents.z() - low.sensor_height, 1e-12);
   }
 }
 
@@ -267,6 +336,7 @@ TEST(TravelCorridor, RefusesOptionsThatAreNotValid) {
     for (const int axis : {0, 1, 2}) refuses([&](TravelOptions& o) { o.extents[axis] = bad; }, uav_travel());
   for (const double bad : {-1.0, nan, 1e9})
     refuses([&](TravelOptions& o) { o.sensor_height = bad; }, ugv_travel());
+  for (const double bad : {-0.1, nan, 1e9}) refuses([&](TravelOptions& o) { o.margin = bad; }, uav_travel());
   refuses([](TravelOptions& o) { o.ground_reach = -1; }, ugv_travel());
   refuses([](TravelOptions& o) { o.ground_extents = Eigen::Vector2d(-1, 1); }, ugv_travel());
   refuses([](TravelOptions& o) { o.node_edge = 1.2; }, ugv_travel());

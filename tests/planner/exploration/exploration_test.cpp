@@ -112,6 +112,7 @@ TEST(Exploration, SaysInWordsWhyItIsOver) {
             "expected gain stayed below 10 frontiers for 3 steps");
   EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options), "the limit of 1000 steps is reached");
   EXPECT_EQ(name_of(ExplorationEnd::kLowGain), "low_gain");
+  EXPECT_EQ(name_of(ExplorationEnd::kCutOff), "cut_off");
 }
 
 TEST(Exploration, EndsAtItsLimitOfSteps) {
@@ -133,6 +134,16 @@ TEST(Exploration, EndsWhenNoRobotHasAGoal) {
   EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
   EXPECT_EQ(steps[0].robots[0].goal.state, GoalState::kNoCorridor);
   EXPECT_TRUE(steps[0].robots[0].planned.empty());
+}
+
+TEST(Exploration, EndsWhenNothingIsUnknown) {
+  Lone lone;
+  lone.start.known_free = test::keys_of(lone.bounds);
+  Exploration exploration = lone.begun(see_nothing);
+  const auto steps = lone.all_steps(exploration, see_nothing);
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
+  EXPECT_EQ(steps[0].robots[0].goal.state, GoalState::kNoFrontiers);
 }
 
 TEST(Exploration, EndsWithARobotThatDoesNotGo) {

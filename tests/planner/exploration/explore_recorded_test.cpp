@@ -1,7 +1,6 @@
 // The example docs/examples/explore_recorded.cpp with a robot that knows it by files only.
 
-#include "planner/exploration/team_in_world.hpp"
-#include "support/command.hpp"
+#include "planner/exploration/scan_folder.hpp"
 
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
@@ -20,50 +19,10 @@ using test::content_of;
 using test::status_of;
 using test::TeamInWorld;
 
-class ExploreRecorded : public test::FolderTest {
+class ExploreRecorded : public test::ScanFolder {
  protected:
-  ExploreRecorded() {
-    fs::create_directories(folder_ / "scans");
-    write("robot.json", R"({"name": "uav", "motion": "space", "box_m": [0.8, 0.8, 0.8],
-              "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 8,
-                         "columns": 100, "rows": 75}})");
-  }
-
-  [[nodiscard]] pid_t begin(const Pose& start, const std::string& seconds) const {
-    std::vector<std::string> all = {FRONTLUX_EXPLORE_RECORDED, path("robot.json"), path("scans")};
-    for (const double number : {start.position.x(), start.position.y(), start.position.z(), start.yaw})
-      all.push_back(std::to_string(number));
-    all.push_back(seconds);
-    return test::start(all, folder_);
-  }
-  void expect_success(int status) const {
-    EXPECT_EQ(test::exit_code(status), 0) << content_of(folder_ / "err");
-  }
-
-  // Writes what a robot measures as a file in the sensor's frame, and where it was.
-  void answer(const Scan& scan, const Pose& at) {
-    const std::string name = "scan" + std::to_string(++scans_) + ".ply";
-    std::ofstream ply(folder_ / "scans" / name, std::ios::binary);
-    ply << "ply\nformat binary_little_endian 1.0\nelement vertex " << scan.ranges.size()
-        << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-    const Eigen::AngleAxisf turn(static_cast<float>(-at.yaw), Eigen::Vector3f::UnitZ());
-    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-      const float range = std::isinf(scan.ranges[i]) ? 100.0F : scan.ranges[i];
-      const Eigen::Vector3f point = turn * scan.directions[i] * range;
-      ply.write(reinterpret_cast<const char*>(point.data()), 3 * sizeof(float));
-    }
-    ply.close();
-    std::ostringstream line;
-    line.precision(17);
-    line << name << ',' << at.position.x() << ',' << at.position.y() << ',' << at.position.z() << ','
-         << at.yaw << '\n';
-    table_ += line.str();
-    std::ofstream(folder_ / "scans/poses.new") << table_;
-    fs::rename(folder_ / "scans/poses.new", folder_ / "scans/poses.csv");
-  }
-
+  ExploreRecorded() : ScanFolder(FRONTLUX_EXPLORE_RECORDED) {}
   int scans_ = 0;
-  std::string table_ = "file,x,y,z,yaw\n";
 };
 
 TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
@@ -83,7 +42,7 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
     const auto next = io::read_pose_list(folder_ / "scans/next.csv");
     fs::remove(folder_ / "scans/next.csv");
     ASSERT_EQ(next.size(), 1U);
-    answer(robots.drive(0, next[0].pose).value(), next[0].pose);
+    answer("scan" + std::to_string(++scans_) + ".ply", robots.drive(0, next[0].pose).value(), next[0].pose);
   }
   expect_success(status);
   const std::string told = content_of(folder_ / "out"), map = content_of(folder_ / "scans/map.bt");

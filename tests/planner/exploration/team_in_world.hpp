@@ -35,9 +35,9 @@ struct TeamInWorld {
         truth(world, 0.3, around),
         robots(std::move(team)) {
     std::vector<planner::Robot> bodies;
-    for (auto& [robot, columns, rows] : robots) {
-      robot.travel.floor = sim::ground_below(truth, around);
-      bodies.push_back(robot);
+    for (auto& description : robots) {
+      description.robot.travel.floor = sim::ground_below(truth, around);
+      bodies.push_back(description.robot);
     }
     const auto poses = sim::find_starts(truth, around, bodies);
     for (std::size_t r = 0; r < poses.size(); ++r) {

@@ -107,7 +107,9 @@ TEST(GoalSelection, AerialRobotTakesTheCellWithTheBestWindow) {
       if (!first && away.maxCoeff() > 2) continue;
       ++viewpoints;
       if (steps.at(cell) < 2) continue;
-      Found found = best_yaw(cell, decision.seen_from(cell, assigned), member.robot.view.horizontal, nullptr);
+      const auto seen = decision.seen_from(cell, assigned);
+      const Found found_window = best_yaw(cell, seen, member.robot.view.horizontal, nullptr);
+      Found found = in_true_view(found_window, seen, member.robot.view);
       found.quality = worth(found.gain, steps.at(cell) * kResolution);
       if (found.gain > 0 && (!best || found.quality > best->quality * (1 + 1e-9))) best = found;
     }

@@ -86,6 +86,15 @@ inline Found best_yaw(const VoxelKey& cell, const std::vector<VoxelKey>& seen, d
   return best;
 }
 
+/// With the gain that its yaw truly shows: at the edges of one yaw's view less height is in view than in a
+/// window of azimuths.
+inline Found in_true_view(Found found, const std::vector<VoxelKey>& seen, const FieldOfView& view) {
+  found.gain = static_cast<double>(std::ranges::count_if(seen, [&](const VoxelKey& target) {
+    return view.contains(offset_between(found.cell, target, kResolution), found.yaw);
+  }));
+  return found;
+}
+
 inline void expect_goal(const Goal& goal, const std::optional<Found>& truth) {
   ASSERT_EQ(goal.pose.has_value(), truth.has_value()) << goal.reason;
   if (!truth) return;

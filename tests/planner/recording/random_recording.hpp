@@ -20,16 +20,20 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
   head.observable = 1'000'000'000'000 + random.bits() % 1000;
   head.bounding = head.observable + random.bits() % 1000;
   for (int i = 0; i < robots; ++i) {
-    planner::RobotDescription robot = {planner::ugv(), 720, 32};
+    planner::RobotDescription robot = planner::ugv_description();
     robot.robot.name = "ugv" + std::to_string(i);
     auto& travel = robot.robot.travel;
     if (i % 2 == 1) {
-      robot = {planner::uav(), 160, 120};
+      robot = planner::uav_description();
       travel.metric = planner::PathMetric::kSteps;
       travel.ground_extents = Eigen::Vector2d(random.uniform(0, 1), random.uniform(0, 1));
       travel.require_ground = false;
       travel.node_edge = random.uniform(1, 2);
     }
+    travel.margin = random.uniform(0, 1);
+    robot.robot.limits = {random.uniform(0.1, 9), random.uniform(0.1, 9), random.uniform(0.1, 9),
+                          random.one_in(2)};
+    robot.rate = random.uniform(0.1, 99);
     travel.extents = {random.uniform(0, 1), random.uniform(0, 2), random.uniform(0, 1)};
     travel.sensor_height = random.uniform(-1, 1);
     travel.ground_reach = random.below(65536);
@@ -67,6 +71,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
   step.unassigned = random.bits() % 1000;
   step.abandoned = random.bits() % 1000;
   step.rays = random.bits();
+  step.time = random.uniform(0, 1e4);
   recorded.collisions = random.bits() % 3;
   for (double& seconds : step.seconds) seconds = random.uniform(0, 10);
   for (std::size_t r = 0; r < head.robots.size(); ++r) {
@@ -74,6 +79,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
     planner::RobotStep robot;
     robot.gain_tangent = random.bits() % 10000;
     robot.gain_predicted = random.bits() >> random.below(64);
+    robot.gain_sum = random.bits() >> random.below(64);
     robot.gained = random.bits() % 10000;
     robot.length = random.uniform(0, 40);
     robot.path = static_cast<planner::PathOutcome>(random.below(7));
@@ -123,11 +129,13 @@ class Listing {
   }
 
   void add(const planner::RobotDescription& description) {
-    const auto& [robot, columns, rows] = description;
+    const auto& [robot, columns, rows, rate] = description;
     const auto& t = robot.travel;
     line("robot", robot.name, columns, rows, static_cast<int>(robot.view.shape), robot.view.horizontal,
-         robot.view.vertical, robot.view.max_range);
-    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(),
+         robot.view.vertical, robot.view.max_range, rate);
+    line("limits", robot.limits.speed, robot.limits.acceleration, robot.limits.yaw_rate,
+         robot.limits.per_axis);
+    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(), t.margin,
          static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
     if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
     line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
@@ -148,13 +156,13 @@ class Listing {
     add(recorded.step);
   }
 
-  /// All but the times.
+  /// All but the times that it took.
   void add(const planner::ExplorationStep& s) {
-    line("step", s.number, s.frontiers, s.unassigned, s.abandoned, s.rays);
+    line("step", s.number, s.time, s.frontiers, s.unassigned, s.abandoned, s.rays);
     for (const auto& r : s.robots) {
       add(r.goal);
-      line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.travelled, r.length,
-           r.gained);
+      line("path", static_cast<int>(r.path), r.gain_tangent, r.gain_predicted, r.gain_sum, r.travelled,
+           r.length, r.gained);
       for (const auto& pose : r.planned) add(pose);
       for (const auto& c : r.changed) {
         add(c.key);

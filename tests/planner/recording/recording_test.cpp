@@ -89,7 +89,7 @@ TEST_F(RecordingTest, AnyNumberOfRobots) {
 
 TEST_F(RecordingTest, FirstLineSaysWhatItIs) {
   record(0, 0, false);
-  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 2\n"));
+  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 3\n"));
 }
 
 TEST_F(RecordingTest, EveryTruncationIsAPrefix) {
@@ -122,7 +122,7 @@ TEST_F(RecordingTest, EveryFlippedByteIsFound) {
       flipped[at] = static_cast<char>(flipped[at] ^ mask);
       const std::string said = complaint(flipped);
       ASSERT_NE(said, "") << "byte " << at << ", mask " << mask;
-      const bool in_title = at < std::string("frontlux recording, format 2\n").size();
+      const bool in_title = at < std::string("frontlux recording, format 3\n").size();
       ASSERT_EQ(said.find("damaged at byte ") == std::string::npos, in_title) << said;
     }
 }
@@ -176,7 +176,7 @@ TEST_F(RecordingTest, AnnouncedSizesAllocateNothing) {
   record(0, 0, false);
   const std::string before = bytes();
   // A list of 2^60 robots' known voxels.
-  const std::string first = std::string(6, '\0') + std::string(48, '\0');
+  const std::string first = std::string(6, '\0') + std::string(56, '\0');
   expect_refused(before + detail::packed_record("step", first + "\x80\x80\x80\x80\x80\x80\x80\x80\x10"),
                  "a list is longer than what is there");
   // A gigabyte of zeros would compress to a megabyte: announced in a record of a few bytes.
@@ -210,6 +210,8 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
   });
   refuses("no length", [&](RecordedStep& s) { s.step.robots[0].length = -1; });
   refuses("no finite time", [&](RecordedStep& s) { s.step.seconds[2] = nan; });
+  for (const double time : {nan, -1.0})
+    refuses("a step ends at no finite time", [&](RecordedStep& s) { s.step.time = time; });
   refuses("outcome of the path search is 7",
           [](RecordedStep& s) { s.step.robots[0].path = static_cast<PathOutcome>(7); });
   refuses("there is a goal, but", [](RecordedStep& s) {
@@ -237,9 +239,21 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
   refuses("rendered cell is not finite", [&](RecordedStep& s) {
     s.step.robots[0].image = {{{}, 0, 0, 0, std::numeric_limits<double>::infinity(), 0, 0}};
   });
-  RecordingHead head = head_;
-  head.resolution = nan;
-  EXPECT_REFUSED(RecordingWriter(folder_ / "other", head));
+  const auto refuses_head = [&](const std::string& part, const auto& change) {
+    RecordingHead bad = head_;
+    change(bad);
+    test::expect_complaint([&] { RecordingWriter(folder_ / "other", bad); }, {part});
+  };
+  refuses_head("the resolution", [&](RecordingHead& head) { head.resolution = nan; });
+  refuses_head("robot 1: the margin",
+               [&](RecordingHead& head) { head.robots[1].robot.travel.margin = -0.1; });
+  for (const double limit : {nan, 0.0, -1.0}) {
+    refuses_head("robot 0: a limit of the motion",
+                 [&](RecordingHead& head) { head.robots[0].robot.limits.speed = limit; });
+    refuses_head("robot 0: a limit of the motion",
+                 [&](RecordingHead& head) { head.robots[0].robot.limits.yaw_rate = limit; });
+    refuses_head("robot 1: scans have no", [&](RecordingHead& head) { head.robots[1].rate = limit; });
+  }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other")) << "nothing is created for a wrong head";
 }
 
@@ -327,12 +341,12 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
 TEST_F(RecordingTest, ForeignFiles) {
   expect_refused("", "is not a recording");
   expect_refused("frontl", "ends in its first line");
-  expect_refused("frontlux recording, format 2", "ends in its first line");
-  expect_refused("frontlux recording, format 2\n", "ends before the run began");
+  expect_refused("frontlux recording, format 3", "ends in its first line");
+  expect_refused("frontlux recording, format 3\n", "ends before the run began");
   expect_refused("frontlux recording, format 1\nanything",
-                 "is a recording of format 1, and this program reads format 2");
+                 "is a recording of format 1, and this program reads format 3");
   expect_refused("frontlux recording, format 12\n",
-                 "reads format 2; read it with the frontlux that wrote it");
+                 "reads format 3; read it with the frontlux that wrote it");
   expect_refused("frontlux recording, format x\n", "is not a recording");
   expect_refused("frontlux recording, format 99999999999999999999\n", "is not a recording");
   expect_refused("# Octomap OcTree file\nid OcTree\n", "is not a recording");
@@ -368,7 +382,9 @@ TEST_F(RecordingTest, PythonExampleReadsIt) {
   std::ostringstream expected;
   for (const RecordedStep& recorded : steps_) {
     const auto& step = recorded.step;
-    expected << "step " << step.number << ": " << step.frontiers << " frontiers";
+    char time[64];
+    std::snprintf(time, sizeof time, "%.1f", step.time);
+    expected << "step " << step.number << " until " << time << " s: " << step.frontiers << " frontiers";
     for (std::size_t i = 0; i < step.robots.size(); ++i) {
       std::array<std::size_t, 3> after{};
       for (const VoxelChange& change : step.robots[i].changed)

@@ -21,6 +21,9 @@
 #include <vector>
 
 namespace frontlux::planner {
+namespace detail {
+struct ExplorationState;
+}
 
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
@@ -31,10 +34,14 @@ struct ExplorationOptions {
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
-  double epsilon = 10.0;   ///< a step has low gain if its paths are expected to see fewer frontiers than this
-  int low_gain_steps = 3;  ///< this many steps of low gain in a row end the exploration
-  int max_steps = 1000;    ///< so does this number of steps
-  int max_visits = 2;      ///< a frontier that stays unknown after so many visits in view is abandoned
+  double epsilon = 10.0;  ///< a step has low gain if its paths are expected to see fewer frontiers than this:
+                          ///< distinct ones, or with `GainMode::kSum` summed over viewpoints
+  int low_gain_steps = 3;    ///< this many steps of low gain in a row end the exploration
+  int max_steps = 1000;      ///< so does this number of steps
+  double latency = 0.1;      ///< [s] that the clock charges for a planning
+  double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its way anew
+  double commitment = 30.0;  ///< [s] in motion: a goal that is not seen yet is kept for this long
+  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
 
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -66,6 +73,7 @@ struct RobotStep {
   std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
   /// Distinct frontiers of its own that the path has in view: with the robot looking ahead, and as optimised.
   std::uint64_t gain_tangent = 0, gain_predicted = 0;
+  std::uint64_t gain_sum = 0;           ///< of its own frontiers in view, summed over the path's viewpoints
   std::size_t travelled = 0;            ///< viewpoints of `planned` that it reached, the first included
   double length = 0.0;                  ///< [m] that it travelled
   std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans mapped
@@ -82,6 +90,7 @@ inline constexpr std::size_t kPhases = 6;
 
 struct ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
+  double time = 0.0;              ///< [s] of the clock, at its end
   std::size_t frontiers = 0;      ///< in the map when the step was planned
   std::size_t unassigned = 0;     ///< of them, those that no robot can see
   std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
@@ -97,8 +106,9 @@ enum class ExplorationEnd : std::uint8_t {
   kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps
   kNothingToDo,  ///< no robot has a goal
   kStepLimit,    ///< `max_steps` are done
+  kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };
-/// One of the words "low_gain", "nothing_to_do", "step_limit".
+/// One of the words "low_gain", "nothing_to_do", "step_limit", "cut_off".
 [[nodiscard]] std::string_view name_of(ExplorationEnd end);
 /// In words: "expected gain stayed below 10 frontiers for 3 steps".
 [[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options);
@@ -150,8 +160,7 @@ class Exploration {
   [[nodiscard]] std::span<const VoxelKey> frontiers() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<detail::ExplorationState> state_;
 };
 
 }  // namespace frontlux::planner

@@ -22,7 +22,7 @@ namespace frontlux::planner {
 enum class GoalRule : std::uint8_t {
   kViewQuality,  ///< the cell of the corridor with the best view quality by eq. 1
   kClusters,     ///< the paper's Sec. VI: a cell that sees the middle of the best cluster of frontiers
-  kNearest,      ///< the nearest cell from which any frontier is visible: the usual baseline
+  kNearest,      ///< the nearest cell that sees the middle of a cluster of frontiers: the usual baseline
 };
 
 /// What eq. 1 takes for the distance between a viewpoint and the robot.
@@ -155,14 +155,24 @@ class GoalSelection {
   /// @param change     since the last step
   /// @param frontiers  of the map, in any order
   /// @param poses      of the robots' sensors, one for each robot
+  /// @param choosing   if given: the only robot that chooses; the others keep their goals
   /// @throws std::invalid_argument if the number of poses differs, a pose is not finite, or the grid has
   ///                   another resolution
   [[nodiscard]] TeamGoals select(const RayCaster& caster, const MapChange& change,
-                                 std::span<const VoxelKey> frontiers, std::span<const Pose> poses);
+                                 std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
+                                 std::optional<std::size_t> choosing = std::nullopt);
+
+  /// In the place of a step: takes the change, and brings up to date no more than one robot's corridor. All
+  /// robots keep their goals. @pre robot < team().size()
+  void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose);
 
   /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()
   void block(std::size_t robot, std::span<const VoxelKey> cells);
+
+  /// At the next step these boxes of cells are impassable for a robot: see `TravelCorridor::keep_out_of`.
+  /// @pre robot < team().size()
+  void keep_out_of(std::size_t robot, std::vector<KeyBox> boxes);
 
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 

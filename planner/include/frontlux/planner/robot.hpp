@@ -1,6 +1,7 @@
 #pragma once
 
 #include <frontlux/field_of_view.hpp>
+#include <frontlux/planner/motion_limits.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <cstddef>
@@ -21,31 +22,36 @@ struct Robot {
   std::string name;      ///< in messages
   TravelOptions travel;  ///< where it fits
   FieldOfView view;      ///< what it sees from there
+  MotionLimits limits;   ///< how fast it is
 
   /// [m] of the sensor above the floor where the robot stands or, in space, above its middle
   [[nodiscard]] double mount_height() const {
     return travel.motion == Motion::kPlane ? travel.sensor_height : 0.0;
   }
 
-  /// @throws std::invalid_argument naming the value of the field of view that is out of bounds
-  void check() const { view.check(); }
+  /// @throws std::invalid_argument naming the value of the field of view or the limits that is out of bounds
+  void check() const {
+    view.check();
+    limits.check();
+  }
 };
 
 /// The paper's ground robot: 1.0 x 1.0 x 0.7 m on one plane, a lidar that sees all around, 20 degrees up and
-/// down, and 6 m far.
+/// down, and 6 m far. Limits as in `MotionLimits`, which the paper does not say.
 [[nodiscard]] Robot ugv();
 
 /// The paper's aerial robot: a cube of 0.8 m, a depth camera of 90 x 72 degrees that sees 10 m far. It goes
-/// where its box fits; as printed, through free octree nodes of 1.2 m.
+/// where its box fits; as printed, through free octree nodes of 1.2 m. 1.5 m/s, else as the ground robot.
 [[nodiscard]] Robot uav(Method method = Method::kDefault);
 
-/// A robot with the number of rays in a scan of its sensor.
+/// A robot with the number of rays in a scan of its sensor, and how often it takes one.
 struct RobotDescription {
   Robot robot;
   std::size_t columns = 0, rows = 0;  ///< azimuths and beams of a spinning sensor, pixels of a camera
+  double rate = 10.0;                 ///< [1/s] of scans, in motion
 };
 
-/// The paper's robots: 32 beams x 720 azimuths; 160 x 120 pixels.
+/// The paper's robots: 32 beams x 720 azimuths, 10 a second; 160 x 120 pixels, 15 a second.
 [[nodiscard]] RobotDescription ugv_description();
 [[nodiscard]] RobotDescription uav_description(Method method = Method::kDefault);
 

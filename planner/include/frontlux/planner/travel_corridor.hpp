@@ -5,6 +5,7 @@
 #include <frontlux/voxel_grid.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <memory>
@@ -30,12 +31,13 @@ enum class PathMetric : std::uint8_t {
 /// Where a robot fits.
 ///
 /// Its collision box is made of whole voxels and does not turn with the yaw. Along each axis it is the
-/// smallest odd number of voxels, with the cell in the middle, that covers `extents`. On a plane the box
-/// stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution) above
-/// that face, and the box has the fewest layers that cover its height and hold the sensor.
+/// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the
+/// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
+/// above that face, and the box has the fewest layers that cover its height and hold the sensor.
 struct TravelOptions {
   Motion motion = Motion::kSpace;
-  Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the collision box along x, y and z
+  Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z
+  double margin = 0.0;  ///< [m] kept free around the body, on a plane to its sides
   PathMetric metric = PathMetric::kEuclidean;
 
   double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
@@ -53,12 +55,21 @@ struct TravelOptions {
   /// is passable if all its voxels are free; no collision box is used. The key of a cell is then that of the
   /// voxel above the node's centre on all axes.
   double node_edge = 0.0;
+
+  /// [m] body and margin
+  [[nodiscard]] Eigen::Vector3d box() const {
+    const double above = motion == Motion::kPlane ? 0.0 : margin;
+    return extents + 2 * Eigen::Vector3d(margin, margin, above);
+  }
 };
 
 /// The paper's robots: a UGV of 1.0 x 1.0 x 0.7 m, a UAV of 0.8 m, and the UAV on nodes of 1.2 m.
 [[nodiscard]] TravelOptions ugv_travel();
 [[nodiscard]] TravelOptions uav_travel();
 [[nodiscard]] TravelOptions uav_node_travel();
+
+/// [m] The body of a robot whose sensor is at the origin.
+[[nodiscard]] Eigen::AlignedBox3d body_of(const TravelOptions& travel);
 
 /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
 [[nodiscard]] VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel);
@@ -116,6 +127,10 @@ class TravelCorridor {
   /// Makes these cells impassable from the next update on, whatever the map says: there is something that no
   /// sensor has seen.
   void block(std::span<const VoxelKey> cells);
+
+  /// Makes the cells in these boxes impassable from the next update on, in the place of those of the call
+  /// before: other robots are there, or on their way. A box that holds the robot's own cell is ignored.
+  void keep_out_of(std::vector<KeyBox> boxes);
 
   /// If it is not `kReady`, there are no cells.
   [[nodiscard]] CorridorState state() const;

@@ -1,5 +1,5 @@
 import { el, table } from "./dom.js";
-import { NOT_SET, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
+import { NOT_SET, clockTime, cubicMetres, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
 
 // Deng, Xu, Zhao and Shimada's results, by world: the team's coverage and steps, planning time of each robot in total and
 // per step, and, before and after optimisation, the UAV's fraction of the coverage and its path.
@@ -13,8 +13,17 @@ const ENDS = {
   low_gain: "the expected gain stayed too low for several steps",
   nothing_to_do: "no robot had a goal left",
   step_limit: "the step limit was reached",
+  cut_off: "a robot is where it cannot leave, and there is more to see from where it came from",
+  coverage: "the coverage that was asked for was reached",
+  time_limit: "the time limit was reached",
   stopped: "it was stopped",
 };
+
+// The planner chose these ends; the others are limits, or come from outside.
+const NORMAL_ENDS = ["low_gain", "nothing_to_do"];
+const ENOUGH = 0.95; // of the observable space, at a normal end
+const MILESTONES = [0.5, 0.9, 0.95, 0.99];
+const MOST_ROWS = 500; // in the table of steps
 
 /** Why a run ended, as the end of a sentence. */
 export function ending(facts) {
@@ -28,7 +37,23 @@ export function teamName(facts) {
 function headline(run) {
   const { facts, numbers } = run, { result } = numbers;
   const box = Number.isFinite(result.coverageBox) ? ` (${percent(result.coverageBox)} of the world's box)` : "";
-  return `${facts.robots.length > 1 ? "The team" : "The robot"} mapped ${percent(result.coverage)} of the observable space${box} in ${result.steps} steps. It ended because ${ending(facts)}.`;
+  const effort = numbers.clock ? `${clockTime(result.time)} and ${metres(result.length)}` : `${result.steps} steps`;
+  return `${facts.robots.length > 1 ? "The team" : "The robot"} mapped ${percent(result.coverage)} of the observable space${box} in ${effort}. It ended because ${ending(facts)}.`;
+}
+
+/** What a reader must know before trusting the numbers. */
+export function warnings({ facts, numbers }) {
+  const { coverage } = numbers.result, list = [];
+  if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
+  if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
+  if (facts.truncated) list.push("the last step of the recording is incomplete and is not shown");
+  return list;
+}
+
+/** A function of the first step with this coverage, or "never". */
+function reached(numbers, fraction, format) {
+  const s = stepOfCoverage(numbers, fraction);
+  return s < 0 ? "never" : format(s);
 }
 
 function worldsOf(runs) {
@@ -37,16 +62,17 @@ function worldsOf(runs) {
 }
 
 /** The first thing a reader sees: what was run, and the result. */
-export function header(runs, written) {
+export function header(runs) {
   const [{ facts, numbers }] = runs, { result } = numbers;
   const single = runs.length === 1;
   const tile = (name, value, note) => el("div", { class: "tile" }, el("dt", { text: name }), el("dd", {}, el("strong", { text: value }), note ? el("span", { class: "note", text: note }) : null));
   const tiles = single
     ? el("dl", { class: "tiles" },
         tile("coverage", percent(result.coverage), "of the observable space"),
-        tile("steps", whole(result.steps)),
+        numbers.clock ? tile("time", clockTime(result.time), [0.5, 0.9, 0.99].filter((part) => result.coverage >= part).map((part) => `${percent(part, 0)} after ${reached(numbers, part, (s) => clockTime(numbers.time[s]))}`).join(", ")) : tile("steps", whole(result.steps)),
+        tile("explored volume", cubicMetres(result.volume)),
         tile("path length", metres(result.length), facts.robots.length > 1 ? facts.robots.map((robot, r) => `${robot.name} ${metres(result.lengths[r])}`).join(", ") : ""),
-        tile("planning per step", seconds(result.planningMean), `max ${seconds(result.planningMost)}`),
+        tile("planning time", seconds(result.planningMean), `mean of ${whole(result.steps)} ${numbers.motion ? "plannings" : "steps"}, max ${seconds(result.planningMost)}`),
         tile("collisions", whole(result.collisions)))
     : null;
   return [
@@ -54,25 +80,25 @@ export function header(runs, written) {
     el("p", { class: "lead", text: single ? headline(runs[0]) : worldsOf(runs) }),
     ),
     tiles,
-    runs.some((run) => run.facts.truncated) ? el("p", { class: "warning", text: "The last step of the recording is incomplete and is not shown." }) : null,
+    ...runs.flatMap((run) => warnings(run).map((text) => el("p", { class: "warning", role: "note", text: `Warning${single ? "" : `, ${run.name}`}: ${text}.` }))),
   ].filter(Boolean);
 }
 
-/** One row per run; percentages compare it with the first. */
+/** One row per run; changes in percent compare it with the first. */
 export function comparison(runs) {
-  const first = runs[0].numbers.result;
-  const against = (result, name) => (result === first || !(first[name] > 0) ? "" : ` (${signed(result[name], first[name])})`);
-  const reached = (numbers, fraction, format) => {
-    const s = stepOfCoverage(numbers, fraction);
-    return s < 0 ? "never" : format(s);
-  };
-  const heads = ["run", "team", "coverage", "steps", "steps to 90 %", "to 95 %", "path length", "path length to 90 %", "planning per step", "collisions"];
+  const first = runs[0].numbers;
+  // Only between runs that have mapped the same can less time or path be better.
+  const to = (numbers, list, part, format) => reached(numbers, part, (s) => {
+    const reference = first[list][stepOfCoverage(first, part)];
+    return `${format(numbers[list][s])}${numbers === first || !(reference > 0) ? "" : ` (${signed(numbers[list][s], reference)})`}`;
+  });
+  const timeTo = (numbers, part) => (numbers.clock && first.clock ? to(numbers, "time", part, clockTime) : numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
+  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path", "path to 90 %", "planning", "collisions"];
   return table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
-    name, teamName(facts), percent(numbers.result.coverage),
-    `${numbers.result.steps}${against(numbers.result, "steps")}`,
-    reached(numbers, 0.9, (s) => numbers.steps[s]), reached(numbers, 0.95, (s) => numbers.steps[s]),
-    `${metres(numbers.result.length)}${against(numbers.result, "length")}`,
-    reached(numbers, 0.9, (s) => metres(numbers.teamTravelled[s])),
+    name, teamName(facts), numbers.motion ? "in motion" : "lock-step", percent(numbers.result.coverage),
+    numbers.clock ? clockTime(numbers.result.time) : "not recorded",
+    ...MILESTONES.map((part) => timeTo(numbers, part)), cubicMetres(numbers.result.volume),
+    metres(numbers.result.length), to(numbers, "teamTravelled", 0.9, metres),
     seconds(numbers.result.planningMean), whole(numbers.result.collisions),
   ]));
 }
@@ -97,10 +123,13 @@ export function details(run, written) {
       ["World", facts.world], ["Seed", optionsOf(facts).find(([name]) => name === "seed")?.[1] ?? "not recorded"], ["Voxels", `${facts.resolution} m`],
       ["Observable", facts.observable > 0 ? `${whole(facts.observable)} voxels` : "unknown"],
       ["Coverage", `${percent(result.coverage)} of the observable space, ${percent(result.coverageBox)} of the box`],
-      ["Steps", `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
-      ["Planning", `${seconds(result.planningTotal)} in total, ${seconds(result.planningMean)} per step, max ${seconds(result.planningMost)}`],
+      ["Explored volume", cubicMetres(result.volume)],
+      ["Robots", numbers.motion ? "in motion: each plans for itself while it moves" : "in lock-step: all plan, then all move"],
+      ["Steps", numbers.motion ? `${whole(result.steps)}, one for each planning` : `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
+      ["Planning", `${seconds(result.planningTotal)} in total; for each step: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
       ["Rays cast for planning", whole(result.rays)], ["Collisions", whole(result.collisions)], ["Report written by", `frontlux ${written}`],
     ]),
+    milestones(numbers),
     table("The team", ["", ...facts.robots.map((robot) => robot.name)], [
       ["moves", ...facts.robots.map((robot) => (robot.plane ? "on the ground" : "in the air"))],
       ["collision box", ...facts.robots.map((robot) => `${robot.extents.map((k) => k.toFixed(1)).join(" × ")} m`)],
@@ -110,7 +139,7 @@ export function details(run, written) {
     ]),
   ];
   const paper = PAPER[Object.keys(PAPER).find((name) => facts.world.toLowerCase().startsWith(name))];
-  if (paper) parts.push(comparedWithPaper(facts, result, paper));
+  if (paper) parts.push(comparedWithPaper(facts, numbers, paper));
   const all = optionsOf(facts), options = all.filter(([, value]) => value !== NOT_SET);
   const left = all.filter(([, value]) => value === NOT_SET).map(([name]) => name);
   if (left.length > 0) options.push([NOT_SET, left.join(", ")]);
@@ -118,12 +147,27 @@ export function details(run, written) {
   return parts;
 }
 
-function comparedWithPaper(facts, result, paper) {
+/** When, after how many metres and in which step so much was mapped. */
+function milestones(numbers) {
+  const { result } = numbers, clock = (s) => (numbers.clock ? [clockTime(numbers.time[s])] : []);
+  const row = (s) => [...clock(s), metres(numbers.teamTravelled[s]), whole(numbers.steps[s])];
+  const never = [...(numbers.clock ? ["never"] : []), "never", "never"];
+  return table("Progress", ["mapped", ...(numbers.clock ? ["time"] : []), "path length of all robots", "step"], [
+    ...MILESTONES.map((part) => {
+      const s = stepOfCoverage(numbers, part);
+      return [percent(part, 0), ...(s < 0 ? never : row(s))];
+    }),
+    [`end, ${percent(result.coverage)}`, ...row(numbers.steps.length - 1)],
+  ]);
+}
+
+function comparedWithPaper(facts, numbers, paper) {
+  const { result } = numbers;
   const uav = facts.robots.findIndex((robot) => !robot.plane);
   const block = table("Compared with the paper", ["", "here", "paper"], [
     ["coverage, team", percent(result.coverage), paper.coverage],
-    ["steps", whole(result.steps), paper.steps],
-    ["planning, whole team (per step)", `${seconds(result.planningTotal)} (${seconds(result.planningMean)})`, `UAV ${paper.uav}, UGV ${paper.ugv}`],
+    ...(numbers.motion ? [] : [["steps", whole(result.steps), paper.steps]]), // the paper's robots move in lock-step
+    [`planning, whole team (per ${numbers.motion ? "planning" : "step"})`, `${seconds(result.planningTotal)} (${seconds(result.planningMean)})`, `UAV ${paper.uav}, UGV ${paper.ugv}`],
     ["UAV's fraction of the coverage", uav < 0 ? "no UAV" : percent(result.fractions[uav], 0), `${paper.fraction} *`],
     ["UAV's path length", uav < 0 ? "no UAV" : metres(result.lengths[uav]), `${paper.path} *`],
   ]);
@@ -131,15 +175,15 @@ function comparedWithPaper(facts, result, paper) {
   return block;
 }
 
-/** The numbers of every step. Made when it is opened. */
+/** The numbers of the steps; of many, some. Made when it is opened. */
 export function stepTable(run) {
-  const { facts, numbers } = run;
-  const heads = ["step", "coverage", "frontiers", "unassigned", "planning", ...facts.robots.flatMap((robot) => ["coverage", "expected", "gained", "path", "goal"].map((word) => `${robot.name} ${word}`))];
-  const rows = facts.steps.map((step, s) => [
-    step.number, percent(numbers.coverage[s], 2), numbers.frontiers[s], numbers.unassigned[s], seconds(numbers.planning[s]),
+  const { facts, numbers } = run, { length } = facts.steps, each = Math.ceil(length / MOST_ROWS);
+  const heads = ["step", ...(numbers.clock ? ["time"] : []), "coverage", "frontiers", "unassigned", "planning", ...facts.robots.flatMap((robot) => ["coverage", "expected", "gained", "path", "goal"].map((word) => `${robot.name} ${word}`))];
+  const rows = facts.steps.map((step, s) => s).filter((s) => s % each === 0 || s === length - 1).map((s) => ({ step: facts.steps[s], s })).map(({ step, s }) => [
+    step.number, ...(numbers.clock ? [clockTime(numbers.time[s])] : []), percent(numbers.coverage[s], 2), numbers.frontiers[s], numbers.unassigned[s], seconds(numbers.planning[s]),
     ...facts.robots.flatMap((_, r) => [percent(numbers.robotCoverage[r][s], 2), numbers.predicted[r][s], numbers.gained[r][s], metres(numbers.travelled[r][s]), step.number === 0 ? "scan at the start" : step.robots[r].reason || step.robots[r].state]),
   ]);
-  return table("Every step", heads, rows);
+  return table(each > 1 ? `One of ${each} steps, and the last` : "Every step", heads, rows);
 }
 
 const WORDS = [
@@ -147,7 +191,10 @@ const WORDS = [
   ["Frontier", "An unknown voxel next to a free one: the edge of the known space."],
   ["Observable space", "What the robots can observe at all: the free space that is connected with their start, and the surfaces around it. Coverage is the known fraction of it; a robot's coverage is what it observed first."],
   ["View quality", "How many frontiers the ground robot expects to see from a place, less the farther away it is. Light yellow is best; the best place becomes the goal."],
-  ["Step", "All robots plan, then move; the map grows at every viewpoint of their paths. Step 0 is a scan at the start."],
+  ["Time", "The run's own clock, in seconds: how long robots with these speeds, sensors and planning times need. It stands for the end of a step."],
+  ["Path length", "Of all robots together, in metres, unless a robot is named."],
+  ["Explored volume", "The volume of all voxels that are known to be free or occupied, within the bounds of the map."],
+  ["Step", "In lock-step: all robots plan, then move; the map grows at every viewpoint of their paths; step 0 is a scan at the start. In motion: one robot plans; its path and its scans since the planning before, and those of the others, belong to the step."],
   ["Gain", "How many frontiers a path is expected to have in view (expected), and how many the scans of the robot made known (gained)."],
   ["Unassigned", "Frontiers that are assigned to no robot in this step."],
   ["Abandoned", "Frontiers that stayed unknown although a robot looked at them. No robot is sent to them any more."],

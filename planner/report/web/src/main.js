@@ -22,7 +22,7 @@ class Page {
   constructor(runs) {
     this.runs = runs;
     this.shown = 0;
-    this.timeline = new Timeline(this.run.steps);
+    this.timeline = new Timeline(this.run.numbers.time);
     this.build();
     this.timeline.addEventListener("change", ({ detail }) => this.show(detail));
     dark.addEventListener("change", () => this.setTheme());
@@ -46,9 +46,9 @@ class Page {
     this.makeScene();
     const choose = runs.length > 1 ? el("label", { class: "field" }, el("span", { text: "Replay" }), el("select", { id: "run", on: { change: (event) => this.select(Number(event.target.value)) } }, ...runs.map((run, i) => el("option", { value: i, text: run.name })))) : null;
     this.themeButton = el("button", { type: "button", id: "theme", on: { click: () => this.switchTheme() } });
-    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of all steps" }), el("div", { class: "body" }));
+    this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of steps" }), el("div", { class: "body" }));
     document.getElementById("app").replaceChildren(
-      el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs, written)),
+      el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs)),
       runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, comparison(runs)) : null,
       el("div", { class: "main" }, this.stage, el("section", { "aria-label": "Charts" }, this.chartHost)),
       this.details, this.steps,
@@ -98,7 +98,7 @@ class Page {
     if (this.scene) {
       this.scene.theme = theme;
       this.scene.load(run);
-      this.toolbar = makeToolbar(this.scene, run.facts);
+      this.toolbar = makeToolbar(this.scene, run);
       this.stage.prepend(this.toolbar.bar);
       this.view.append(this.toolbar.key);
     }
@@ -107,7 +107,8 @@ class Page {
     this.steps.lastElementChild.replaceChildren();
     this.charts ??= new Charts(this.chartHost, this.timeline);
     this.charts.load(this.runs, i, theme);
-    this.timeline.reset(run.steps);
+    this.timeline.reset(run.numbers.time);
+    this.controls.chooseSpeed();
     this.setTheme();
   }
 

@@ -1,5 +1,6 @@
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import { FREE, OCCUPIED, UNKNOWN } from "./run_data.js";
+import { clockTime } from "./run_numbers.js";
 
 const ORIGIN = 32768;
 const FAR = 4000; // voxels looked at along a ray
@@ -74,7 +75,7 @@ export function describePick(scene, hit) {
     if (hit.kind === "voxel") {
       const owner = (hit.voxel >> 2) - 1, since = store.since(...hit.key);
       rows.push(["First seen by", facts.robots[owner]?.name ?? "?"]);
-      if (since >= 0) rows.push(["Occupied since", `step ${facts.steps[since].number}`]);
+      if (since >= 0) rows.push(["Occupied since", `step ${facts.steps[since].number}${run.numbers?.clock ? `, ${clockTime(run.numbers.time[since])}` : ""}`]);
     }
     return rows;
   }
@@ -89,10 +90,14 @@ export function describePick(scene, hit) {
   }
   const path = run.paths[step * run.robots + hit.robot], at = path.begin + 4 * hit.i, [x, y, z, yaw] = run.poses.subarray(at, at + 4);
   const planned = facts.steps[step].robots[hit.robot];
-  return [
-    ["Viewpoint", `${hit.i + 1} of ${path.count}, ${name}, step ${facts.steps[step].number}`],
+  const place = [
+    [run.motion ? "Scan" : "Viewpoint", `${hit.i + 1} of ${path.count}, ${name}, step ${facts.steps[step].number}`],
     ["Position", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`],
     ["Yaw", `${((yaw * 180) / Math.PI).toFixed(1)}°`],
+  ];
+  if (run.motion) return place;
+  return [
+    ...place,
     ["Gain of the path", `${planned.gain_predicted} frontiers expected, ${planned.gained} gained`],
     ["Reached", hit.i < path.travelled ? "yes" : "no"],
   ];

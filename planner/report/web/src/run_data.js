@@ -1,4 +1,5 @@
 import { ByteReader } from "./byte_reader.js";
+import { inMotion } from "./run_numbers.js";
 
 export const CHUNK = 32; // edge of a chunk in voxels; src/run_data.cpp cuts them
 export const UNKNOWN = 0, FREE = 1, OCCUPIED = 2;
@@ -93,12 +94,21 @@ export async function readRun(text) {
   }
   blocks.push(groups.length);
   begins.push(locals.length);
+  const motion = inMotion(facts);
+  if (motion) holdImages(facts, images);
   return {
-    facts, steps, robots, chunks, images, paths,
+    facts, motion, steps, robots, chunks, images, paths,
     groups: groups.done(), begins: begins.done(), blocks: blocks.done(),
     locals: locals.done(), states: states.done(), poses: poses.done(),
     size: bytes.length,
   };
+}
+
+/** Robots in motion choose goals one at a time: the image for a robot's goal is shown for as long as it has a goal. */
+function holdImages(facts, images) {
+  const robots = facts.robots.length;
+  for (let i = robots; i < images.length; ++i)
+    if (facts.steps[Math.floor(i / robots)].robots[i % robots].goal) images[i] ??= images[i - robots];
 }
 
 function readImage(reader) {

@@ -1,5 +1,5 @@
 import { el } from "./dom.js";
-import { percent } from "./run_numbers.js";
+import { clockTime, percent } from "./run_numbers.js";
 
 // Drawn as paths in a square of 16, since not every font has these symbols.
 const ICONS = {
@@ -16,7 +16,8 @@ function icon(name) {
   return svg;
 }
 
-const SPEEDS = [0.5, 1, 2, 4, 8, 16];
+const SPEEDS = [1, 2, 5, 10, 20, 50, 100];
+const LONGEST = 30; // [s] to play a run at the speed that is chosen for it
 
 /** The time line's buttons and slider. */
 export function makeTimeControls(timeline, current) {
@@ -26,8 +27,7 @@ export function makeTimeControls(timeline, current) {
     timeline.pause();
     timeline.seek(Number(slider.value));
   } } });
-  const speed = el("select", { id: "speed", "aria-label": "Speed", on: { change: () => (timeline.speed = Number(speed.value)) } }, ...SPEEDS.map((value) => el("option", { value, text: `${value} steps/s` })));
-  speed.value = String(timeline.speed);
+  const speed = el("select", { id: "speed", "aria-label": "Speed", on: { change: () => (timeline.speed = Number(speed.value)) } }, ...SPEEDS.map((value) => el("option", { value })));
   const label = el("output", { id: "step-label", for: "time" });
   const update = () => {
     const { facts, numbers } = current(), { step } = timeline;
@@ -36,7 +36,9 @@ export function makeTimeControls(timeline, current) {
     slider.value = step;
     slider.style.setProperty("--done", `${timeline.steps > 1 ? (100 * step) / (timeline.steps - 1) : 100}%`);
     // While robots move, the map is the one at the start of the step.
-    const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], text = `Step ${number} of ${last}${Number.isFinite(known) ? ` · ${percent(known)} mapped` : ""}`;
+    const known = numbers.coverage[timeline.along < 1 ? step - 1 : step], mapped = Number.isFinite(known) ? `${percent(known)} mapped` : "";
+    const time = numbers.clock ? `${timeline.time.toFixed(1)} of ${clockTime(timeline.times.at(-1))}` : "", steps = `${numbers.clock ? "step" : "Step"} ${number} of ${last}`;
+    const text = [time, steps, mapped].filter(Boolean).join(" · ");
     label.textContent = text;
     slider.setAttribute("aria-valuetext", text);
     if (play.dataset.playing !== String(timeline.playing)) {
@@ -47,10 +49,18 @@ export function makeTimeControls(timeline, current) {
     }
   };
   timeline.addEventListener("change", update);
+  /** Chooses a speed for the run. */
+  const chooseSpeed = () => {
+    const { clock } = current().numbers, whole = timeline.times.at(-1) ?? 0;
+    for (const option of speed.options) option.textContent = clock ? `${option.value} ×` : `${option.value} steps/s`;
+    timeline.speed = clock ? (SPEEDS.find((value) => whole / value <= LONGEST) ?? SPEEDS.at(-1)) : 2;
+    speed.value = String(timeline.speed);
+    speed.title = clock ? "seconds of the run in one second" : "";
+  };
   const bar = el("div", { class: "timeline", role: "group", "aria-label": "Time line" },
     el("div", { class: "buttons" },
       button("first", "First step (Home)", () => timeline.move(-timeline.step)), button("back", "Previous step (←)", () => timeline.move(-1)), play,
       button("forward", "Next step (→)", () => timeline.move(1)), button("last", "Last step (End)", () => timeline.move(timeline.steps))),
     slider, label, speed);
-  return { bar, update };
+  return { bar, chooseSpeed };
 }

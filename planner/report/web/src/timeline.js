@@ -1,23 +1,36 @@
-/** The step that is shown. Sends { step, along } to its listeners: along is the fraction of the paths that the robots have travelled. */
+/**
+ * The step that is shown. Sends { step, along } to its listeners: along is the fraction of the paths that the robots have travelled.
+ * It plays by the run's clock: `times` holds the time at the end of each step and never falls.
+ */
 export class Timeline extends EventTarget {
-  constructor(steps) {
+  constructor(times) {
     super();
-    this.steps = steps;
-    this.step = Math.max(0, steps - 1);
+    this.times = times;
+    this.step = Math.max(0, this.steps - 1);
     this.along = 1;
-    this.speed = 2; // steps a second
+    this.speed = 10; // seconds of the run in a second
     this.playing = false;
     this.tick = (now) => this.advance(now);
+  }
+
+  get steps() {
+    return this.times.length;
   }
 
   get position() {
     return { step: this.step, along: this.along };
   }
 
-  reset(steps) {
+  /** The clock's time that is shown. */
+  get time() {
+    const from = this.times[this.step - 1] ?? 0;
+    return from + this.along * ((this.times[this.step] ?? 0) - from);
+  }
+
+  reset(times) {
     this.pause();
-    this.steps = steps;
-    this.seek(steps - 1);
+    this.times = times;
+    this.seek(this.steps - 1);
   }
 
   seek(step) {
@@ -53,14 +66,12 @@ export class Timeline extends EventTarget {
 
   advance(now) {
     if (!this.playing) return;
-    let along = this.along + (Math.max(0, now - this.last) / 1000) * this.speed;
+    const { times } = this, time = this.time + (Math.max(0, now - this.last) / 1000) * this.speed;
     this.last = now;
-    while (along >= 1 && this.step < this.steps - 1) {
-      ++this.step;
-      along -= 1;
-    }
-    this.along = Math.min(along, 1);
-    if (along >= 1) this.playing = false;
+    while (this.step < this.steps - 1 && time >= times[this.step]) ++this.step;
+    const from = times[this.step - 1] ?? 0, lasts = times[this.step] - from;
+    this.along = lasts > 0 ? Math.min((time - from) / lasts, 1) : 1;
+    if (this.step === this.steps - 1 && this.along >= 1) this.playing = false;
     this.notify();
     if (this.playing) requestAnimationFrame(this.tick);
   }

@@ -8,12 +8,13 @@ const NAMES = {
 };
 
 /** Controls for layers, colours and the camera. */
-export function makeToolbar(scene, facts) {
+export function makeToolbar(scene, { facts, motion }) {
   const boxes = {};
   const layer = (name, i) => {
     boxes[name] = el("input", { type: "checkbox", id: `layer-${name}`, on: { change: (event) => scene.setLayer(name, event.target.checked) } });
     boxes[name].checked = scene.layers[name];
-    return el("label", { class: "chip", title: `key ${i + 1}` }, boxes[name], el("span", { text: NAMES[name] }));
+    const [text, title] = motion && name === "planned" ? ["Scans", "where robots took scans since the planning before, "] : [NAMES[name], ""];
+    return el("label", { class: "chip", title: `${title}key ${i + 1}` }, boxes[name], el("span", { text }));
   };
   const select = (id, label, choices, change) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text }))));
   const check = (id, label, title, change) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));

@@ -185,23 +185,27 @@ double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around) {
 std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eigen::Vector3d& around,
                                              std::span<const Robot> robots) {
   std::vector<std::optional<Pose>> starts(robots.size());
-  std::vector<KeyBox> taken;
   std::optional<double> ground;  // [m] the highest that a robot stands on
-  const auto place = [&](std::size_t i, const std::optional<Pose>& pose) {
-    if (!pose) return;
-    starts[i] = pose;
-    taken.push_back(taken_by(truth.lattice(), robots[i], *pose));
+  // Beside robots of its kind a robot keeps a voxel free.
+  const auto taken_for = [&](const Robot& robot) {
+    std::vector<KeyBox> taken;
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      if (starts[i])
+        taken.push_back(grown(taken_by(truth.lattice(), robots[i], *starts[i]),
+                              drives(robots[i]) == drives(robot) ? 1 : 0));
+    return taken;
   };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (!drives(robots[i])) continue;
-    place(i, find_on_floor(truth, around, robots[i], taken));
+    starts[i] = find_on_floor(truth, around, robots[i], taken_for(robots[i]));
     if (!starts[i]) continue;
     const double stands_on = starts[i]->position.z() - robots[i].travel.sensor_height;
     ground = ground ? std::max(*ground, stands_on) : stands_on;
   }
   if (!ground) ground = ground_below(truth, around);
   for (std::size_t i = 0; i < robots.size(); ++i)
-    if (!drives(robots[i])) place(i, find_in_space(truth, around, robots[i], *ground, taken));
+    if (!drives(robots[i]))
+      starts[i] = find_in_space(truth, around, robots[i], *ground, taken_for(robots[i]));
   return starts;
 }
 

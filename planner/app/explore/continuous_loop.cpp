@@ -1,0 +1,126 @@
+#include "explore/continuous_loop.hpp"
+
+#include "explore/csv_row.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace frontlux::app {
+namespace {
+
+using planner::ExplorationStep, planner::Pose;
+
+std::vector<Pose> start_poses(const ExploreSetup& setup) {
+  std::vector<Pose> poses;
+  for (const planner::ExplorationStart& start : setup.head.starts) poses.push_back(start.pose);
+  return poses;
+}
+
+// All but the times that it took.
+bool same_step(const ExplorationStep& a, const ExplorationStep& b) {
+  if (a.number != b.number || a.time != b.time || a.robots.size() != b.robots.size()) return false;
+  for (std::size_t r = 0; r < a.robots.size(); ++r)
+    if (a.robots[r].changed != b.robots[r].changed || a.robots[r].length != b.robots[r].length) return false;
+  return true;
+}
+
+}  // namespace
+
+ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
+    : setup_(setup),
+      robots_(setup.sourced.world, *setup.truth, setup.head.robots, start_poses(setup), setup.errors,
+              setup.exploration.seed, setup.at_contact),
+      exploration_(setup.exploration,
+                   planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
+      known_(setup.head.resolution) {
+  numbers_.mapped.emplace_back();
+  numbers_.robots.resize(setup.head.robots.size());
+}
+
+ExplorationStep ContinuousLoop::step() {
+  if (!begun_) {
+    begun_ = true;
+    ExplorationStep first = exploration_.begin(setup_.head.starts, 0.0);
+    for (const planner::ExplorationStart& start : setup_.head.starts)
+      count({exploration_.mapping().grid(), start.known_free});
+    return first;
+  }
+  for (;;) {
+    // All scans of one moment come before the plannings.
+    if (robots_.next_time() > time_)
+      if (auto planned = exploration_.plan(time_)) {
+        note_plan(*planned);
+        if (const auto end = exploration_.end())
+          end_ = {std::string(planner::name_of(*end)), planner::describe(*end, exploration_.options())};
+        return std::move(planned->step);
+      }
+    sense();
+    if (auto limit = limit_reached(setup_, numbers_.mapped.back())) {
+      end_ = std::move(limit);
+      return exploration_.finish(time_);
+    }
+  }
+}
+
+bool ContinuousLoop::repeat(const ExplorationStep& recorded) { return same_step(step(), recorded); }
+
+void ContinuousLoop::sense() {
+  std::vector<sim::MovingRobots::Stopped> stopped;
+  const double next = robots_.next_time();
+  note_motion(next);
+  const auto where = [this](std::size_t robot, double time) { return exploration_.at(robot, time); };
+  const sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
+  time_ = next;
+  for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
+  count(exploration_.insert(sensed.robot, sensed.pose, sensed.scan));
+}
+
+void ContinuousLoop::count(const MapChange& change) {
+  Mapped mapped = numbers_.mapped.back();
+  for (const VoxelKey& key : change.keys) {
+    const Occupancy is = change.grid.at(key);
+    if (is == Occupancy::kUnknown || known_.at(key) != Occupancy::kUnknown) continue;
+    known_.set(key, is);
+    ++mapped.bounding;
+    mapped.observable += setup_.truth->contains(key) ? 1 : 0;
+  }
+  mapped.time = time_;
+  mapped.length = 0.0;
+  numbers_.contacts = 0;
+  double clearance = 1.0;
+  for (std::size_t r = 0; r < robots_.records().size(); ++r) {
+    const sim::MotionRecord& record = robots_.records()[r];
+    numbers_.robots[r] = {record.length, record.idle, record.held_back};
+    numbers_.contacts += record.contacts;
+    mapped.length += record.length;
+    clearance = std::min(clearance, record.clearance);
+  }
+  numbers_.clearance = clearance;
+  if (robots_.records().size() > 1) numbers_.separation = robots_.separation();
+  numbers_.mapped.push_back(mapped);
+}
+
+// A hundred rows a second for each robot.
+void ContinuousLoop::note_motion(double until) {
+  constexpr double kRate = 100.0;
+  for (; static_cast<double>(samples_) / kRate <= until; ++samples_) {
+    const double time = static_cast<double>(samples_) / kRate;
+    for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
+      const planner::MotionState state = exploration_.at(r, time);
+      const Eigen::Vector3d &p = state.pose.position, &v = state.velocity;
+      motion_ += csv_row(time, setup_.head.robots[r].robot.name, p.x(), p.y(), p.z(), state.pose.yaw, v.x(),
+                         v.y(), v.z(), state.yaw_rate);
+    }
+  }
+}
+
+void ContinuousLoop::note_plan(const planner::PlannedMotion& planned) {
+  const planner::RobotStep& robot = planned.step.robots[planned.robot];
+  events_ += csv_row(planned.step.time, planned.step.number, setup_.head.robots[planned.robot].robot.name,
+                     planner::name_of(planned.reason), planner::name_of(robot.goal.state),
+                     robot.gain_predicted, planned.trajectory.begin(), planned.trajectory.end(),
+                     planned.trajectory.length(), planned.step.planning_seconds());
+}
+
+}  // namespace frontlux::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "explore/run_loop.hpp"
+
+#include <frontlux/planner/continuous_exploration.hpp>
+#include <frontlux/sim/moving_robots.hpp>
+#include <frontlux/voxel_grid.hpp>
+
+#include <utility>
+
+namespace frontlux::app {
+
+/// Robots in motion, under a clock: scans at the sensors' rates, and plannings in between.
+class ContinuousLoop final : public RunLoop {
+ public:
+  explicit ContinuousLoop(const ExploreSetup& setup);
+
+  planner::ExplorationStep step() override;
+  bool repeat(const planner::ExplorationStep& recorded) override;
+  std::optional<RunEnd> end() const override { return end_; }
+  const planner::Mapping& mapping() const override { return exploration_.mapping(); }
+  const RunNumbers& numbers() const override { return numbers_; }
+  std::string take_events() override { return std::exchange(events_, {}); }
+  std::string take_motion() override { return std::exchange(motion_, {}); }
+
+ private:
+  void sense();
+  void count(const MapChange& change);
+  void note_motion(double until);
+  void note_plan(const planner::PlannedMotion& planned);
+
+  const ExploreSetup& setup_;
+  sim::MovingRobots robots_;
+  planner::ContinuousExploration exploration_;
+  VoxelGrid known_;  // what is counted as mapped
+  RunNumbers numbers_;
+  std::optional<RunEnd> end_;
+  bool begun_ = false;
+  double time_ = 0.0;          // [s] of the last scan
+  std::uint64_t samples_ = 0;  // of the motion
+  std::string events_, motion_;
+};
+
+}  // namespace frontlux::app

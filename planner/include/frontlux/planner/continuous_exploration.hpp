@@ -1,0 +1,95 @@
+#pragma once
+
+#include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/trajectory.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// Why a robot plans.
+enum class PlanReason : std::uint8_t {
+  kStart,     ///< it has no trajectory yet
+  kArrival,   ///< its trajectory is about to end
+  kGoalSeen,  ///< most of what it was going for is mapped
+  kBlocked,   ///< its trajectory leads through what is no longer known to be free
+  kStopped,   ///< it could not follow its trajectory
+  kPeriod,    ///< its plan is as old as `ExplorationOptions::period`
+};
+/// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
+[[nodiscard]] std::string_view name_of(PlanReason reason);
+
+/// One robot's planning, and what all robots have done since the planning before.
+struct PlannedMotion {
+  std::size_t robot = 0;
+  PlanReason reason = PlanReason::kStart;
+  Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
+  /// `RobotStep::planned` holds the poses at which each robot took a scan, after the last of the planning
+  /// before; goal, path, image and gains are those of the robot that planned.
+  ExplorationStep step;
+};
+
+/// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.
+/// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
+/// thread. Each robot plans for itself: when it is about to arrive, when what it was going for has been
+/// mapped by anybody, when its way is blocked, and at least every `ExplorationOptions::period`. It knows the
+/// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
+/// others for all time to come. If there is none such, the robot keeps the one it has.
+///
+///     ContinuousExploration exploration(options, std::move(mapping));
+///     exploration.begin(starts, now());
+///     while (!exploration.end()) {
+///       exploration.insert(robot, pose, scan);                     // as they come
+///       while (const auto planned = exploration.plan(now())) send(planned->robot, planned->trajectory);
+///     }
+///
+/// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
+/// arena. Thread safety: as a standard container.
+class ContinuousExploration {
+ public:
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  ContinuousExploration(ExplorationOptions options, Mapping mapping);
+  ~ContinuousExploration();
+  ContinuousExploration(ContinuousExploration&&) noexcept;
+  ContinuousExploration& operator=(ContinuousExploration&&) noexcept;
+
+  /// All robots rest at their starts. Returns step 0, with what is known to be free there.
+  /// @throws std::invalid_argument unless there is one finite start for each robot, or if it has begun
+  ExplorationStep begin(std::span<const ExplorationStart> starts, double time);
+
+  /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map.
+  /// @throws std::invalid_argument before `begin`, or for what `Mapping::insert` refuses; so do the others
+  MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
+
+  /// A robot rests at a pose since it could not go on: something that no sensor saw is in the way.
+  /// @param blocked  cells that it could not enter
+  void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
+
+  /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.
+  [[nodiscard]] std::optional<PlannedMotion> plan(double time);
+
+  /// What the robots have done since the last planning, when nobody will plan any more.
+  [[nodiscard]] ExplorationStep finish(double time);
+
+  /// Where a robot is by its trajectories.
+  [[nodiscard]] MotionState at(std::size_t robot, double time) const;
+
+  /// Why the exploration is over; nothing while it goes on. Of low gain is an
+  /// exploration in which each robot has had a goal of low gain, or none, for `low_gain_steps` plannings in a
+  /// row.
+  [[nodiscard]] std::optional<ExplorationEnd> end() const;
+
+  [[nodiscard]] const ExplorationOptions& options() const;
+  [[nodiscard]] const Mapping& mapping() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frontlux::planner

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <frontlux/planner/pose.hpp>
+#include <frontlux/planner/robot.hpp>
+#include <frontlux/planner/scan.hpp>
+#include <frontlux/planner/trajectory.hpp>
+#include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/sensor.hpp>
+#include <frontlux/sim/simulated_robots.hpp>
+#include <frontlux/sim/surface.hpp>
+#include <frontlux/sim/swept_box.hpp>
+#include <frontlux/sim/world.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace frontlux::sim {
+
+/// What robots in motion did to the world and to each other.
+struct MotionRecord {
+  std::uint64_t contacts = 0;   ///< times that a body began to touch a surface, and went on
+  std::uint64_t held_back = 0;  ///< times that a bumper stopped it instead
+  double length = 0.0;          ///< [m] travelled
+  double idle = 0.0;            ///< [s] at rest, not turning
+  /// [m] The least by which its body could have grown on all sides, on a plane sideways, without touching a
+  /// surface; up to a metre.
+  double clearance = 1.0;
+};
+
+/// Robots that follow trajectories in a simulated world, under a clock that the simulation keeps. Each takes
+/// scans at its own rate. Robots do not see each other.
+class MovingRobots {
+ public:
+  /// Where a robot's sensor should be at a time [s].
+  using Where = std::function<planner::MotionState(std::size_t robot, double time)>;
+
+  /// A robot's scan; the next one in time, and at equal times in the robots' order.
+  struct Sensed {
+    double time = 0.0;  ///< [s]
+    std::size_t robot = 0;
+    planner::Pose pose;  ///< of the sensor
+    planner::Scan scan;
+  };
+  /// A robot whose bumper stopped it.
+  struct Stopped {
+    std::size_t robot = 0;
+    planner::Pose pose;             ///< where it rests
+    std::vector<VoxelKey> blocked;  ///< cells that it was about to enter; sorted
+  };
+
+  /// The clock begins at 0, with the robots at their starts.
+  /// @param world  its mesh is copied
+  /// @param truth  of the same world @pre lives as long as the robots
+  /// @param seed   of the sensors' errors
+  /// @throws std::invalid_argument if the mesh, a sensor, a rate or an error is not valid
+  MovingRobots(const World& world, const GroundTruth& truth, std::vector<planner::RobotDescription> robots,
+               std::span<const planner::Pose> starts, const RangeErrors& errors, std::uint64_t seed,
+               AtContact at_contact = AtContact::kGoOn);
+
+  /// [s] of the next scan
+  [[nodiscard]] double next_time() const;
+
+  /// Moves all robots to the time of the next scan, and takes it. A robot that its bumper stops stays where
+  /// it is until the end of the call, whatever `where` says.
+  Sensed advance(const Where& where, std::vector<Stopped>& stopped);
+
+  [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
+  /// [m] The least distance between two bodies so far; infinite for a single robot.
+  [[nodiscard]] double separation() const { return separation_; }
+
+ private:
+  struct Progress {
+    planner::Pose pose;
+    std::uint64_t scans = 0;
+    bool touching = false, halted = false;
+  };
+
+  [[nodiscard]] Eigen::AlignedBox3d body(std::size_t robot, const Eigen::Vector3d& at) const;
+  void move(std::size_t robot, const planner::MotionState& to, double seconds, std::vector<Stopped>& stopped);
+  void measure_clearance(std::size_t robot);
+  void measure_separation();
+
+  const GroundTruth* truth_;
+  Surface surface_;
+  TriangleBvh solids_;
+  std::vector<planner::RobotDescription> robots_;
+  std::vector<Sensor> sensors_;
+  std::vector<Progress> progress_;
+  std::vector<MotionRecord> records_;
+  double time_ = 0.0;
+  double separation_ = std::numeric_limits<double>::infinity();
+  std::uint64_t seed_;
+  AtContact at_contact_;
+};
+
+}  // namespace frontlux::sim

@@ -1,0 +1,155 @@
+#include "sensing/keyed_random.hpp"
+
+#include <frontlux/planner/segment_voxels.hpp>
+#include <frontlux/planner/travel_corridor.hpp>
+#include <frontlux/sim/moving_robots.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace frontlux::sim {
+namespace {
+
+using planner::Motion, planner::Pose;
+
+constexpr double kTick = 0.02;  // [s] bodies move straight in between
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("moving robots: " + what); }
+
+// The voxels that a sensor enters on a straight motion, but for that which it begins in.
+std::vector<VoxelKey> cells_ahead(const Lattice& lattice, const Eigen::Vector3d& from,
+                                  const Eigen::Vector3d& to) {
+  const Eigen::Vector3d beyond = from + (to - from).normalized() * lattice.resolution();
+  std::vector<VoxelKey> cells;
+  static_cast<void>(planner::SegmentVoxels(lattice, from, beyond).all_of([&](const VoxelKey& key) {
+    if (key != lattice.key(from)) cells.push_back(key);
+    return true;
+  }));
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+double distance_between(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).norm();
+}
+
+}  // namespace
+
+MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
+                           std::vector<planner::RobotDescription> robots, std::span<const Pose> starts,
+                           const RangeErrors& errors, std::uint64_t seed, AtContact at_contact)
+    : truth_(&truth),
+      surface_(world.mesh),
+      solids_(world.mesh),
+      robots_(std::move(robots)),
+      records_(robots_.size()),
+      seed_(seed),
+      at_contact_(at_contact) {
+  if (starts.size() != robots_.size())
+    refuse(std::to_string(starts.size()) + " starts for " + std::to_string(robots_.size()) + " robots");
+  for (std::size_t r = 0; r < robots_.size(); ++r) {
+    if (!(std::isfinite(robots_[r].rate) && robots_[r].rate > 0.0))
+      refuse("robot '" + robots_[r].robot.name + "' takes " + std::to_string(robots_[r].rate) +
+             " scans a second, but it has to be a positive number");
+    sensors_.push_back(sensor_of(robots_[r], errors));
+    progress_.push_back({starts[r]});
+    measure_clearance(r);
+  }
+  measure_separation();
+}
+
+double MovingRobots::next_time() const {
+  double next = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < robots_.size(); ++r)
+    next = std::min(next, static_cast<double>(progress_[r].scans) / robots_[r].rate);
+  return next;
+}
+
+// The body, smaller by a margin on all sides, so that it may touch.
+Eigen::AlignedBox3d MovingRobots::body(std::size_t robot, const Eigen::Vector3d& at) const {
+  const Eigen::AlignedBox3d box = planner::body_of(robots_[robot].robot.travel).translated(at);
+  const Eigen::Vector3d margin = (box.sizes() / 4).cwiseMin(GroundTruth::kMargin);
+  return {box.min() + margin, box.max() - margin};
+}
+
+void MovingRobots::move(std::size_t robot, const planner::MotionState& to, double seconds,
+                        std::vector<Stopped>& stopped) {
+  Progress& now = progress_[robot];
+  MotionRecord& record = records_[robot];
+  const Eigen::Vector3d from = now.pose.position, motion = to.pose.position - from;
+  const bool contact = !motion.isZero(0.0) && solids_.count({body(robot, from), motion}) > 0;
+  if (contact && at_contact_ == AtContact::kStay) {
+    ++record.held_back;
+    record.idle += seconds;
+    now.halted = true;
+    stopped.push_back({robot, now.pose, cells_ahead(truth_->lattice(), from, to.pose.position)});
+    return;
+  }
+  if (contact && !now.touching) ++record.contacts;
+  if (!motion.isZero(0.0)) now.touching = contact;
+  record.length += motion.norm();
+  if (motion.isZero(0.0) && to.pose.yaw == now.pose.yaw) record.idle += seconds;
+  now.pose = to.pose;
+  if (!motion.isZero(0.0)) measure_clearance(robot);
+}
+
+void MovingRobots::measure_clearance(std::size_t robot) {
+  constexpr int kHalvings = 12;
+  double& clearance = records_[robot].clearance;
+  const Eigen::Vector3d& at = progress_[robot].pose.position;
+  const planner::TravelOptions& travel = robots_[robot].robot.travel;
+  const bool stands = travel.motion == Motion::kPlane;  // and touches the floor
+  Eigen::AlignedBox3d box = planner::body_of(travel).translated(at);
+  if (stands) {
+    box.min().z() = body(robot, at).min().z();
+    box.max().z() = body(robot, at).max().z();
+  }
+  const auto touches = [&](double by) {
+    const Eigen::Vector3d around = by * Eigen::Vector3d(1.0, 1.0, stands ? 0.0 : 1.0);
+    return solids_.count({{box.min() - around, box.max() + around}, Eigen::Vector3d::Zero()}) > 0;
+  };
+  if (!touches(clearance)) return;
+  double low = 0.0, high = clearance;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (touches(middle) ? high : low) = middle;
+  }
+  clearance = low;
+}
+
+void MovingRobots::measure_separation() {
+  for (std::size_t a = 0; a < progress_.size(); ++a)
+    for (std::size_t b = a + 1; b < progress_.size(); ++b) {
+      const auto box = [&](std::size_t r) {
+        return planner::body_of(robots_[r].robot.travel).translated(progress_[r].pose.position);
+      };
+      separation_ = std::min(separation_, distance_between(box(a), box(b)));
+    }
+}
+
+MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopped>& stopped) {
+  const double next = next_time();
+  const double begin = time_;
+  const int ticks = static_cast<int>(std::ceil((next - begin) / kTick));
+  for (Progress& robot : progress_) robot.halted = false;
+  for (int i = 1; i <= ticks; ++i) {
+    const double time = begin + (next - begin) * i / ticks;
+    for (std::size_t r = 0; r < robots_.size(); ++r)
+      if (progress_[r].halted)
+        records_[r].idle += time - time_;
+      else
+        move(r, where(r, time), time - time_, stopped);
+    measure_separation();
+    time_ = time;
+  }
+  std::size_t robot = 0;
+  while (static_cast<double>(progress_[robot].scans) / robots_[robot].rate != next) ++robot;
+  Progress& now = progress_[robot];
+  const std::uint64_t errors = random_of(random_of(seed_, robot).bits(), now.scans++).bits();
+  return {next, robot, now.pose, sense(surface_, sensors_[robot], now.pose, errors)};
+}
+
+}  // namespace frontlux::sim

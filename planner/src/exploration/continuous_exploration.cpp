@@ -1,0 +1,122 @@
+#include "exploration/continuous_state.hpp"
+
+#include <frontlux/planner/visible_pairs.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace frontlux::planner {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("continuous exploration: " + what);
+}
+
+}  // namespace
+
+std::string_view name_of(PlanReason reason) {
+  constexpr std::array<std::string_view, 6> kNames = {"start",   "arrival", "goal_seen",
+                                                      "blocked", "stopped", "period"};
+  return kNames.at(static_cast<std::size_t>(reason));
+}
+
+ContinuousExploration::ContinuousExploration(ExplorationOptions options, Mapping mapping) {
+  options.check();
+  const VoxelGrid grid = mapping.grid();
+  state_ = std::make_unique<State>(State{.team = {std::move(options), std::move(mapping)}, .before = grid});
+}
+ContinuousExploration::~ContinuousExploration() = default;
+ContinuousExploration::ContinuousExploration(ContinuousExploration&&) noexcept = default;
+ContinuousExploration& ContinuousExploration::operator=(ContinuousExploration&&) noexcept = default;
+
+ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> starts, double time) {
+  State& state = *state_;
+  if (state.team.selection) refuse("it has begun already");
+  if (starts.size() != state.team.size())
+    refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
+  if (!std::isfinite(time)) refuse("the time is not finite");
+  std::vector<Pose> poses;
+  for (const ExplorationStart& start : starts) poses.push_back(start.pose);
+  check_finite(poses);
+  state.team.start_from(starts);
+  for (std::size_t r = 0; r < starts.size(); ++r) {
+    State::Member member{.motion = {Trajectory(starts[r].pose, time)}};
+    member.sensed.push_back(starts[r].pose);
+    state.members.push_back(std::move(member));
+  }
+  for (std::size_t r = 0; r < starts.size(); ++r)
+    state.take(r, state.team.mapping.mark_free(starts[r].known_free));
+  ExplorationStep step = state.collect(time);
+  state.team.update_frontiers(step);
+  state.team.number = 1;
+  return step;
+}
+
+MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, const Scan& scan) {
+  State& state = *state_;
+  if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
+  check_finite({&pose, 1});
+  const MapChange change = state.team.mapping.insert(scan);
+  state.take(robot, change);
+  state.members[robot].sensed.push_back(pose);
+  return change;
+}
+
+void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double time,
+                                    std::span<const VoxelKey> blocked) {
+  State& state = *state_;
+  if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
+  State::Member& member = state.members[robot];
+  member.motion = {Trajectory(pose, time)};
+  member.stopped = true;
+  member.held_back_from.insert(member.held_back_from.end(), blocked.begin(), blocked.end());
+  state.team.selection->block(robot, blocked);
+}
+
+std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
+  State& state = *state_;
+  if (!state.team.selection) refuse("a planning before its beginning");
+  state.settle(time);
+  for (std::size_t r = 0; r < state.members.size(); ++r)
+    if (const auto reason = state.reason_to_plan(state.members[r], time)) return state.plan(r, *reason, time);
+  return std::nullopt;
+}
+
+ExplorationStep ContinuousExploration::finish(double time) {
+  State& state = *state_;
+  if (!state.team.selection) refuse("a finish before its beginning");
+  ExplorationStep step = state.collect(time);
+  state.team.update_frontiers(step);
+  step.frontiers = state.team.frontiers.size();
+  ++state.team.number;
+  return step;
+}
+
+MotionState ContinuousExploration::at(std::size_t robot, double time) const {
+  return state_->members.at(robot).motion.at(time);
+}
+
+std::optional<ExplorationEnd> ContinuousExploration::end() const {
+  const State& state = *state_;
+  if (state.members.empty()) return std::nullopt;
+  const auto idle = [](const auto& member) { return member.planned && !member.going; };
+  const auto low = [&](const auto& member) { return member.low_gains >= state.team.options.low_gain_steps; };
+  const bool all_idle = std::ranges::all_of(state.members, idle);
+  if (all_idle || std::ranges::all_of(state.members, low)) {
+    for (std::size_t r = 0; r < state.members.size(); ++r)
+      if (state.team.is_cut_off(r, state.members[r].goal)) return ExplorationEnd::kCutOff;
+    return all_idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+  }
+  if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))
+    return ExplorationEnd::kStepLimit;
+  return std::nullopt;
+}
+
+const ExplorationOptions& ContinuousExploration::options() const { return state_->team.options; }
+const Mapping& ContinuousExploration::mapping() const { return state_->team.mapping; }
+
+}  // namespace frontlux::planner

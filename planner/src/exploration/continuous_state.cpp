@@ -1,0 +1,279 @@
+#include "exploration/continuous_state.hpp"
+
+#include "exploration/frontiers_in_view.hpp"
+#include "exploration/phase_clock.hpp"
+
+#include <frontlux/planner/segment_voxels.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace frontlux::planner {
+namespace {
+
+using Keys = std::vector<VoxelKey>;
+
+constexpr double kGap = 0.1;      // [m] that robots keep between their bodies
+constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
+constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
+
+void sort_once(Keys& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+}  // namespace
+
+// The trajectories whose time has come take the place of those before.
+void ContinuousExploration::State::settle(double time) {
+  for (Member& member : members)
+    if (member.motion.next && time >= member.motion.next->begin())
+      member.motion = {*std::move(member.motion.next)};
+}
+
+std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
+                                                                       double time) const {
+  if (!member.planned) return PlanReason::kStart;
+  if (member.motion.next) return std::nullopt;  // its next trajectory has not begun yet
+  const double age = time - *member.planned;
+  if (age <= 0.0) return std::nullopt;
+  if (member.stopped) return PlanReason::kStopped;
+  if (member.blocked) return PlanReason::kBlocked;
+  if (member.going && time + team.options.latency >= member.motion.last().end()) return PlanReason::kArrival;
+  if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
+    const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
+      return team.mapping.grid().at(key) == Occupancy::kUnknown;
+    });
+    if (static_cast<double>(unknown) <= kUnseen * static_cast<double>(member.goal_frontiers.size()))
+      return PlanReason::kGoalSeen;
+  }
+  if (age >= team.options.period) return PlanReason::kPeriod;
+  return std::nullopt;
+}
+
+// Takes note of what a scan has changed.
+void ContinuousExploration::State::take(std::size_t robot, const MapChange& change) {
+  for (const VoxelKey& key : change.keys) {
+    touched.emplace_back(key, robot);
+    if (change.grid.at(key) == Occupancy::kFree) continue;
+    for (Member& member : members)
+      member.blocked = member.blocked || std::ranges::binary_search(member.needed, key);
+  }
+}
+
+// What the robots have done since the last planning. A voxel that several have changed counts for the first.
+ExplorationStep ContinuousExploration::State::collect(double time) {
+  ExplorationStep step = team.new_step();
+  step.time = time;
+  const VoxelGrid& grid = team.mapping.grid();
+  std::ranges::stable_sort(touched, {}, &std::pair<VoxelKey, std::size_t>::first);
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    const auto& [key, robot] = touched[i];
+    if (i > 0 && touched[i - 1].first == key) continue;
+    const Occupancy was = before.at(key), is = grid.at(key);
+    if (was == is) continue;
+    step.robots[robot].changed.push_back({key, was, is});
+    before.set(key, is);
+  }
+  touched.clear();
+  for (std::size_t r = 0; r < members.size(); ++r) {
+    RobotStep& robot = step.robots[r];
+    robot.goal = members[r].goal;
+    robot.path = PathOutcome::kInPlace;
+    robot.blocked = std::exchange(members[r].held_back_from, {});
+    sort_once(robot.blocked);
+    robot.planned = std::move(members[r].sensed);
+    robot.travelled = robot.planned.size();
+    robot.length = path_length(robot.planned);
+    robot.gained = static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& v) {
+      return v.before == Occupancy::kUnknown && team.frontiers.contains(v.key);
+    }));
+    members[r].sensed = {robot.planned.back()};
+    team.trails[r].insert(team.trails[r].end(), robot.planned.begin() + (team.number == 0 ? 0 : 1),
+                          robot.planned.end());
+  }
+  return step;
+}
+
+// A robot that was where it wanted to look from has seen all that can be seen from there.
+void ContinuousExploration::State::note_visit(std::size_t robot, RobotStep& step) {
+  for (const VoxelKey& key : std::exchange(members[robot].reached_frontiers, {}))
+    if (team.mapping.grid().at(key) == Occupancy::kUnknown) step.still_unknown.push_back(key);
+  team.abandoned.visited(step.still_unknown);
+}
+
+// The cells in whose middle a robot would be too near to where another one will come to rest.
+std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot) const {
+  std::vector<KeyBox> places;
+  const auto body = body_of(team.options.team[robot].robot.travel);
+  for (std::size_t other = 0; other < members.size(); ++other) {
+    if (other == robot) continue;
+    const Trajectory& last = members[other].motion.last();
+    auto box = detail::positions_too_near(body, body_of(team.options.team[other].robot.travel),
+                                          last.at(last.end()).pose.position, kGap);
+    if (team.options.team[robot].robot.travel.motion == Motion::kPlane) {
+      const double height = team.poses[robot].position.z();
+      if (height <= box.min().z() || height >= box.max().z()) continue;
+    }
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(team.lattice().resolution() / 2);
+    const auto low = team.lattice().key(Eigen::Vector3d(box.min() + half)),
+               high = team.lattice().key(Eigen::Vector3d(box.max() - half));
+    if (low && high) places.push_back({*low, *high});
+  }
+  return places;
+}
+
+bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
+  const auto body = [&](std::size_t r) { return body_of(team.options.team[r].robot.travel); };
+  for (std::size_t other = 0; other < members.size(); ++other)
+    if (other != robot &&
+        !detail::keeps_apart(trajectory, body(robot), members[other].motion, body(other), kGap))
+      return false;
+  return true;
+}
+
+SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const {
+  const TravelCorridor& corridor = team.path_corridor(robot);
+  return [this, &corridor](const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const Eigen::Vector3d& deviation) {
+    return SegmentVoxels(team.lattice(), from, to, corridor.reach() + deviation)
+        .all_of([&](const VoxelKey& key) { return corridor.passable(key); });
+  };
+}
+
+// What has to stay free for the rest of a trajectory.
+Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+  constexpr double kStep = 0.05;  // [s]
+  const TravelOptions& body = team.options.team[robot].robot.travel;
+  Keys cells;
+  Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
+  for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
+    const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
+    static_cast<void>(SegmentVoxels(team.lattice(), from, to).all_of([&](const VoxelKey& key) {
+      if (cells.empty() || cells.back() != key) cells.push_back(key);
+      return true;
+    }));
+    from = to;
+  }
+  sort_once(cells);
+  Keys voxels;
+  for (const VoxelKey& cell : cells) {
+    static_cast<void>(all_of(voxels_of_cell(body, team.lattice(), cell), [&](const VoxelKey& key) {
+      if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
+      return true;
+    }));
+  }
+  sort_once(voxels);
+  return voxels;
+}
+
+// Back along the way it came, to the last place from which it can go on.
+Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, RobotStep& step) {
+  const Trajectory& old = members[robot].motion.last();
+  const MotionLimits& limits = team.options.team[robot].robot.limits;
+  const SegmentTest nowhere = [](const auto&, const auto&, const auto&) { return false; };
+  const MotionState now = old.at(start);
+  std::vector<Pose> way;
+  if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
+  if (!way.empty()) {
+    way.insert(way.begin(), now.pose);
+    step.path = PathOutcome::kFound;
+  }
+  return old.after_stop(start, way, limits, nowhere);
+}
+
+// The way to the robot's goal, or back, or to rest.
+Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, double start,
+                                                         ExplorationStep& step) {
+  Member& member = members[robot];
+  RobotStep& now = step.robots[robot];
+  const Trajectory& old = member.motion.last();
+  const MotionLimits& limits = team.options.team[robot].robot.limits;
+  member.goal_frontiers.clear();
+  if (!now.goal.pose) {
+    Trajectory back = go_back(robot, start, now);
+    // When it has come to rest, it plans again.
+    member.going = now.path == PathOutcome::kFound || !old.at(start).velocity.isZero();
+    return back;
+  }
+  team.came_back[robot] = false;
+  const SegmentTest is_free = segment_test(robot);
+  std::optional<detail::Departure> departure;
+  {
+    const detail::PhaseClock clock(step, Phase::kPaths);
+    const auto path_from = [&](const Pose& from) {
+      PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, *now.goal.pose,
+                                {team.options.seed, team.number, robot}, team.options.path);
+      now.path = plan.outcome;
+      return std::move(plan.viewpoints);
+    };
+    departure = detail::best_departure(old, start, path_from, limits, is_free);
+  }
+  member.going = departure.has_value();
+  if (!departure) return old.after_stop(start, {}, limits, is_free);
+  const detail::PhaseClock clock(step, Phase::kOptimization);
+  std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
+  const std::size_t last = now.planned.size() - 1;
+  const InformationGain gain = team.optimize_path(robot, step);
+  for (const std::uint32_t i : detail::frontiers_in_view(gain, last, now.planned[last].yaw))
+    member.goal_frontiers.push_back(team.selection->targets(robot)[i]);
+  departure->viewpoints = std::exchange(now.planned, std::move(sensed));
+  return detail::depart(old, start, *departure, limits, is_free);
+}
+
+PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason reason, double time) {
+  Member& member = members[robot];
+  const double start = time + team.options.latency;
+  ExplorationStep step = collect(time);
+  note_visit(robot, step.robots[robot]);
+  for (std::size_t r = 0; r < members.size(); ++r) team.poses[r] = members[r].motion.at(start).pose;
+  team.update_frontiers(step);
+  const std::vector<KeyBox> others = places_of_others(robot);
+  team.selection->keep_out_of(robot, others);
+  if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
+  team.update_views(step);
+  const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
+                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
+  if (keeps)
+    team.keep_goal(robot, step);
+  else
+    team.select_goals(step, robot);
+  if (!keeps) member.chosen = time;
+
+  if (member.going && start >= member.motion.last().end())
+    member.reached_frontiers = std::move(member.goal_frontiers);
+  Trajectory trajectory = find_trajectory(robot, start, step);
+  member.goal = step.robots[robot].goal;
+  if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
+    member.needed = voxels_needed(robot, trajectory);
+    member.motion.next = trajectory;
+  } else {
+    trajectory = member.motion.last();  // which keeps apart
+  }
+  member.planned = time;
+  member.blocked = member.stopped = false;
+  judge(member, step.robots[robot]);
+  ++team.number;
+  return {robot, reason, std::move(trajectory), std::move(step)};
+}
+
+// Of a robot whose way is neither free nor can be left: it brakes, if that keeps apart from the others.
+bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
+  Member& member = members[robot];
+  member.goal_frontiers.clear();
+  if (!member.blocked) return false;
+  Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
+  if (!keeps_apart(robot, braking)) return false;
+  trajectory = std::move(braking);
+  member.going = false;
+  return true;
+}
+
+// What the end depends on.
+void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
+  const double gain = std::max(step.goal.gain, team.path_gain(step));
+  const bool low = !step.goal.pose || gain < team.options.epsilon;
+  member.low_gains = low ? member.low_gains + 1 : 0;
+}
+
+}  // namespace frontlux::planner

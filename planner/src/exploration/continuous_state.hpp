@@ -1,0 +1,59 @@
+#pragma once
+
+#include "exploration/exploration_state.hpp"
+#include "motion/departure.hpp"
+#include "motion/separation.hpp"
+
+#include <frontlux/planner/continuous_exploration.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner {
+
+/// What a continuous exploration knows between two plannings.
+struct ContinuousExploration::State {
+  using Keys = std::vector<VoxelKey>;
+
+  /// One robot in motion.
+  struct Member {
+    detail::Follower motion;
+    std::optional<double> planned = {};  // [s] when it planned last
+    double chosen = 0.0;                 // [s] when it chose its goal
+    bool stopped = false, blocked = false;
+    bool going = false;             // it has a goal, or goes back
+    int low_gains = 0;              // plannings in a row that expect to see next to nothing
+    Goal goal = {};                 // the last one
+    Keys goal_frontiers = {};       // in view at the goal; sorted
+    Keys reached_frontiers = {};    // the same of a goal that it reaches before it plans again
+    Keys needed = {};               // voxels that its trajectory needs free; sorted
+    Keys held_back_from = {};       // cells that it could not enter since the last planning
+    std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
+  };
+
+  detail::ExplorationState team;
+  std::vector<Member> members = {};
+  VoxelGrid before;                                            // the map at the last planning
+  std::vector<std::pair<VoxelKey, std::size_t>> touched = {};  // since then, and by whom
+
+  void settle(double time);
+  [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
+  [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
+  void take(std::size_t robot, const MapChange& change);
+  [[nodiscard]] ExplorationStep collect(double time);
+
+ private:
+  void note_visit(std::size_t robot, RobotStep& step);
+  [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
+  [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
+  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step);
+  [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
+  void judge(Member& member, const RobotStep& step) const;
+  [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
+  [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
+  [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
+};
+
+}  // namespace frontlux::planner

@@ -1,0 +1,49 @@
+#include "motion/departure.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace frontlux::planner::detail {
+
+std::optional<Departure> best_departure(const Trajectory& old, double time, const PathFrom& path_from,
+                                        const MotionLimits& limits, const SegmentTest& is_free) {
+  constexpr double kRest = 1e-6;                   // [m/s]
+  constexpr std::array kLeads = {0.1, 0.4, 1.01};  // of the way on which the robot can stop
+  const MotionState start = old.at(time);
+  const double speed = start.velocity.norm();
+
+  std::optional<Departure> best;
+  double arrival = 0.0;
+  const auto take = [&](Departure departure) {
+    const Trajectory trajectory = depart(old, time, departure, limits, is_free);
+    if (best && trajectory.end() >= arrival) return;
+    arrival = trajectory.end();
+    best = std::move(departure);
+  };
+  if (speed > kRest) {
+    const Eigen::Vector3d direction = start.velocity / speed;
+    const double stopping = speed * speed / (2 * limits.acceleration_along(direction));
+    for (const double lead : kLeads) {
+      const Pose ahead{start.pose.position + lead * stopping * direction, start.pose.yaw};
+      if (!is_free(start.pose.position, ahead.position, Eigen::Vector3d::Zero())) break;
+      std::vector<Pose> viewpoints = path_from(ahead);
+      if (viewpoints.empty()) continue;
+      viewpoints.insert(viewpoints.begin(), start.pose);
+      if (Trajectory::through(start, time, viewpoints, limits, is_free)) take({false, std::move(viewpoints)});
+    }
+  }
+  if (auto viewpoints = path_from(old.stop(time, limits)); !viewpoints.empty())
+    take({true, std::move(viewpoints)});
+  return best;
+}
+
+Trajectory depart(const Trajectory& old, double time, const Departure& departure, const MotionLimits& limits,
+                  const SegmentTest& is_free) {
+  if (!departure.stops)
+    if (auto trajectory = Trajectory::through(old.at(time), time, departure.viewpoints, limits, is_free))
+      return *std::move(trajectory);
+  return old.after_stop(time, departure.viewpoints, limits, is_free);
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,33 @@
+#include "motion/separation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontlux::planner::detail {
+
+double gap_between(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  return (a.min() - b.max()).cwiseMax(b.min() - a.max()).maxCoeff();
+}
+
+Eigen::AlignedBox3d positions_too_near(const Eigen::AlignedBox3d& body, const Eigen::AlignedBox3d& other,
+                                       const Eigen::Vector3d& other_at, double gap) {
+  const Eigen::Vector3d around = Eigen::Vector3d::Constant(gap);
+  return {other_at + other.min() - body.max() - around, other_at + other.max() - body.min() + around};
+}
+
+bool keeps_apart(const Trajectory& trajectory, const Eigen::AlignedBox3d& body, const Follower& other,
+                 const Eigen::AlignedBox3d& other_body, double gap) {
+  constexpr double kStep = 0.01;  // [s] in which two robots hardly come nearer
+  const double begin = trajectory.begin(), end = std::max(trajectory.end(), other.last().end());
+  const auto gap_at = [&](double time) {
+    return gap_between(body.translated(trajectory.at(time).pose.position),
+                       other_body.translated(other.at(time).pose.position));
+  };
+  const double least = std::min(gap, gap_at(begin) - 1e-9);
+  const int steps = static_cast<int>(std::ceil((end - begin) / kStep));
+  for (int i = 1; i <= steps; ++i)
+    if (gap_at(std::min(begin + i * kStep, end)) < least) return false;
+  return true;
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <frontlux/planner/trajectory.hpp>
+#include <frontlux/planner/travel_corridor.hpp>
+
+#include <Eigen/Geometry>
+
+namespace frontlux::planner::detail {
+
+/// [m] How far two boxes are apart along the axis on which they are farthest apart; negative if they overlap.
+[[nodiscard]] double gap_between(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b);
+
+/// The sensor positions of one robot at which its body is nearer than a gap to another robot's [m].
+[[nodiscard]] Eigen::AlignedBox3d positions_too_near(const Eigen::AlignedBox3d& body,
+                                                     const Eigen::AlignedBox3d& other,
+                                                     const Eigen::Vector3d& other_at, double gap);
+
+/// Where a robot is at a time [s]: its trajectory, and the one that takes its place later.
+struct Follower {
+  Trajectory now;
+  std::optional<Trajectory> next = std::nullopt;
+
+  [[nodiscard]] MotionState at(double time) const {
+    return next && time >= next->begin() ? next->at(time) : now.at(time);
+  }
+  [[nodiscard]] const Trajectory& last() const { return next ? *next : now; }
+};
+
+/// Whether a robot on its trajectory keeps a gap [m] to another, from the trajectory's begin on and for all
+/// time to come. Robots that are nearer to each other already may not come nearer yet.
+[[nodiscard]] bool keeps_apart(const Trajectory& trajectory, const Eigen::AlignedBox3d& body,
+                               const Follower& other, const Eigen::AlignedBox3d& other_body, double gap);
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,235 @@
+// `frontlux explore` in motion: what its files say of times, ways and safety, and how it goes on.
+
+#include "app/explore_command.hpp"
+
+#include <frontlux/planner/recording.hpp>
+
+#include <csignal>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::content_of;
+using test::joined;
+using test::table_of;
+
+// A CSV file by its columns' names.
+class Table {
+ public:
+  explicit Table(const fs::path& csv) : rows_(table_of(csv)) {}
+
+  [[nodiscard]] std::size_t size() const { return rows_.size() - 1; }
+  [[nodiscard]] const std::string& text(std::size_t row, const std::string& column) const {
+    const auto& header = rows_.at(0);
+    return rows_.at(row + 1).at(static_cast<std::size_t>(std::ranges::find(header, column) - header.begin()));
+  }
+  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
+    return std::stod(text(row, column));
+  }
+  [[nodiscard]] Eigen::Vector3d point(std::size_t row, const std::string& before,
+                                      const std::string& behind) const {
+    return {number(row, before + "x" + behind), number(row, before + "y" + behind),
+            number(row, before + "z" + behind)};
+  }
+  /// All but one column.
+  [[nodiscard]] std::vector<std::vector<std::string>> without(const std::string& column) const {
+    auto rows = rows_;
+    const auto place = std::ranges::find(rows_.at(0), column) - rows_.at(0).begin();
+    for (auto& row : rows) row.erase(row.begin() + place);
+    return rows;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+class ExploreMotion : public test::ExploreCommand {
+ protected:
+  // The words for a quick run: two UAVs of few pixels.
+  [[nodiscard]] std::vector<std::string> quick(const std::string& output, const std::string& seconds) const {
+    std::string robots;
+    for (const char* name : {"one", "two"})
+      robots += (robots.empty() ? "" : ", ") + (R"({"name": ")" + std::string(name) + R"(", "motion": "space",
+        "body": {"kind": "box", "size_m": [0.7, 0.7, 0.5]},
+        "limits": {"speed_m_s": 2, "acceleration_m_s2": 3, "yaw_rate_deg_s": 90},
+        "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 6, "columns": 48,
+                   "rows": 36, "rate_hz": 8}})");
+    return {"--task",      write("quick.json", R"({"world": "room", "robots": [)" + robots + "]}"),
+            "--report",    "off",
+            "--stop-time", seconds,
+            "-o",          path(output)};
+  }
+  void expect_same_motions(const std::string& a, const std::string& b) const {
+    expect_same_runs(a, b);
+    EXPECT_GT(content_of(path(a + "/motion.csv")).size(), 1000U);
+    EXPECT_TRUE(content_of(path(a + "/motion.csv")) == content_of(path(b + "/motion.csv")));
+    EXPECT_EQ(Table(path(a + "/events.csv")).without("planning_s"),
+              Table(path(b + "/events.csv")).without("planning_s"));
+    const nlohmann::json x = json_in(a), y = json_in(b);
+    for (const char* name : {"time_s", "auc", "explored_m3", "clearance_min_m", "separation_min_m",
+                             "contacts", "by_robot", "lockstep", "latency_s"})
+      EXPECT_EQ(x.at(name), y.at(name)) << name;
+  }
+};
+
+TEST_F(ExploreMotion, ItsFilesAgree) {
+  constexpr double kSeconds = 7.0, kLatency = 0.15;
+  expect_answer(joined(quick("run", "7"), {"--latency", "0.15", "--bumper", "off"}), {"contacts     0"});
+  const nlohmann::json json = json_in("run");
+  const Recording recording = read_recording(path("run/run.frontlux"));
+  EXPECT_EQ(json.at("end"), "time_limit");
+  EXPECT_EQ(json.at("lockstep"), false);
+  EXPECT_EQ(json.at("latency_s"), kLatency);
+  const std::vector<std::string> names = {"one", "two"};
+  EXPECT_EQ(json.at("robots"), names);
+
+  // A row for each planning: all steps but the start and the end.
+  const Table events(path("run/events.csv"));
+  EXPECT_EQ(content_of(path("run/events.csv")).substr(0, 20), "time_s,step,robot,re");
+  ASSERT_EQ(events.size(), recording.steps.size() - 2);
+  EXPECT_GT(events.size(), 10U);
+  std::vector<double> planning;
+  int in_time = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const ExplorationStep& step = recording.steps[i + 1].step;
+    EXPECT_EQ(events.number(i, "step"), static_cast<double>(i + 1));
+    EXPECT_EQ(events.number(i, "time_s"), step.time);
+    const std::string& name = events.text(i, "robot");
+    const std::size_t robot = name == "one" ? 0 : 1;
+    EXPECT_EQ(name, names[robot]);
+    EXPECT_EQ(events.text(i, "reason") == "start", i < 2) << "the first planning of each";
+    EXPECT_EQ(events.text(i, "goal_state"), name_of(step.robots[robot].goal.state));
+    const double begin = events.number(i, "begin_s");
+    EXPECT_LE(begin, step.time + kLatency + 1e-9);
+    in_time += std::abs(begin - step.time - kLatency) < 1e-9 ? 1 : 0;
+    EXPECT_GE(events.number(i, "end_s"), begin);
+    EXPECT_GE(events.number(i, "length_m"), 0.0);
+    EXPECT_EQ(events.number(i, "planning_s"), step.planning_seconds());
+    planning.push_back(step.planning_seconds());
+  }
+  EXPECT_GT(in_time, static_cast<int>(events.size()) / 2) << "most plannings give a new trajectory";
+
+  // A hundred rows a second for each robot: within its limits, and as fast as its places say.
+  const Table motion(path("run/motion.csv"));
+  ASSERT_GE(motion.size(), 2 * static_cast<std::size_t>(kSeconds * 100));
+  std::vector<double> metres(2);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    ASSERT_EQ(motion.text(i, "robot"), names[i % 2]);
+    ASSERT_NEAR(motion.number(i, "time_s"), static_cast<double>(i / 2) / 100, 1e-9);
+    const Eigen::Vector3d at = motion.point(i, "", "_m"), velocity = motion.point(i, "v", "_m_s");
+    ASSERT_LE(velocity.norm(), 2.0 * 1.001);
+    ASSERT_LE(std::abs(motion.number(i, "yaw_rate_rad_s")), std::numbers::pi / 2 * 1.001);
+    if (i < 2) {
+      EXPECT_EQ(at, recording.head.starts[i].pose.position);
+      continue;
+    }
+    const Eigen::Vector3d step = at - motion.point(i - 2, "", "_m");
+    const Eigen::Vector3d mean = (velocity + motion.point(i - 2, "v", "_m_s")) / 2;
+    ASSERT_LT((step / 0.01 - mean).norm(), 3.0 * 0.01)
+        << "half of what it can gain in a hundredth of a second";
+    metres[i % 2] += step.norm();
+    if (i % 2 == 0) continue;
+    const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.35, -0.35, -0.25), Eigen::Vector3d(0.35, 0.35, 0.25));
+    nearest = std::min(nearest,
+                       body.translated(at).exteriorDistance(body.translated(motion.point(i - 1, "", "_m"))));
+  }
+  // run.json against both.
+  const nlohmann::json& by_robot = json.at("by_robot");
+  double idle = 0.0;
+  for (std::size_t r = 0; r < 2; ++r) {
+    EXPECT_NEAR(by_robot.at(names[r]).at("length_m"), metres[r], 0.02 * metres[r]);
+    EXPECT_GT(metres[r], 2.0);
+    EXPECT_NEAR(json.at("path_length_m").at(names[r]), metres[r], 0.05 * metres[r]);
+    EXPECT_EQ(by_robot.at(names[r]).at("held_back"), 0);
+    idle += by_robot.at(names[r]).at("idle_s").get<double>();
+  }
+  EXPECT_GE(idle, 2 * kLatency) << "both wait for their first planning";
+  EXPECT_LT(idle, 2 * kSeconds);
+  EXPECT_NEAR(json.at("separation_min_m"), nearest, 0.05);
+  EXPECT_GT(json.at("separation_min_m"), 0.0);
+  EXPECT_GT(json.at("clearance_min_m"), 0.0);
+  EXPECT_LT(json.at("clearance_min_m"), 1.0);
+  EXPECT_EQ(json.at("contacts"), 0);
+  std::sort(planning.begin(), planning.end());
+  planning.insert(planning.begin(), recording.steps.back().step.planning_seconds());
+  std::sort(planning.begin(), planning.end());
+  const auto place = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(planning.size()))) - 1;
+  EXPECT_EQ(json.at("planning_p99_s"), planning[place]);
+  EXPECT_EQ(json.at("planning_max_s"), planning.back());
+
+  // Times and the area under the curve lie between what the steps around them say.
+  const Table steps(path("run/steps.csv"));
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 2; i < steps.size(); i += 2) {
+    const double passed = steps.number(i, "time_s") - steps.number(i - 2, "time_s");
+    EXPECT_GE(passed, 0.0);
+    low += passed * steps.number(i - 2, "coverage_observable");
+    high += passed * steps.number(i, "coverage_observable");
+  }
+  const double end = json.at("time_s").at("end");
+  EXPECT_GE(end, kSeconds);
+  EXPECT_LT(end, kSeconds + 0.2);
+  EXPECT_EQ(steps.number(steps.size() - 1, "time_s"), end);
+  EXPECT_GE(json.at("auc"), low / end - 1e-9);
+  EXPECT_LE(json.at("auc"), high / end + 1e-9);
+  EXPECT_GT(high, low);
+  ASSERT_GE(steps.number(steps.size() - 1, "coverage_observable"), 0.5);
+  const double half = json.at("time_s").at("50");
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_TRUE(steps.number(i, "time_s") >= half || steps.number(i, "coverage_observable") < 0.5);
+    EXPECT_TRUE(steps.number(i, "time_s") < half || steps.number(i, "coverage_observable") >= 0.5);
+  }
+  EXPECT_NEAR(json.at("explored_m3"),
+              json.at("coverage_box").get<double>() * static_cast<double>(recording.head.bounding) * 0.027,
+              1e-6);
+}
+
+TEST_F(ExploreMotion, EndsWhenEnoughIsMapped) {
+  expect_answer(joined(quick("run", "60"), {"--stop-coverage", "0.3"}), {"\nend          coverage"});
+  const nlohmann::json json = json_in("run");
+  EXPECT_EQ(json.at("end"), "coverage");
+  EXPECT_GE(json.at("coverage_observable"), 0.3);
+  EXPECT_LT(json.at("coverage_observable"), 0.6) << "it ends at once";
+  EXPECT_FALSE(json.at("time_s").contains("90"));
+}
+
+TEST_F(ExploreMotion, GoesOnAfterItWasKilledAtAnyMoment) {
+  expect_answer(quick("whole", "5"));
+  for (const int steps : {1, 5}) {
+    SCOPED_TRACE(steps);
+    fs::remove_all(path("killed"));
+    const pid_t child = start_and_wait(quick("killed", "5"), steps);
+    ASSERT_GT(child, 0);
+    kill(child, SIGKILL);
+    const int status = test::status_of(child);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "it was done before";
+    EXPECT_FALSE(fs::exists(path("killed/run.json")));
+    expect_resumed("killed");
+    expect_same_motions("whole", "killed");
+  }
+  // In the middle of a step, and at the very end.
+  const std::string bytes = content_of(path("whole/run.frontlux"));
+  for (const std::size_t size : {bytes.size() * 2 / 3, bytes.size()}) {
+    SCOPED_TRACE(size);
+    fs::remove_all(path("cut"));
+    fs::create_directory(path("cut"));
+    write("cut/run.frontlux", bytes.substr(0, size));
+    expect_resumed("cut", {"--threads", "1"});
+    expect_same_motions("whole", "cut");
+  }
+}
+
+TEST_F(ExploreMotion, RefusesWrongTimesAndParts) {
+  const auto refuses = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values)
+      expect_refused({"room", "-o", path("new"), option, value}, {option + std::string(": '") + value});
+  };
+  refuses("--latency", {"0", "-0.1", "nan", "inf", "1s", ""});
+  refuses("--stop-coverage", {"-0.1", "1.01", "nan", "50%", ""});
+  refuses("--stop-time", {"-1", "nan", "inf", "1h", ""});
+}
+
+}  // namespace
+}  // namespace frontlux::planner

@@ -1,0 +1,216 @@
+// `frontlux explore --task`: tasks from files, what the command line changes of them, and what is refused.
+
+#include "app/explore_command.hpp"
+#include "support/input_test.hpp"
+#include "support/test.hpp"
+
+#include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/mesh_file.hpp>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::content_of;
+using test::ExploreCommand;
+using test::joined;
+
+const std::string kUav =
+    R"({"name": "uav", "motion": "space", "body": {"kind": "box", "size_m": [0.4, 0.4, 0.4]}, "margin_m": 0.05, )"
+    R"("limits": {"speed_m_s": 2, "acceleration_m_s2": 3, "yaw_rate_deg_s": 90, "per_axis": true}, )"
+    R"("sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 73.74, "range_m": 5, "columns": 80, )"
+    R"("rows": 60, "rate_hz": 10}, "start": [1.5, 1.5, 1, 30]})";
+
+class TaskCommand : public ExploreCommand {
+ protected:
+  void expect_done(const std::string& task, const std::string& output,
+                   const std::vector<std::string>& more = {}) const {
+    expect_answer(joined({"--task", task, "-o", path(output), "--report", "off"}, more));
+  }
+  /// The task in run.json as a file.
+  [[nodiscard]] std::string task_of(const std::string& output) const {
+    return write(output + "_task.json", json_in(output).at("task").dump());
+  }
+  /// A floor of 12 x 12 m, and walls around 6 x 6 m of it; no ceiling.
+  void write_court() const {
+    sim::TriangleMesh mesh;
+    const auto add = [&](const Eigen::Vector3f& corner, const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Eigen::Vector3f& vertex : {corner, Eigen::Vector3f(corner + a),
+                                            Eigen::Vector3f(corner + a + b), Eigen::Vector3f(corner + b)})
+        mesh.vertices.push_back(vertex);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      mesh.triangles.push_back({first, first + 2, first + 3});
+    };
+    const Eigen::Vector3f x = 6 * Eigen::Vector3f::UnitX(), y = 6 * Eigen::Vector3f::UnitY(),
+                          z = 3 * Eigen::Vector3f::UnitZ();
+    add({-3, -3, 0}, 2 * x, 2 * y);
+    add({0, 0, 0}, x, z);
+    add({0, 0, 0}, y, z);
+    add({0, 6, 0}, x, z);
+    add({6, 0, 0}, y, z);
+    sim::write_ply(path("court.ply"), mesh);
+  }
+  [[nodiscard]] std::string court(const std::string& members = "") const {
+    return write("court.json",
+                 R"({"world": "court.ply", "box_m": [[0, 0, 0], [6, 6, 2]], "resolution_m": 0.2, )" +
+                     members + R"("end": {"time_s": 3}, "robots": [)" + kUav + "]}");
+  }
+};
+
+TEST_F(TaskCommand, OfABuiltInWorldIsTheRunOfTheCommandLine) {
+  const std::string room = (fs::path(FRONTLUX_DATA_DIR) / "tasks/room.json").string();
+  expect_answer({"room", "--seed", "1", "--stop-time", "4", "--report", "off", "-o", path("words")});
+  expect_done(room, "task", {"--stop-time", "4"});
+  expect_same_runs("words", "task");
+  EXPECT_EQ(content_of(path("words/motion.csv")), content_of(path("task/motion.csv")));
+  // The task of each run is the same run again.
+  for (const char* run : {"words", "task"}) {
+    expect_done(task_of(run), std::string(run) + "_again");
+    expect_same_runs("words", std::string(run) + "_again");
+  }
+}
+
+TEST_F(TaskCommand, GivesWayToTheCommandLine) {
+  const std::string file =
+      write("t.json", R"({"name": "n", "world": "room", "world_seed": 3, "seed": 5, "latency_s": 0.2,
+    "lockstep": true, "method": "nearest", "resolution_m": 0.25, "end": {"coverage": 0.5, "time_s": 100},
+    "robots": [{"file": "r.json"}], "options": {"max-steps": 1, "noise": "0.01", "caster": "grid"}})");
+  fs::copy_file(fs::path(FRONTLUX_DATA_DIR) / "robots/ugv.json", path("r.json"));
+  expect_done(file, "plain");
+  nlohmann::json task = json_in("plain").at("task");
+  EXPECT_EQ(task.at("name"), "n");
+  EXPECT_EQ(task.at("world_seed"), 3);
+  EXPECT_EQ(task.at("seed"), 5);
+  EXPECT_EQ(task.at("latency_s"), 0.2);
+  EXPECT_EQ(task.at("lockstep"), true);
+  EXPECT_EQ(task.at("method"), "nearest");
+  EXPECT_EQ(task.at("resolution_m"), 0.25);
+  EXPECT_EQ(task.at("end"), nlohmann::json::parse(R"({"coverage": 0.5, "time_s": 100.0})"));
+  EXPECT_EQ(task.at("options"),
+            nlohmann::json::parse(R"({"caster": "grid", "max-steps": "1", "noise": "0.01"})"));
+  EXPECT_EQ(task.at("robots").size(), 1U);
+  EXPECT_EQ(task.at("robots")[0].at("name"), "ugv");
+  EXPECT_EQ(json_in("plain").at("steps"), 1);
+  EXPECT_EQ(json_in("plain").at("goal"), "nearest");
+  expect_done(task_of("plain"), "again");
+  expect_same_runs("plain", "again");
+
+  expect_done(
+      file, "other",
+      {"--seed", "6", "--latency", "0.3", "--lockstep=false", "--mode", "default", "--resolution", "0.3",
+       "--stop-coverage", "0.4", "--stop-time", "2", "--team", "uav", "--noise", "0", "--max-steps", "3"});
+  task = json_in("other").at("task");
+  EXPECT_EQ(task.at("world_seed"), 3);
+  EXPECT_EQ(task.at("seed"), 6);
+  EXPECT_EQ(task.at("latency_s"), 0.3);
+  EXPECT_EQ(task.at("lockstep"), false);
+  EXPECT_EQ(task.at("method"), "render");
+  EXPECT_EQ(task.at("resolution_m"), 0.3);
+  EXPECT_EQ(task.at("end"), nlohmann::json::parse(R"({"coverage": 0.4, "time_s": 2.0})"));
+  EXPECT_EQ(task.at("options"), nlohmann::json::parse(R"({"caster": "grid", "max-steps": "3"})"));
+  ASSERT_EQ(task.at("robots").size(), 1U);
+  EXPECT_EQ(task.at("robots")[0].at("name"), "uav");
+}
+
+TEST_F(TaskCommand, ExploresABoxOfAWorld) {
+  write_court();
+  expect_done(court(), "run");
+  const Recording run = read_recording(path("run/run.frontlux"));
+  // 30 x 30 x 10 voxels of 0.2 m; walls and floor lie on the faces.
+  EXPECT_EQ(run.head.bounding, 9000U);
+  EXPECT_EQ(run.head.observable, 9000U);
+  ASSERT_EQ(run.head.starts.size(), 1U);
+  EXPECT_EQ(run.head.starts[0].pose.position, Eigen::Vector3d(1.5, 1.5, 1.0));
+  EXPECT_DOUBLE_EQ(run.head.starts[0].pose.yaw, std::numbers::pi / 6);
+  const Robot& uav = run.head.robots.at(0).robot;
+  EXPECT_EQ(uav.travel.floor, 0.0);
+  EXPECT_EQ(uav.travel.min_height, 0.2);
+  EXPECT_EQ(uav.travel.margin, 0.05);
+  EXPECT_EQ(uav.limits.speed, 2.0);
+  EXPECT_TRUE(uav.limits.per_axis);
+  EXPECT_EQ(run.head.robots[0].rate, 10.0);
+  EXPECT_EQ(run.end, "time_limit");
+  EXPECT_GT(json_in("run").at("coverage_observable"), 0.2);
+  EXPECT_EQ(json_in("run").at("contacts"), 0);
+  const nlohmann::json task = json_in("run").at("task");
+  EXPECT_EQ(task.at("name"), "court");
+  EXPECT_EQ(task.at("world"), path("court.ply"));
+  EXPECT_EQ(task.at("robots")[0].at("start"), nlohmann::json::parse("[1.5, 1.5, 1.0, 30.0]"));
+  EXPECT_EQ(task.at("robots")[0].at("sensor").at("vertical_deg"), 73.74);
+  EXPECT_FALSE(task.contains("options"));
+  expect_done(task_of("run"), "again");
+  expect_same_runs("run", "again");
+}
+
+TEST_F(TaskCommand, IsResumedWithoutItsFile) {
+  write_court();
+  const std::string file = court();
+  expect_done(file, "whole");
+  expect_done(file, "cut", {"--max-steps", "1"});
+  fs::remove(file);
+  expect_resumed("cut", {"--max-steps", "100000"});
+  expect_same_runs("whole", "cut");
+  EXPECT_EQ(json_in("cut").at("task").at("box_m"), json_in("whole").at("task").at("box_m"));
+}
+
+TEST_F(TaskCommand, WithoutABoxIsShiftedLikeTheCommandLine) {
+  write_court();
+  const std::string file =
+      write("open.json", R"({"world": "court.ply", "end": {"time_s": 1}, "robots": [)" + kUav + "]}");
+  expect_done(file, "run");
+  EXPECT_NE(read_recording(path("run/run.frontlux")).head.starts.at(0).pose.position.z(), 1.0);
+  expect_done(task_of("run"), "again");
+  expect_same_runs("run", "again");
+}
+
+TEST_F(TaskCommand, RefusesWhatCannotBe) {
+  write_court();
+  const std::string output = path("new");
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts) {
+    const std::string file = write("bad.json", text);
+    expect_refused({"--task", file, "-o", output}, joined({"--task", "bad.json: "}, parts));
+  };
+  const auto court_with = [&](const std::string& from, const std::string& to) {
+    return test::replaced(content_of(court()), from, to);
+  };
+  refuse("", {"this is not JSON"});
+  refuse(R"({"name": "n"})", {"world is missing"});
+  refuse(R"({"world": "castle"})", {"world is 'castle'", "frontlux world"});
+  refuse(R"({"world": "court.ply", "world_seed": 3})", {"world_seed is 3", "leave it out"});
+  refuse(R"({"world": "room", "method": "tour"})", {"method is 'tour'", "nearest"});
+  refuse(R"({"world": "room", "team": "car"})", {"team: 'car' is not a team"});
+  refuse(R"({"world": "room", "team": ""})", {"team: ''"});
+  refuse(R"({"world": "room", "latency_s": 0})", {"latency_s is 0", "above 0"});
+  refuse(R"({"world": "room", "options": {"force": "on"}})", {"'options.force' is not known", "noise"});
+  refuse(R"({"world": "room", "options": {"seed": 3}})", {"'options.seed' is not known"});
+  refuse(R"({"world": "room", "options": {"noise": -1}})",
+         {"options.noise", "'-1' is not a number of at least 0"});
+  refuse(R"({"world": "room", "robots": [{"file": "none.json"}]})", {"none.json"});
+  refuse(court_with("[6, 6, 2]", "[6, 6, 0.5]"), {"robots[0].start is [1.5,1.5,1,30], outside of box_m"});
+  refuse(court_with("\"speed_m_s\": 2", "\"speed_m_s\": -2"), {"robots[0].limits.speed_m_s is -2"});
+  // What only the world shows.
+  const auto refuse_in_world = [&](const std::string& text, const std::vector<std::string>& parts) {
+    expect_refused({"--task", write("bad.json", text), "-o", output}, joined({"bad.json"}, parts));
+  };
+  refuse_in_world(court_with("[1.5, 1.5, 1, 30]", "[0.1, 1.5, 1, 30]"),
+                  {"the start of the robot 'uav' is not a free place", "beyond the world's bounds"});
+  refuse_in_world(
+      test::replaced(court_with("[1.5, 1.5, 1, 30]", "[6, 1.5, 1, 30]"), "[6, 6, 2]", "[7.1, 6, 2]"),
+      {"the start of the robot 'uav' is not a free place", "give another one"});
+  refuse_in_world(
+      test::replaced(court_with("\"box_m\": [[0, 0, 0], [6, 6, 2]], ", ""), "1.5, 1.5, 1,", "99, 1, 1,"),
+      {"the start of the robot 'uav'", "outside the world"});
+  expect_refused({"--task", path("none.json"), "-o", output}, {"--task", "none.json"});
+  expect_refused({"--task", folder_.string(), "-o", output}, {"--task", folder_.string()});
+  expect_refused({"--task", court()}, {"--output"});
+  expect_refused({"--task", court(), "-o", output, "--ground", "auto"}, {"--ground", "box"});
+  expect_refused({"--task", court(), "-o", output, "--world-seed", "2"},
+                 {"--world-seed", "not a built-in world"});
+  expect_refused({"--task", court(), "-o", output, "--pose", "ugv=1,1,1,0"},
+                 {"--pose", "its robots are uav"});
+  expect_refused({"--task", court(), "--resume", output}, {"--resume", "--task"});
+}
+
+}  // namespace
+}  // namespace frontlux::planner

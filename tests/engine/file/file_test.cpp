@@ -1,0 +1,62 @@
+#include "support/folder_test.hpp"
+
+#include <frontlux/file.hpp>
+
+#include <atomic>
+#include <thread>
+
+namespace frontlux {
+namespace {
+
+using FileTest = test::FolderTest;
+
+// As a robot's driver does with what another program reads.
+TEST_F(FileTest, ReadsAFileWholeWhileItIsReplaced) {
+  const std::string file = path("table.csv");
+  const auto bytes_of = [](std::size_t size) {
+    return std::string(size, static_cast<char>('a' + static_cast<int>(size % 26)));
+  };
+  write_file(file, bytes_of(1));
+  std::atomic<bool> done = false;
+  std::thread writer([&] {
+    for (std::size_t size = 1; !done; size = size % 900 + 1) write_file(file, bytes_of(size));
+  });
+  std::set<std::size_t> sizes;
+  std::size_t wrong = 0;
+  std::string said;
+  for (int i = 0; i < 100'000 && (i < 4000 || sizes.size() < 20); ++i) {
+    try {
+      const std::string bytes = read_file(file);
+      if (bytes != bytes_of(bytes.size())) ++wrong;
+      sizes.insert(bytes.size());
+    } catch (const std::runtime_error& error) {
+      said = error.what();
+    }
+  }
+  done = true;
+  writer.join();
+  EXPECT_EQ(said, "");
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GE(sizes.size(), 20U);
+}
+
+TEST_F(FileTest, RefusesWhatIsTooLargeOrNoFile) {
+  const std::string file = write("bytes", "0123456789");
+  EXPECT_EQ(read_file(file, 10), "0123456789");
+  const auto said = [](const auto& call) {
+    try {
+      call();
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(said([&] { static_cast<void>(read_file(file, 9)); }).find("has 10 bytes, more than the 9"),
+            std::string::npos);
+  EXPECT_NE(said([&] { static_cast<void>(read_file(path("none"))); }).find("no such file"),
+            std::string::npos);
+  EXPECT_NE(said([&] { static_cast<void>(read_file(folder_)); }).find("is a directory"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace frontlux

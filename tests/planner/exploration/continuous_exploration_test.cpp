@@ -1,0 +1,278 @@
+// Robots in motion: what they explore, how they move, and that they keep apart.
+
+#include "planner/exploration/team_in_motion.hpp"
+#include "support/complaint.hpp"
+
+#include <frontlux/planner/recorded_map.hpp>
+#include <frontlux/sim/coverage.hpp>
+
+#include <tbb/task_arena.h>
+
+namespace frontlux::planner {
+namespace {
+
+using test::small_uav;
+using test::TeamInMotion;
+using test::TeamInWorld;
+
+constexpr double kSample = 0.01;     // [s]
+constexpr double kTolerance = 1e-3;  // of a limit
+constexpr double kLong = 300.0;      // [s]
+
+double turn(double from, double to) { return std::remainder(to - from, 2 * std::numbers::pi); }
+
+// By differences between samples.
+void expect_within(const Trajectory& trajectory, const MotionLimits& limits) {
+  const int count = static_cast<int>(std::ceil((trajectory.end() - trajectory.begin()) / kSample));
+  double speed = 0.0, acceleration = 0.0, yaw_rate = 0.0;
+  for (int i = 1; i <= count; ++i) {
+    const double time = trajectory.begin() + i * kSample;
+    const Pose before = trajectory.at(time - kSample).pose, now = trajectory.at(time).pose,
+               after = trajectory.at(time + kSample).pose;
+    speed = std::max(speed, (now.position - before.position).norm() / kSample);
+    acceleration = std::max(
+        acceleration, (after.position - 2 * now.position + before.position).norm() / (kSample * kSample));
+    yaw_rate = std::max(yaw_rate, std::abs(turn(before.yaw, now.yaw)) / kSample);
+  }
+  EXPECT_LE(speed, limits.speed * (1 + kTolerance));
+  EXPECT_LE(acceleration, limits.acceleration * (1 + kTolerance));
+  EXPECT_LE(yaw_rate, limits.yaw_rate * (1 + kTolerance));
+}
+
+// The voxels that a body at a position is in, but for those that it only touches.
+KeyBox voxels_at(const TravelOptions& travel, const Lattice& lattice, const Eigen::Vector3d& position) {
+  const Eigen::Vector3d half = travel.box() / 2 - Eigen::Vector3d::Constant(1e-4 * lattice.resolution());
+  return voxels_of(lattice, {position - half, position + half});
+}
+
+// The voxels that are not known to be free for a body on its way.
+std::set<VoxelKey> not_free(const Trajectory& trajectory, const TravelOptions& travel,
+                            const VoxelGrid& grid) {
+  std::set<VoxelKey> keys;
+  for (double time = trajectory.begin(); time < trajectory.end() + kSample; time += kSample)
+    for_each_key(voxels_at(travel, grid.lattice(), trajectory.at(time).pose.position),
+                 [&](const VoxelKey& key) {
+                   if (grid.at(key) != Occupancy::kFree) keys.insert(key);
+                 });
+  return keys;
+}
+
+double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
+  return sim::measure(team.truth, grid).of_observable();
+}
+
+TEST(ContinuousExploration, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits) {
+  TeamInMotion scene("room", {small_uav()});
+  const Robot& robot = scene.exploration().options().team[0].robot;
+  std::set<VoxelKey> open;  // not free when it was planned
+  std::optional<Trajectory> before;
+  VoxelGrid grid_before = scene.grid();
+  int planned = 0, in_flight = 0;
+  std::set<PlanReason> reasons;
+  scene.explore(kLong, [&](const PlannedMotion& now) {
+    ++planned;
+    reasons.insert(now.reason);
+    EXPECT_EQ(now.reason == PlanReason::kStart, planned == 1);
+    const Trajectory& trajectory = now.trajectory;
+    if (before && trajectory.begin() == before->begin()) return;  // it keeps the one that it has
+    SCOPED_TRACE(testing::Message() << "planning " << planned << ", " << name_of(now.reason));
+    expect_within(trajectory, robot.limits);
+    // It takes up the one before where that is by then, after the latency.
+    EXPECT_NEAR(trajectory.begin(), now.step.time + 0.1, 1e-12);
+    const MotionState here = trajectory.at(trajectory.begin());
+    const MotionState there =
+        before ? before->at(trajectory.begin()) : MotionState{scene.team().starts[0].pose};
+    EXPECT_LT((here.pose.position - there.pose.position).norm(), 1e-9);
+    EXPECT_LT((here.velocity - there.velocity).norm(), 1e-6);
+    EXPECT_LT(std::abs(turn(here.pose.yaw, there.pose.yaw)), 1e-9);
+    in_flight += here.velocity.norm() > 0.1 ? 1 : 0;
+    // What is not free now was when the one before was planned, of which it is the rest.
+    const VoxelGrid grid = scene.grid();
+    const auto keys = not_free(trajectory, robot.travel, grid);
+    for (const VoxelKey& key : keys)
+      if (grid_before.at(key) != Occupancy::kFree) open.insert(key);
+    before = trajectory;
+    grid_before = grid;
+  });
+  ASSERT_TRUE(scene.exploration().end());
+  const VoxelGrid grid = scene.grid();
+  for (const VoxelKey& key : open) EXPECT_EQ(grid.at(key), Occupancy::kFree);
+  EXPECT_GT(planned, 10);
+  EXPECT_GT(in_flight, planned / 3) << "it hardly ever stops";
+  EXPECT_GE(reasons.size(), 3U);
+  EXPECT_EQ(scene.robots().records()[0].contacts, 0U);
+  EXPECT_GT(scene.robots().records()[0].clearance, 0.0);
+
+  const TeamInWorld& team = scene.team();
+  sim::SimulatedRobots bodies = team.bodies();
+  Exploration lockstep(TeamInMotion::options(team), team.empty_map());
+  lockstep.begin(team.starts, test::drive_by(bodies));
+  while (!lockstep.end()) lockstep.step(test::drive_by(bodies));
+  EXPECT_GE(share_mapped(team, grid), 0.99 * share_mapped(team, lockstep.mapping().grid()));
+  EXPECT_GT(share_mapped(team, grid), 0.9);
+}
+
+// Steps tell all that happened: numbers, times, scans and changes.
+TEST(ContinuousExploration, StepsAddUpToTheMap) {
+  TeamInMotion scene("room", {small_uav(), small_uav()});
+  scene.explore(6.0);
+  scene.steps.push_back(scene.exploration().finish(scene.time()));
+  RecordedMap map(0.3);
+  std::vector<std::size_t> scans(2);
+  std::vector<double> metres(2);
+  for (std::size_t i = 0; i < scene.steps.size(); ++i) {
+    const ExplorationStep& step = scene.steps[i];
+    EXPECT_EQ(step.number, i);
+    EXPECT_TRUE(i == 0 || step.time >= scene.steps[i - 1].time);
+    map.apply({step, {}, 0});
+    for (std::size_t r = 0; r < 2; ++r) {
+      const RobotStep& robot = step.robots[r];
+      EXPECT_EQ(robot.travelled, robot.planned.size());
+      scans[r] += robot.planned.size() - 1;
+      metres[r] += robot.length;
+      if (i == 0 || robot.planned.empty()) continue;
+      EXPECT_TRUE(test::same(robot.planned.front(), scene.steps[i - 1].robots[r].planned.back()));
+    }
+  }
+  EXPECT_TRUE(map.grid() == scene.grid());
+  for (std::size_t r = 0; r < 2; ++r) {
+    EXPECT_EQ(scans[r], 61U);  // ten a second, the first one at once
+    // Chords between scans are a little shorter.
+    EXPECT_NEAR(metres[r], scene.robots().records()[r].length, 0.03 * metres[r]);
+    EXPECT_GT(metres[r], 1.0);
+  }
+}
+
+TEST(ContinuousExploration, IsTheSameOnOneAndTwoThreads) {
+  const auto told = [](int threads) {
+    return tbb::task_arena(threads).execute([] {
+      TeamInMotion scene("room", {small_uav(), planner::ugv_description()});
+      std::ostringstream text;
+      text << std::hexfloat;
+      scene.explore(4.0, [&](const PlannedMotion& now) {
+        text << now.robot << ' ' << name_of(now.reason) << '\n' << test::listed(now.step);
+        for (double time = now.trajectory.begin(); time < now.trajectory.end(); time += 0.1) {
+          const MotionState state = now.trajectory.at(time);
+          text << state.pose.position.transpose() << ' ' << state.pose.yaw << ' '
+               << state.velocity.transpose() << ' ' << state.yaw_rate << '\n';
+        }
+      });
+      return text.str() + test::bytes_of(scene.exploration().mapping());
+    });
+  };
+  const std::string one = told(1);
+  EXPECT_GT(one.size(), 100'000U);
+  EXPECT_TRUE(one == told(2));
+}
+
+void expect_apart(std::size_t count, double seconds) {
+  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()));
+  const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
+  double least = std::numeric_limits<double>::infinity();
+  const auto look = [&](double from, double to) {
+    for (double time = from; time < to; time += kSample)
+      for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = a + 1; b < count; ++b) {
+          const auto at = [&](std::size_t r) {
+            return body.translated(scene.exploration().at(r, time).pose.position);
+          };
+          least = std::min(least, at(a).exteriorDistance(at(b)));
+        }
+  };
+  scene.explore(seconds, {}, look);
+  EXPECT_GT(least, 0.0);
+  EXPECT_LT(least, 3.0) << "they are never near each other";
+  for (std::size_t r = 0; r < count; ++r) EXPECT_GT(scene.robots().records()[r].length, 1.0);
+}
+TEST(ContinuousExploration, KeepsTwoRobotsApart) { expect_apart(2, 20.0); }
+TEST(ContinuousExploration, KeepsThreeRobotsApart) { expect_apart(3, 12.0); }
+
+TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
+  TeamInMotion scene("room", {small_uav(), small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  scene.explore(2.0);
+  while (exploration.plan(scene.time())) {
+  }
+  // It met something that no sensor sees, where it was going.
+  const double time = scene.time() + 0.05;
+  const Lattice& lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const Eigen::Vector3d next = exploration.at(0, time + 0.5).pose.position;
+  const VoxelKey cell = lattice.key(next).value();
+  ASSERT_NE(cell, lattice.key(rests.position).value()) << "the robot moves";
+  exploration.stopped(0, rests, time, {&cell, 1});
+  EXPECT_TRUE(test::same(exploration.at(0, time + 1.0).pose, rests));
+  EXPECT_TRUE(exploration.at(0, time + 1.0).velocity.isZero());
+  const auto planned = exploration.plan(time);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->robot, 0U);
+  EXPECT_EQ(planned->reason, PlanReason::kStopped);
+  EXPECT_EQ(planned->step.robots[0].blocked, std::vector<VoxelKey>{cell});
+  EXPECT_TRUE(planned->step.robots[1].blocked.empty());
+  const Trajectory& trajectory = planned->trajectory;
+  EXPECT_TRUE(test::same(trajectory.at(trajectory.begin()).pose, rests));
+  EXPECT_GT(trajectory.length(), 0.1);
+  for (double t = trajectory.begin(); t < trajectory.end(); t += kSample)
+    EXPECT_NE(lattice.key(trajectory.at(t).pose.position), cell);
+  // Only once.
+  for (int i = 0; i < 2; ++i) {
+    const auto again = exploration.plan(time);
+    EXPECT_TRUE(!again || again->robot != 0);
+  }
+}
+
+TEST(ContinuousExploration, EndsAtItsLimitOfPlannings) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ExplorationOptions options = TeamInMotion::options(team);
+  options.max_steps = 2;
+  ContinuousExploration exploration(options, team.empty_map());
+  EXPECT_FALSE(exploration.end());
+  EXPECT_EQ(exploration.begin(team.starts, 7.0).time, 7.0);
+  double time = 7.0;
+  for (int i = 1; i <= 2; ++i, time += 2.0) {
+    EXPECT_FALSE(exploration.end());
+    const auto planned = exploration.plan(time);
+    ASSERT_TRUE(planned);
+    EXPECT_EQ(planned->step.number, static_cast<std::uint64_t>(i));
+  }
+  ASSERT_TRUE(exploration.end());
+}
+
+TEST(ContinuousExploration, RefusesWrongUse) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  const double nan = std::nan("");
+  const Pose pose = team.starts[0].pose;
+  Scan scan;
+  scan.origin = pose.position.cast<float>();
+  ContinuousExploration exploration(TeamInMotion::options(team), team.empty_map());
+  const auto refuses = [&](const auto& call, const std::string& part) {
+    test::expect_complaint(call, {"continuous exploration: ", part});
+  };
+  refuses([&] { exploration.insert(0, pose, scan); }, "no robot 0");
+  refuses([&] { exploration.stopped(0, pose, 0.0, {}); }, "no robot 0");
+  refuses([&] { static_cast<void>(exploration.plan(0.0)); }, "before its beginning");
+  refuses([&] { static_cast<void>(exploration.finish(0.0)); }, "before its beginning");
+  refuses([&] { exploration.begin({}, 0.0); }, "0 starts for 1 robots");
+  ExplorationStart lost = team.starts[0];
+  lost.pose.yaw = nan;
+  EXPECT_REFUSED(exploration.begin({&lost, 1}, 0.0));
+  EXPECT_REFUSED(exploration.begin(team.starts, nan));
+  // Nothing of that has begun it.
+  exploration.begin(team.starts, 0.0);
+  refuses([&] { exploration.begin(team.starts, 0.0); }, "has begun already");
+  refuses([&] { exploration.insert(1, pose, scan); }, "no robot 1");
+  EXPECT_REFUSED(exploration.insert(0, lost.pose, scan));
+  EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
+  ExplorationOptions options = TeamInMotion::options(team);
+  for (double ExplorationOptions::*seconds :
+       {&ExplorationOptions::latency, &ExplorationOptions::period, &ExplorationOptions::commitment})
+    for (const double bad : {0.0, -1.0, nan}) {
+      ExplorationOptions wrong = options;
+      wrong.*seconds = bad;
+      EXPECT_REFUSED(ContinuousExploration(wrong, team.empty_map()));
+    }
+  EXPECT_EQ(name_of(PlanReason::kGoalSeen), "goal_seen");
+}
+
+}  // namespace
+}  // namespace frontlux::planner

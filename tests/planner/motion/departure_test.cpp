@@ -1,0 +1,65 @@
+#include "motion/departure.hpp"
+
+#include "support/test.hpp"
+
+#include <random>
+
+namespace frontlux::planner {
+namespace {
+
+// A robot leaves one way for another at any moment, among obstacles that refuse most arcs: every corner may
+// be one at which the old trajectory rests, or the new one.
+TEST(Departure, KeepsTheLimitsFromOneWayToAnother) {
+  std::mt19937_64 bits(3);
+  const auto number = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(bits);
+  };
+  int asked = 0;
+  const SegmentTest mostly_straight = [&](const auto&, const auto&, const Eigen::Vector3d& deviation) {
+    return deviation.isZero() || ++asked % 3 == 0;
+  };
+  constexpr double kStep = 0.002;  // [s]
+  int stopped = 0, went_on = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const MotionLimits limits{2.0, 3.0, 1.57, i % 2 == 0};
+    const double reach = std::exp(number(std::log(0.1), std::log(5.0)));
+    const auto place = [&] {
+      return Pose{{number(-reach, reach), number(-reach, reach), number(-0.3, 0.3)}, number(-3.0, 3.0)};
+    };
+    const std::vector<Pose> way = {place(), place(), place(), place()}, then = {place(), place(), place()};
+    const auto old = Trajectory::through({way.front()}, 0.0, way, limits, mostly_straight);
+    ASSERT_TRUE(old);
+    const double time = number(0.0, old->end());
+    const auto path_from = [&](const Pose& start) {
+      std::vector<Pose> path = {start};
+      path.insert(path.end(), then.begin(), then.end());
+      return path;
+    };
+    const auto departure = detail::best_departure(*old, time, path_from, limits, mostly_straight);
+    ASSERT_TRUE(departure);
+    (departure->stops ? stopped : went_on) += 1;
+    const Trajectory trajectory = detail::depart(*old, time, *departure, limits, mostly_straight);
+    EXPECT_LT((trajectory.at(time).pose.position - old->at(time).pose.position).norm(), 1e-9);
+    EXPECT_LT((trajectory.at(time).velocity - old->at(time).velocity).norm(), 1e-6);
+    EXPECT_LT((trajectory.at(trajectory.end()).pose.position - then.back().position).norm(), 1e-9);
+    double most = 0.0;  // [m/s2]
+    for (double t = time + kStep; t < trajectory.end() + kStep; t += kStep) {
+      const auto at = [&](double when) { return trajectory.at(when).pose.position; };
+      const Eigen::Vector3d acceleration = (at(t + kStep) - 2 * at(t) + at(t - kStep)) / (kStep * kStep);
+      most = std::max(most, limits.per_axis ? acceleration.cwiseAbs().maxCoeff() : acceleration.norm());
+    }
+    EXPECT_LE(most, limits.acceleration * 1.001);
+  }
+  EXPECT_GT(stopped, 10);
+  EXPECT_GT(went_on, 10);
+}
+
+TEST(Departure, IsNoneWithoutAPath) {
+  const Trajectory rest(Pose{}, 0.0);
+  const auto nowhere = [](const Pose&) { return std::vector<Pose>{}; };
+  EXPECT_FALSE(detail::best_departure(rest, 1.0, nowhere, {}, {}));
+}
+
+}  // namespace
+}  // namespace frontlux::planner
