@@ -36,7 +36,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (!member.planned) return PlanReason::kStart;
   if (member.motion.next) return std::nullopt;  // its next trajectory has not begun yet
   const double age = time - *member.planned;
-  if (age <= 0.0) return std::nullopt;
+  if (age < team.options.latency) return std::nullopt;
   if (member.stopped) return PlanReason::kStopped;
   if (member.blocked) return PlanReason::kBlocked;
   if (member.going && time + team.options.latency >= member.motion.last().end()) return PlanReason::kArrival;
@@ -249,6 +249,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     member.motion.next = trajectory;
   } else {
     trajectory = member.motion.last();  // which keeps apart
+    member.going = trajectory.end() > start;
   }
   member.planned = time;
   member.blocked = member.stopped = false;
@@ -265,7 +266,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
   Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
   if (!keeps_apart(robot, braking)) return false;
   trajectory = std::move(braking);
-  member.going = false;
+  member.going = true;  // when it has come to rest, it plans again
   return true;
 }
 
