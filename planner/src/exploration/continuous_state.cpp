@@ -36,8 +36,9 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (!member.planned) return PlanReason::kStart;
   if (member.motion.next) return std::nullopt;  // its next trajectory has not begun yet
   const double age = time - *member.planned;
-  if (age < team.options.latency) return std::nullopt;
+  if (age <= 0.0) return std::nullopt;
   if (member.stopped) return PlanReason::kStopped;
+  if (age < team.options.latency) return std::nullopt;
   if (member.blocked) return PlanReason::kBlocked;
   if (member.going && time + team.options.latency >= member.motion.last().end()) return PlanReason::kArrival;
   if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
