@@ -197,7 +197,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     member.going = now.path == PathOutcome::kFound || !old.at(start).velocity.isZero();
     return back;
   }
-  team.came_back[robot] = false;
+  team.went_back_to[robot].reset();
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
   {

@@ -66,7 +66,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   trails.resize(size());
-  came_back.resize(size());
+  went_back_to.resize(size());
 }
 
 // Lines 1 and 2.
@@ -169,9 +169,9 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
 // Once for each goal that the robot had, or it would go back and forth.
 std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
   const bool lost = goal.state == GoalState::kNoCorridor;
-  if (!lost && came_back[robot]) return {};
+  if (!lost && went_back_to[robot]) return {};
   std::vector<Pose> way = way_back(robot, goal);
-  if (!lost && !way.empty()) came_back[robot] = true;
+  if (!lost && !way.empty()) went_back_to[robot] = lattice().key(way.back().position);
   return way;
 }
 
@@ -179,7 +179,8 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
     return std::ranges::any_of(trails[robot],
                                [&](const Pose& place) { return place.position != poses[robot].position; });
-  return !goal.pose && !way_back(robot, goal).empty();
+  const auto& place = went_back_to[robot];  // in its corridor, if it got there
+  return place && path_corridor(robot).passable(*place) && !path_corridor(robot).contains(*place);
 }
 
 // Line 6.
@@ -192,7 +193,7 @@ void ExplorationState::plan_paths(ExplorationStep& step) {
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
-    came_back[r] = false;
+    went_back_to[r].reset();
     PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
                               {options.seed, number, r}, options.path);
     robot.path = plan.outcome;
