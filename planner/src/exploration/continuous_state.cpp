@@ -39,8 +39,10 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (age <= 0.0) return std::nullopt;
   if (member.stopped) return PlanReason::kStopped;
   if (age < team.options.latency) return std::nullopt;
+  const bool arrives = time + team.options.latency >= member.motion.last().end();
+  if (member.goes_back && !arrives) return std::nullopt;  // its way back need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
-  if (member.going && time + team.options.latency >= member.motion.last().end()) return PlanReason::kArrival;
+  if (member.going && arrives) return PlanReason::kArrival;
   if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
       return team.mapping.grid().at(key) == Occupancy::kUnknown;
@@ -193,10 +195,12 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   member.goal_frontiers.clear();
   if (!now.goal.pose) {
     Trajectory back = go_back(robot, start, now);
+    member.goes_back = now.path == PathOutcome::kFound;
     // When it has come to rest, it plans again.
-    member.going = now.path == PathOutcome::kFound || !old.at(start).velocity.isZero();
+    member.going = member.goes_back || !old.at(start).velocity.isZero();
     return back;
   }
+  member.goes_back = false;
   team.went_back_to[robot].reset();
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
@@ -274,7 +278,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 // What the end depends on.
 void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
   const double gain = std::max(step.goal.gain, team.path_gain(step));
-  const bool low = !step.goal.pose || gain < team.options.epsilon;
+  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going;
   member.low_gains = low ? member.low_gains + 1 : 0;
 }
 

@@ -23,6 +23,7 @@ struct ContinuousExploration::State {
     std::optional<double> planned = {};  // [s] when it planned last
     double chosen = 0.0;                 // [s] when it chose its goal
     bool stopped = false, blocked = false;
+    bool goes_back = false;         // on the way on which it came
     bool going = false;             // it has a goal, or goes back
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     Goal goal = {};                 // the last one
