@@ -98,7 +98,8 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   return step;
 }
 
-// A robot that was where it wanted to look from has seen all that can be seen from there.
+// A robot that has come to its goal, or from where nothing of its goal can be seen any more, has seen all
+// that can be seen on its way.
 void ContinuousExploration::State::note_visit(std::size_t robot, RobotStep& step) {
   for (const VoxelKey& key : std::exchange(members[robot].reached_frontiers, {}))
     if (team.mapping.grid().at(key) == Occupancy::kUnknown) step.still_unknown.push_back(key);
@@ -218,10 +219,14 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   if (!departure) return old.after_stop(start, {}, limits, is_free);
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
-  const std::size_t last = now.planned.size() - 1;
   const InformationGain gain = team.optimize_path(robot, step);
-  for (const std::uint32_t i : detail::frontiers_in_view(gain, last, now.planned[last].yaw))
-    member.goal_frontiers.push_back(team.selection->targets(robot)[i]);
+  for (std::size_t viewpoint = 1; viewpoint < now.planned.size(); ++viewpoint)
+    for (const std::uint32_t i : detail::frontiers_in_view(gain, viewpoint, now.planned[viewpoint].yaw)) {
+      const VoxelKey& key = team.selection->targets(robot)[i];
+      if (viewpoint + 1 == now.planned.size()) member.goal_frontiers.push_back(key);
+      member.path_frontiers.push_back(key);
+    }
+  sort_once(member.path_frontiers);
   departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
@@ -245,8 +250,10 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     team.select_goals(step, robot);
   if (!keeps) member.chosen = time;
 
-  if (member.going && start >= member.motion.last().end())
-    member.reached_frontiers = std::move(member.goal_frontiers);
+  const bool arrives = start >= member.motion.last().end();
+  if (!keeps && member.going && (arrives || member.goal_frontiers.empty()))
+    member.reached_frontiers = member.path_frontiers;
+  if (!keeps) member.path_frontiers.clear();
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
   if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
@@ -267,6 +274,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
   member.goal_frontiers.clear();
+  member.path_frontiers.clear();
   if (!member.blocked) return false;
   Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
   if (!keeps_apart(robot, braking)) return false;

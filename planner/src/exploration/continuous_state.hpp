@@ -28,7 +28,8 @@ struct ContinuousExploration::State {
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
-    Keys reached_frontiers = {};    // the same of a goal that it reaches before it plans again
+    Keys path_frontiers = {};       // in view on the way to it, since it was chosen; sorted
+    Keys reached_frontiers = {};    // the same of a goal that it has done with
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
