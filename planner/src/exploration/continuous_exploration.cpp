@@ -74,7 +74,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   member.motion = {Trajectory(pose, time)};
   member.stopped = true;
   member.held_back_from.insert(member.held_back_from.end(), blocked.begin(), blocked.end());
-  state.team.selection->block(robot, blocked);
+  state.team.block(robot, blocked);
 }
 
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {

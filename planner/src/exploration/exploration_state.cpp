@@ -271,13 +271,15 @@ bool ExplorationState::execute_again(const ExplorationStep& recorded, const Driv
   return true;
 }
 
+void ExplorationState::block(std::size_t robot, std::span<const VoxelKey> cells) {
+  selection->block(robot, cells);
+  if (voxel_corridors[robot]) voxel_corridors[robot]->block(cells);
+}
+
 // What a robot's part of a step leaves behind.
 void ExplorationState::remember(std::size_t robot, const RobotStep& step) {
   abandoned.visited(step.still_unknown);
-  if (!step.blocked.empty()) {
-    selection->block(robot, step.blocked);
-    if (voxel_corridors[robot]) voxel_corridors[robot]->block(step.blocked);
-  }
+  if (!step.blocked.empty()) block(robot, step.blocked);
   for (std::size_t i = trails[robot].empty() ? 0 : 1; i < step.travelled; ++i)
     trails[robot].push_back(step.planned[i]);
   if (step.travelled > 0) poses[robot] = step.planned[step.travelled - 1];

@@ -59,6 +59,8 @@ struct ExplorationState {
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);
+  /// Cells that the robot does not go through any more, in all its corridors.
+  void block(std::size_t robot, std::span<const VoxelKey> cells);
   void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
