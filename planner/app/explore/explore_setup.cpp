@@ -161,7 +161,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.max_steps =
       options.max_steps.value_or(options.lockstep ? exploration.max_steps : std::numeric_limits<int>::max());
   exploration.latency = options.latency;
-  // In motion a robot looks at its goal all the way to it.
+  // In motion each planning notes what the last scan had in view.
   if (!options.lockstep) exploration.max_visits = 1;
   exploration.check();
   return exploration;

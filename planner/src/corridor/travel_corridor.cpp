@@ -276,6 +276,7 @@ CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const Vox
   if (!frame.place(cell))
     return cell.z < frame.first.z || frame.size[2] == 0 ? CorridorState::kTooLow : CorridorState::kOutside;
   if (!erosion->whole(cell)) return CorridorState::kBoxNotFree;
+  if (std::binary_search(blocked.begin(), blocked.end(), cell)) return CorridorState::kBoxNotFree;
   if (ground && !ground->carries(cell)) return CorridorState::kWithoutGround;
   return CorridorState::kReady;
 }

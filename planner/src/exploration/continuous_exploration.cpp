@@ -39,6 +39,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
   if (!std::isfinite(time)) refuse("the time is not finite");
+  state.team.solid = state.before;
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
@@ -73,8 +74,10 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   State::Member& member = state.members[robot];
   member.motion = {Trajectory(pose, time)};
   member.stopped = true;
-  member.held_back_from.insert(member.held_back_from.end(), blocked.begin(), blocked.end());
-  state.team.block(robot, blocked);
+  std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
+  if (const auto here = state.team.lattice().key(pose.position); cells.empty() && here) cells = {*here};
+  member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
+  state.team.block(robot, cells);
 }
 
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {

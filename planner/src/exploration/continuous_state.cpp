@@ -6,6 +6,8 @@
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace frontlux::planner {
@@ -16,6 +18,15 @@ using Keys = std::vector<VoxelKey>;
 constexpr double kGap = 0.1;      // [m] that robots keep between their bodies
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
+
+// Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
+bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) {
+  constexpr double kNear = 0.01, kAligned = 0.01, kLong = 0.5;  // [m], [rad], [s]
+  const Pose end = trajectory.at(trajectory.end()).pose;
+  return time >= trajectory.end() + kLong ||
+         ((scanned.position - end.position).norm() < kNear &&
+          std::abs(std::remainder(scanned.yaw - end.yaw, 2 * std::numbers::pi)) < kAligned);
+}
 
 void sort_once(Keys& keys) {
   std::sort(keys.begin(), keys.end());
@@ -42,7 +53,10 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   const bool arrives = time + team.options.latency >= member.motion.last().end();
   if (member.goes_back && !arrives) return std::nullopt;  // its way back need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
-  if (member.going && arrives) return PlanReason::kArrival;
+  if (member.going &&
+      (member.goal_frontiers.empty() ? arrives
+                                     : has_looked(member.motion.last(), member.sensed.back(), time)))
+    return PlanReason::kArrival;
   if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
       return team.mapping.grid().at(key) == Occupancy::kUnknown;
@@ -77,6 +91,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     if (was == is) continue;
     step.robots[robot].changed.push_back({key, was, is});
     before.set(key, is);
+    if (team.solid->at(key) != Occupancy::kOccupied) team.solid->set(key, is);
   }
   touched.clear();
   for (std::size_t r = 0; r < members.size(); ++r) {
@@ -98,11 +113,17 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   return step;
 }
 
-// A robot that has come to its goal, or from where nothing of its goal can be seen any more, has seen all
-// that can be seen on its way.
-void ContinuousExploration::State::note_visit(std::size_t robot, RobotStep& step) {
-  for (const VoxelKey& key : std::exchange(members[robot].reached_frontiers, {}))
-    if (team.mapping.grid().at(key) == Occupancy::kUnknown) step.still_unknown.push_back(key);
+// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same.
+void ContinuousExploration::State::note_look(std::size_t robot, RobotStep& step) {
+  if (step.planned.size() < 2) return;  // no scan since the last planning
+  const Pose& pose = step.planned.back();
+  const FieldOfView& view = team.options.team[robot].robot.view;
+  const std::span<const VoxelKey> frontiers = team.frontiers.keys();
+  const VisiblePairs seen = visible_pairs(*team.caster, team.mapping.grid(), {&pose, 1}, frontiers, view);
+  for (const std::uint32_t i : seen.frontiers_of(0)) {
+    const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
+    if (view.contains(offset, pose.yaw)) step.still_unknown.push_back(frontiers[i]);
+  }
   team.abandoned.visited(step.still_unknown);
 }
 
@@ -175,7 +196,6 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
 Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, RobotStep& step) {
   const Trajectory& old = members[robot].motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
-  const SegmentTest nowhere = [](const auto&, const auto&, const auto&) { return false; };
   const MotionState now = old.at(start);
   std::vector<Pose> way;
   if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
@@ -183,7 +203,7 @@ Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start
     way.insert(way.begin(), now.pose);
     step.path = PathOutcome::kFound;
   }
-  return old.after_stop(start, way, limits, nowhere);
+  return old.after_stop(start, way, limits, segment_test(robot));
 }
 
 // The way to the robot's goal, or back, or to rest.
@@ -202,7 +222,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     return back;
   }
   member.goes_back = false;
-  team.went_back_to[robot].reset();
+  team.went_back_to[robot].clear();
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
   {
@@ -220,13 +240,9 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
   const InformationGain gain = team.optimize_path(robot, step);
-  for (std::size_t viewpoint = 1; viewpoint < now.planned.size(); ++viewpoint)
-    for (const std::uint32_t i : detail::frontiers_in_view(gain, viewpoint, now.planned[viewpoint].yaw)) {
-      const VoxelKey& key = team.selection->targets(robot)[i];
-      if (viewpoint + 1 == now.planned.size()) member.goal_frontiers.push_back(key);
-      member.path_frontiers.push_back(key);
-    }
-  sort_once(member.path_frontiers);
+  for (const std::uint32_t i :
+       detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
+    member.goal_frontiers.push_back(team.selection->targets(robot)[i]);
   departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
@@ -235,13 +251,13 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   Member& member = members[robot];
   const double start = time + team.options.latency;
   ExplorationStep step = collect(time);
-  note_visit(robot, step.robots[robot]);
   for (std::size_t r = 0; r < members.size(); ++r) team.poses[r] = members[r].motion.at(start).pose;
   team.update_frontiers(step);
   const std::vector<KeyBox> others = places_of_others(robot);
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
+  note_look(robot, step.robots[robot]);
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   if (keeps)
@@ -250,10 +266,6 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     team.select_goals(step, robot);
   if (!keeps) member.chosen = time;
 
-  const bool arrives = start >= member.motion.last().end();
-  if (!keeps && member.going && (arrives || member.goal_frontiers.empty()))
-    member.reached_frontiers = member.path_frontiers;
-  if (!keeps) member.path_frontiers.clear();
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
   if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
@@ -274,7 +286,6 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
   member.goal_frontiers.clear();
-  member.path_frontiers.clear();
   if (!member.blocked) return false;
   Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
   if (!keeps_apart(robot, braking)) return false;
@@ -285,8 +296,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 
 // What the end depends on.
 void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
-  const double gain = std::max(step.goal.gain, team.path_gain(step));
-  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going;
+  const bool low = step.goal.pose ? step.goal.gain < team.options.epsilon : !member.going;
   member.low_gains = low ? member.low_gains + 1 : 0;
 }
 

@@ -28,8 +28,6 @@ struct ContinuousExploration::State {
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
-    Keys path_frontiers = {};       // in view on the way to it, since it was chosen; sorted
-    Keys reached_frontiers = {};    // the same of a goal that it has done with
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
@@ -47,7 +45,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] ExplorationStep collect(double time);
 
  private:
-  void note_visit(std::size_t robot, RobotStep& step);
+  void note_look(std::size_t robot, RobotStep& step);
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step);

@@ -9,12 +9,14 @@
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/look_around.hpp>
+#include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/trajectory.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -32,6 +34,21 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
+}
+
+// A way that comes to no voxel twice.
+std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> way) {
+  std::map<std::optional<VoxelKey>, std::size_t> last;
+  for (std::size_t i = 0; i < way.size(); ++i) last[lattice.key(way[i].position)] = i;
+  std::vector<Pose> rest;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    rest.push_back(way[i]);
+    const std::size_t leaves = last[lattice.key(way[i].position)];
+    if (leaves == i) continue;
+    rest.push_back(way[leaves]);
+    i = leaves;
+  }
+  return rest;
 }
 
 }  // namespace
@@ -134,18 +151,26 @@ void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
   step.frontiers = frontiers.size();
 }
 
-// Whether a robot sees frontiers from somewhere that it can go to from a cell.
-bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot,
-                                      const VoxelKey& cell) const {
+// Whether a robot sees enough from somewhere that it can go to from a cell, to which its way has this length
+// [m]. What other robots see anyhow is worth less from afar, as eq. 1 has it.
+bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
+                                      double length) const {
   elsewhere.update({mapping.grid()}, cell);
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
-  return !find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers.empty();
+  double gain = 0.0;
+  for (const std::uint32_t i : find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers) {
+    bool others = false;
+    for (std::size_t r = 0; r < size(); ++r)
+      others = others || (r != robot && std::ranges::binary_search(selection->targets(r), wanted[i]));
+    gain += others ? std::exp(-options.team[robot].options.lambda * length) : 1.0;
+  }
+  return gain > 0.0 && gain >= options.epsilon;
 }
 
 // A robot beside which a closer look has found something is in no corridor; it goes back to the last place
 // that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes
 // back through the passage, if there is something to see from beyond.
-std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal) const {
+std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal, const Keys& tried) const {
   const std::vector<Pose>& trail = trails[robot];
   const TravelCorridor& corridor = path_corridor(robot);
   const bool lost = goal.state == GoalState::kNoCorridor;
@@ -157,21 +182,21 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
     if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
     if (lost && place->position == poses[robot].position) return {};
     if (!lost) {
+      if (std::ranges::find(tried, *cell) != tried.end()) continue;
       if (elsewhere && elsewhere->contains(*cell)) continue;
       if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
-      if (!worth_going_to(*elsewhere, robot, *cell)) continue;
     }
-    return {trail.rbegin(), place + 1};
+    std::vector<Pose> way = without_loops(lattice(), std::vector<Pose>(trail.rbegin(), place + 1));
+    if (lost || worth_going_to(*elsewhere, robot, *cell, path_length(way))) return way;
   }
   return {};
 }
 
-// Once for each goal that the robot had, or it would go back and forth.
+// To each place once for each goal that the robot had, or it would go back and forth.
 std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
-  const bool lost = goal.state == GoalState::kNoCorridor;
-  if (!lost && went_back_to[robot]) return {};
-  std::vector<Pose> way = way_back(robot, goal);
-  if (!lost && !way.empty()) went_back_to[robot] = lattice().key(way.back().position);
+  std::vector<Pose> way = way_back(robot, goal, went_back_to[robot]);
+  if (goal.state != GoalState::kNoCorridor && !way.empty())
+    went_back_to[robot].push_back(lattice().key(way.back().position).value());
   return way;
 }
 
@@ -179,8 +204,7 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
     return std::ranges::any_of(trails[robot],
                                [&](const Pose& place) { return place.position != poses[robot].position; });
-  const auto& place = went_back_to[robot];  // in its corridor, if it got there
-  return place && path_corridor(robot).passable(*place) && !path_corridor(robot).contains(*place);
+  return !went_back_to[robot].empty() && !way_back(robot, goal, {}).empty();
 }
 
 // Line 6.
@@ -193,7 +217,7 @@ void ExplorationState::plan_paths(ExplorationStep& step) {
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
-    went_back_to[r].reset();
+    went_back_to[r].clear();
     PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
                               {options.seed, number, r}, options.path);
     robot.path = plan.outcome;
@@ -309,7 +333,7 @@ void ExplorationState::update_frontiers(ExplorationStep& step) {
     // A robot may undo what another has changed.
     if (std::prev(next)->after != first->before) changed.push_back(first->key);
   }
-  frontiers.update(change());
+  frontiers.update({solid ? *solid : mapping.grid(), changed});
 }
 
 // What a path is expected to see, as `epsilon` measures it.

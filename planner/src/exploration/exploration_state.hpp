@@ -22,6 +22,9 @@ struct ExplorationState {
 
   ExplorationOptions options;
   Mapping mapping;
+  /// If given: the map, but for voxels that were occupied once, which stay so. It has the frontiers. Beams
+  /// that graze a surface free some of its voxels, until they are hit again; what is behind is no frontier.
+  std::optional<VoxelGrid> solid = {};
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
   AbandonedFrontiers abandoned;
@@ -29,15 +32,15 @@ struct ExplorationState {
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
-  std::vector<std::vector<Pose>> trails = {};              // where each robot has been
-  std::vector<Goal> last_goals = {};                       // of the last step
-  std::vector<std::optional<VoxelKey>> went_back_to = {};  // by robots that had no goal since
-  Keys wanted = {};          // frontiers that are not abandoned, at the last selection
-  Keys changed = {};         // by the last step, sorted
-  std::uint64_t number = 0;  // of the next step
-  double time = 0.0;         // [s] in lock-step
-  int low_gain_steps = 0;    // in a row
-  bool idle = false;         // in the last step no robot had a goal or moved
+  std::vector<std::vector<Pose>> trails = {};  // where each robot has been
+  std::vector<Goal> last_goals = {};           // of the last step
+  std::vector<Keys> went_back_to = {};         // by robots that had no goal since
+  Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
+  Keys changed = {};                           // by the last step, sorted
+  std::uint64_t number = 0;                    // of the next step
+  double time = 0.0;                           // [s] in lock-step
+  int low_gain_steps = 0;                      // in a row
+  bool idle = false;                           // in the last step no robot had a goal or moved
 
   ExplorationState(ExplorationOptions given, Mapping map);
 
@@ -71,14 +74,16 @@ struct ExplorationState {
   }
   /// For a robot without a goal: back along the way it came, from its last place on; empty if that leads to
   /// nothing.
-  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal) const;
+  /// @param tried  cells that it does not go back to
+  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal, const Keys& tried) const;
   [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
   /// Whether a robot cannot get to where it came from, although there is something to see.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
  private:
-  [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell) const;
+  [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
+                                    double length) const;
   void remember(std::size_t robot, const RobotStep& step);
 };
 

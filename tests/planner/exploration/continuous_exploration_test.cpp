@@ -3,6 +3,7 @@
 #include "planner/exploration/team_in_motion.hpp"
 #include "support/complaint.hpp"
 
+#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/sim/coverage.hpp>
 
@@ -219,6 +220,74 @@ TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
     const auto again = exploration.plan(time);
     EXPECT_TRUE(!again || again->robot != 0);
   }
+}
+
+// A robot that touches something before it has left its cell must not go there again, or it would for ever.
+TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
+  TeamInMotion scene("room", {small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  scene.explore(2.0);
+  while (exploration.plan(scene.time())) {
+  }
+  const double time = scene.time() + 0.05;
+  const Lattice& lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const VoxelKey cell = lattice.key(rests.position).value();
+  exploration.stopped(0, rests, time, {});
+  const auto planned = exploration.plan(time);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->step.robots[0].blocked, std::vector<VoxelKey>{cell});
+  EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_GT(planned->trajectory.length(), 0.0) << "it goes back the way it came";
+  const auto again = exploration.plan(planned->trajectory.end());
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->step.robots[0].goal.pose);
+  EXPECT_GT(again->trajectory.length(), 0.1);
+  for (double t = again->trajectory.begin(); t < again->trajectory.end(); t += kSample)
+    EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
+}
+
+// A beam that ends in the middle of a voxel, or passes through it.
+Scan beam(const Lattice& lattice, const VoxelKey& from, const VoxelKey& to, bool hit) {
+  const Eigen::Vector3f origin = lattice.exact_center(from).cast<float>(),
+                        way = lattice.exact_center(to).cast<float>() - origin;
+  Scan scan;
+  scan.origin = origin;
+  scan.max_range = 10.0;
+  scan.directions = {way.normalized()};
+  scan.ranges = {hit ? way.norm() : std::numeric_limits<float>::infinity()};
+  if (!hit) scan.max_range = way.norm();
+  return scan;
+}
+
+// Beams that graze a surface free some of its voxels. What lies behind them is no frontier all the same.
+TEST(ContinuousExploration, SeesNoFrontiersBehindSurfaces) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  const VoxelGrid& grid = exploration.mapping().grid();
+  const Pose pose = team.starts[0].pose;
+  const VoxelKey here = grid.lattice().key(pose.position).value();
+  const auto at = [&](int x, int y) { return make_key(here.x + x, here.y + y, here.z); };
+  const auto frontiers = [&] { return exploration.finish(1.0).frontiers; };
+  const auto of_map = [&] { return FrontierSet(grid, exploration.mapping().bounds()).size(); };
+  exploration.insert(0, pose, beam(grid.lattice(), here, at(5, 0), true));
+  ASSERT_EQ(grid.at(at(5, 0)), Occupancy::kOccupied);
+  EXPECT_EQ(frontiers(), of_map());
+  // From the side: at(5, 0) becomes free, and at(6, 0), which only it hides, stays unknown.
+  for (int i = 0; i < 5; ++i) exploration.insert(0, pose, beam(grid.lattice(), at(5, -1), at(5, 2), false));
+  ASSERT_EQ(grid.at(at(5, 0)), Occupancy::kFree);
+  ASSERT_EQ(grid.at(at(6, 0)), Occupancy::kUnknown);
+  const FrontierSet all(grid, exploration.mapping().bounds());
+  ASSERT_TRUE(all.contains(at(6, 0)));
+  const std::size_t hidden =
+      static_cast<std::size_t>(std::ranges::count_if(all.keys(), [&](const VoxelKey& key) {
+        VoxelGrid solid = grid;
+        solid.set(at(5, 0), Occupancy::kOccupied);
+        return !FrontierSet(solid, {key, key}).contains(key);
+      }));
+  EXPECT_GT(hidden, 0U);
+  EXPECT_EQ(frontiers(), all.size() - hidden);
 }
 
 TEST(ContinuousExploration, EndsAtItsLimitOfPlannings) {

@@ -67,7 +67,8 @@ class ContinuousExploration {
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
 
   /// A robot rests at a pose since it could not go on: something that no sensor saw is in the way.
-  /// @param blocked  cells that it could not enter
+  /// @param blocked  cells that it could not enter; if there are none, the cell that it is in will not be
+  ///                 entered again
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.

@@ -41,7 +41,7 @@ struct ExplorationOptions {
   double latency = 0.1;      ///< [s] that the clock charges for a planning
   double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its way anew
   double commitment = 30.0;  ///< [s] in motion: a goal that is not seen yet is kept for this long
-  int max_visits = 2;        ///< a frontier that stays unknown after so many visits in view is abandoned
+  int max_visits = 2;        ///< a frontier that stays unknown after so many looks at it is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last
 
   /// @throws std::invalid_argument naming the value that is out of bounds
