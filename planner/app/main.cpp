@@ -6,11 +6,16 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
+#include <fcntl.h>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <string>
+#include <unistd.h>
 #include <utility>
 
 namespace {
@@ -66,6 +71,13 @@ std::string instructions() {
   }
 }
 
+// Else the first file that is opened becomes the stream that came closed, and gets what is printed.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDWR) != stream)
+      std::_Exit(kFailure);
+}
+
 int run(int argc, const char* const* argv) {
   const std::string version =
       std::string("frontlux ").append(FRONTLUX_VERSION) + ", vector instructions: " + instructions();
@@ -107,6 +119,8 @@ Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other fail
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails, as on a full disk
   try {
     return run(argc, argv);
   } catch (const frontlux::app::BadInput& error) {

@@ -46,7 +46,6 @@ std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid
 }
 
 std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds) {
-  constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;  // around large free blocks, one brick thick
   constexpr int kBrickEdge = 1 << Brick::kLog2;
   std::uint64_t around = 0;
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
@@ -54,7 +53,7 @@ std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const 
     const KeyBox free = cube(block.corner, 1 << block.log2_edge);
     around += size_of(*intersection(grown(free, kBrickEdge), bounds)) - size_of(free);
   });
-  if (around > kMostVoxels) return std::nullopt;
+  if (around > kMostSurface) return std::nullopt;
   return planner::FrontierSet(grid, bounds);
 }
 

@@ -39,6 +39,9 @@ struct TreeSize {
 [[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,
                                                      CasterKind kind);
 
+/// Voxels around large free blocks, one brick thick, where frontiers are looked for.
+inline constexpr std::uint64_t kMostSurface = std::uint64_t{1} << 31;
+
 /// The frontiers of a map.
 /// @param bounds  known bounds of the grid
 /// @return nothing if the map's large free blocks have so wide a surface that it would take too long

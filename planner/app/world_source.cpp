@@ -16,7 +16,7 @@
 namespace frontlux::app {
 namespace {
 
-constexpr double kMostVoxels = 0x1p31;
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;
 
 WorldKind kind_of(const std::string& name) {
   if (is_built_in_world(name)) return WorldKind::kBuiltIn;
@@ -66,7 +66,8 @@ double count_voxels(const WorldSource& source, const sim::World& world, WorldKin
       : kind == WorldKind::kMesh
           ? "give a larger --resolution, or --scale (0.001 if the file is in millimetres)"
           : "give a larger --resolution";
-  if (voxels > kMostVoxels) throw BadInput(what + ", too many to map; " + advice);
+  if (voxels > static_cast<double>(kMostVoxels))
+    throw BadInput(what + ", too many: a map holds at most " + std::to_string(kMostVoxels) + "; " + advice);
   std::cerr << "frontlux: warning: " << what << ", which may take much memory; " << advice << '\n';
   return voxels;
 }

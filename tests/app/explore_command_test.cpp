@@ -188,7 +188,7 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be created"});
   expect_refused({"room", "-o", ""}, {"--output"});
   expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
-  expect_refused({"--resume", path("nowhere")}, {"--resume", "holds no run.frontlux"});
+  expect_refused({"--resume", path("nowhere")}, {"--resume: there is no folder " + path("nowhere")});
   // With --force all that is not of a run stays.
   ASSERT_EQ(run({"room", "--max-steps", "0", "-o", path("kept"), "--force"}).code, 0);
   EXPECT_EQ(content_of(path("kept/notes.txt")), "mine");
@@ -214,7 +214,7 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   newer[version] = '7';
   expect_refused_recording(newer, "format 7");
   expect_refused_recording("# Octomap OcTree file\n", "is not a recording");
-  expect_refused_recording("", "is not a recording");
+  expect_refused_recording("", "before the run began");
   expect_refused_recording(bytes.substr(0, version + 30), "before the run began");
   std::string flipped = bytes;
   flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 1);

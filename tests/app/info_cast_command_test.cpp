@@ -175,6 +175,22 @@ TEST_F(InfoCastCommand, InfoStaysQuickOnHugeBlocks) {
   expect_answer({"info", path("huge.ot")}, {"frontiers    not counted"});
 }
 
+TEST_F(InfoCastCommand, LackOfMemoryIsCalledThat) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer needs more address space than a limit would leave";
+#endif
+  const std::string map = std::string(FRONTLUX_DATA_DIR) + "/maps/room_0.1m.bt";
+  int short_of_memory = 0;
+  for (int kilobytes = 100000; kilobytes <= 260000; kilobytes += 40000) {
+    const Answer answer =
+        run({"cast", map, "--from", "0,0,1.2", "--direction", "1,0,0", "--caster", "embree"},
+            "ulimit -v " + std::to_string(kilobytes) + ";");
+    EXPECT_EQ(answer.err.find("Embree"), std::string::npos) << answer.err;
+    short_of_memory += answer.err == "frontlux: not enough memory\n" ? 1 : 0;
+  }
+  EXPECT_GT(short_of_memory, 0);
+}
+
 TEST_F(InfoCastCommand, CastSeesTheWall) {
   for (const std::string caster : kCasters) {
     SCOPED_TRACE(caster);

@@ -78,6 +78,7 @@ TEST_F(WorldCommand, TakesMaps) {
 
 TEST_F(WorldCommand, RefusesBadInput) {
   box("box.ply");
+  expect_refused({""}, {"''", "maze, factory, station, storage, room"});
   expect_refused({"hangar"}, {"'hangar'", "maze, factory, station, storage, room"});
   expect_refused({path("none.ply")}, {path("none.ply"), "no such file"});
   expect_refused({path("none.bt")}, {path("none.bt"), "no such file"});
@@ -104,7 +105,7 @@ TEST_F(WorldCommand, RefusesBadInput) {
 
 TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {
   box("mm.ply", 1000.F);  // somebody's millimetres: 4 x 5 x 6 km
-  expect_refused({path("mm.ply"), "-o", path("out.ply")}, {"4000 x 5000 x 6000 m", "e+12 voxels", "--scale"});
+  expect_refused({path("mm.ply"), "-o", path("out.ply")}, {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 2147483648", "--scale"});
   EXPECT_FALSE(std::filesystem::exists(path("out.ply")));
   expect_answer({path("mm.ply"), "--scale", "0.001"}, {"4 x 5 x 6 m"});
   const test::Answer large = run({path("mm.ply"), "--scale", "0.05"});  // 200 x 250 x 300 m

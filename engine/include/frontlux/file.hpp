@@ -29,6 +29,9 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 [[nodiscard]] std::string read_file(const std::filesystem::path& file,
                                     std::uint64_t max_bytes = kMaxFileBytes);
 
+/// Removes what processes that were killed while they wrote this file have left beside it.
+void remove_unfinished(const std::filesystem::path& file);
+
 /// Writes a file complete or not at all: into a file beside it first, which then takes its name.
 /// @param write  writes the bytes
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws

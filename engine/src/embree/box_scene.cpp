@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -71,6 +72,7 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
 class BoxSceneDevice {
  public:
   BoxSceneDevice() : device_(rtcNewDevice(nullptr)) {
+    if (device_ == nullptr && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (device_ == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
     rtcSetDeviceMemoryMonitorFunction(
         device_,

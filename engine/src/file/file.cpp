@@ -1,6 +1,7 @@
 #include <frontlux/file.hpp>
 
 #include <cerrno>
+#include <csignal>
 #include <fstream>
 #include <stdexcept>
 #include <unistd.h>
@@ -8,11 +9,13 @@
 namespace frontlux {
 namespace {
 
+constexpr std::string_view kUnfinished = ".part";  // and the number of the process that writes it
+
 // Removed, unless the file got its name.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& file) : path_(file) {
-    path_ += ".part" + std::to_string(::getpid());
+    path_ += std::string(kUnfinished) + std::to_string(::getpid());
   }
   ~UnfinishedFile() {
     std::error_code ignored;
@@ -62,12 +65,28 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t max_bytes
   return bytes;
 }
 
+void remove_unfinished(const std::filesystem::path& file) {
+  const std::string begin = file.filename().string().append(kUnfinished);
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(begin)) continue;
+    const auto process = number_from<::pid_t>(std::string_view(name).substr(begin.size()));
+    const bool gone = process && *process > 0 && ::kill(*process, 0) != 0 && errno == ESRCH;
+    std::error_code ignored;
+    if (gone) std::filesystem::remove(entry->path(), ignored);
+  }
+}
+
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write) {
   const auto cannot = [&file](const std::string& what, const std::string& advice) {
     fail(file, "cannot be written: " + what, advice);
   };
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) cannot("it is a folder", "name a file in it");
+  remove_unfinished(file);
   const UnfinishedFile part(file);
   errno = 0;
   std::ofstream stream(part.path(), std::ios::binary | std::ios::trunc);

@@ -20,6 +20,8 @@ struct Options {
 
 void check(const Options& given) {
   if (!given.resume.empty()) return;
+  if (given.run.world)
+    throw BadInput("--world: goes with --resume; name the world of a new run before the options");
   if (given.options.source.world.empty())
     throw BadInput(
         "WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map; or a "
@@ -80,6 +82,7 @@ void add_explore_command(CLI::App& app) {
   command.add_flag("--force", given->run.force, "Replace the run in the folder");
   Option resume =
       command.add("--resume", given->resume, "DIR", "Continue the run in this folder, with its options");
+  command.add("--world", given->run.world, "FILE", "With --resume: where the world's file is now");
   command.add("--threads", given->run.threads, "N",
               "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
   command.add("--report", given->run.report, "Write report.html");
@@ -111,7 +114,7 @@ void add_explore_command(CLI::App& app) {
               kProbability);
   const auto [mode, goal] = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
-  command.allow_only(resume, {"--threads", "--max-steps", "--report"});
+  command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report"});
   command.examples(R"(Examples:
   frontlux explore station --seed 3 -o station_run
   frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run

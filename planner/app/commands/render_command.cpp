@@ -137,7 +137,8 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
   if (!bounds) throw BadInput(options.map + ": every voxel is unknown");
   const auto frontiers = find_frontiers(grid, *bounds);
   if (!frontiers)
-    throw BadInput(options.map + ": the surface of its large free blocks is too large to look for frontiers");
+    throw BadInput(options.map + ": the surface of its large free blocks has more than " +
+                   std::to_string(kMostSurface) + " voxels to look for frontiers in");
   view.pose.position = options.at.cast<double>();
   view.member = std::move(member);
 
@@ -190,8 +191,9 @@ void write_picture(const VoxelGrid& grid, const Options& options, const View& vi
   }
   const Goal& goal = view.goal();
   const std::string name = std::filesystem::path(options.map).filename().string();
-  std::vector<std::string> title = {view.member.robot.name + " in " + name + ", voxels of " +
-                                    rounded(grid.resolution()) + " m"};
+  std::vector<std::string> title;
+  title.push_back(view.member.robot.name + " in " + name + ", voxels of " + rounded(grid.resolution()) +
+                  " m");
   title.push_back(goal.pose ? "goal " + place_of(*goal.pose) : std::string(goal.reason));
   if (goal.pose)
     title.push_back("gain " + gain_of(goal) + ", " + fixed(goal.distance, 1) + " m away, view quality " +

@@ -47,7 +47,8 @@ std::string start_text(const sim::World& world) {
 
 std::string observable_text(const SourcedWorld& sourced, double resolution) {
   if (!sourced.world.start) return "not known: give --start";
-  if (sourced.voxels > kManyVoxels) return "not counted: too many voxels; give a larger --resolution";
+  if (sourced.voxels > kManyVoxels)
+    return "not counted: more than " + rounded(kManyVoxels) + " voxels; give a larger --resolution";
   try {
     const sim::GroundTruth truth(
         sourced.world, resolution,
@@ -86,17 +87,18 @@ void add_world_command(CLI::App& app) {
   Command command(app, "world", "Measure a world to explore, or write it as a mesh");
   const auto options = std::make_shared<Options>();
   WorldSource& source = options->source;
-  command.add("WORLD", source.world, "",
-              "Built-in world, mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or OctoMap file (.bt, .ot)\n"
-              "[list the built-in worlds]");
+  const Option world =
+      command.add("WORLD", source.world, "",
+                  "Built-in world, mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or OctoMap file (.bt, .ot)\n"
+                  "[list the built-in worlds]");
   command.add("-o,--output", options->output, "FILE.ply", "Write the world's surface to this file");
   add_world_options(command, source, "off");
   command.add("--seed", source.seed, "N", "Layout of a built-in world [1]", kSeeds);
   command.examples(R"(Example:
   frontlux world factory --seed 7 -o factory.ply
 prints the measures of the seventh factory and writes it as a mesh.)");
-  command.run([options] {
-    if (options->source.world.empty()) return print_list();
+  command.run([options, world] {
+    if (!world.given()) return print_list();
     const SourcedWorld sourced = make_world(options->source);
     if (!options->output.empty()) {
       try {

@@ -2,6 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstddef>
+#include <filesystem>
 #include <stdexcept>
 
 namespace frontlux::app {
@@ -14,6 +19,7 @@ template <class Options, class Visit>
 void for_each_member(Options& options, const Visit& visit) {
   visit("name", options.name);
   visit("world", options.source.world);
+  visit("world_uri", options.world_path);
   visit("world_seed", options.source.seed);
   visit("box_m", options.source.box);
   visit("scale", options.source.scale);
@@ -23,6 +29,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("team", options.team);
   visit("task_robots", options.robots);
   visit("robot_files", options.robot_files);
+  visit("robot_uris", options.robot_paths);
   visit("poses", options.poses);
   visit("mode", options.mode);
   visit("goal", options.goal);
@@ -48,6 +55,21 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("dropout", options.errors.dropout);
 }
 
+// A file's name is bytes, and JSON is Unicode: what is not plain in a URI is written as %41.
+Json json_of(const AbsolutePath& path) {
+  if (path.text.empty()) return {};
+  constexpr std::string_view kPlain = "-._~/", kDigits = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : path.text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && (std::isalnum(byte) != 0 || kPlain.find(c) != std::string_view::npos))
+      uri += c;
+    else
+      uri.append({'%', kDigits[byte >> 4U], kDigits[byte & 0xFU]});
+  }
+  return uri;
+}
+
 // Enumerations and starts as the words of the command line, the rest as JSON's own types.
 template <class Value>
 Json json_of(const Value& value) {
@@ -70,6 +92,11 @@ Json json_of(const Eigen::AlignedBox3d& box) {
 }
 Json json_of(const std::vector<io::TaskRobot>& robots) {
   return robots.empty() ? Json() : Json::parse(io::robots_text(robots));
+}
+Json json_of(const std::vector<AbsolutePath>& paths) {
+  Json list = Json::array();
+  for (const AbsolutePath& path : paths) list.push_back(json_of(path));
+  return paths.empty() ? Json() : list;
 }
 template <class Value>
 Json json_of(const std::vector<Value>& values) {
@@ -98,6 +125,21 @@ void take(const Json& json, GroundAlignment& ground) {
     ground = {true, json.get<double>()};
   else
     read(json.get<std::string>(), ground);
+}
+void take(const Json& json, AbsolutePath& path) {
+  const auto uri = json.get<std::string>();
+  constexpr std::string_view kScheme = "file://";
+  if (!uri.starts_with(kScheme)) throw std::runtime_error(quote(uri) + " is not the URI of a file");
+  for (std::size_t i = kScheme.size(); i < uri.size(); ++i) {
+    unsigned byte = static_cast<unsigned char>(uri[i]);
+    if (uri[i] == '%') {
+      const auto end = std::min(i + 3, uri.size());
+      if (std::from_chars(uri.data() + i + 1, uri.data() + end, byte, 16).ptr != uri.data() + i + 3)
+        throw std::runtime_error(quote(uri) + " is not the URI of a file");
+      i += 2;
+    }
+    path.text += static_cast<char>(byte);
+  }
 }
 void take(const Json& json, Eigen::AlignedBox3d& box) {
   for (int i = 0; i < 3; ++i) {
@@ -131,6 +173,14 @@ void read(std::string_view word, StartPose& start) {
   }
   start.word = word;
   start.robot = word.substr(0, equals);
+}
+
+void note_paths(ExploreOptions& options) {
+  const auto absolute = [](const std::string& file) {
+    return AbsolutePath{std::filesystem::absolute(file).lexically_normal().string()};
+  };
+  if (!is_built_in_world(options.source.world)) options.world_path = absolute(options.source.world);
+  for (const std::string& file : options.robot_files) options.robot_paths.push_back(absolute(file));
 }
 
 std::string json_text(const ExploreOptions& options) {

@@ -24,15 +24,22 @@ struct StartPose {
 /// @throws BadInput
 void read(std::string_view word, StartPose& start);
 
+/// Where a file was when a run began; empty: not known. Recorded byte for byte, whatever the name.
+struct AbsolutePath {
+  std::string text;
+};
+
 /// A run of `frontlux explore` as the user asks for it; everything that its result depends on. What is not
 /// given depends on the mode, or on the goal.
 struct ExploreOptions {
   std::string task;                 ///< the file that it comes from, in messages; not recorded
   std::optional<std::string> name;  ///< for people; if not given, the world's
   WorldSource source;               ///< its seed, if not given, is `seed`
+  AbsolutePath world_path;          ///< of a world that is a file
   std::string team = "uav+ugv";
   std::vector<io::TaskRobot> robots;  ///< of a task; the team is empty then
   std::vector<std::string> robot_files;
+  std::vector<AbsolutePath> robot_paths;
   std::vector<StartPose> poses;
   planner::Method mode = planner::Method::kDefault;
   std::optional<planner::GoalRule> goal;
@@ -50,6 +57,9 @@ struct ExploreOptions {
   std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
 };
+
+/// Notes the absolute paths of the world's and the robots' files, as they are named from here.
+void note_paths(ExploreOptions& options);
 
 /// As it is recorded: a JSON object on one line, without what is not given; Unicode, whatever file names are.
 [[nodiscard]] std::string json_text(const ExploreOptions& options);

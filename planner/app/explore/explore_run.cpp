@@ -34,6 +34,28 @@ constexpr const char* kStopped = "stopped";
 constexpr std::array kFiles = {kRecording,   "run.json", "steps.csv", "paths.csv",  "events.csv",
                                "motion.csv", "map.ot",   "map.bt",    "report.html"};
 
+// Whether there is nothing to lose: at most what runs left that were killed before they began.
+bool is_unused(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename() != kRecording) return false;
+    try {
+      static_cast<void>(planner::read_recording(entry.path()));
+      return false;
+    } catch (const planner::UnbegunRecording&) {
+      continue;
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+  }
+  return !error;
+}
+
+// Of runs that were killed.
+void remove_unfinished_files(const fs::path& folder) {
+  for (const char* file : kFiles) remove_unfinished(folder / file);
+}
+
 void prepare_folder(const ExploreRun& run) {
   std::error_code error;
   const auto refuse = [&](const std::string& why) {
@@ -45,12 +67,36 @@ void prepare_folder(const ExploreRun& run) {
     refuse("cannot be created: " + (error ? error.message() : "its parent folder does not exist") +
            "; name a folder in one that exists and may be written to");
   if (::access(run.folder.c_str(), W_OK | X_OK) != 0) refuse("cannot be written to; check its permissions");
-  if (!fs::is_empty(run.folder, error)) {
-    if (!run.force)
-      refuse(
-          "is not empty; name another folder, continue the run in it with --resume, or replace it with "
-          "--force");
-    for (const char* file : kFiles) fs::remove(run.folder / file, error);
+  remove_unfinished_files(run.folder);
+  if (!run.force && !is_unused(run.folder))
+    refuse(
+        "is not empty; name another folder, continue the run in it with --resume, or replace it with "
+        "--force");
+}
+
+// All but the recording, which the new one replaces.
+void remove_old_files(const fs::path& folder) {
+  std::error_code ignored;
+  for (const char* file : kFiles)
+    if (file != kRecording) fs::remove(folder / file, ignored);
+}
+
+// What is left of a run that could not go on, as the end of a message.
+std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head, std::size_t steps) {
+  const fs::path file = run.folder / kRecording;
+  std::error_code error;
+  try {
+    const Recording left = fs::exists(file, error) ? planner::read_recording(file) : Recording{};
+    if (left.steps.empty() || left.head.options != head.options) return "; no step of the run is left there";
+    const std::string kept = left.steps.size() < steps
+                                 ? "; " + std::to_string(left.steps.size()) + " of its " +
+                                       std::to_string(steps) + " recorded steps are kept"
+                                 : "; the recorded steps are kept";
+    if (::access(file.c_str(), W_OK) != 0)
+      return kept + ", but " + file.string() + " is read-only: make it writable to continue the run";
+    return kept + ": frontlux explore --resume " + run.folder.string() + " continues the run";
+  } catch (const std::runtime_error&) {
+    return "; no step of the run is left there";
   }
 }
 
@@ -116,14 +162,38 @@ class Run {
 Recording read_run(const ExploreRun& run) {
   const fs::path file = run.folder / kRecording;
   std::error_code error;
+  if (!fs::exists(run.folder, error))
+    throw BadInput("--resume: there is no folder " + run.folder.string() +
+                   "; name the one that was given to -o, or begin the run with -o");
   if (!fs::exists(file, error))
-    throw BadInput("--resume: " + run.folder.string() + " holds no " + kRecording +
-                   ", so there is no run to continue; name the folder that was given to -o");
+    throw BadInput(
+        "--resume: " + run.folder.string() + " holds no " + kRecording +
+        ": it is not the folder of a run, or the run had not begun; name the folder that was given "
+        "to -o, or begin it anew, without --resume");
   try {
     return planner::read_recording(file);
   } catch (const std::runtime_error& failure) {
     throw BadInput(std::string("--resume: ") + failure.what());
   }
+}
+
+// Where the world of a recorded run is now.
+std::string find_world(const ExploreOptions& options, const ExploreRun& run) {
+  const std::string& given = options.source.world;
+  if (is_built_in_world(given)) {
+    if (run.world)
+      throw BadInput("--world: the run is in the built-in world " + given + "; leave the option out");
+    return given;
+  }
+  if (run.world) return *run.world;
+  const std::string& noted = options.world_path.text;
+  std::error_code error;
+  for (const std::string& world : {noted, given})
+    if (fs::exists(world, error)) return world;
+  std::string places = noted;
+  if (noted != given) places.append(noted.empty() ? "" : " or ").append(given);
+  throw BadInput("--resume: there is no file " + places +
+                 ", which the run explores; say with --world FILE where it is now");
 }
 
 void check_same(const planner::RecordingHead& recorded, const planner::RecordingHead& now,
@@ -181,6 +251,7 @@ void warn_if_far_from_done(const RunEnd& end, double observable) {
 void explore(ExploreOptions options, const ExploreRun& run) {
   const Stopwatch watch;
   std::optional<Recording> recording;
+  if (!run.resume) note_paths(options);
   if (run.resume) {
     recording = read_run(run);
     try {
@@ -191,26 +262,33 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     }
     if (run.max_steps) options.max_steps = *run.max_steps;
   }
-  ExploreSetup setup = make_setup(options, recording ? std::optional(recording->head.robots) : std::nullopt);
+  ExploreOptions here = options;
+  if (recording) here.source.world = find_world(options, run);
+  ExploreSetup setup = make_setup(here, recording ? std::optional(recording->head.robots) : std::nullopt);
   if (recording) check_same(recording->head, setup.head, run);
-  if (!recording) prepare_folder(run);
 
   const InterruptNote note;
   bool stopped = false;
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {
+    std::optional<std::size_t> recorded;  // steps, once they are this process's to lose
     try {
       Run exploring(setup, run);
       std::span<const RecordedStep> before;
       if (recording) before = recording->steps;
       for (const RecordedStep& step : before) exploring.repeat(step);  // before any file is touched
+      if (!recording) prepare_folder(run);
       // The recording comes first and is locked: another process may still be writing this run.
       const fs::path file = run.folder / kRecording;
       planner::RecordingWriter writer =
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
+      recorded = before.size();
+      if (!recording) remove_old_files(run.folder);
+      remove_unfinished_files(run.folder);
       exploring.open_files(before);
       const auto record = [&] {
         writer.write(exploring.last());
+        ++*recorded;
         show(exploring.last().step, exploring.files().sums(), setup.head, watch.seconds());
       };
       const RunLoop& loop = exploring.loop();
@@ -239,8 +317,8 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::runtime_error& error) {
-      throw BadInput(std::string(error.what()) + "; the recorded steps are kept: frontlux explore --resume " +
-                     run.folder.string() + " continues the run");
+      const planner::RecordingHead& head = recording ? recording->head : setup.head;
+      throw BadInput(error.what() + (recorded ? what_is_kept(run, head, *recorded) : ""));
     }
   });
   if (stopped)

@@ -4,17 +4,19 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace frontlux::app {
 
 /// How a run is carried out; none of it changes the result.
 struct ExploreRun {
   std::filesystem::path folder;
-  bool resume = false;           ///< continue the run that is there
-  bool force = false;            ///< else the folder has to be new or empty
-  int threads = 0;               ///< 0: all cores
-  bool report = true;            ///< write report.html
-  std::optional<int> max_steps;  ///< of a resumed run: another limit
+  bool resume = false;                              ///< continue the run that is there
+  bool force = false;                               ///< else the folder has to be new or empty
+  int threads = 0;                                  ///< 0: all cores
+  bool report = true;                               ///< write report.html
+  std::optional<int> max_steps;                     ///< of a resumed run: another limit
+  std::optional<std::string> world = std::nullopt;  ///< of a resumed run: where its world's file is now
 };
 
 /// Explores, and writes the files of the run into its folder. Prints a line for each step, and a summary.

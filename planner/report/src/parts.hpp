@@ -13,6 +13,9 @@ namespace frontlux::report::detail {
 inline constexpr std::string_view kTitleMark = "@@frontlux-title@@";
 inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 
+/// Text in UTF-8, with the replacement character for bytes that are not.
+[[nodiscard]] std::string unicode_of(const std::string& bytes);
+
 /// Everything about a run except voxels, images and paths, as a JSON object: what it was, and the numbers of
 /// each step. Numbers that are not finite become null, bytes that are not UTF-8 the replacement character.
 [[nodiscard]] std::string run_facts(const ReportedRun& run, const std::string& version);

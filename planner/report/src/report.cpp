@@ -78,7 +78,7 @@ std::string packed(const ReportedRun& run, const std::string& version) {
 std::string title_of(std::span<const ReportedRun> runs) {
   std::string title;
   for (const ReportedRun& run : runs) title.append(title.empty() ? "" : ", ").append(run.name);
-  return escaped(title + " - frontlux");
+  return escaped(detail::unicode_of(title) + " - frontlux");
 }
 
 }  // namespace

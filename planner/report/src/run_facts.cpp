@@ -69,6 +69,10 @@ json numbers_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
 }  // namespace
 
+std::string unicode_of(const std::string& bytes) {
+  return json::parse(json(bytes).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
 std::string run_facts(const ReportedRun& run, const std::string& version) {
   const planner::Recording& recording = *run.recording;
   const planner::RecordingHead& head = recording.head;

@@ -14,6 +14,10 @@ namespace {
 
 using detail::kRecordingTitle;
 
+[[noreturn]] void fail_unbegun(const std::filesystem::path& file, const std::string& where) {
+  throw UnbegunRecording(file.string() + ": ends " + where + "; explore anew");
+}
+
 // Where the records begin.
 std::size_t check_title(const std::filesystem::path& file, std::string_view bytes) {
   constexpr std::size_t kMostDigits = 9;
@@ -21,8 +25,8 @@ std::size_t check_title(const std::filesystem::path& file, std::string_view byte
     fail(file, "is not a recording of frontlux",
          "name the file run.frontlux of a folder that `frontlux explore` wrote");
   };
-  const auto too_short = [&] { fail(file, "ends in its first line, before the run began", "explore anew"); };
-  if (!bytes.empty() && kRecordingTitle.starts_with(bytes)) too_short();
+  const auto too_short = [&] { fail_unbegun(file, "in its first line, before the run began"); };
+  if (kRecordingTitle.starts_with(bytes)) too_short();
   if (!bytes.starts_with(kRecordingTitle)) foreign();
   const std::string_view rest = bytes.substr(kRecordingTitle.size(), kMostDigits + 1);
   const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
@@ -68,7 +72,7 @@ Recording read_recording(const std::filesystem::path& file) {
   std::size_t at = check_title(file, bytes);
   try {
     Recording recording = read_records(bytes, at);
-    if (recording.bytes == 0) fail(file, "ends before the run began", "explore anew");
+    if (recording.bytes == 0) fail_unbegun(file, "before the run began");
     return recording;
   } catch (const detail::BadRecord& error) {
     fail(file, "is damaged at byte " + std::to_string(at) + ": " + error.what(),

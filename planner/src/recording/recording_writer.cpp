@@ -1,9 +1,11 @@
 #include "recording/packed_record.hpp"
 #include "recording/recording_format.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/planner/recording.hpp>
 
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <fcntl.h>
@@ -17,13 +19,10 @@
 namespace frontlux::planner {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, int error) {
-  const bool full = error == ENOSPC || error == EDQUOT;
-  throw std::runtime_error(
-      file.string() +
-      ": cannot be written: " + (full ? "disk full" : std::generic_category().message(error)) + "; " +
-      (full || error == EFBIG ? "make room; the steps written before are kept"
-                              : "check that its folder exists, and the permissions of both"));
+[[noreturn]] void fail_to_write(const std::filesystem::path& file, int error) {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  fail(file, "cannot be written: " + (full ? "disk full" : std::generic_category().message(error)),
+       full ? "make room" : "check that its folder exists, and the permissions of both");
 }
 
 // An open file that holds finished records only, as far as that can be had.
@@ -31,11 +30,11 @@ class RecordFile {
  public:
   RecordFile(std::filesystem::path file, int flags)
       : file_(std::move(file)), descriptor_(::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(file_, errno);
+    if (descriptor_ < 0) fail_to_write(file_, errno);
     // Where a file system knows no locks, two writers go unnoticed.
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       ::close(descriptor_);
-      throw std::runtime_error(file_.string() + ": another process is writing it; wait for its end");
+      fail(file_, "another process is writing it", "wait for its end");
     }
   }
   ~RecordFile() { ::close(descriptor_); }
@@ -44,19 +43,18 @@ class RecordFile {
 
   // Forgets what comes after so many bytes.
   void cut(std::uint64_t size) {
-    const ::off_t length = ::lseek(descriptor_, 0, SEEK_END);
-    if (length < 0) fail(file_, errno);
-    if (static_cast<std::uint64_t>(length) < size)
-      throw std::runtime_error(file_.string() +
-                               ": is shorter than when it was read; nothing else may write it");
+    check_name();
     if (::ftruncate(descriptor_, static_cast<::off_t>(size)) != 0 ||
         ::lseek(descriptor_, static_cast<::off_t>(size), SEEK_SET) < 0 || ::fsync(descriptor_) != 0)
-      fail(file_, errno);
+      fail_to_write(file_, errno);
     size_ = size;
   }
 
   // All of it, on the disk, or none.
   void append(std::string_view bytes) {
+    if (const struct ::stat written = check_name();
+        S_ISREG(written.st_mode) && static_cast<std::uint64_t>(written.st_size) != size_)
+      lost("was cut or written to");
     int error = 0;
     for (std::string_view left = bytes; error == 0 && !left.empty();) {
       const ::ssize_t written = ::write(descriptor_, left.data(), left.size());
@@ -74,10 +72,24 @@ class RecordFile {
     // If the file cannot be cut back either, its readers leave out the unfinished record.
     if (::ftruncate(descriptor_, static_cast<::off_t>(size_)) == 0)
       static_cast<void>(::lseek(descriptor_, static_cast<::off_t>(size_), SEEK_SET));
-    fail(file_, error);
+    fail_to_write(file_, error);
   }
 
  private:
+  // The open file has to be the one of that name still.
+  struct ::stat check_name() const {
+    struct ::stat open {
+    }, named{};
+    if (::fstat(descriptor_, &open) != 0) fail_to_write(file_, errno);
+    if (::stat(file_.c_str(), &named) != 0) lost("was deleted or moved");
+    if (named.st_dev != open.st_dev || named.st_ino != open.st_ino) lost("was replaced");
+    return open;
+  }
+  [[noreturn]] void lost(const std::string& how) const {
+    fail(file_, how + " by another process while this one wrote it",
+         "leave the files of a run alone until its end");
+  }
+
   std::filesystem::path file_;
   int descriptor_;
   std::uint64_t size_ = 0;
@@ -106,6 +118,9 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Record
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Recording& recording) {
   state_ = std::make_unique<State>(file, 0, recording.head, recording.steps.size());
+  // Now that it is locked: until then its owner may have gone on.
+  if (read_recording(file).bytes != recording.bytes)
+    fail(file, "was written to by another process since it was read", "read it again");
   state_->file.cut(recording.bytes);
 }
 

@@ -339,7 +339,7 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
 }
 
 TEST_F(RecordingTest, ForeignFiles) {
-  expect_refused("", "is not a recording");
+  expect_refused("", "ends in its first line");
   expect_refused("frontl", "ends in its first line");
   expect_refused("frontlux recording, format 3", "ends in its first line");
   expect_refused("frontlux recording, format 3\n", "ends before the run began");

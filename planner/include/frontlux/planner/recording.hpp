@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,9 @@ struct Recording {
 /// Writes a recording step by step. After each call the file holds all steps, even if the process is killed.
 class RecordingWriter {
  public:
-  /// A new recording; a file of that name is replaced.
-  /// @throws std::runtime_error naming the file, if it cannot be written; so do the others
+  /// A new recording; a file of that name is replaced, unless another process is writing it.
+  /// @throws std::runtime_error naming the file, if it cannot be written; so do the others, also if it is not
+  ///         as this writer left it any more
   RecordingWriter(const std::filesystem::path& file, const RecordingHead& head);
   /// Goes on with a recording: cuts the file after its last finished step, and removes its end.
   RecordingWriter(const std::filesystem::path& file, const Recording& recording);
@@ -68,9 +70,15 @@ class RecordingWriter {
   std::unique_ptr<State> state_;
 };
 
+/// The file ends before the head of a recording does: the run had not begun when its process was killed.
+class UnbegunRecording : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Reads a whole recording. Everything in the file is checked: lengths, checksums, ranges of all values.
 /// @throws std::runtime_error naming the file, what is wrong, where, and what to do: it is not a recording,
-/// it has another format, or it is damaged
+/// it has another format, or it is damaged; UnbegunRecording
 [[nodiscard]] Recording read_recording(const std::filesystem::path& file);
 
 }  // namespace frontlux::planner

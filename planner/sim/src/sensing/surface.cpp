@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -115,6 +116,7 @@ struct Surface::Scene {
   void build() {
     const FloatingPointMode mode(FloatingPointMode::kFlushed);
     device = rtcNewDevice(nullptr);
+    if (device == nullptr && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (device == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
     scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);

@@ -1,0 +1,138 @@
+// The folder of a run: nothing but the run gets into it, and what is said of it is true.
+
+#include "app/explore_command.hpp"
+
+#include <frontlux/planner/recording.hpp>
+
+#include <sys/stat.h>
+
+#include <csignal>
+
+namespace frontlux::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Answer;
+using test::content_of;
+using test::expect_parts;
+using test::kSteps;
+
+class RunFolder : public test::ExploreCommand {
+ protected:
+  // A run that goes on for a while.
+  [[nodiscard]] std::vector<std::string> long_run(const std::string& output) const {
+    return {"storage", "--lockstep", "--max-steps", "6", "--report", "off", "-o", path(output)};
+  }
+  // Waits for one that was started, which says so.
+  std::string complaint_of(pid_t child) const {
+    EXPECT_EQ(test::exit_code(test::status_of(child)), 2);
+    return content_of(path("err"));
+  }
+};
+
+TEST_F(RunFolder, HoldsNothingThatWasMeantForAClosedStream) {
+  expect_explored("open");
+  for (const char* closed : {"exec 0<&-;", "exec 1>&-;", "exec 2>&-;", "exec 0<&- 1>&- 2>&-;"}) {
+    SCOPED_TRACE(closed);
+    fs::remove_all(path("closed"));
+    const std::string command = std::string("exec >/dev/null 2>&1;") + closed + " exec " +
+                                test::quoted(FRONTLUX_COMMAND) + " explore room --lockstep --max-steps " +
+                                kSteps + " --report off -o " + test::quoted(path("closed"));
+    EXPECT_EQ(test::exit_code(std::system(command.c_str())), 0);
+    expect_same_runs("open", "closed");
+  }
+}
+
+TEST_F(RunFolder, IsNotTakenFromARunInProgress) {
+  ASSERT_EQ(run(long_run("whole")).code, 0);
+  const pid_t child = start_and_wait(long_run("run"), 1);
+  fs::create_directory(path("second"));
+  for (const auto& words : {std::vector<std::string>{"room", "--force", "-o", path("run")},
+                            std::vector<std::string>{"--resume", path("run")}}) {
+    const Answer answer = test::run_frontlux(test::joined({"explore"}, words), path("second"));
+    EXPECT_EQ(answer.code, 2);
+    expect_parts(answer.err, {path("run/run.frontlux") + ": another process is writing it"});
+    EXPECT_EQ(answer.err.find("are kept"), std::string::npos) << answer.err;
+  }
+  EXPECT_EQ(test::exit_code(test::status_of(child)), 0) << content_of(path("err"));
+  expect_same_runs("whole", "run");
+}
+
+TEST_F(RunFolder, IsMissedWhenItIsGone) {
+  const auto recording = [&] { return path("run/run.frontlux"); };
+  const std::vector<std::pair<std::function<void()>, std::string>> losses = {
+      {[&] { fs::remove_all(path("run")); }, "no step of the run is left there"},
+      {[&] { fs::remove(recording()); }, "no step of the run is left there"},
+      {[&] { fs::rename(path("run"), path("moved")); }, "no step of the run is left there"},
+      {[&] {
+         fs::remove_all(path("run"));
+         fs::create_directory(path("run"));
+       },
+       "no step of the run is left there"},
+      {[&] { fs::resize_file(recording(), fs::file_size(recording()) / 2); }, "frontlux explore --resume"},
+      {[&] { fs::resize_file(recording(), 3); }, "no step of the run is left there"},
+      {[&] {
+         fs::copy_file(recording(), path("copy"));
+         fs::rename(path("copy"), recording());
+       },
+       "frontlux explore --resume"}};
+  for (const auto& [lose, kept] : losses) {
+    fs::remove_all(path("run"));
+    fs::remove_all(path("moved"));
+    const pid_t child = start_and_wait(long_run("run"), 1);
+    lose();
+    const std::string said = complaint_of(child);
+    expect_parts(said, {path("run/run.frontlux") + ": was ", kept});
+    const bool resumable = kept.starts_with("frontlux");
+    EXPECT_EQ(said.find("continues the run") != std::string::npos, resumable) << said;
+    if (resumable) expect_resumed("run");
+  }
+}
+
+// A run that was killed before its first record leaves nothing to go on with, and nothing in the way.
+TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
+  expect_explored("whole");
+  const std::string bytes = content_of(path("whole/run.frontlux"));
+  expect_refused({"--resume", path("run")}, {"--resume: there is no folder " + path("run"), "begin"});
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{40}}) {
+    fs::remove_all(path("run"));
+    fs::create_directory(path("run"));
+    expect_refused({"--resume", path("run")}, {"--resume: ", "had not begun", "begin it anew"});
+    write("run/run.frontlux", bytes.substr(0, size));
+    expect_refused({"--resume", path("run")}, {"--resume: ", "before the run began", "explore anew"});
+    expect_explored("run");
+    expect_same_runs("whole", "run");
+  }
+}
+
+TEST_F(RunFolder, LosesWhatKilledRunsLeftUnfinished) {
+  expect_explored("run");
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  test::status_of(gone);
+  const std::string dead = ".part" + std::to_string(gone), alive = ".part" + std::to_string(getpid());
+  write("run/map.ot" + dead, "half a map");
+  write("run/run.json" + dead, "half");
+  write("run/map.bt" + alive, "another process still writes it");
+  write("run/notes.part1x", "mine");
+  expect_resumed("run");
+  EXPECT_FALSE(fs::exists(path("run/map.ot" + dead)));
+  EXPECT_FALSE(fs::exists(path("run/run.json" + dead)));
+  EXPECT_TRUE(fs::exists(path("run/map.bt" + alive)));
+  EXPECT_TRUE(fs::exists(path("run/notes.part1x")));
+}
+
+TEST_F(RunFolder, IsFullAtALimitOfFileSizes) {
+  expect_explored("whole");
+  const auto size = fs::file_size(path("whole/run.frontlux"));
+  const Answer answer = run({"room", "--lockstep", "--max-steps", kSteps, "-o", path("full")},
+                            "ulimit -f " + std::to_string(size / 1024) + ";");
+  EXPECT_EQ(answer.code, 2) << answer.err;
+  expect_parts(answer.err, {path("full/run.frontlux") + ": cannot be written: disk full",
+                            "frontlux explore --resume " + path("full") + " continues the run"});
+  expect_resumed("full");
+  expect_same_runs("whole", "full");
+}
+
+}  // namespace
+}  // namespace frontlux::planner
