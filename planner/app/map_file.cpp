@@ -45,15 +45,22 @@ std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid
   return std::visit([&](const auto& tree) { return make_ray_caster(kind, grid, *tree); }, map.tree);
 }
 
-std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds) {
+std::uint64_t most_voxels(const MapFile& map, std::uint64_t some, std::uint64_t by_leaf) {
+  return some + by_leaf * tree_size(map).leaves;
+}
+
+std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,
+                                                   const KeyBox& bounds) {
+  const std::uint64_t most = most_voxels(map, std::uint64_t{1} << 27, std::uint64_t{1} << 15);
   constexpr int kBrickEdge = 1 << Brick::kLog2;
   std::uint64_t around = 0;
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
     if (brick != nullptr || state != Occupancy::kFree || block.log2_edge <= Brick::kLog2) return;
     const KeyBox free = cube(block.corner, 1 << block.log2_edge);
-    around += size_of(*intersection(grown(free, kBrickEdge), bounds)) - size_of(free);
+    const auto all = intersection(grown(free, kBrickEdge), bounds), inside = intersection(free, bounds);
+    if (all) around += size_of(*all) - (inside ? size_of(*inside) : 0);
   });
-  if (around > kMostSurface) return std::nullopt;
+  if (around > most) return std::nullopt;
   return planner::FrontierSet(grid, bounds);
 }
 

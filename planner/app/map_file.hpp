@@ -39,12 +39,15 @@ struct TreeSize {
 [[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,
                                                      CasterKind kind);
 
-/// Voxels around large free blocks, one brick thick, where frontiers are looked for.
-inline constexpr std::uint64_t kMostSurface = std::uint64_t{1} << 31;
+/// How many voxels of large blocks may be searched: a few bytes of a file can stand for trillions.
+/// @param some     that any map may have
+/// @param by_leaf  that each of its leaves adds
+[[nodiscard]] std::uint64_t most_voxels(const MapFile& map, std::uint64_t some, std::uint64_t by_leaf);
 
-/// The frontiers of a map.
-/// @param bounds  known bounds of the grid
+/// The frontiers of a map within bounds.
+/// @param grid  of the map
 /// @return nothing if the map's large free blocks have so wide a surface that it would take too long
-[[nodiscard]] std::optional<planner::FrontierSet> find_frontiers(const VoxelGrid& grid, const KeyBox& bounds);
+[[nodiscard]] std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,
+                                                                 const KeyBox& bounds);
 
 }  // namespace frontlux::app

@@ -125,6 +125,37 @@ TEST_F(RenderCommand, PointsHoldAllCells) {
   }
 }
 
+// A map of two leaves: a free block at the origin, of 2^(16 - depth) voxels a side, and a free voxel at its
+// corner.
+std::string giant_leaf(unsigned depth) {
+  std::string data;
+  const auto nodes = [&](unsigned count, unsigned children) {
+    for (; count > 0; --count)
+      data.append({static_cast<char>(children & 0xFFU), static_cast<char>(children >> 8U)});
+  };
+  nodes(1, 0xC003);
+  nodes(14, 0xC000);
+  nodes(1, 0x4000);
+  nodes(depth - 2, 0x0003);
+  nodes(1, 0x0001);
+  return "# Octomap OcTree binary file\nid OcTree\nsize " + std::to_string(depth + 17) + "\nres 0.1\ndata\n" +
+         data;
+}
+
+TEST_F(RenderCommand, RefusesGiantLeavesBeforeTheWorkBegins) {
+  for (unsigned depth = 2; depth < 7; ++depth)
+    for (const std::string robot : {"ugv", "uav"}) {
+      SCOPED_TRACE(std::to_string(depth) + " " + robot);
+      const std::string map = write("giant.bt", giant_leaf(depth));
+      ASSERT_LT(content_of(map).size(), 120U);
+      const std::vector<std::string> words = {map, "--robot", robot, "--at", "3,3,3", "-o", path("x.csv")};
+      const std::vector<std::string> any =
+          robot == "ugv" ? std::vector<std::string>{"--any-ground"} : std::vector<std::string>{};
+      expect_refused(joined(words, any), {map + ": ", "with --bounds"}, "ulimit -t 3;");
+      expect_answer(joined(joined(words, any), {"--bounds", "-1,-1,-1,8,8,8"}), {"goal         "});
+    }
+}
+
 TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   const std::string map = path("room.bt"), out = path("x.png");
   const auto refuse = [&](const std::string& robot, const std::string& at,
@@ -145,6 +176,9 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("ugv", kStart, {"--caster", "gpu"}, {"--caster", "gpu"});
   refuse("ugv", kStart, {"--floor", "1"}, {"--floor: a ugv"});
   refuse("uav", kStart, {"--any-ground"}, {"--any-ground: a uav"});
+  refuse("ugv", kStart, {"--bounds", "0,0,0,1,1"}, {"--bounds: '0,0,0,1,1' is not six finite numbers"});
+  refuse("ugv", kStart, {"--bounds", "50,50,0,60,60,1"}, {"--bounds: no voxel within is known"});
+  refuse("ugv", kStart, {"--bounds", "1,1,1,0,0,0"}, {"--bounds: the box from 1"});
   refuse("uav", kStart, {"--floor", "inf"}, {"--floor: 'inf' is not a finite number"});
   refuse("uav", "5.25,5.25,0.45", {}, {"--at", "below its minimum height"});
   refuse("ugv", "5.25,5.25,-0.15", {}, {"--at", "occupied voxel"});

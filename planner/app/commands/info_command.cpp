@@ -42,7 +42,7 @@ Info gather(const MapFile& map) {
   if (info.bounds) {
     info.unknown = size_of(*info.bounds) - info.occupied - info.free;
     if (info.unknown != 0) {
-      const auto frontiers = find_frontiers(grid, *info.bounds);
+      const auto frontiers = find_frontiers(map, grid, *info.bounds);
       info.frontiers = frontiers ? std::optional(std::uint64_t{frontiers->size()}) : std::nullopt;
     }
   }

@@ -9,6 +9,7 @@
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/goal_selection.hpp>
+#include <frontlux/planner/mapping.hpp>
 #include <frontlux/stopwatch.hpp>
 
 #include <cmath>
@@ -47,6 +48,7 @@ struct Options {
   std::string map, output;
   std::optional<RobotKind> robot;
   Eigen::Vector3f at = Eigen::Vector3f::Zero();
+  std::optional<Eigen::AlignedBox3d> bounds;
   std::optional<double> floor;
   bool any_ground = false;
   Method mode = Method::kDefault;
@@ -127,25 +129,53 @@ void check_goal(const View& view, const GoalSelection& selection, const Options&
                  nearest_fit(corridor, lattice, at, view.member.robot.travel.motion));
 }
 
+// The part of the map that is looked at.
+KeyBox bounds_of(const VoxelGrid& grid, const Options& options) {
+  const auto known = grid.known_bounds();
+  if (!known) throw BadInput(options.map + ": every voxel is unknown");
+  if (!options.bounds) return *known;
+  try {
+    if (const auto part = intersection(*known, planner::voxels_of(grid.lattice(), *options.bounds)))
+      return *part;
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(std::string("--bounds: ") + error.what());
+  }
+  throw BadInput("--bounds: no voxel within is known; choose a part of the map, see frontlux info " +
+                 options.map);
+}
+
+void check_size(const MapFile& map, const KeyBox& bounds, Motion motion) {
+  const bool plane = motion == Motion::kPlane;
+  const KeyBox space = plane ? KeyBox{bounds.min, {bounds.max.x, bounds.max.y, bounds.min.z}} : bounds;
+  const std::uint64_t voxels = size_of(space),
+                      most = most_voxels(map, std::uint64_t{1} << (plane ? 18U : 25U), 1024);
+  if (voxels > most)
+    throw BadInput(map.path.string() + ": the robot's space would have " + std::to_string(voxels) +
+                   " voxels, but at most " + std::to_string(most) + " of a map of " +
+                   std::to_string(tree_size(map).leaves) +
+                   " leaves are rendered; choose a part of it with --bounds");
+}
+
 View look(const MapFile& map, const VoxelGrid& grid, const Options& options, TeamMember member) {
   View view;
   const Lattice& lattice = grid.lattice();
   if (!lattice.key(options.at))
     throw BadInput("--at: " + to_text(options.at) +
                    " lies outside the map's key range; give a place in the map");
-  const auto bounds = grid.known_bounds();
-  if (!bounds) throw BadInput(options.map + ": every voxel is unknown");
-  const auto frontiers = find_frontiers(grid, *bounds);
+  const KeyBox bounds = bounds_of(grid, options);
+  check_size(map, bounds, member.robot.travel.motion);
+  const auto frontiers = find_frontiers(map, grid, bounds);
   if (!frontiers)
-    throw BadInput(options.map + ": the surface of its large free blocks has more than " +
-                   std::to_string(kMostSurface) + " voxels to look for frontiers in");
+    throw BadInput(options.map +
+                   ": the surface of its large free blocks is too large to look for frontiers; choose a "
+                   "part of it with --bounds");
   view.pose.position = options.at.cast<double>();
   view.member = std::move(member);
 
   const Stopwatch building;
   const auto caster = make_caster(map, grid, options.caster);
   view.caster_ms = building.milliseconds();
-  GoalSelection selection({view.member}, lattice, *bounds);
+  GoalSelection selection({view.member}, lattice, bounds);
   const Stopwatch selecting;
   view.goals = selection.select(*caster, {grid}, frontiers->keys(), {&view.pose, 1});
   view.selection_ms = selecting.milliseconds();
@@ -158,7 +188,7 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
     TeamMember rendered = view.member;
     rendered.options.rule = GoalRule::kViewQuality;
     rendered.options.rendering.estimator = ViewQualityOptions::Estimator::kUnbiased;  // clusters count, too
-    GoalSelection image({rendered}, lattice, *bounds);
+    GoalSelection image({rendered}, lattice, bounds);
     static_cast<void>(image.select(*caster, {grid}, frontiers->keys(), {&view.pose, 1}));
     view.cells = image.rendered_cells(0);
   }
@@ -255,6 +285,8 @@ void add_render_command(CLI::App& app) {
   command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
   command.add("-o,--output", options->output, "FILE", "Picture (.png) or table (.csv, .ply) to write")
       .required();
+  command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
+              "Part of the map to look at: its lowest and its highest corner [all]");
   command.add("--show", options->show, "Picture: the best cell of each column, or the robot's layer [best]");
   command.group("Robot");
   command.add("--robot", options->robot, "Ground robot with a lidar, or aerial robot with a depth camera")

@@ -4,6 +4,7 @@
 #include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/map_world.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -13,7 +14,8 @@ namespace frontlux::sim {
 namespace {
 
 constexpr std::size_t kMaxFaces = std::size_t{1} << 26U;
-constexpr std::size_t kMaxSides = std::size_t{1} << 30U;  // compared; some ten seconds
+constexpr std::size_t kMaxBlockSides = std::size_t{1} << 25U;  // of large blocks
+constexpr std::size_t kMaxSides = std::size_t{1} << 30U;       // compared; some ten seconds
 
 using Cell = std::array<int, 3>;
 
@@ -48,6 +50,14 @@ class SurfaceFaces {
       }
   }
 
+  // A few bytes of a file can stand for trillions of sides, so large blocks are counted before any is added.
+  void expect(int edge) {
+    constexpr std::size_t kUsual = std::size_t{1} << 15;
+    const std::size_t sides = 6 * static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
+    expected_ += sides - std::min(sides, kUsual);
+    if (expected_ > kMaxBlockSides) refuse();
+  }
+
   [[nodiscard]] CellFaces take() {
     if (count_ == 0) throw std::runtime_error("the map has no occupied voxel, so there is no world to see");
     return std::move(faces_);
@@ -56,18 +66,22 @@ class SurfaceFaces {
  private:
   [[noreturn]] static void refuse() {
     throw std::runtime_error("the map's occupied voxels have more than " + std::to_string(kMaxFaces) +
-                             " faces, or lie in blocks that are too large; use a coarser or smaller map");
+                             " faces, or lie in large blocks with more than " +
+                             std::to_string(kMaxBlockSides) + " sides; use a coarser or smaller map");
   }
 
   const VoxelGrid& grid_;
   CellFaces faces_;
-  std::size_t count_ = 0, compared_ = 0;
+  std::size_t count_ = 0, compared_ = 0, expected_ = 0;
 };
 
 }  // namespace
 
 World make_map_world(const VoxelGrid& grid) {
   SurfaceFaces faces(grid);
+  grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    if (brick == nullptr && state == Occupancy::kOccupied) faces.expect(1 << block.log2_edge);
+  });
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
     const int edge = 1 << block.log2_edge;
     if (brick == nullptr) {
