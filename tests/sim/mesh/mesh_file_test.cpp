@@ -5,6 +5,9 @@
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
+#include <sys/stat.h>
+
+#include <chrono>
 #include <unistd.h>
 
 namespace frontlux::sim {
@@ -274,6 +277,78 @@ TEST_F(MeshFile, OtherFormatsSurviveTruncation) {
       expect_calm(save(name, bytes.substr(0, size)));
       if (HasFatalFailure()) return;
     }
+}
+
+// What makes an importer crash or run away costs the import and not this process.
+TEST_F(MeshFile, ImportersFallAlone) {
+  const std::string dae = house_dae("Z_UP", "1");
+  for (const char* count : {"0", "nan", "99999999", "-1"}) {
+    SCOPED_TRACE(count);
+    expect_calm(save("accessor.dae",
+                     test::replaced(dae, "<accessor source=\"#pa\" count=\"8\"",
+                                    "<accessor source=\"#pa\" count=\"" + std::string(count) + "\"")));
+    expect_calm(
+        save("array.dae", test::replaced(dae, "count=\"24\"", "count=\"" + std::string(count) + "\"")));
+  }
+  expect_refused(save("crash.dae", test::replaced(dae, "count=\"8\"", "count=\"0\"")));
+#ifndef __SANITIZE_ADDRESS__  // which knows no limits of memory
+  // Nodes that hold the next one twice: 2^40 houses.
+  std::string nodes;
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = "<instance_node url=\"#n" + std::to_string(i + 1) + "\"/>";
+    nodes += "<node id=\"n" + std::to_string(i) + "\">" + next + next + "</node>";
+  }
+  nodes += "<node id=\"n40\"><instance_geometry url=\"#g\"/></node>";
+  const std::string many =
+      test::replaced(test::replaced(dae, "<library_visual_scenes>",
+                                    "<library_nodes>" + nodes + "</library_nodes><library_visual_scenes>"),
+                     "<instance_geometry url=\"#g\"/></node></visual_scene>",
+                     "<instance_node url=\"#n0\"/></node></visual_scene>");
+  const auto begin = std::chrono::steady_clock::now();
+  expect_refused(save("many.dae", many), "to import");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+#endif
+}
+
+TEST_F(MeshFile, OtherFilesAreReadOnlyInItsFolder) {
+  const std::string obj = house_obj(), gltf = house_gltf();
+  const std::string outside = path("secret.bin"), folder = path("meshes");
+  std::filesystem::create_directory(folder);
+  ASSERT_EQ(mkfifo(path("meshes/pipe").c_str(), 0600), 0);
+  for (const char* library : {"pipe", "../secret.bin", "/dev/zero", "none.mtl"})
+    expect_house(read_mesh_world(save("meshes/h.obj", "mtllib " + std::string(library) + "\n" + obj)),
+                 {0, 0, 0}, {2, 3, 5});
+  // The buffer of a glTF file, beside it and elsewhere.
+  const auto with_buffer = [&](const std::string& uri) {
+    const auto begin = gltf.find("data:"), end = gltf.find('"', begin);
+    return save("meshes/h.gltf", gltf.substr(0, begin) + uri + gltf.substr(end));
+  };
+  std::string bytes;
+  for (const auto& v : kHouse) bytes.append(reinterpret_cast<const char*>(v.data()), 12);
+  for (const auto& s : kSides)
+    for (const std::size_t corner : {0U, 1U, 2U, 0U, 2U, 3U})
+      bytes += test::bytes_of(static_cast<std::uint16_t>(s[corner]));
+  for (const char* name : {"meshes/h.bin", "secret.bin"}) static_cast<void>(save(name, bytes));
+  expect_house(read_mesh_world(with_buffer("h.bin")), {10, -5, 0}, {12, 0, 3});
+  expect_refused(with_buffer("../secret.bin"), "lies outside of its folder");
+  expect_refused(with_buffer("pipe"), "is not a regular file");
+  std::filesystem::create_symlink(outside, path("meshes/link.bin"));
+  expect_refused(with_buffer("link.bin"), "lies outside of its folder");
+}
+
+TEST_F(MeshFile, BadIndicesAreRefused) {
+  expect_refused("ok.ply", test::replaced(house_ply(), "4 0 3 2 1", "4 0 3 2 9"), "vertex 9");
+  for (const char* face : {"f 1 2 99", "f 1 2 0", "f 1 2 -99", "f 1 2 99999999999"})
+    expect_refused(save("bad.obj", house_obj() + face + "\n"));
+  for (const char* index : {"9", "-1", "4294967295", "x"})
+    expect_refused(
+        save("bad.dae", test::replaced(house_dae("Z_UP", "1"), "<p>0 ", "<p>" + std::string(index) + " ")));
+  std::string bytes;
+  for (const auto& v : kHouse) bytes.append(reinterpret_cast<const char*>(v.data()), 12);
+  for (std::uint16_t i = 0; i < 36; ++i) bytes += test::bytes_of(std::uint16_t(i < 33 ? i % 8 : 700));
+  const std::string gltf = house_gltf();
+  const auto begin = gltf.find("base64,") + 7, end = gltf.find('"', begin);
+  expect_refused(save("bad.gltf", gltf.substr(0, begin) + base64(bytes) + gltf.substr(end)));
 }
 
 TEST_F(MeshFile, WritesWholeOrNotAtAll) {

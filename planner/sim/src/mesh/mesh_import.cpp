@@ -1,19 +1,29 @@
 #include "mesh/mesh_import.hpp"
 
+#include "mesh/import_process.hpp"
+
 #include <frontlux/file.hpp>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,6 +47,79 @@ void append(const aiMesh& part, const aiMatrix4x4& to_root, io::RawMesh& mesh) {
     throw std::length_error("holds more than " + std::to_string(kMaxTriangles) + " triangles");
 }
 
+// The files that an import may open: regular ones in the mesh's folder and below.
+class MeshFolder : public Assimp::IOSystem {
+ public:
+  explicit MeshFolder(const std::filesystem::path& file)
+      : file_(std::filesystem::canonical(file)),
+        folder_(std::filesystem::canonical(std::filesystem::absolute(file).parent_path())) {}
+
+  bool Exists(const char* file) const override { return reason_against(file).empty(); }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    std::string reason = reason_against(file);
+    if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos)
+      reason = "is not to be written";
+    if (!reason.empty()) {
+      refused_ = ", which names " + quote(file) + ", and that " + reason;
+      return nullptr;
+    }
+    bytes_ += std::filesystem::file_size(file);
+    limit_import(bytes_);
+    const std::string bytes = read_file(file);
+    auto* const copy = new std::uint8_t[bytes.size() + 1];
+    std::copy(bytes.begin(), bytes.end(), copy);
+    return new Assimp::MemoryIOStream(copy, bytes.size(), true);
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+  // The last file that could not be opened, as the end of a message.
+  [[nodiscard]] const std::string& refused() const { return refused_; }
+
+ private:
+  [[nodiscard]] std::string reason_against(const std::filesystem::path& file) const {
+    std::error_code error;
+    const auto real = std::filesystem::canonical(file, error);
+    if (error) return "is not there";
+    if (!std::filesystem::is_regular_file(real, error)) return "is not a regular file";
+    const auto inside = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first;
+    return real == file_ || inside == folder_.end() ? "" : "lies outside of its folder";
+  }
+
+  std::filesystem::path file_, folder_;
+  std::string refused_;
+  std::uint64_t bytes_ = 0;
+};
+
+// Notes the complaints about vertices that are not there, whose faces some importers drop.
+class BadIndices : public Assimp::LogStream {
+ public:
+  void write(const char* message) override {
+    const std::string_view text = message;
+    for (const char* complaint : {"nvalid face index", "ertex index out of range", "out-of-range indices"})
+      found_ = found_ || text.find(complaint) != std::string_view::npos;
+  }
+  [[nodiscard]] bool found() const { return found_; }
+
+ private:
+  bool found_ = false;
+};
+
+// A COLLADA file's lists of indices. Assimp takes for 0 what is no whole number below 2^31.
+void check_indices(std::string_view collada) {
+  constexpr std::string_view kBegin = "<p>", kBlank = " \t\r\n";
+  for (std::size_t at = 0; (at = collada.find(kBegin, at)) != std::string_view::npos;) {
+    at += kBegin.size();
+    std::string_view list = collada.substr(at, collada.find('<', at) - at);
+    while (list.remove_prefix(std::min(list.find_first_not_of(kBlank), list.size())), !list.empty()) {
+      const std::string_view word = list.substr(0, list.find_first_of(kBlank));
+      if (const auto index = number_from<std::int32_t>(word); !index || *index < 0)
+        throw std::invalid_argument("an index of a face is " + quote(word));
+      list.remove_prefix(word.size());
+    }
+  }
+}
+
 // Leaves those that read this ending. Otherwise Assimp looks for signatures and reads what a file is not
 // named after, with any of its fifty importers.
 void keep_importers(Assimp::Importer& importer, const std::string& ending) {
@@ -48,28 +131,43 @@ void keep_importers(Assimp::Importer& importer, const std::string& ending) {
   }
 }
 
+// In a process of its own: Assimp's log is one for all.
+io::RawMesh read_scene(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
+  if (ending == "dae") check_indices(read_file(file));
+  Assimp::Importer importer;
+  keep_importers(importer, ending);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_frame);
+  auto* const folder = new MeshFolder(file);
+  importer.SetIOHandler(folder);  // which deletes it
+  BadIndices bad_indices;
+  Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0)
+      ->attachStream(&bad_indices, Assimp::Logger::Warn | Assimp::Logger::Err);
+  const aiScene* scene =
+      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    const std::string error = importer.GetErrorString();
+    if (error.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    throw std::invalid_argument(error + folder->refused());
+  }
+  if (bad_indices.found()) throw std::invalid_argument("a face names a vertex that is not there");
+  io::RawMesh mesh;
+  std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{scene->mRootNode, aiMatrix4x4()}};
+  while (!open.empty()) {
+    const auto [node, to_root] = open.back();
+    open.pop_back();
+    const aiMatrix4x4 here = to_root * node->mTransformation;
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) append(*scene->mMeshes[node->mMeshes[i]], here, mesh);
+    for (unsigned i = 0; i < node->mNumChildren; ++i) open.emplace_back(node->mChildren[i], here);
+  }
+  return mesh;
+}
+
 }  // namespace
 
 io::RawMesh import_mesh(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
   constexpr const char* kAdvice = "repair or simplify the mesh, or save it as .ply";
   try {
-    Assimp::Importer importer;
-    keep_importers(importer, ending);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_frame);
-    const aiScene* scene =
-        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
-    if (scene == nullptr || scene->mRootNode == nullptr)
-      throw std::invalid_argument(importer.GetErrorString());
-    io::RawMesh mesh;
-    std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{scene->mRootNode, aiMatrix4x4()}};
-    while (!open.empty()) {
-      const auto [node, to_root] = open.back();
-      open.pop_back();
-      const aiMatrix4x4 here = to_root * node->mTransformation;
-      for (unsigned i = 0; i < node->mNumMeshes; ++i) append(*scene->mMeshes[node->mMeshes[i]], here, mesh);
-      for (unsigned i = 0; i < node->mNumChildren; ++i) open.emplace_back(node->mChildren[i], here);
-    }
-    return mesh;
+    return import_in_child([&] { return read_scene(file, ending, keep_frame); });
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
