@@ -160,8 +160,9 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
   View view;
   const Lattice& lattice = grid.lattice();
   if (!lattice.key(options.at))
-    throw BadInput("--at: " + to_text(options.at) +
-                   " lies outside the map's key range; give a place in the map");
+    throw BadInput("--at: " + to_text(options.at) + " lies outside the map's key range, which ends " +
+                   rounded(Lattice::kOrigin * lattice.resolution()) +
+                   " m from its origin; give a place in the map");
   const KeyBox bounds = bounds_of(grid, options);
   check_size(map, bounds, member.robot.travel.motion);
   const auto frontiers = find_frontiers(map, grid, bounds);
