@@ -3,6 +3,7 @@
 #include "bad_input.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/planner/mapping.hpp>
 
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
@@ -47,6 +48,31 @@ std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid
 
 std::uint64_t most_voxels(const MapFile& map, std::uint64_t some, std::uint64_t by_leaf) {
   return some + by_leaf * tree_size(map).leaves;
+}
+
+KeyBox robot_space(const MapFile& map, const VoxelGrid& grid, const std::optional<Eigen::AlignedBox3d>& box,
+                   planner::Motion motion) {
+  const auto known = grid.known_bounds();
+  if (!known) throw BadInput(map.path.string() + ": every voxel is unknown");
+  std::optional<KeyBox> space = known;
+  try {
+    if (box) space = intersection(*known, planner::voxels_of(grid.lattice(), *box));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(std::string("--bounds: ") + error.what());
+  }
+  if (!space)
+    throw BadInput("--bounds: no voxel within is known; choose a part of the map, see frontlux info " +
+                   map.path.string());
+  const bool plane = motion == planner::Motion::kPlane;
+  const KeyBox layer{space->min, {space->max.x, space->max.y, space->min.z}};
+  const std::uint64_t voxels = size_of(plane ? layer : *space),
+                      most = most_voxels(map, std::uint64_t{1} << (plane ? 18U : 25U), 1024);
+  if (voxels > most)
+    throw BadInput(map.path.string() + ": the robot's space would have " + std::to_string(voxels) +
+                   " voxels, but a map of " + std::to_string(tree_size(map).leaves) +
+                   " leaves may have at most " + std::to_string(most) +
+                   "; choose a part of it with --bounds");
+  return *space;
 }
 
 std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,

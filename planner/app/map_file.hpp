@@ -3,8 +3,11 @@
 #include <frontlux/caster_kind.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
+
+#include <Eigen/Geometry>
 
 #include <cstdint>
 #include <filesystem>
@@ -43,6 +46,12 @@ struct TreeSize {
 /// @param some     that any map may have
 /// @param by_leaf  that each of its leaves adds
 [[nodiscard]] std::uint64_t most_voxels(const MapFile& map, std::uint64_t some, std::uint64_t by_leaf);
+
+/// The known part of a map, for a robot to move in.
+/// @param box  [m] the part of it that the user chooses
+/// @throws BadInput if nothing is known there, or if there are far more voxels than the file has leaves for
+[[nodiscard]] KeyBox robot_space(const MapFile& map, const VoxelGrid& grid,
+                                 const std::optional<Eigen::AlignedBox3d>& box, planner::Motion motion);
 
 /// The frontiers of a map within bounds.
 /// @param grid  of the map

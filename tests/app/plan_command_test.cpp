@@ -1,5 +1,6 @@
 #include "octomap/quiet_octomap.hpp"
 #include "support/command_test.hpp"
+#include "support/giant_leaf.hpp"
 #include "support/plain_frontiers.hpp"
 #include "support/voxel_keys.hpp"
 
@@ -200,6 +201,15 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(test::joined(with("--planner", "corridor"), {"--iterations", "9"}), "--iterations: ");
   expect_refused(with("--min-height", "2"), "--min-height: ");
   expect_refused(in_space("--require-ground", "on"), "--require-ground: ");
+}
+
+TEST_F(PlanCommandTest, RefusesGiantLeavesBeforeTheWorkBegins) {
+  const std::string map = write("giant.bt", test::giant_leaf(7));
+  const std::vector<std::string> words = {map, "--robot", "uav", "--from", "3,3,3,0", "--to", "5,5,3"};
+  expect_refused(words, {map + ": ", "2 leaves", "with --bounds"}, "ulimit -t 3;");
+  expect_answer(test::joined(words, {"--bounds", "-1,-1,-1,8,8,8"}));
+  expect_refused(test::joined(words, {"--bounds", "90,90,90,91,91,91"}),
+                 {"--bounds: no voxel within is known"});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "octomap/quiet_octomap.hpp"
 #include "planner/goal/goal_room.hpp"
 #include "support/command_test.hpp"
+#include "support/giant_leaf.hpp"
 #include "support/tree_state.hpp"
 
 #include <octomap/OcTree.h>
@@ -125,23 +126,6 @@ TEST_F(RenderCommand, PointsHoldAllCells) {
   }
 }
 
-// A map of two leaves: a free block at the origin, of 2^(16 - depth) voxels a side, and a free voxel at its
-// corner.
-std::string giant_leaf(unsigned depth) {
-  std::string data;
-  const auto nodes = [&](unsigned count, unsigned children) {
-    for (; count > 0; --count)
-      data.append({static_cast<char>(children & 0xFFU), static_cast<char>(children >> 8U)});
-  };
-  nodes(1, 0xC003);
-  nodes(14, 0xC000);
-  nodes(1, 0x4000);
-  nodes(depth - 2, 0x0003);
-  nodes(1, 0x0001);
-  return "# Octomap OcTree binary file\nid OcTree\nsize " + std::to_string(depth + 17) + "\nres 0.1\ndata\n" +
-         data;
-}
-
 TEST_F(RenderCommand, RefusesGiantLeavesBeforeTheWorkBegins) {
   for (unsigned depth = 2; depth < 7; ++depth)
     for (const std::string robot : {"ugv", "uav"}) {
@@ -152,7 +136,7 @@ TEST_F(RenderCommand, RefusesGiantLeavesBeforeTheWorkBegins) {
       const std::vector<std::string> any =
           robot == "ugv" ? std::vector<std::string>{"--any-ground"} : std::vector<std::string>{};
       expect_refused(joined(words, any), {map + ": ", "with --bounds"}, "ulimit -t 3;");
-      expect_answer(joined(joined(words, any), {"--bounds", "-1,-1,-1,8,8,8"}), {"goal         "});
+      expect_answer(joined(joined(words, any), {"--bounds", "-1,-1,-1,5,5,5"}), {"goal         "});
     }
 }
 

@@ -59,6 +59,7 @@ void read(std::string_view word, To& to) { read_end(word, to, false); }
 struct Options {
   std::string map, output;
   std::optional<RobotKind> robot;
+  std::optional<Eigen::AlignedBox3d> bounds;
   From from;
   To to;
   std::optional<bool> require_ground;
@@ -117,11 +118,10 @@ VoxelKey voxel_of(const Lattice& lattice, const char* name, const End& end) {
   return *key;
 }
 
-TravelCorridor make_corridor(TravelOptions travel, const VoxelGrid& grid, const VoxelKey& robot) {
-  const auto bounds = grid.known_bounds();
-  if (!bounds) throw std::invalid_argument("every voxel is unknown");
+TravelCorridor make_corridor(TravelOptions travel, const VoxelGrid& grid, const KeyBox& bounds,
+                             const VoxelKey& robot) {
   travel.without_ground = {{robot, robot}};  // no sensor sees the floor that it starts on
-  TravelCorridor corridor(travel, grid.lattice(), *bounds);
+  TravelCorridor corridor(travel, grid.lattice(), bounds);
   corridor.update({grid}, robot);
   return corridor;
 }
@@ -229,7 +229,8 @@ void plan(const Options& options) {
   check_options(options);
   if (!options.output.empty()) check_output(options.output, {".csv", ".ply"});
   const planner::Robot robot = make_robot(options);
-  const VoxelGrid grid = make_voxel_grid(read_map_file(options.map).tree);
+  const MapFile map = read_map_file(options.map);
+  const VoxelGrid grid = make_voxel_grid(map.tree);
   const VoxelKey start = voxel_of(grid.lattice(), "--from", options.from);
   const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to);
   if (options.robot == RobotKind::kUgv && goal.z != start.z) {
@@ -237,7 +238,8 @@ void plan(const Options& options) {
     throw BadInput("--to: " + options.to.word + " is not on the ugv's plane, where z is from " +
                    rounded(middle - half) + " to " + rounded(middle + half) + " m; give the z of --from");
   }
-  const TravelCorridor corridor = make_corridor(robot.travel, grid, start);
+  const KeyBox space = robot_space(map, grid, options.bounds, robot.travel.motion);
+  const TravelCorridor corridor = make_corridor(robot.travel, grid, space, start);
   const Stopwatch planning;
   PathPlan path = planner::plan_path(corridor, grid.lattice(), options.from.pose, options.to.pose,
                                      {options.seed.value_or(1), 0, 0}, path_options(options));
@@ -257,6 +259,8 @@ void add_plan_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
   command.add("-o,--output", options->output, "FILE", "Write the viewpoints, as .csv or .ply");
+  command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
+              "Part of the map to drive or fly in: its lowest and its highest corner [all]");
   command.group("Robot");
   command.add("--robot", options->robot, "Ground robot of 1.0 x 1.0 x 0.7 m, or aerial robot of 0.8 m")
       .required();

@@ -9,7 +9,6 @@
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/goal_selection.hpp>
-#include <frontlux/planner/mapping.hpp>
 #include <frontlux/stopwatch.hpp>
 
 #include <cmath>
@@ -129,33 +128,6 @@ void check_goal(const View& view, const GoalSelection& selection, const Options&
                  nearest_fit(corridor, lattice, at, view.member.robot.travel.motion));
 }
 
-// The part of the map that is looked at.
-KeyBox bounds_of(const VoxelGrid& grid, const Options& options) {
-  const auto known = grid.known_bounds();
-  if (!known) throw BadInput(options.map + ": every voxel is unknown");
-  if (!options.bounds) return *known;
-  try {
-    if (const auto part = intersection(*known, planner::voxels_of(grid.lattice(), *options.bounds)))
-      return *part;
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(std::string("--bounds: ") + error.what());
-  }
-  throw BadInput("--bounds: no voxel within is known; choose a part of the map, see frontlux info " +
-                 options.map);
-}
-
-void check_size(const MapFile& map, const KeyBox& bounds, Motion motion) {
-  const bool plane = motion == Motion::kPlane;
-  const KeyBox space = plane ? KeyBox{bounds.min, {bounds.max.x, bounds.max.y, bounds.min.z}} : bounds;
-  const std::uint64_t voxels = size_of(space),
-                      most = most_voxels(map, std::uint64_t{1} << (plane ? 18U : 25U), 1024);
-  if (voxels > most)
-    throw BadInput(map.path.string() + ": the robot's space would have " + std::to_string(voxels) +
-                   " voxels, but at most " + std::to_string(most) + " of a map of " +
-                   std::to_string(tree_size(map).leaves) +
-                   " leaves are rendered; choose a part of it with --bounds");
-}
-
 View look(const MapFile& map, const VoxelGrid& grid, const Options& options, TeamMember member) {
   View view;
   const Lattice& lattice = grid.lattice();
@@ -163,8 +135,7 @@ View look(const MapFile& map, const VoxelGrid& grid, const Options& options, Tea
     throw BadInput("--at: " + to_text(options.at) + " lies outside the map's key range, which ends " +
                    rounded(Lattice::kOrigin * lattice.resolution()) +
                    " m from its origin; give a place in the map");
-  const KeyBox bounds = bounds_of(grid, options);
-  check_size(map, bounds, member.robot.travel.motion);
+  const KeyBox bounds = robot_space(map, grid, options.bounds, member.robot.travel.motion);
   const auto frontiers = find_frontiers(map, grid, bounds);
   if (!frontiers)
     throw BadInput(options.map +

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "support/test.hpp"
+
+namespace frontlux::test {
+
+/// A .bt map of two leaves: a free block at the origin, of 2^(16 - depth) voxels a side, and a free voxel at
+/// its corner.
+inline std::string giant_leaf(unsigned depth) {
+  std::string data;
+  const auto nodes = [&](unsigned count, unsigned children) {
+    for (; count > 0; --count)
+      data.append({static_cast<char>(children & 0xFFU), static_cast<char>(children >> 8U)});
+  };
+  nodes(1, 0xC003);
+  nodes(14, 0xC000);
+  nodes(1, 0x4000);
+  nodes(depth - 2, 0x0003);
+  nodes(1, 0x0001);
+  return "# Octomap OcTree binary file\nid OcTree\nsize " + std::to_string(depth + 17) + "\nres 0.1\ndata\n" +
+         data;
+}
+
+}  // namespace frontlux::test
