@@ -235,7 +235,8 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     };
     departure = detail::best_departure(old, start, path_from, limits, is_free);
   }
-  member.going = departure.has_value();
+  // Without a path it brakes; when it has come to rest, it plans again.
+  member.going = departure || !old.at(start).velocity.isZero();
   if (!departure) return old.after_stop(start, {}, limits, is_free);
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
