@@ -188,12 +188,17 @@ void expect_apart(std::size_t count, double seconds) {
 TEST(ContinuousExploration, KeepsTwoRobotsApart) { expect_apart(2, 20.0); }
 TEST(ContinuousExploration, KeepsThreeRobotsApart) { expect_apart(3, 12.0); }
 
+// Explores for a while, and plans all that there is to plan.
+void begin_to_fly(TeamInMotion& scene) {
+  scene.explore(2.0);
+  while (scene.exploration().plan(scene.time())) {
+  }
+}
+
 TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
   TeamInMotion scene("room", {small_uav(), small_uav()});
   ContinuousExploration& exploration = scene.exploration();
-  scene.explore(2.0);
-  while (exploration.plan(scene.time())) {
-  }
+  begin_to_fly(scene);
   // It met something that no sensor sees, where it was going.
   const double time = scene.time() + 0.05;
   const Lattice& lattice = scene.grid().lattice();
@@ -226,9 +231,7 @@ TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
 TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
   TeamInMotion scene("room", {small_uav()});
   ContinuousExploration& exploration = scene.exploration();
-  scene.explore(2.0);
-  while (exploration.plan(scene.time())) {
-  }
+  begin_to_fly(scene);
   const double time = scene.time() + 0.05;
   const Lattice& lattice = scene.grid().lattice();
   const Pose rests = exploration.at(0, time).pose;
