@@ -2,6 +2,7 @@
 
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
+#include "goal/counting_ray_caster.hpp"
 
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -82,6 +83,7 @@ void ContinuousExploration::State::take(std::size_t robot, const MapChange& chan
 ExplorationStep ContinuousExploration::State::collect(double time) {
   ExplorationStep step = team.new_step();
   step.time = time;
+  std::optional<detail::PhaseClock> clock(std::in_place, step, Phase::kFrontiers);
   const VoxelGrid& grid = team.mapping.grid();
   std::ranges::stable_sort(touched, {}, &std::pair<VoxelKey, std::size_t>::first);
   for (std::size_t i = 0; i < touched.size(); ++i) {
@@ -110,21 +112,26 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     team.trails[r].insert(team.trails[r].end(), robot.planned.begin() + (team.number == 0 ? 0 : 1),
                           robot.planned.end());
   }
+  clock.reset();
   return step;
 }
 
 // Frontiers that are in view of the robot's last scan, and have stayed unknown all the same.
-void ContinuousExploration::State::note_look(std::size_t robot, RobotStep& step) {
-  if (step.planned.size() < 2) return;  // no scan since the last planning
-  const Pose& pose = step.planned.back();
+void ContinuousExploration::State::note_look(std::size_t robot, ExplorationStep& step) {
+  const detail::PhaseClock clock(step, Phase::kGoals);
+  RobotStep& now = step.robots[robot];
+  if (now.planned.size() < 2) return;  // no scan since the last planning
+  const Pose& pose = now.planned.back();
   const FieldOfView& view = team.options.team[robot].robot.view;
   const std::span<const VoxelKey> frontiers = team.frontiers.keys();
-  const VisiblePairs seen = visible_pairs(*team.caster, team.mapping.grid(), {&pose, 1}, frontiers, view);
+  const detail::CountingRayCaster counting(*team.caster, team.lattice());
+  const VisiblePairs seen = visible_pairs(counting, team.mapping.grid(), {&pose, 1}, frontiers, view);
   for (const std::uint32_t i : seen.frontiers_of(0)) {
     const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
-    if (view.contains(offset, pose.yaw)) step.still_unknown.push_back(frontiers[i]);
+    if (view.contains(offset, pose.yaw)) now.still_unknown.push_back(frontiers[i]);
   }
-  team.abandoned.visited(step.still_unknown);
+  step.rays += counting.rays();
+  team.abandoned.visited(now.still_unknown);
 }
 
 // The cells in whose middle a robot would be too near to where another one will come to rest.
@@ -193,15 +200,16 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
 }
 
 // Back along the way it came, to the last place from which it can go on.
-Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, RobotStep& step) {
+Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, ExplorationStep& step) {
+  const detail::PhaseClock clock(step, Phase::kPaths);
   const Trajectory& old = members[robot].motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   const MotionState now = old.at(start);
   std::vector<Pose> way;
-  if (now.velocity.isZero()) way = team.take_way_back(robot, step.goal);
+  if (now.velocity.isZero()) way = team.take_way_back(robot, step.robots[robot].goal);
   if (!way.empty()) {
     way.insert(way.begin(), now.pose);
-    step.path = PathOutcome::kFound;
+    step.robots[robot].path = PathOutcome::kFound;
   }
   return old.after_stop(start, way, limits, segment_test(robot));
 }
@@ -215,7 +223,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   member.goal_frontiers.clear();
   if (!now.goal.pose) {
-    Trajectory back = go_back(robot, start, now);
+    Trajectory back = go_back(robot, start, step);
     member.goes_back = now.path == PathOutcome::kFound;
     // When it has come to rest, it plans again.
     member.going = member.goes_back || !old.at(start).velocity.isZero();
@@ -258,7 +266,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
-  note_look(robot, step.robots[robot]);
+  note_look(robot, step);
   const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   if (keeps)
@@ -269,6 +277,19 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
+  take_up(robot, start, trajectory, step);
+  member.planned = time;
+  member.blocked = member.stopped = false;
+  judge(member, step.robots[robot]);
+  ++team.number;
+  return {robot, reason, std::move(trajectory), std::move(step)};
+}
+
+// Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
+void ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
+                                           ExplorationStep& step) {
+  const detail::PhaseClock clock(step, Phase::kPaths);
+  Member& member = members[robot];
   if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
     member.needed = voxels_needed(robot, trajectory);
     member.motion.next = trajectory;
@@ -276,11 +297,6 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     trajectory = member.motion.last();  // which keeps apart
     member.going = trajectory.end() > start;
   }
-  member.planned = time;
-  member.blocked = member.stopped = false;
-  judge(member, step.robots[robot]);
-  ++team.number;
-  return {robot, reason, std::move(trajectory), std::move(step)};
 }
 
 // Of a robot whose way is neither free nor can be left: it brakes, if that keeps apart from the others.

@@ -45,10 +45,11 @@ struct ContinuousExploration::State {
   [[nodiscard]] ExplorationStep collect(double time);
 
  private:
-  void note_look(std::size_t robot, RobotStep& step);
+  void note_look(std::size_t robot, ExplorationStep& step);
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
-  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, RobotStep& step);
+  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, ExplorationStep& step);
+  void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
   void judge(Member& member, const RobotStep& step) const;
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;

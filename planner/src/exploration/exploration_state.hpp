@@ -66,7 +66,6 @@ struct ExplorationState {
   void block(std::size_t robot, std::span<const VoxelKey> cells);
   void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
-  [[nodiscard]] double path_gain(const RobotStep& robot) const;
   void judge(const ExplorationStep& step);
 
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
@@ -82,6 +81,7 @@ struct ExplorationState {
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
  private:
+  [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                     double length) const;
   void remember(std::size_t robot, const RobotStep& step);
