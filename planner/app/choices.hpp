@@ -40,11 +40,13 @@ template <>
 inline constexpr std::array<Choice<planner::Method>, 2> kChoices<planner::Method>{
     {{"default", planner::Method::kDefault}, {"paper", planner::Method::kPaper}}};
 
+/// How robots find their goals: by tours for the whole team, or one goal after the other.
+enum class GoalSearch { kTour, kRender, kCluster, kNearest };
 template <>
-inline constexpr std::array<Choice<planner::GoalRule>, 3> kChoices<planner::GoalRule>{
-    {{"render", planner::GoalRule::kViewQuality},
-     {"cluster", planner::GoalRule::kClusters},
-     {"nearest", planner::GoalRule::kNearest}}};
+inline constexpr std::array<Choice<GoalSearch>, 4> kChoices<GoalSearch>{{{"tour", GoalSearch::kTour},
+                                                                         {"render", GoalSearch::kRender},
+                                                                         {"cluster", GoalSearch::kCluster},
+                                                                         {"nearest", GoalSearch::kNearest}}};
 
 template <>
 inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::PathSearch>{

@@ -30,9 +30,9 @@ void check(const Options& given) {
 }
 
 // Of what a task gives, an option replaces all that it stands for.
-void replace_in_task(ExploreOptions& options, bool team, bool mode, bool goal) {
+void replace_in_task(ExploreOptions& options, bool team, bool mode, bool lockstep, bool goal) {
   if (team) options.robots.clear();
-  if (mode && !goal) options.goal.reset();
+  if (!goal && (mode || (lockstep && options.goal == GoalSearch::kTour))) options.goal.reset();
 }
 
 void run(Options given) {
@@ -47,8 +47,10 @@ void run(Options given) {
 std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& options) {
   command.group("Method");
   Option mode = command.add("--mode", options.mode, "What works best, or as printed in the paper");
-  Option goal = command.add("--goal", options.goal,
-                            "Goals by view quality, clusters of frontiers, or distance [by mode]");
+  Option goal =
+      command.add("--goal", options.goal,
+                  "Tours for the whole team, or one goal after the other: by view quality, clusters of\n"
+                  "frontiers, or distance [tour; --lockstep: render; --mode paper: its own]");
   command.add("--planner", options.search, "Path search; corridor: shortest paths [by mode]");
   command.add("--renderer", options.renderer,
               "View quality of all frontiers, or by rays to drawn ones [by mode]");
@@ -90,8 +92,9 @@ void add_explore_command(CLI::App& app) {
   command.add("--world-seed", options.source.seed, "N", "Random seed of a built-in world's layout [--seed]",
               kSeeds);
   command.group("Clock");
-  command.add_flag("--lockstep", options.lockstep,
-                   "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
+  Option lockstep =
+      command.add_flag("--lockstep", options.lockstep,
+                       "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
   command.add("--latency", options.latency, "SECONDS", "Time from a planning to the begin of its trajectory",
               kAboveZero);
   command.group("Stopping");
@@ -122,8 +125,8 @@ void add_explore_command(CLI::App& app) {
   frontlux explore --resume station_run
 Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux (the
 recording) and report.html. Ctrl-C ends a run after the current step.)");
-  command.run([given, team, mode = mode, goal = goal] {
-    replace_in_task(given->options, team.given(), mode.given(), goal.given());
+  command.run([given, team, lockstep, mode = mode, goal = goal] {
+    replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);
   });
 }

@@ -175,6 +175,11 @@ void read(std::string_view word, StartPose& start) {
   start.robot = word.substr(0, equals);
 }
 
+bool makes_tours(const ExploreOptions& options) {
+  return !options.lockstep && options.mode == planner::Method::kDefault &&
+         options.goal.value_or(GoalSearch::kTour) == GoalSearch::kTour;
+}
+
 void note_paths(ExploreOptions& options) {
   const auto absolute = [](const std::string& file) {
     return AbsolutePath{std::filesystem::absolute(file).lexically_normal().string()};

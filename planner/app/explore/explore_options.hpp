@@ -1,5 +1,6 @@
 #pragma once
 
+#include "choices.hpp"
 #include "world_source.hpp"
 
 #include <frontlux/io/task_file.hpp>
@@ -42,7 +43,7 @@ struct ExploreOptions {
   std::vector<AbsolutePath> robot_paths;
   std::vector<StartPose> poses;
   planner::Method mode = planner::Method::kDefault;
-  std::optional<planner::GoalRule> goal;
+  std::optional<GoalSearch> goal;
   std::optional<planner::PathSearch> search;
   std::optional<ViewQualityOptions::Renderer> renderer;
   bool assign = true, optimize = true;
@@ -57,6 +58,9 @@ struct ExploreOptions {
   std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
 };
+
+/// Whether robots go on tours, the default in motion.
+[[nodiscard]] bool makes_tours(const ExploreOptions& options);
 
 /// Notes the absolute paths of the world's and the robots' files, as they are named from here.
 void note_paths(ExploreOptions& options);

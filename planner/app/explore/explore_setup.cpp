@@ -123,9 +123,14 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
   }
 }
 
+planner::GoalRule rule_of(GoalSearch search) {
+  if (search == GoalSearch::kCluster) return planner::GoalRule::kClusters;
+  return search == GoalSearch::kNearest ? planner::GoalRule::kNearest : planner::GoalRule::kViewQuality;
+}
+
 planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot) {
   planner::GoalOptions goal = planner::goal_options(robot, options.mode);
-  goal.rule = options.goal.value_or(goal.rule);
+  goal.rule = options.goal ? rule_of(*options.goal) : goal.rule;
   goal.lambda = options.lambda.value_or(goal.lambda);
   // A robot in motion plans again before it arrives, so that near goals cost it less.
   if (!options.lockstep && options.mode == Method::kDefault) goal.advance = 2.0;
@@ -140,10 +145,14 @@ planner::GoalOptions goal_options(const ExploreOptions& options, const planner::
 
 planner::ExplorationOptions exploration_options(const ExploreOptions& options,
                                                 std::span<const RobotDescription> robots) {
+  if (options.goal == GoalSearch::kTour && (options.lockstep || options.mode == Method::kPaper))
+    throw BadInput(std::string("--goal tour is not for ") +
+                   (options.lockstep ? "--lockstep" : "--mode paper") +
+                   "; give another goal, or leave it out");
   planner::ExplorationOptions exploration = planner::exploration_options(options.mode);
   exploration.seed = options.seed;
   // With nearest goals each gain is small, so that small gains do not end the exploration.
-  if (options.goal == planner::GoalRule::kNearest) exploration.epsilon = 1.0;
+  if (options.goal == GoalSearch::kNearest) exploration.epsilon = 1.0;
   exploration.epsilon = options.epsilon.value_or(exploration.epsilon);
   for (const RobotDescription& robot : robots) {
     planner::GoalOptions goal = goal_options(options, robot.robot);
@@ -154,6 +163,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.path.search = options.search.value_or(exploration.path.search);
   constexpr int kOfRrtStar = 2000;
   if (exploration.path.search == planner::PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
+  exploration.tours = makes_tours(options);
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;
   exploration.caster = options.caster;

@@ -17,7 +17,7 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using io::TaskMethod, planner::GoalRule, planner::Method;
+using io::TaskMethod, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
 constexpr std::array<std::string_view, 19> kFurther = {
@@ -28,16 +28,19 @@ constexpr std::array<std::string_view, 19> kFurther = {
 void set_method(TaskMethod method, ExploreOptions& options) {
   options.mode = method == TaskMethod::kPaper ? Method::kPaper : Method::kDefault;
   options.goal.reset();
-  if (method == TaskMethod::kCluster) options.goal = GoalRule::kClusters;
-  if (method == TaskMethod::kNearest) options.goal = GoalRule::kNearest;
+  if (method == TaskMethod::kTour) options.goal = GoalSearch::kTour;
+  if (method == TaskMethod::kRender) options.goal = GoalSearch::kRender;
+  if (method == TaskMethod::kCluster) options.goal = GoalSearch::kCluster;
+  if (method == TaskMethod::kNearest) options.goal = GoalSearch::kNearest;
 }
 
-// The method, and the goal's rule if that does not tell it.
-std::pair<TaskMethod, std::optional<GoalRule>> method_of(const ExploreOptions& options) {
+// The method, and the search for goals if that does not tell it.
+std::pair<TaskMethod, std::optional<GoalSearch>> method_of(const ExploreOptions& options) {
   if (options.mode == Method::kPaper) return {TaskMethod::kPaper, options.goal};
-  if (options.goal == GoalRule::kClusters) return {TaskMethod::kCluster, std::nullopt};
-  if (options.goal == GoalRule::kNearest) return {TaskMethod::kNearest, std::nullopt};
-  return {TaskMethod::kRender, options.goal};
+  if (makes_tours(options)) return {TaskMethod::kTour, std::nullopt};
+  if (options.goal == GoalSearch::kCluster) return {TaskMethod::kCluster, std::nullopt};
+  if (options.goal == GoalSearch::kNearest) return {TaskMethod::kNearest, std::nullopt};
+  return {TaskMethod::kRender, std::nullopt};
 }
 
 std::string world_of(const std::string& file, const std::string& name) {

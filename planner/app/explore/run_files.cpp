@@ -45,13 +45,17 @@ std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead
   return rows;
 }
 
-// "render", or the rules of all robots with + between them.
-std::string goal_rules(const std::vector<planner::TeamMember>& team) {
+// "tour", or the rules of all robots with + between them.
+std::string goal_searches(const planner::ExplorationOptions& exploration) {
+  if (exploration.tours) return "tour";
+  using planner::GoalRule;
   std::string names;
-  for (const auto& rule : kChoices<planner::GoalRule>)
-    if (std::any_of(team.begin(), team.end(),
-                    [&](const planner::TeamMember& member) { return member.options.rule == rule.value; }))
-      names.append(names.empty() ? "" : "+").append(rule.name);
+  for (const auto& [name, rule] : {std::pair{"render", GoalRule::kViewQuality},
+                                   {"cluster", GoalRule::kClusters},
+                                   {"nearest", GoalRule::kNearest}})
+    if (std::ranges::any_of(exploration.team,
+                            [&](const planner::TeamMember& member) { return member.options.rule == rule; }))
+      names.append(names.empty() ? "" : "+").append(name);
   return names;
 }
 
@@ -233,7 +237,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"seed", exploration.seed},
       {"robots", names},
       {"mode", choice_name(options.mode)},
-      {"goal", goal_rules(exploration.team)},
+      {"goal", goal_searches(exploration)},
       {"assign", exploration.assign},
       {"optimize", exploration.optimize},
       {"caster", choice_name(options.caster)},

@@ -20,8 +20,8 @@ using planner::Pose;
 constexpr std::size_t kTaskDepth = 5;  // task, robots, robot, body, size
 constexpr std::size_t kLongestName = 255;
 constexpr JsonContent kTask{"a task", "docs/tasks.md", kTaskDepth};
-constexpr std::array kMethods{TaskMethod::kRender, TaskMethod::kPaper, TaskMethod::kCluster,
-                              TaskMethod::kNearest};
+constexpr std::array kMethods{TaskMethod::kTour, TaskMethod::kRender, TaskMethod::kPaper,
+                              TaskMethod::kCluster, TaskMethod::kNearest};
 
 const std::string kSeeTasks = "an object, see docs/tasks.md";
 
@@ -152,6 +152,8 @@ std::string dumped(const ordered_json& object) {
 
 std::string_view name_of(TaskMethod method) {
   switch (method) {
+    case TaskMethod::kTour:
+      return "tour";
     case TaskMethod::kRender:
       return "render";
     case TaskMethod::kPaper:

@@ -206,9 +206,12 @@ struct TravelCorridor::State {
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
   void lay_out(const VoxelKey& robot);
   void read(const MapChange& change, const VoxelKey& robot);
-  [[nodiscard]] bool passable(const VoxelKey& cell) const {
+  [[nodiscard]] bool fits(const VoxelKey& cell) const {
     return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
-           (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell)) &&
+           (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell));
+  }
+  [[nodiscard]] bool passable(const VoxelKey& cell) const {
+    return fits(cell) &&
            std::ranges::none_of(kept_out, [&](const KeyBox& box) { return box.contains(cell); });
   }
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
@@ -327,6 +330,10 @@ std::vector<VoxelKey> TravelCorridor::path_to(const VoxelKey& key) const {
 
 bool TravelCorridor::passable(const VoxelKey& key) const {
   return state_->distances && state_->distances->open(key);
+}
+
+bool TravelCorridor::fits(const VoxelKey& key) const {
+  return state_->distances && state_->frame.place(key) && state_->fits(key);
 }
 
 const Eigen::Vector3d& TravelCorridor::reach() const { return state_->reach; }

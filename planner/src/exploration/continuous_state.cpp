@@ -249,9 +249,12 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
   const InformationGain gain = team.optimize_path(robot, step);
-  for (const std::uint32_t i :
-       detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
-    member.goal_frontiers.push_back(team.selection->targets(robot)[i]);
+  if (team.tours)
+    member.goal_frontiers = team.tours->first_view(robot);
+  else
+    for (const std::uint32_t i :
+         detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
+      member.goal_frontiers.push_back(team.targets[robot][i]);
   departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
@@ -260,17 +263,23 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   Member& member = members[robot];
   const double start = time + team.options.latency;
   ExplorationStep step = collect(time);
-  for (std::size_t r = 0; r < members.size(); ++r) team.poses[r] = members[r].motion.at(start).pose;
+  std::vector<MotionState> starts;
+  for (std::size_t r = 0; r < members.size(); ++r) {
+    starts.push_back(members[r].motion.at(start));
+    team.poses[r] = starts[r].pose;
+  }
   team.update_frontiers(step);
   const std::vector<KeyBox> others = places_of_others(robot);
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
   note_look(robot, step);
-  const bool keeps = reason == PlanReason::kPeriod && member.going && member.goal.pose &&
+  const bool keeps = !team.tours && reason == PlanReason::kPeriod && member.going && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   if (keeps)
     team.keep_goal(robot, step);
+  else if (team.tours)
+    team.plan_tours(robot, starts, step);
   else
     team.select_goals(step, robot);
   if (!keeps) member.chosen = time;

@@ -80,8 +80,15 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
     by_voxels.node_edge = 0.0;
     voxel_corridors.back().emplace(by_voxels, lattice(), mapping.bounds());
   }
-  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
+  if (options.tours) {
+    std::vector<Robot> robots;
+    for (const TeamMember& member : team) robots.push_back(member.robot);
+    tours.emplace(std::move(robots), poses, lattice(), mapping.bounds(),
+                  TourPlanning::Options{.least_gain = options.epsilon});
+  }
+  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
+  targets.resize(size());
   trails.resize(size());
   went_back_to.resize(size());
 }
@@ -139,6 +146,7 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   }
   step.unassigned = goals.unassigned;
   for (std::size_t r = 0; r < size(); ++r) {
+    targets[r].assign(selection->targets(r).begin(), selection->targets(r).end());
     step.robots[r].goal = std::move(goals.goals[r]);
     if (options.team[r].robot.travel.motion == Motion::kPlane && (!choosing || *choosing == r))
       step.robots[r].image = selection->rendered_cells(r);
@@ -147,8 +155,47 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
 
 void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kGoals);
-  selection->keep_goal(change(), robot, poses[robot]);
+  selection->keep_goal({solid ? *solid : mapping.grid(), changed}, robot, poses[robot]);
   step.frontiers = frontiers.size();
+}
+
+void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
+                                  ExplorationStep& step) {
+  keep_goal(robot, step);
+  const PhaseClock clock(step, Phase::kGoals);
+  const CountingRayCaster counting(*caster, lattice());
+  wanted = abandoned.without_abandoned(frontiers.keys());
+  step.abandoned = frontiers.size() - wanted.size();
+  tours->note(changed);
+  tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
+  step.rays += counting.rays();
+  targets[robot] = wanted;
+  for (std::size_t other = 0; other < size(); ++other) {
+    if (other == robot) continue;
+    Keys rest;
+    std::ranges::set_difference(targets[robot], tours->frontiers_of(other), std::back_inserter(rest));
+    targets[robot] = std::move(rest);
+  }
+  Goal& goal = step.robots[robot].goal;
+  goal = {};
+  const auto tour = tours->tour(robot);
+  if (path_corridor(robot).state() != CorridorState::kReady) {
+    goal.state = GoalState::kNoCorridor;
+    goal.reason = "no goal: the robot " + std::string(describe(path_corridor(robot).state()));
+  } else if (tour.empty()) {
+    goal.state = GoalState::kNothingAssigned;
+    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
+  } else {
+    const TourStop& first = tour.front();
+    goal.state = GoalState::kAssigned;
+    goal.pose = first.pose;
+    goal.cell = first.cell;
+    goal.distance = path_corridor(robot).distance(first.cell).value_or(0.0);
+    goal.gain = static_cast<double>(first.seen);
+    goal.assigned = tours->frontiers_of(robot).size();
+    goal.quality = std::exp(-options.team[robot].options.lambda * goal.distance) * goal.gain;
+    goal.reason = "first of " + std::to_string(tour.size()) + " stops";
+  }
 }
 
 // Whether a robot sees enough from somewhere that it can go to from a cell, to which its way has this length
@@ -161,7 +208,7 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
   for (const std::uint32_t i : find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers) {
     bool others = false;
     for (std::size_t r = 0; r < size(); ++r)
-      others = others || (r != robot && std::ranges::binary_search(selection->targets(r), wanted[i]));
+      others = others || (r != robot && std::ranges::binary_search(targets[r], wanted[i]));
     gain += others ? std::exp(-options.team[robot].options.lambda * length) : 1.0;
   }
   return gain > 0.0 && gain >= options.epsilon;
@@ -240,12 +287,17 @@ InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& 
     turning.start = YawStart::kTangent;
     turning.ascend = false;
   }
+  if (tours) {
+    // It plans too often for a closer optimum to pay, and turns no faster than it can.
+    const MotionLimits& limits = options.team[r].robot.limits;
+    turning.ascend = false;
+    turning.max_yaw_rate = limits.yaw_rate / limits.speed;
+  }
   const CountingRayCaster counting(*caster, lattice());
   RobotStep& robot = step.robots[r];
   const FieldOfView& view = options.team[r].robot.view;
-  const auto targets = selection->targets(r);
-  const auto target_centers = centers(lattice(), targets);
-  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets, view);
+  const auto target_centers = centers(lattice(), targets[r]);
+  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets[r], view);
   const OptimizedPath turned = planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
   for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
   robot.gain_tangent = turned.tangent.distinct;
@@ -274,8 +326,8 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
     // The look at an obstacle is not from where the path would have led.
     const std::size_t reached = robot.travelled - (robot.blocked.empty() ? 0 : 1);
     if (gains[r])
-      robot.still_unknown = find_still_unknown(
-          mapping.grid(), *gains[r], std::span(robot.planned).first(reached), selection->targets(r));
+      robot.still_unknown =
+          find_still_unknown(mapping.grid(), *gains[r], std::span(robot.planned).first(reached), targets[r]);
     remember(r, robot);
   }
 }

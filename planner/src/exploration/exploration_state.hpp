@@ -1,6 +1,7 @@
 #pragma once
 
 #include "frontier/abandoned_frontiers.hpp"
+#include "tour/tour_planning.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/frontier_set.hpp>
@@ -29,6 +30,8 @@ struct ExplorationState {
   std::unique_ptr<RayCaster> caster;
   AbandonedFrontiers abandoned;
   std::optional<GoalSelection> selection = {};  // from the start on
+  std::optional<TourPlanning> tours = {};       // if they are wanted
+  std::vector<Keys> targets = {};               // what each robot looks at on its way
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
@@ -56,6 +59,9 @@ struct ExplorationState {
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
   /// Brings a robot's corridor up to date; all robots keep their goals.
   void keep_goal(std::size_t robot, ExplorationStep& step);
+  /// Shares the frontiers out in tours, and gives a robot the first stop of its tour for a goal.
+  /// @param starts  of all robots, when the robot's trajectory begins
+  void plan_tours(std::size_t robot, std::span<const MotionState> starts, ExplorationStep& step);
   void plan_paths(ExplorationStep& step);
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
   [[nodiscard]] InformationGain optimize_path(std::size_t robot, ExplorationStep& step) const;

@@ -28,6 +28,9 @@ struct ExplorationState;
 struct ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
   CasterKind caster = CasterKind::kFast;
+  /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
+  /// the other.
+  bool tours = false;
   bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;  ///< off: robots look ahead along their paths
   PathOptions path;

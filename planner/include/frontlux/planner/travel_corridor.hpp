@@ -148,6 +148,9 @@ class TravelCorridor {
   /// Whether a cell is passable, connected or not. In constant time.
   [[nodiscard]] bool passable(const VoxelKey& key) const;
 
+  /// Whether a cell would be passable, wherever other robots are. In constant time.
+  [[nodiscard]] bool fits(const VoxelKey& key) const;
+
   /// `reach_of` the corridor's options.
   [[nodiscard]] const Eigen::Vector3d& reach() const;
 

@@ -20,8 +20,8 @@ namespace frontlux::io {
 inline constexpr std::size_t kMostRobots = 32;  ///< in a task
 
 /// How robots choose where to go.
-enum class TaskMethod : std::uint8_t { kRender, kPaper, kCluster, kNearest };
-/// One of the words "render", "paper", "cluster", "nearest".
+enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNearest };
+/// One of the words "tour", "render", "paper", "cluster", "nearest".
 [[nodiscard]] std::string_view name_of(TaskMethod method);
 
 /// A robot of a task.

@@ -1,0 +1,128 @@
+#include "tour/cluster_viewpoints.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace frontlux::planner::detail {
+namespace {
+
+// Of the range. Farther away there are places that see a cluster as well, but what a robot sees from there
+// ends where its view does: going on, it would stop and start again and again.
+constexpr std::array kRadii = {0.125, 0.25, 0.375, 0.5};
+constexpr int kAzimuths = 16;
+constexpr std::array kHeights = {0.0, -0.15, 0.15};  // of the range, above the middle
+constexpr std::size_t kSample = 48;                  // frontiers that candidates are compared by
+constexpr std::size_t kKept = 6;                     // viewpoints
+constexpr double kAsGood = 0.7;                      // of what the best one sees
+constexpr double kApart = 0.1;                       // of the range
+
+Eigen::Vector3d middle_of(const Lattice& lattice, std::span<const VoxelKey> keys) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const VoxelKey& key : keys) sum += lattice.exact_center(key);
+  return sum / static_cast<double>(keys.size());
+}
+
+std::vector<VoxelKey> some_of(const std::vector<VoxelKey>& keys, std::size_t most) {
+  if (keys.size() <= most) return keys;
+  std::vector<VoxelKey> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(keys[(2 * i + 1) * keys.size() / (2 * most)]);
+  return some;
+}
+
+std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCluster& cluster) {
+  std::vector<VoxelKey> cells;
+  const auto extent = query.graph.extent();
+  if (!extent) return cells;
+  const Eigen::Vector3d middle = middle_of(query.lattice, cluster.keys);
+  const double lowest = query.lattice.center(extent->min.z), highest = query.lattice.center(extent->max.z);
+  for (const double part : kRadii)
+    for (int a = 0; a < kAzimuths; ++a)
+      for (const double above : kHeights) {
+        const double azimuth = 2 * std::numbers::pi * a / kAzimuths, radius = part * query.view.max_range;
+        const Eigen::Vector3d at(middle.x() + radius * std::cos(azimuth),
+                                 middle.y() + radius * std::sin(azimuth),
+                                 std::clamp(middle.z() + above * query.view.max_range, lowest, highest));
+        if (const auto cell = query.lattice.key(at); cell && query.graph.node(*cell)) cells.push_back(*cell);
+      }
+  std::ranges::sort(cells);
+  cells.erase(std::ranges::unique(cells).begin(), cells.end());
+  return cells;
+}
+
+// What each cell sees of some frontiers.
+std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<const VoxelKey> cells,
+                                        std::span<const VoxelKey> targets) {
+  std::vector<KeySegment> segments;
+  std::vector<std::size_t> begin{0};
+  for (const VoxelKey& cell : cells) {
+    for (const VoxelKey& target : targets)
+      if (query.region.contains(cell, target)) segments.push_back({cell, target});
+    begin.push_back(segments.size());
+  }
+  std::vector<std::uint8_t> visible(segments.size());
+  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  const bool all_around = query.view.shape == FieldOfView::Shape::kSpinning;
+  std::vector<ClusterViewpoint> viewpoints;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const Eigen::Vector3d from = query.lattice.exact_center(cells[c]);
+    const auto offset = [&](std::size_t s) -> Eigen::Vector3d {
+      return query.lattice.exact_center(segments[s].to) - from;
+    };
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    ClusterViewpoint viewpoint{.cell = cells[c]};
+    for (std::size_t s = begin[c]; s < begin[c + 1]; ++s)
+      if (visible[s] != 0) sum += offset(s);
+    viewpoint.yaw = std::atan2(sum.y(), sum.x());
+    for (std::size_t s = begin[c]; s < begin[c + 1]; ++s)
+      if (visible[s] != 0 && (all_around || query.view.contains(offset(s), viewpoint.yaw))) ++viewpoint.seen;
+    viewpoints.push_back(viewpoint);
+  }
+  return viewpoints;
+}
+
+}  // namespace
+
+std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                              std::span<const VoxelKey> cells) {
+  std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, kSample));
+  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+  std::vector<VoxelKey> kept;
+  const int apart = static_cast<int>(kApart * query.view.max_range / query.lattice.resolution());
+  for (const ClusterViewpoint& viewpoint : all) {
+    if (kept.size() == kKept || viewpoint.seen == 0 ||
+        static_cast<double>(viewpoint.seen) < kAsGood * static_cast<double>(all.front().seen))
+      break;
+    const KeyBox near = grown({viewpoint.cell, viewpoint.cell}, apart);
+    if (std::ranges::none_of(kept, [&](const VoxelKey& cell) { return near.contains(cell); }))
+      kept.push_back(viewpoint.cell);
+  }
+  std::vector<ClusterViewpoint> best = look_from(query, kept, cluster.keys);
+  std::erase_if(best, [&](const ClusterViewpoint& viewpoint) {
+    return static_cast<double>(viewpoint.seen) < query.least_gain;
+  });
+  std::ranges::stable_sort(best, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+  return best;
+}
+
+std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const VoxelKey> frontiers,
+                                   const VoxelKey& cell, double yaw) {
+  const Eigen::Vector3d from = query.lattice.exact_center(cell);
+  std::vector<KeySegment> segments;
+  for (const VoxelKey& key : frontiers)
+    if (query.view.contains(query.lattice.exact_center(key) - from, yaw)) segments.push_back({cell, key});
+  std::vector<std::uint8_t> visible(segments.size());
+  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  std::vector<VoxelKey> seen;
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    if (visible[s] != 0) seen.push_back(segments[s].to);
+  return seen;
+}
+
+std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster) {
+  return best_viewpoints(query, cluster, cells_around(query, cluster));
+}
+
+}  // namespace frontlux::planner::detail

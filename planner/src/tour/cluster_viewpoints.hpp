@@ -1,0 +1,48 @@
+#pragma once
+
+#include "tour/frontier_clusters.hpp"
+#include "tour/travel_graph.hpp"
+
+#include <frontlux/field_of_view.hpp>
+#include <frontlux/ray_caster.hpp>
+#include <frontlux/view_region.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// From where a robot sees a cluster, and how much of it.
+struct ClusterViewpoint {
+  VoxelKey cell;         ///< of its sensor
+  double yaw = 0.0;      ///< [rad] towards the middle of what it sees
+  std::size_t seen = 0;  ///< frontiers of the cluster in view at this yaw, and visible through free space
+};
+
+/// What a robot's viewpoints depend on.
+struct ViewpointQuery {
+  const RayCaster& caster;
+  const Lattice& lattice;
+  const TravelGraph& graph;  ///< where the robot fits
+  const FieldOfView& view;
+  const ViewRegion& region;  ///< of the view
+  double least_gain = 1.0;   ///< [frontiers] places that see fewer of a cluster are no viewpoints
+};
+
+/// Some places from which a robot sees about as much of a cluster as from any, apart from each other; the
+/// best first. They lie on circles around the cluster's middle. None if it sees nothing from any of them.
+[[nodiscard]] std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query,
+                                                            const FrontierCluster& cluster);
+
+/// The same of some cells.
+[[nodiscard]] std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query,
+                                                            const FrontierCluster& cluster,
+                                                            std::span<const VoxelKey> cells);
+
+/// The frontiers that a robot in a cell has in view at a yaw [rad], and sees through free space.
+[[nodiscard]] std::vector<VoxelKey> visible_from(const ViewpointQuery& query,
+                                                 std::span<const VoxelKey> frontiers, const VoxelKey& cell,
+                                                 double yaw);
+
+}  // namespace frontlux::planner::detail

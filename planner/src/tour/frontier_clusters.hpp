@@ -1,0 +1,55 @@
+#pragma once
+
+#include "mapping/box_array.hpp"
+
+#include <frontlux/key_box.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// Frontiers that touch each other, in a box of bounded size: what a robot looks at from one place.
+struct FrontierCluster {
+  std::uint64_t id = 0;        ///< stays the same while most of its frontiers do; never used again
+  std::uint64_t revision = 0;  ///< another one whenever its frontiers are others
+  std::vector<VoxelKey> keys;  ///< sorted
+  KeyBox box;                  ///< around them
+};
+
+/// The frontiers of a map in clusters. They connect by faces, edges and corners; clusters that reach from one
+/// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour.
+class FrontierClusters {
+ public:
+  /// @param bounds  of all frontiers
+  /// @param edge    [voxels] of a cube
+  /// @param least   [frontiers] smaller clusters are left out
+  FrontierClusters(const KeyBox& bounds, int edge, std::size_t least);
+
+  /// @param frontiers  sorted
+  void update(std::span<const VoxelKey> frontiers);
+
+  /// By their first key.
+  [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
+
+ private:
+  [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
+    return make_key(key.x / edge_, key.y / edge_, key.z / edge_);
+  }
+  [[nodiscard]] std::vector<std::vector<VoxelKey>> pieces(std::span<const VoxelKey> frontiers);
+  void join_small(std::vector<std::vector<VoxelKey>>& pieces) const;
+  void name(FrontierCluster& cluster, std::vector<std::uint64_t>& taken);
+
+  int edge_;
+  std::size_t least_;
+  std::vector<FrontierCluster> clusters_;
+  BoxArray<std::uint32_t> piece_;    // of each frontier, from 1 on; 0 elsewhere
+  BoxArray<std::uint64_t> cluster_;  // that each voxel was in last
+  std::uint64_t next_id_ = 1, next_revision_ = 1;
+};
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,401 @@
+#include "tour/tour_planning.hpp"
+
+#include <frontlux/parallel.hpp>
+#include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/planner/segment_voxels.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace frontlux::planner::detail {
+namespace {
+
+using Keys = std::vector<VoxelKey>;
+
+int voxels(double length, const Lattice& lattice) {
+  return std::max(1, static_cast<int>(std::lround(length / lattice.resolution())));
+}
+
+// The cells of a robot on a plane are all on one layer.
+KeyBox cells_of(const Robot& robot, const Pose& start, const Lattice& lattice, const KeyBox& bounds) {
+  KeyBox cells = bounds;
+  if (robot.travel.motion == Motion::kPlane)
+    cells.min.z = cells.max.z = lattice.key(start.position.z()).value_or(bounds.min.z);
+  return cells;
+}
+
+double greatest_range(std::span<const Robot> robots) {
+  double greatest = 0.0;
+  for (const Robot& robot : robots) greatest = std::max(greatest, robot.view.max_range);
+  return greatest;
+}
+
+// [s] for a way and a turn; robots that see all around need not turn.
+double seconds(const Robot& robot, double distance, double turn) {
+  const bool turns = robot.view.shape != FieldOfView::Shape::kSpinning;
+  return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
+}
+
+double turn_between(double a, double b) { return std::abs(std::remainder(b - a, 2 * std::numbers::pi)); }
+
+}  // namespace
+
+TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> starts, const Lattice& lattice,
+                           const KeyBox& bounds, const Options& options)
+    : lattice_(lattice),
+      bounds_(bounds),
+      options_(options),
+      zone_edge_(voxels(options.zone_edge * greatest_range(robots), lattice)),
+      clusters_(bounds, voxels(options.cluster_edge * greatest_range(robots), lattice),
+                static_cast<std::size_t>(
+                    std::ceil(options_.least_area / (lattice.resolution() * lattice.resolution()) - 1e-6))) {
+  const int graph_edge = voxels(options.graph_edge * greatest_range(robots), lattice);
+  for (std::size_t r = 0; r < robots.size(); ++r) {
+    Robot& robot = robots[r];
+    TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge);
+    ViewRegion region(robot.view, lattice.resolution());
+    members_.push_back({std::move(robot), std::move(region), std::move(graph)});
+  }
+}
+
+void TourPlanning::note(std::span<const VoxelKey> changed) {
+  for (Member& member : members_) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
+}
+
+Keys TourPlanning::frontiers_of(std::size_t robot) const {
+  Keys all;
+  for (const FrontierCluster& cluster : clusters_.clusters())
+    if (std::ranges::find(members_[robot].tour, cluster.id, &TourStop::cluster) != members_[robot].tour.end())
+      all.insert(all.end(), cluster.keys.begin(), cluster.keys.end());
+  std::ranges::sort(all);
+  return all;
+}
+
+// Boxes that hold all voxels that have changed since the robot's last planning.
+std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
+  constexpr int kCube = 8;  // [voxels]
+  Keys cubes;
+  for (const VoxelKey& key : std::exchange(member.changed, {}))
+    cubes.push_back(make_key(key.x / kCube, key.y / kCube, key.z / kCube));
+  std::ranges::sort(cubes);
+  cubes.erase(std::ranges::unique(cubes).begin(), cubes.end());
+  std::vector<KeyBox> boxes;
+  for (const VoxelKey& at : cubes)
+    boxes.push_back(cube(make_key(at.x * kCube, at.y * kCube, at.z * kCube), kCube));
+  return boxes;
+}
+
+void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> changes) {
+  Member& member = members_[query.robot];
+  std::vector<KeyBox> cells;  // whose boxes hold a changed voxel
+  for (const KeyBox& box : changes) {
+    const KeyBox reach = voxels_of_cell(member.robot.travel, lattice_, box.min);
+    const auto by = [](int low, int at, int high) { return std::max(at - low, high - at) + 1; };
+    cells.push_back(grown(box, by(reach.min.x, box.min.x, reach.max.x),
+                          by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
+  }
+  member.graph.update(query.corridor, cells);
+}
+
+ViewpointQuery TourPlanning::sight_of(const Query& query) const {
+  const Member& member = members_[query.robot];
+  return {query.caster, lattice_, member.graph, member.robot.view, member.region, options_.least_gain};
+}
+
+// What the robot sees of each cluster, from where.
+void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
+  Member& member = members_[query.robot];
+  const ViewpointQuery view = sight_of(query);
+  std::map<std::uint64_t, Sight> sights;
+  std::vector<std::pair<const FrontierCluster*, Sight*>> search;
+  const auto near = [&](const FrontierCluster& cluster) {
+    const KeyBox around = grown(cluster.box, member.region.reach());
+    return std::ranges::any_of(changes,
+                               [&](const KeyBox& box) { return intersection(box, around).has_value(); });
+  };
+  for (const FrontierCluster& cluster : clusters_.clusters()) {
+    Sight& sight = sights[cluster.id];
+    if (const auto before = member.sights.find(cluster.id); before != member.sights.end())
+      sight = std::move(before->second);
+    const bool stands = sight.revision == cluster.revision &&
+                        std::ranges::all_of(sight.viewpoints, [&](const ClusterViewpoint& viewpoint) {
+                          return query.corridor.contains(viewpoint.cell);
+                        });
+    if (!stands || near(cluster)) search.emplace_back(&cluster, &sight);
+  }
+  for_each_index(search.size(), [&](std::size_t i) {
+    const auto& [cluster, sight] = search[i];
+    sight->revision = cluster->revision;
+    sight->viewpoints = find_viewpoints(view, *cluster);
+    std::erase_if(sight->viewpoints, [&](const ClusterViewpoint& viewpoint) {
+      return !query.corridor.contains(viewpoint.cell);
+    });
+  });
+  member.sights = std::move(sights);
+  std::vector<const FrontierCluster*> hidden;
+  for (const auto& [cluster, sight] : search)
+    if (sight->viewpoints.empty()) hidden.push_back(cluster);
+  look_from_anywhere(query, view, hidden);
+}
+
+// Clusters that are seen from none of the usual places, but from some cell all the same (Alg. 2).
+void TourPlanning::look_from_anywhere(const Query& query, const ViewpointQuery& view,
+                                      std::span<const FrontierCluster* const> hidden) {
+  Member& member = members_[query.robot];
+  Keys frontiers;
+  for (const FrontierCluster* cluster : hidden)
+    frontiers.insert(frontiers.end(), cluster->keys.begin(), cluster->keys.end());
+  if (frontiers.empty()) return;
+  std::ranges::sort(frontiers);
+  const AssignedFrontiers seen = find_visible_frontiers(query.caster, query.grid, frontiers,
+                                                        {query.corridor.cells(), member.robot.view});
+  for (const FrontierCluster* cluster : hidden) {
+    Keys cells;
+    for (std::size_t i = 0; i < seen.frontiers.size(); ++i)
+      if (std::ranges::binary_search(cluster->keys, frontiers[seen.frontiers[i]]))
+        cells.push_back(seen.seen_from[i]);
+    std::ranges::sort(cells);
+    cells.erase(std::ranges::unique(cells).begin(), cells.end());
+    member.sights[cluster->id].viewpoints = best_viewpoints(view, *cluster, cells);
+  }
+}
+
+// Of a robot in motion, to a viewpoint at a distance [m] by its way.
+double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
+                                const ClusterViewpoint& viewpoint, double distance) const {
+  constexpr double kReluctance = 2.0;  // to change direction; the time that it takes would be 1
+  const double time = seconds(robot, distance, turn_between(start.pose.yaw, viewpoint.yaw));
+  const Eigen::Vector3d way = lattice_.exact_center(viewpoint.cell) - start.pose.position;
+  if (way.isZero()) return time;
+  const double lost = start.velocity.norm() - start.velocity.dot(way.normalized());
+  return time + kReluctance * lost / robot.limits.acceleration;
+}
+
+// [m] between two cells, given the distances from the first one's node.
+double TourPlanning::distance_between(const Member& member, const std::vector<double>& from,
+                                      const VoxelKey& a, const VoxelKey& b) const {
+  const double straight = (lattice_.exact_center(b) - lattice_.exact_center(a)).norm();
+  const auto node = member.graph.node(b);
+  if (!node || from.empty() || from[*node] == TravelGraph::kFar) return TourProblem::kNever;
+  if (straight >= from[*node]) return straight;
+  constexpr double kClear = 8.0;  // [m]
+  if (straight < kClear &&
+      SegmentVoxels(lattice_, lattice_.exact_center(a), lattice_.exact_center(b))
+          .all_of([&](const VoxelKey& key) { return member.graph.node(key).has_value(); }))
+    return straight;
+  return from[*node];
+}
+
+const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::uint32_t cluster) const {
+  const auto sight = member.sights.find(clusters_.clusters()[cluster].id);
+  if (sight == member.sights.end() || sight->second.viewpoints.empty()) return nullptr;
+  return &sight->second.viewpoints.front();
+}
+
+// Clusters near a robot one by one; of the others those together that lie in one zone and that the same
+// robots can see.
+std::vector<TourPlanning::Stop> TourPlanning::stops(std::span<const MotionState> starts) const {
+  std::vector<Stop> stops;
+  std::map<std::pair<VoxelKey, std::vector<bool>>, Stop> zones;
+  const auto clusters = clusters_.clusters();
+  for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+    const KeyBox& box = clusters[i].box;
+    const VoxelKey middle =
+        make_key((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
+    std::vector<bool> seen_by;
+    bool near = false;
+    for (std::size_t r = 0; r < members_.size(); ++r) {
+      seen_by.push_back(best_viewpoint(members_[r], i) != nullptr);
+      const double distance = (lattice_.exact_center(middle) - starts[r].pose.position).norm();
+      near = near || (seen_by[r] && distance <= options_.near * members_[r].robot.view.max_range);
+    }
+    if (std::ranges::find(seen_by, true) == seen_by.end()) continue;
+    if (near)
+      stops.push_back({i});
+    else
+      zones[{make_key(middle.x / zone_edge_, middle.y / zone_edge_, middle.z / zone_edge_), seen_by}]
+          .push_back(i);
+  }
+  for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
+  return stops;
+}
+
+// The clusters of a stop, each time the nearest one.
+TourPlanning::Stop TourPlanning::in_order(const Member& member, const Stop& stop,
+                                          Eigen::Vector3d from) const {
+  Stop rest = stop, order;
+  while (!rest.empty()) {
+    const auto nearest = std::ranges::min_element(rest, {}, [&](std::uint32_t cluster) {
+      return (lattice_.exact_center(best_viewpoint(member, cluster)->cell) - from).norm();
+    });
+    from = lattice_.exact_center(best_viewpoint(member, *nearest)->cell);
+    order.push_back(*nearest);
+    rest.erase(nearest);
+  }
+  return order;
+}
+
+TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
+                                              std::span<const Stop> stops) const {
+  const Member& member = members_[r];
+  const MotionState& start = query.starts[r];
+  const std::size_t count = stops.size();
+  TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), CostTable(count, count)};
+  const auto cell = lattice_.key(start.pose.position);
+  const auto node = cell ? member.graph.node(*cell) : std::nullopt;
+  const std::vector<double> away = node ? member.graph.distances(*node) : std::vector<double>();
+  std::vector<const ClusterViewpoint*> at(count);
+  std::vector<std::vector<double>> from(count);
+  std::vector<double> within(count);  // [s] from cluster to cluster of a stop
+  for_each_index(count, [&](std::size_t i) {
+    at[i] = best_viewpoint(member, stops[i].front());
+    if (at[i] == nullptr) return;
+    const auto place = member.graph.node(at[i]->cell);
+    if (!place) return;
+    if (away.empty() || away[*place] == TravelGraph::kFar) return;
+    from[i] = member.graph.distances(*place);
+    Eigen::Vector3d before = lattice_.exact_center(at[i]->cell);
+    for (const std::uint32_t cluster : in_order(member, stops[i], before)) {
+      const Eigen::Vector3d next = lattice_.exact_center(best_viewpoint(member, cluster)->cell);
+      within[i] += seconds(member.robot, (next - before).norm(), 0.0);
+      before = next;
+    }
+  });
+  for_each_index(count, [&](std::size_t i) {
+    for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
+    if (from[i].empty()) return;
+    double distance = distance_between(member, away, *cell, at[i]->cell);
+    if (r == query.robot) distance = query.corridor.distance(at[i]->cell).value_or(TourProblem::kNever);
+    if (distance != TourProblem::kNever)
+      robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (from[j].empty()) continue;
+      const double way = distance_between(member, from[i], at[i]->cell, at[j]->cell);
+      if (way != TourProblem::kNever)
+        robot.between(i, j) =
+            seconds(member.robot, way, turn_between(at[i]->yaw, at[j]->yaw)) + (within[i] + within[j]) / 2;
+    }
+  });
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) robot.between(i, j) = robot.between(j, i);
+  return robot;
+}
+
+TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stops) const {
+  TourProblem problem;
+  problem.stops = stops.size();
+  for (std::size_t r = 0; r < members_.size(); ++r) problem.robots.push_back(travel_times(query, r, stops));
+  return problem;
+}
+
+// Chooses the viewpoints of the next stops together: the shortest way through one of each.
+void TourPlanning::refine(const Query& query) {
+  Member& member = members_[query.robot];
+  const std::size_t count = std::min(options_.refined, member.tour.size());
+  if (count == 0) return;
+  const MotionState& start = query.starts[query.robot];
+  struct Node {
+    const ClusterViewpoint* viewpoint;
+    double cost = TourProblem::kNever;
+    std::size_t before = 0;
+  };
+  std::vector<std::vector<Node>> stages(count);
+  for (std::size_t s = 0; s < count; ++s)
+    for (const ClusterViewpoint& viewpoint : member.sights[member.tour[s].cluster].viewpoints)
+      stages[s].push_back({&viewpoint});
+  for (Node& node : stages[0]) {
+    const auto distance = query.corridor.distance(node.viewpoint->cell);
+    if (!distance) continue;
+    node.cost = seconds_to(member.robot, start, *node.viewpoint, *distance);
+  }
+  for (std::size_t s = 1; s < count; ++s) {
+    std::vector<std::vector<double>> from(stages[s - 1].size());
+    for_each_index(from.size(), [&](std::size_t i) {
+      if (const auto node = member.graph.node(stages[s - 1][i].viewpoint->cell))
+        from[i] = member.graph.distances(*node);
+    });
+    for (Node& node : stages[s])
+      for (std::size_t b = 0; b < stages[s - 1].size(); ++b) {
+        const Node& before = stages[s - 1][b];
+        const double distance =
+            distance_between(member, from[b], before.viewpoint->cell, node.viewpoint->cell);
+        const double cost = before.cost + seconds(member.robot, distance,
+                                                  turn_between(before.viewpoint->yaw, node.viewpoint->yaw));
+        if (cost >= node.cost) continue;
+        node.cost = cost;
+        node.before = b;
+      }
+  }
+  const auto best = std::ranges::min_element(stages.back(), {}, &Node::cost);
+  if (best == stages.back().end() || best->cost == TourProblem::kNever) return;
+  auto at = static_cast<std::size_t>(best - stages.back().begin());
+  for (std::size_t s = count; s-- > 0;) {
+    const Node& node = stages[s][at];
+    TourStop& stop = member.tour[s];
+    stop.cell = node.viewpoint->cell;
+    stop.pose = {lattice_.exact_center(stop.cell), node.viewpoint->yaw};
+    stop.seen = node.viewpoint->seen;
+    at = node.before;
+  }
+}
+
+void TourPlanning::update(const Query& query) {
+  const std::vector<KeyBox> changes = take_changes(members_[query.robot]);
+  update_graph(query, changes);
+  clusters_.update(query.frontiers);
+  look(query, changes);
+  const auto clusters = clusters_.clusters();
+  const std::vector<Stop> places = stops(query.starts);
+  TourProblem all = problem(query, places);
+  std::map<std::uint64_t, std::uint32_t> stop_of;  // cluster
+  for (std::uint32_t i = 0; i < places.size(); ++i)
+    for (const std::uint32_t cluster : places[i]) stop_of[clusters[cluster].id] = i;
+  // What is left of the tours before.
+  Tours before(members_.size());
+  std::vector<bool> taken(places.size());
+  for (std::size_t r = 0; r < members_.size(); ++r)
+    for (const TourStop& stop : members_[r].tour) {
+      const auto place = stop_of.find(stop.cluster);
+      if (place == stop_of.end() || taken[place->second] ||
+          all.robots[r].first[place->second] == TourProblem::kNever)
+        continue;
+      taken[place->second] = true;
+      before[r].push_back(place->second);
+      // Where another robot goes already, it goes.
+      if (r != query.robot && &stop == members_[r].tour.data()) all.robots[r].fixed = 1;
+    }
+  Tours tours = shortened_tours(all, before);
+  Tours begun(members_.size());
+  for (std::size_t r = 0; r < members_.size(); ++r)
+    if (all.robots[r].fixed != 0) begun[r] = {before[r].front()};
+  Tours anew = shortened_tours(all, begun);
+  constexpr double kWorth = 0.95;  // else robots would change their minds all the time
+  if (cost_of(all, anew) < kWorth * cost_of(all, tours)) tours = std::move(anew);
+  for (std::size_t r = 0; r < members_.size(); ++r) {
+    Member& member = members_[r];
+    std::vector<TourStop> tour;
+    Eigen::Vector3d at = query.starts[r].pose.position;
+    for (const std::uint32_t place : tours[r])
+      for (const std::uint32_t cluster : in_order(member, places[place], at)) {
+        const ClusterViewpoint& viewpoint = *best_viewpoint(member, cluster);
+        at = lattice_.exact_center(viewpoint.cell);
+        tour.push_back({clusters[cluster].id, {at, viewpoint.yaw}, viewpoint.cell, viewpoint.seen});
+      }
+    member.tour = std::move(tour);
+  }
+  refine(query);
+
+  Member& member = members_[query.robot];
+  member.first_view.clear();
+  if (member.tour.empty()) return;
+  const TourStop& first = member.tour.front();
+  const ViewpointQuery view = sight_of(query);
+  for (const FrontierCluster& cluster : clusters)
+    if (cluster.id == first.cluster)
+      member.first_view = visible_from(view, cluster.keys, first.cell, first.pose.yaw);
+}
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "tour/cluster_viewpoints.hpp"
+#include "tour/frontier_clusters.hpp"
+#include "tour/tour_search.hpp"
+#include "tour/travel_graph.hpp"
+
+#include <frontlux/planner/robot.hpp>
+#include <frontlux/planner/trajectory.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// A place to which a robot's tour leads, to look at a cluster of frontiers.
+struct TourStop {
+  std::uint64_t cluster = 0;  ///< id
+  Pose pose;                  ///< of the sensor
+  VoxelKey cell;              ///< of the pose
+  std::size_t seen = 0;       ///< frontiers of the cluster in view
+};
+
+/// Who looks at which cluster of frontiers, and in what order: tours for all robots together. They are kept
+/// from planning to planning and shortened anew as the map changes.
+class TourPlanning {
+ public:
+  struct Options {
+    // Of the greatest range of a robot's sensor: edges of the cubes in which
+    double cluster_edge = 0.4;  ///< frontiers make a cluster,
+    double zone_edge = 0.8;     ///< clusters that are far from all robots make one stop,
+    double graph_edge = 0.4;    ///< a robot's cells make a node
+    double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
+    double least_area = 1.5;    ///< [m2] of a cluster worth a stop
+    double least_gain = 10.0;   ///< [frontiers] that a stop shows
+    std::size_t refined = 5;    ///< stops whose viewpoints are chosen together
+  };
+
+  /// @param starts  of the robots; those on a plane stay on it
+  TourPlanning(std::vector<Robot> robots, std::span<const Pose> starts, const Lattice& lattice,
+               const KeyBox& bounds, const Options& options);
+
+  /// What one robot plans with.
+  struct Query {
+    std::size_t robot = 0;
+    const RayCaster& caster;              ///< of the map as it is now
+    const VoxelGrid& grid;                ///< the same map
+    const TravelCorridor& corridor;       ///< the robot's, up to date
+    std::span<const VoxelKey> frontiers;  ///< worth a look; sorted
+    std::span<const MotionState> starts;  ///< of all robots, when the trajectory begins
+  };
+  /// Shares the frontiers out anew, with the robot's part of it worked out.
+  void update(const Query& query);
+
+  /// From the next planning on these voxels have changed.
+  void note(std::span<const VoxelKey> changed);
+
+  /// The robot's tour as of the last update.
+  [[nodiscard]] std::span<const TourStop> tour(std::size_t robot) const { return members_[robot].tour; }
+  /// Frontiers that the robot will see from the first stop of its tour; sorted.
+  [[nodiscard]] const std::vector<VoxelKey>& first_view(std::size_t robot) const {
+    return members_[robot].first_view;
+  }
+  /// Frontiers of the clusters in a robot's tour; sorted.
+  [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
+
+ private:
+  // A cluster as a robot sees it.
+  struct Sight {
+    std::uint64_t revision = 0;
+    std::vector<ClusterViewpoint> viewpoints;
+  };
+  struct Member {
+    Robot robot;
+    ViewRegion region;
+    TravelGraph graph;
+    std::vector<VoxelKey> changed = {};  // since its graph was updated
+    std::map<std::uint64_t, Sight> sights = {};
+    std::vector<TourStop> tour = {};
+    std::vector<VoxelKey> first_view = {};
+  };
+
+  [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
+  void update_graph(const Query& query, std::span<const KeyBox> changes);
+  [[nodiscard]] ViewpointQuery sight_of(const Query& query) const;
+  void look(const Query& query, std::span<const KeyBox> changes);
+  void look_from_anywhere(const Query& query, const ViewpointQuery& view,
+                          std::span<const FrontierCluster* const> hidden);
+  // Clusters that are one stop of the tours.
+  using Stop = std::vector<std::uint32_t>;
+  [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;
+  [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
+  [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops) const;
+  [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
+                                                std::span<const Stop> stops) const;
+  [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
+  void refine(const Query& query);
+  [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
+                                  const ClusterViewpoint& viewpoint, double distance) const;
+  [[nodiscard]] double distance_between(const Member& member, const std::vector<double>& from,
+                                        const VoxelKey& a, const VoxelKey& b) const;
+
+  Lattice lattice_;
+  KeyBox bounds_;
+  Options options_;
+  int zone_edge_;  // [voxels]
+  FrontierClusters clusters_;
+  std::vector<Member> members_;
+};
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,207 @@
+#include "tour/tour_search.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace frontlux::planner::detail {
+namespace {
+
+using Tour = std::vector<std::uint32_t>;
+
+constexpr double kWorth = 1e-6;       // [s] smaller gains are rounding
+constexpr double kOfAll = 0.1;        // of the sum of all tours, beside the longest
+constexpr std::size_t kMoved = 3;     // stops moved together, at most
+constexpr std::size_t kRounds = 200;  // of changes, at most
+
+double step(const TourProblem::Robot& robot, const Tour& tour, std::size_t to) {
+  return to == 0 ? robot.first[tour[0]] : robot.between(tour[to - 1], tour[to]);
+}
+
+// The tours and their lengths.
+class Search {
+ public:
+  Search(const TourProblem& problem, Tours tours) : problem_(problem), tours_(std::move(tours)) {
+    tours_.resize(problem.robots.size());
+    for (std::size_t r = 0; r < tours_.size(); ++r) lengths_.push_back(problem.length(r, tours_[r]));
+  }
+
+  void insert_missing() {
+    std::vector<bool> has(problem_.stops);
+    for (const Tour& tour : tours_)
+      for (const std::uint32_t stop : tour) has[stop] = true;
+    for (;;) {
+      Place best;
+      std::uint32_t what = 0;
+      for (std::uint32_t stop = 0; stop < problem_.stops; ++stop) {
+        if (has[stop]) continue;
+        if (const Place place = best_place(stop); place.cost < best.cost) {
+          best = place;
+          what = stop;
+        }
+      }
+      if (best.cost == TourProblem::kNever) return;
+      has[what] = true;
+      Tour& tour = tours_[best.robot];
+      tour.insert(tour.begin() + static_cast<std::ptrdiff_t>(best.at), what);
+      lengths_[best.robot] = problem_.length(best.robot, tour);
+    }
+  }
+
+  void improve() {
+    for (std::size_t round = 0; round < kRounds; ++round)
+      if (!turn_a_stretch() && !move_stops()) return;
+  }
+
+  [[nodiscard]] double cost() const { return cost(lengths_); }
+  Tours take() { return std::move(tours_); }
+
+ private:
+  struct Place {
+    double cost = TourProblem::kNever;
+    std::size_t robot = 0, at = 0;
+  };
+
+  static double cost(const std::vector<double>& lengths) {
+    if (lengths.empty()) return 0.0;
+    return *std::ranges::max_element(lengths) + kOfAll * std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  }
+  [[nodiscard]] double cost_with(std::size_t a, double length_a, std::size_t b, double length_b) const {
+    double longest = 0.0, sum = 0.0;
+    for (std::size_t r = 0; r < lengths_.size(); ++r) {
+      const double length = r == a ? length_a : r == b ? length_b : lengths_[r];
+      longest = std::max(longest, length);
+      sum += length;
+    }
+    return longest + kOfAll * sum;
+  }
+
+  // What a robot needs more to take in a stretch before place `at` of its tour.
+  [[nodiscard]] double detour(std::size_t r, const Tour& tour, std::size_t at, std::uint32_t first,
+                              std::uint32_t last) const {
+    const TourProblem::Robot& robot = problem_.robots[r];
+    const double to = at == 0 ? robot.first[first] : robot.between(tour[at - 1], first);
+    if (at == tour.size()) return to;
+    return to + robot.between(last, tour[at]) - step(robot, tour, at);
+  }
+
+  [[nodiscard]] Place best_place(std::uint32_t stop) const {
+    Place best;
+    for (std::size_t r = 0; r < tours_.size(); ++r) {
+      if (problem_.robots[r].first[stop] == TourProblem::kNever) continue;
+      for (std::size_t at = std::min(problem_.robots[r].fixed, tours_[r].size()); at <= tours_[r].size();
+           ++at) {
+        const double length = lengths_[r] + detour(r, tours_[r], at, stop, stop);
+        // Those that cost least come first.
+        const double cost = cost_with(r, length, r, length);
+        if (cost < best.cost) best = {cost, r, at};
+      }
+    }
+    return best;
+  }
+
+  // 2-opt.
+  bool turn_a_stretch() {
+    bool any = false;
+    for (std::size_t r = 0; r < tours_.size(); ++r) {
+      Tour& tour = tours_[r];
+      const TourProblem::Robot& robot = problem_.robots[r];
+      for (std::size_t i = robot.fixed; i + 1 < tour.size(); ++i)
+        for (std::size_t j = i + 1; j < tour.size(); ++j) {
+          const double before = step(robot, tour, i) + (j + 1 < tour.size() ? step(robot, tour, j + 1) : 0.0);
+          const double to = i == 0 ? robot.first[tour[j]] : robot.between(tour[i - 1], tour[j]);
+          const double after = to + (j + 1 < tour.size() ? robot.between(tour[i], tour[j + 1]) : 0.0);
+          if (after >= before - kWorth) continue;
+          std::reverse(tour.begin() + static_cast<std::ptrdiff_t>(i),
+                       tour.begin() + static_cast<std::ptrdiff_t>(j + 1));
+          lengths_[r] = problem_.length(r, tour);
+          any = true;
+        }
+    }
+    return any;
+  }
+
+  // Or-opt: the best move of a few stops to another place, in their own tour or another one.
+  bool move_stops() {
+    const double now = cost();
+    double best = now - kWorth;
+    struct {
+      std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
+      bool turned = false;
+    } move;
+    Tour rest;
+    for (std::size_t a = 0; a < tours_.size(); ++a) {
+      const TourProblem::Robot& robot = problem_.robots[a];
+      const Tour& tour = tours_[a];
+      for (std::size_t begin = robot.fixed; begin < tour.size(); ++begin)
+        for (std::size_t count = 1; count <= kMoved && begin + count <= tour.size(); ++count) {
+          const std::size_t end = begin + count;
+          const std::uint32_t first = tour[begin], last = tour[end - 1];
+          double inner = 0.0;
+          for (std::size_t i = begin + 1; i < end; ++i) inner += step(robot, tour, i);
+          double left = lengths_[a] - step(robot, tour, begin) - inner;
+          if (end < tour.size()) {
+            left -= step(robot, tour, end);
+            left += begin == 0 ? robot.first[tour[end]] : robot.between(tour[begin - 1], tour[end]);
+          }
+          rest.assign(tour.begin(), tour.begin() + static_cast<std::ptrdiff_t>(begin));
+          rest.insert(rest.end(), tour.begin() + static_cast<std::ptrdiff_t>(end), tour.end());
+          for (std::size_t b = 0; b < tours_.size(); ++b) {
+            const Tour& into = b == a ? rest : tours_[b];
+            double within = inner;
+            if (b != a) {
+              if (problem_.robots[b].first[first] == TourProblem::kNever) continue;
+              within = 0.0;
+              for (std::size_t i = begin + 1; i < end; ++i)
+                within += problem_.robots[b].between(tour[i - 1], tour[i]);
+            }
+            if (within == TourProblem::kNever) continue;
+            for (std::size_t at = std::min(problem_.robots[b].fixed, into.size()); at <= into.size(); ++at)
+              for (const bool turned : {false, true}) {
+                if (turned && count == 1) continue;
+                const double added =
+                    within + detour(b, into, at, turned ? last : first, turned ? first : last);
+                const double cost = b == a ? cost_with(a, left + added, a, left + added)
+                                           : cost_with(a, left, b, lengths_[b] + added);
+                if (!(cost < best)) continue;
+                best = cost;
+                move = {a, begin, count, b, at, turned};
+              }
+          }
+        }
+    }
+    if (move.count == 0) return false;
+    Tour& tour = tours_[move.from];
+    const auto begin = tour.begin() + static_cast<std::ptrdiff_t>(move.begin);
+    Tour stretch(begin, begin + static_cast<std::ptrdiff_t>(move.count));
+    if (move.turned) std::ranges::reverse(stretch);
+    tour.erase(begin, begin + static_cast<std::ptrdiff_t>(move.count));
+    Tour& into = tours_[move.to];
+    into.insert(into.begin() + static_cast<std::ptrdiff_t>(move.at), stretch.begin(), stretch.end());
+    for (const std::size_t r : {move.from, move.to}) lengths_[r] = problem_.length(r, tours_[r]);
+    return true;
+  }
+
+  const TourProblem& problem_;
+  Tours tours_;
+  std::vector<double> lengths_;
+};
+
+}  // namespace
+
+double TourProblem::length(std::size_t robot, const std::vector<std::uint32_t>& tour) const {
+  double length = 0.0;
+  for (std::size_t i = 0; i < tour.size(); ++i) length += step(robots[robot], tour, i);
+  return length;
+}
+
+Tours shortened_tours(const TourProblem& problem, Tours tours) {
+  Search search(problem, std::move(tours));
+  search.insert_missing();
+  search.improve();
+  return search.take();
+}
+
+double cost_of(const TourProblem& problem, const Tours& tours) { return Search(problem, tours).cost(); }
+
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "mapping/box_array.hpp"
+
+#include <frontlux/lattice.hpp>
+#include <frontlux/planner/travel_corridor.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// Where a robot fits, in the large: its cells in cubes, and in each cube the parts that connect. It knows
+/// exactly which cells are connected, and about how far they are from each other.
+class TravelGraph {
+ public:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  /// @param bounds  of the cells
+  /// @param edge    [voxels] of a cube, at most 40
+  TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge);
+
+  /// @param corridor  of the map as it is now; where other robots are does not matter
+  /// @param changed   boxes of cells outside of which nothing has changed since the last update; the first
+  ///                  update reads all
+  void update(const TravelCorridor& corridor, std::span<const KeyBox> changed);
+
+  /// The node that holds a cell; nothing if the robot does not fit there.
+  [[nodiscard]] std::optional<std::uint32_t> node(const VoxelKey& cell) const;
+  /// The lowest and the highest cell in which the robot fits; none if it fits nowhere.
+  [[nodiscard]] std::optional<KeyBox> extent() const { return extent_; }
+  [[nodiscard]] std::size_t size() const { return centers_.size(); }
+
+  /// [m] from a node to all others, from middle to middle; `kFar` where there is no way.
+  [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
+  [[nodiscard]] const Eigen::Vector3d& center(std::uint32_t node) const { return centers_[node]; }
+
+ private:
+  struct Cube {
+    KeyBox cells;
+    std::vector<Eigen::Vector3d> centers;                        // of its parts
+    std::uint32_t first = 0;                                     // node of its first part
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> links;  // from a part to a part of a later cube
+  };
+
+  [[nodiscard]] std::size_t cube_of(const VoxelKey& cell) const;
+  void read(Cube& cube, const TravelCorridor& corridor);
+  void link(std::size_t index);
+  void connect();
+
+  Lattice lattice_;
+  int edge_;
+  std::array<std::size_t, 3> count_{};  // of cubes
+  std::vector<Cube> cubes_;
+  BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
+  bool read_ = false;
+  std::optional<KeyBox> extent_;
+  std::vector<Eigen::Vector3d> centers_;  // of the nodes
+  std::vector<std::size_t> begin_;        // of each node's neighbours
+  struct Edge {
+    std::uint32_t to;
+    float length;  // [m]
+  };
+  std::vector<Edge> edges_;
+};
+
+}  // namespace frontlux::planner::detail

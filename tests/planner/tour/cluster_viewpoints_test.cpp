@@ -1,0 +1,94 @@
+#include "tour/cluster_viewpoints.hpp"
+
+#include "support/random.hpp"
+#include "support/views.hpp"
+#include "support/voxel_keys.hpp"
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::Random;
+using Keys = std::vector<VoxelKey>;
+
+constexpr double kResolution = 0.2;
+constexpr KeyBox kBounds{{32750, 32750, 32768}, {32800, 32800, 32779}};
+
+struct Room {
+  VoxelGrid grid{kResolution};
+  TravelCorridor corridor;
+  TravelGraph graph;
+  FrontierCluster cluster;
+
+  // Free but for some pillars; unknown beyond a plane, on which the cluster lies.
+  explicit Room(Random& random)
+      : corridor(options(), Lattice(kResolution), kBounds), graph(Lattice(kResolution), kBounds, 5) {
+    KeyBox known = kBounds;
+    known.max.x = 32785;
+    test::fill(grid, known, Occupancy::kFree);
+    for (int i = 0; i < 25; ++i) {
+      KeyBox pillar = *intersection(cube(random.key_in(known), 2 + random.below(3)), known);
+      pillar.min.z = kBounds.min.z;
+      test::fill(grid, pillar, Occupancy::kOccupied);
+    }
+    const VoxelKey robot = make_key(32755, 32755, 32772);
+    test::fill(grid, grown({robot, robot}, 1), Occupancy::kFree);
+    corridor.update({grid}, robot);
+    graph.update(corridor, {});
+    const int y = 32755 + random.below(35);
+    for_each_key({make_key(32786, y, 32770), make_key(32786, y + 8, 32777)},
+                 [&](const VoxelKey& key) { cluster.keys.push_back(key); });
+    test::sort(cluster.keys);
+    cluster.box = bounds_of(cluster.keys);
+  }
+  static TravelOptions options() {
+    TravelOptions options;
+    options.extents = {0.4, 0.4, 0.4};
+    options.min_height = -100.0;
+    return options;
+  }
+};
+
+TEST(ClusterViewpoints, SeeWhatTheyCount) {
+  Random random(61);
+  std::size_t found = 0;
+  for (int round = 0; round < 30; ++round) {
+    const Room room(random);
+    const FieldOfView view = round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0);
+    const ViewRegion region(view, kResolution);
+    const auto caster = make_grid_ray_caster(room.grid);
+    const ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
+    const auto viewpoints = find_viewpoints(query, room.cluster);
+    found += viewpoints.size();
+    for (std::size_t i = 0; i < viewpoints.size(); ++i) {
+      const ClusterViewpoint& viewpoint = viewpoints[i];
+      EXPECT_TRUE(room.corridor.fits(viewpoint.cell));
+      if (i > 0) {
+        EXPECT_LE(viewpoint.seen, viewpoints[i - 1].seen);
+      }
+      Keys by_hand;
+      for (const VoxelKey& key : room.cluster.keys)
+        if (view.contains(test::offset_between(viewpoint.cell, key, kResolution), viewpoint.yaw) &&
+            test::is_visible(*caster, KeySegment{viewpoint.cell, key}, UnknownPolicy::kBlock))
+          by_hand.push_back(key);
+      EXPECT_EQ(viewpoint.seen, by_hand.size());
+      EXPECT_EQ(visible_from(query, room.cluster.keys, viewpoint.cell, viewpoint.yaw), by_hand);
+    }
+  }
+  EXPECT_GT(found, 60u);
+}
+
+TEST(ClusterViewpoints, AreNoneWhereNothingIsVisible) {
+  Random random(62);
+  const Room room(random);
+  const FieldOfView view = test::camera(5.0);
+  const ViewRegion region(view, kResolution);
+  VoxelGrid walled = room.grid;
+  KeyBox wall = kBounds;
+  wall.min.x = wall.max.x = 32785;
+  test::fill(walled, wall, Occupancy::kOccupied);
+  const auto caster = make_grid_ray_caster(walled);
+  EXPECT_TRUE(find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster).empty());
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,121 @@
+#include "tour/frontier_clusters.hpp"
+
+#include "support/random.hpp"
+#include "support/voxel_keys.hpp"
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::Random;
+using Keys = std::vector<VoxelKey>;
+
+constexpr KeyBox kBounds{{1000, 1000, 1000}, {1030, 1024, 1012}};
+
+// Patches of surfaces, as frontiers are.
+Keys random_frontiers(Random& random, int patches) {
+  std::set<VoxelKey> keys;
+  for (int i = 0; i < patches; ++i) {
+    const VoxelKey middle = random.key_in(kBounds);
+    const int wide = random.below(6), deep = random.below(6);
+    KeyBox patch = grown({middle, middle}, wide, deep, random.below(4));
+    if (random.one_in(2))
+      patch.min.x = patch.max.x;
+    else
+      patch.min.y = patch.max.y;
+    if (const auto inside = intersection(patch, kBounds))
+      for_each_key(*inside, [&](const VoxelKey& key) { keys.insert(key); });
+  }
+  return {keys.begin(), keys.end()};
+}
+
+// The voxels that neighbours connect with the first one.
+Keys connected_by_hand(const Keys& keys) {
+  std::set<VoxelKey> rest(keys.begin(), keys.end());
+  Keys found{keys.front()};
+  rest.erase(keys.front());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const VoxelKey at = found[i];
+    for_each_key(grown({at, at}, 1), [&](const VoxelKey& key) {
+      if (rest.erase(key) != 0) found.push_back(key);
+    });
+  }
+  test::sort(found);
+  return found;
+}
+
+TEST(FrontierClusters, HoldEachFrontierOnceInConnectedPartsOfBoundedSize) {
+  constexpr int kEdge = 7;
+  constexpr std::size_t kLeast = 5;
+  Random random(41);
+  for (int round = 0; round < 60; ++round) {
+    const Keys frontiers = random_frontiers(random, 1 + random.below(12));
+    FrontierClusters clusters(kBounds, kEdge, kLeast);
+    clusters.update(frontiers);
+    std::set<VoxelKey> seen;
+    std::set<std::uint64_t> ids;
+    for (const FrontierCluster& cluster : clusters.clusters()) {
+      EXPECT_TRUE(ids.insert(cluster.id).second);
+      EXPECT_GE(cluster.keys.size(), kLeast);
+      EXPECT_TRUE(std::ranges::is_sorted(cluster.keys));
+      EXPECT_EQ(cluster.box, bounds_of(cluster.keys));
+      EXPECT_EQ(connected_by_hand(cluster.keys), cluster.keys);
+      for (const VoxelKey& key : cluster.keys) {
+        EXPECT_TRUE(seen.insert(key).second);
+        EXPECT_TRUE(std::ranges::binary_search(frontiers, key));
+      }
+    }
+    // What is left out is in parts that are too small, all together.
+    Keys rest;
+    for (const VoxelKey& key : frontiers)
+      if (!seen.contains(key)) rest.push_back(key);
+    while (!rest.empty()) {
+      const Keys part = connected_by_hand(rest);
+      Keys others;
+      std::ranges::set_difference(rest, part, std::back_inserter(others));
+      rest = others;
+      EXPECT_LT(part.size(), kLeast * 8) << "a part of this size lies in a cube with enough of it";
+    }
+  }
+}
+
+TEST(FrontierClusters, KeepTheirIdsAndRevisionsWhileTheyStay) {
+  Random random(42);
+  Keys frontiers = random_frontiers(random, 10);
+  FrontierClusters clusters(kBounds, 8, 3);
+  clusters.update(frontiers);
+  const std::vector<FrontierCluster> before(clusters.clusters().begin(), clusters.clusters().end());
+  ASSERT_GT(before.size(), 4u);
+  clusters.update(frontiers);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(clusters.clusters()[i].id, before[i].id);
+    EXPECT_EQ(clusters.clusters()[i].revision, before[i].revision);
+  }
+  // One frontier less changes one cluster, and not who it is.
+  const VoxelKey gone = before[2].keys.back();
+  std::erase(frontiers, gone);
+  clusters.update(frontiers);
+  std::size_t changed = 0;
+  for (const FrontierCluster& cluster : clusters.clusters()) {
+    const auto old = std::ranges::find(before, cluster.id, &FrontierCluster::id);
+    if (old == before.end() || old->revision != cluster.revision) ++changed;
+  }
+  EXPECT_GE(changed, 1u);
+  EXPECT_LE(changed, 2u);  // it may fall into two
+}
+
+TEST(FrontierClusters, AreTheSameAsNewOnes) {
+  Random random(43);
+  FrontierClusters kept(kBounds, 6, 4);
+  for (int round = 0; round < 40; ++round) {
+    const Keys frontiers = random_frontiers(random, random.below(10));
+    kept.update(frontiers);
+    FrontierClusters anew(kBounds, 6, 4);
+    anew.update(frontiers);
+    ASSERT_EQ(kept.clusters().size(), anew.clusters().size());
+    for (std::size_t i = 0; i < anew.clusters().size(); ++i)
+      EXPECT_EQ(kept.clusters()[i].keys, anew.clusters()[i].keys);
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail

@@ -1,0 +1,136 @@
+#include "tour/tour_search.hpp"
+
+#include "support/random.hpp"
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::Random;
+
+// Stops and robots at random places of a square; some stops are not for the last robot.
+TourProblem random_problem(Random& random, std::size_t robots, std::size_t stops, bool choosy) {
+  TourProblem problem;
+  problem.stops = stops;
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < stops; ++i) places.emplace_back(random.uniform(0, 20), random.uniform(0, 20));
+  for (std::size_t r = 0; r < robots; ++r) {
+    const Eigen::Vector2d start(random.uniform(0, 20), random.uniform(0, 20));
+    const double speed = random.uniform(0.5, 2.0);
+    TourProblem::Robot robot{std::vector<double>(stops), CostTable(stops, stops)};
+    std::vector<bool> can(stops, true);
+    if (choosy && r + 1 == robots)
+      for (std::size_t i = 0; i < stops; ++i) can[i] = !random.one_in(3);
+    for (std::size_t i = 0; i < stops; ++i) {
+      robot.first[i] = can[i] ? (places[i] - start).norm() / speed : TourProblem::kNever;
+      for (std::size_t j = 0; j < stops; ++j)
+        robot.between(i, j) = can[i] && can[j] ? (places[i] - places[j]).norm() / speed : TourProblem::kNever;
+    }
+    problem.robots.push_back(std::move(robot));
+  }
+  return problem;
+}
+
+// All orders of all ways to share the stops out.
+double least_cost(const TourProblem& problem) {
+  std::vector<std::uint32_t> order(problem.stops);
+  std::iota(order.begin(), order.end(), 0u);
+  double least = TourProblem::kNever;
+  do {
+    const std::size_t robots = problem.robots.size();
+    for (std::size_t cut = 0; cut <= (robots == 1 ? 0 : problem.stops); ++cut) {
+      Tours tours(robots);
+      const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cut);
+      if (robots > 1) tours[1].assign(order.begin(), middle);
+      tours[0].assign(middle, order.end());
+      least = std::min(least, cost_of(problem, tours));
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return least;
+}
+
+std::size_t stops_in(const Tours& tours) {
+  std::set<std::uint32_t> stops;
+  std::size_t count = 0;
+  for (const auto& tour : tours) {
+    stops.insert(tour.begin(), tour.end());
+    count += tour.size();
+  }
+  EXPECT_EQ(stops.size(), count) << "a stop is in two places";
+  return count;
+}
+
+TEST(TourSearch, IsCloseToTheBestOfAllTours) {
+  Random random(31);
+  std::vector<double> ratios;
+  for (int round = 0; round < 200; ++round) {
+    const std::size_t robots = random.one_in(2) ? 2 : 1;
+    const TourProblem problem =
+        random_problem(random, robots, static_cast<std::size_t>(4 + random.below(3)), false);
+    const Tours tours = shortened_tours(problem, {});
+    EXPECT_EQ(stops_in(tours), problem.stops);
+    ratios.push_back(cost_of(problem, tours) / least_cost(problem));
+    EXPECT_GE(ratios.back(), 1.0 - 1e-9);
+  }
+  std::ranges::sort(ratios);
+  EXPECT_LT(ratios[ratios.size() / 2], 1.0 + 1e-9);  // half of them are the best
+  EXPECT_LT(ratios[ratios.size() * 9 / 10], 1.06);
+  EXPECT_LT(ratios.back(), 1.3);
+}
+
+TEST(TourSearch, NeverMakesToursLonger) {
+  Random random(32);
+  for (int round = 0; round < 100; ++round) {
+    const TourProblem problem =
+        random_problem(random, static_cast<std::size_t>(1 + random.below(4)), 20, false);
+    Tours given(problem.robots.size());
+    for (std::uint32_t i = 0; i < problem.stops; ++i)
+      given[static_cast<std::size_t>(random.below(static_cast<int>(given.size())))].push_back(i);
+    const Tours tours = shortened_tours(problem, given);
+    EXPECT_EQ(stops_in(tours), problem.stops);
+    EXPECT_LE(cost_of(problem, tours), cost_of(problem, given) + 1e-9);
+    EXPECT_EQ(shortened_tours(problem, tours), tours);  // nothing is left to shorten
+  }
+}
+
+TEST(TourSearch, LeavesToRobotsWhatOnlyTheyCanDo) {
+  Random random(33);
+  for (int round = 0; round < 100; ++round) {
+    const TourProblem problem = random_problem(random, 2, 12, true);
+    const Tours tours = shortened_tours(problem, {});
+    EXPECT_EQ(stops_in(tours), problem.stops);
+    for (const std::uint32_t stop : tours[1]) EXPECT_NE(problem.robots[1].first[stop], TourProblem::kNever);
+  }
+}
+
+TEST(TourSearch, LeavesOutWhatNobodyCanDo) {
+  Random random(34);
+  TourProblem problem = random_problem(random, 1, 5, false);
+  problem.robots[0].first[2] = TourProblem::kNever;
+  for (std::size_t i = 0; i < 5; ++i)
+    problem.robots[0].between(2, i) = problem.robots[0].between(i, 2) = TourProblem::kNever;
+  const Tours tours = shortened_tours(problem, {});
+  EXPECT_EQ(stops_in(tours), 4u);
+  EXPECT_TRUE(std::ranges::find(tours[0], 2u) == tours[0].end());
+}
+
+TEST(TourSearch, KeepsFixedStopsFirst) {
+  Random random(35);
+  for (int round = 0; round < 100; ++round) {
+    TourProblem problem = random_problem(random, 2, 10, false);
+    problem.robots[1].fixed = 1;
+    const Tours tours = shortened_tours(problem, {{}, {7}});
+    ASSERT_FALSE(tours[1].empty());
+    EXPECT_EQ(tours[1].front(), 7u);
+    EXPECT_EQ(stops_in(tours), problem.stops);
+  }
+}
+
+TEST(TourSearch, HasNoToursWithoutRobotsOrStops) {
+  EXPECT_TRUE(shortened_tours({}, {}).empty());
+  TourProblem problem;
+  problem.robots.resize(2);
+  EXPECT_EQ(shortened_tours(problem, {}), Tours(2));
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail

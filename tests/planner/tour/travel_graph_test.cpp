@@ -1,0 +1,144 @@
+#include "tour/travel_graph.hpp"
+
+#include "support/random.hpp"
+#include "support/voxel_keys.hpp"
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::Random;
+using Keys = std::vector<VoxelKey>;
+
+constexpr double kResolution = 0.2;
+constexpr KeyBox kBounds{{32760, 32760, 32768}, {32795, 32790, 32779}};
+
+TravelOptions flying_cube() {
+  TravelOptions options;
+  options.extents = {0.2, 0.2, 0.2};
+  options.min_height = -100.0;
+  return options;
+}
+
+// Free space with random walls, which have random doors.
+VoxelGrid random_rooms(Random& random) {
+  VoxelGrid grid(kResolution);
+  test::fill(grid, kBounds, Occupancy::kFree);
+  for (int i = 0; i < 6; ++i) {
+    KeyBox wall = kBounds;
+    const VoxelKey at = random.key_in(kBounds);
+    if (random.one_in(2))
+      wall.min.x = wall.max.x = at.x;
+    else
+      wall.min.y = wall.max.y = at.y;
+    test::fill(grid, wall, Occupancy::kOccupied);
+  }
+  for (int i = 0; i < 8; ++i)
+    if (const auto door = intersection(grown({random.key_in(kBounds), random.key_in(kBounds)}, 0), kBounds);
+        door)
+      test::fill(grid, intersection(cube(door->min, 3), kBounds).value(), Occupancy::kFree);
+  return grid;
+}
+
+void expect_same(const TravelGraph& a, const TravelGraph& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for_each_key(kBounds, [&](const VoxelKey& key) { EXPECT_EQ(a.node(key), b.node(key)); });
+  if (a.size() > 0) {
+    EXPECT_EQ(a.distances(0), b.distances(0));
+  }
+}
+
+TEST(TravelGraph, ConnectsWhatTheCorridorConnects) {
+  Random random(51);
+  for (int round = 0; round < 30; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    VoxelKey robot = random.key_in(kBounds);
+    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    corridor.update({grid}, robot);
+    TravelGraph graph(grid.lattice(), kBounds, 1 + random.below(9));
+    graph.update(corridor, {});
+    const auto from = graph.node(robot);
+    ASSERT_TRUE(from);
+    const std::vector<double> distances = graph.distances(*from);
+    for_each_key(kBounds, [&](const VoxelKey& key) {
+      const auto node = graph.node(key);
+      EXPECT_EQ(node.has_value(), corridor.fits(key));
+      EXPECT_EQ(node && distances[*node] != TravelGraph::kFar, corridor.contains(key));
+    });
+  }
+}
+
+TEST(TravelGraph, KnowsAboutHowFarItIs) {
+  Random random(52);
+  double sum = 0.0, exact_sum = 0.0;
+  for (int round = 0; round < 20; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    VoxelKey robot = random.key_in(kBounds);
+    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    corridor.update({grid}, robot);
+    constexpr int kEdge = 4;
+    TravelGraph graph(grid.lattice(), kBounds, kEdge);
+    graph.update(corridor, {});
+    const std::vector<double> distances = graph.distances(graph.node(robot).value());
+    constexpr double kCube = kEdge * kResolution * 1.7321;  // [m] its diagonal
+    for (const VoxelKey& cell : corridor.cells()) {
+      const double exact = corridor.distance(cell).value(), about = distances[graph.node(cell).value()];
+      EXPECT_LT(about, 1.5 * exact + 2 * kCube);
+      EXPECT_GT(about, 0.6 * exact - 2 * kCube);
+      sum += about;
+      exact_sum += exact;
+    }
+  }
+  EXPECT_NEAR(sum / exact_sum, 1.0, 0.15);
+}
+
+TEST(TravelGraph, EqualsANewOneAfterChanges) {
+  Random random(53);
+  VoxelGrid grid = random_rooms(random);
+  const VoxelKey robot = make_key(32770, 32770, 32772);
+  grid.set(robot, Occupancy::kFree);
+  TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+  corridor.update({grid}, robot);
+  TravelGraph kept(grid.lattice(), kBounds, 5);
+  kept.update(corridor, {});
+  for (int round = 0; round < 40; ++round) {
+    Keys changed;
+    std::vector<KeyBox> boxes;
+    for (int i = 0; i < 1 + random.below(4); ++i) {
+      const KeyBox box = *intersection(cube(random.key_in(kBounds), 1 + random.below(4)), kBounds);
+      const Occupancy state = random.one_in(2) ? Occupancy::kFree : Occupancy::kOccupied;
+      test::fill(grid, box, state);
+      for_each_key(box, [&](const VoxelKey& key) { changed.push_back(key); });
+      boxes.push_back(grown(box, 1));
+    }
+    grid.set(robot, Occupancy::kFree);
+    changed.push_back(robot);
+    boxes.push_back({robot, robot});
+    corridor.update({grid, changed}, robot);
+    kept.update(corridor, boxes);
+    TravelGraph anew(grid.lattice(), kBounds, 5);
+    anew.update(corridor, {});
+    expect_same(kept, anew);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+// Where another robot is does not matter: it will go on.
+TEST(TravelGraph, DoesNotCareForOtherRobots) {
+  VoxelGrid grid(kResolution);
+  test::fill(grid, kBounds, Occupancy::kFree);
+  const VoxelKey robot = kBounds.min;
+  TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+  KeyBox wall = kBounds;
+  wall.min.x = wall.max.x = 32775;
+  corridor.keep_out_of({wall});
+  corridor.update({grid}, robot);
+  TravelGraph graph(grid.lattice(), kBounds, 5);
+  graph.update(corridor, {});
+  EXPECT_FALSE(corridor.contains(kBounds.max));
+  EXPECT_LT(graph.distances(graph.node(robot).value())[graph.node(kBounds.max).value()], 20.0);
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail
