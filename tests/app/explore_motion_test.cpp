@@ -146,8 +146,8 @@ TEST_F(ExploreMotion, WarnsWhenPlanningTakesLongerThanTheClockCharges) {
     EXPECT_EQ(answer.err, slow ? "warning: " + json.at("warnings").at(0).get<std::string>() + "\n" : "");
     return answer.err;
   };
-  test::expect_parts(warned("1e-6"), {"99 % of the plannings took up to 0.",
-                                      "the clock charges 1e-06 s for each", "explore with --latency 0."});
+  test::expect_parts(warned("1e-6"), {"99 % of the plannings took up to ",
+                                      "the clock charges 1e-06 s for each", "explore with --latency "});
   EXPECT_EQ(warned("100"), "");
 }
 
