@@ -80,6 +80,7 @@ TEST_F(ReportCommandTest, DrawsCoverageOverSecondsInMotionAndOverStepsInLockstep
   // Without a clock, or with an endless one.
   EXPECT_TRUE(drawn(false, 0, 0.0) == steps);
   test::expect_png(drawn(false, 0, 1e290), 700, 400);
+  test::expect_png(content_of(folder_ / "one" / "final_map.png"), 700, 400);
 }
 
 TEST_F(ReportCommandTest, RefusesWhatIsNoRun) {

@@ -1,8 +1,7 @@
 #include "draw/colors.hpp"
+#include "draw/counts_seconds.hpp"
 #include "draw/stills.hpp"
 #include "text.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +48,7 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
   return curves;
 }
 
-// What the steps are drawn over, from 0 on. In motion a step is one robot's planning, so the clock counts.
+// What the steps are drawn over, from 0 on.
 struct Axis {
   const char* unit;
   double first;                // the number at its left end
@@ -59,10 +58,7 @@ struct Axis {
 constexpr double kMostSeconds = 1e9;  // 30 years
 
 Axis axis_of(const planner::Recording& recording) {
-  const auto options = nlohmann::json::parse(recording.head.options, nullptr, false);
-  const auto lockstep = options.find("lockstep");
-  const bool motion = lockstep != options.end() && *lockstep == false;
-  const bool seconds = motion && recording.steps.back().step.time > 0.0;
+  const bool seconds = counts_seconds(recording);
   const auto first = static_cast<double>(recording.steps.front().step.number);
   Axis axis{seconds ? "seconds" : "step", seconds ? 0.0 : first, {}};
   double place = 0.0;
