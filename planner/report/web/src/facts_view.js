@@ -115,10 +115,13 @@ export function comparison(runs) {
   ])), planningAndSafety(runs)];
 }
 
+/** Greater ones are not told apart by the simulator. */
+const clearanceOf = (length) => (length < 1 ? centimetres(length) : "1 m or more");
+
 function planningAndSafety(runs) {
   const sum = (list) => list.reduce((a, b) => a + b, 0), known = (number, text) => (Number.isFinite(number) ? text(number) : "–");
   return table("Planning and safety", ["run", "planning, 99 % within", "max", "latency charged", "idle", "clearance", "between robots", "contacts", "held back"], runs.map(({ name, numbers: { result } }) => [
-    name, seconds(result.planningUsual), seconds(result.planningMost), known(result.latency, seconds), known(sum(result.idle), clockTime), known(result.clearance, centimetres),
+    name, seconds(result.planningUsual), seconds(result.planningMost), known(result.latency, seconds), known(sum(result.idle), clockTime), known(result.clearance, clearanceOf),
     known(result.separation, centimetres), whole(result.contacts), result.bumpers ? known(sum(result.heldBack), (times) => `${whole(times)} times`) : "no bumpers",
   ]));
 }
@@ -149,8 +152,8 @@ export function details(run, written) {
       ["Planning", `${seconds(result.planningTotal)} in total; for each ${numbers.motion ? "planning" : "step"}: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
       ...(numbers.motion ? [
         ["Latency charged", Number.isFinite(result.latency) ? `${seconds(result.latency)} for each planning` : "not recorded"],
-        ["Clearance", `${centimetres(result.clearance)}, the least between a body and a surface`],
-        ...(facts.robots.length > 1 ? [["Between robots", `${centimetres(result.separation)}, the least between two bodies`]] : []),
+        ...(Number.isFinite(result.clearance) ? [["Clearance", `${clearanceOf(result.clearance)}, the least between a body and a surface`]] : []),
+        ...(Number.isFinite(result.separation) ? [["Between robots", `${centimetres(result.separation)}, the least between two bodies`]] : []),
       ] : []),
       ["Contacts", [whole(result.contacts), bumpers(result)].filter(Boolean).join("; ")],
       ["Rays cast for planning", whole(result.rays)], ["Report written by", `frontlux ${written}`],

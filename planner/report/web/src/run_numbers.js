@@ -144,8 +144,8 @@ export function percent(fraction, digits = 1) {
   const text = (100 * fraction).toFixed(digits), step = 10 ** -digits;
   return `${fraction < 1 && Number(text) === 100 ? (100 - step).toFixed(digits) : text} %`;
 }
-/** For distances within a robot's reach. */
-export const centimetres = (length) => (Number.isFinite(length) ? `${length.toFixed(2)} m` : "not recorded");
+/** For distances between bodies. */
+export const centimetres = (length) => `${length.toFixed(2)} m`;
 export const metres = (length) => (Number.isFinite(length) ? `${length.toFixed(length < 100 ? 1 : 0)} m` : "unknown");
 export function seconds(time) {
   if (!Number.isFinite(time)) return "unknown";
