@@ -45,6 +45,19 @@ class ExploreCommand : public CommandTest {
  protected:
   ExploreCommand() : CommandTest("explore") {}
 
+  /// As CommandTest's, on a machine of any speed: one that plans more slowly than the clock charges is
+  /// warned.
+  std::string expect_answer(const std::vector<std::string>& words, const std::vector<std::string>& parts = {},
+                            const std::string& before = "") const {
+    const Answer answer = run(words, before);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    std::istringstream lines(answer.err);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_TRUE(line.starts_with("warning: 99 % of the plannings took up to ")) << line;
+    expect_parts(answer.out, parts);
+    return answer.out;
+  }
+
   /// The room in four steps of Alg. 1.
   [[nodiscard]] Answer explore(const std::string& output) const {
     return run({"room", "--lockstep", "--max-steps", kSteps, "-o", path(output)});

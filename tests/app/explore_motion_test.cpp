@@ -1,77 +1,17 @@
 // `frontlux explore` in motion: what its files say of times, ways and safety, and how it goes on.
 
-#include "app/explore_command.hpp"
+#include "app/explore_motion.hpp"
 
 #include <frontlux/planner/recording.hpp>
-
-#include <csignal>
 
 namespace frontlux::planner {
 namespace {
 
 namespace fs = std::filesystem;
 using test::content_of;
+using test::ExploreMotion;
 using test::joined;
-using test::table_of;
-
-// A CSV file by its columns' names.
-class Table {
- public:
-  explicit Table(const fs::path& csv) : rows_(table_of(csv)) {}
-
-  [[nodiscard]] std::size_t size() const { return rows_.size() - 1; }
-  [[nodiscard]] const std::string& text(std::size_t row, const std::string& column) const {
-    const auto& header = rows_.at(0);
-    return rows_.at(row + 1).at(static_cast<std::size_t>(std::ranges::find(header, column) - header.begin()));
-  }
-  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
-    return std::stod(text(row, column));
-  }
-  [[nodiscard]] Eigen::Vector3d point(std::size_t row, const std::string& before,
-                                      const std::string& behind) const {
-    return {number(row, before + "x" + behind), number(row, before + "y" + behind),
-            number(row, before + "z" + behind)};
-  }
-  /// All but one column.
-  [[nodiscard]] std::vector<std::vector<std::string>> without(const std::string& column) const {
-    auto rows = rows_;
-    const auto place = std::ranges::find(rows_.at(0), column) - rows_.at(0).begin();
-    for (auto& row : rows) row.erase(row.begin() + place);
-    return rows;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
-
-class ExploreMotion : public test::ExploreCommand {
- protected:
-  // The words for a quick run: two UAVs of few pixels.
-  [[nodiscard]] std::vector<std::string> quick(const std::string& output, const std::string& seconds) const {
-    std::string robots;
-    for (const char* name : {"one", "two"})
-      robots += (robots.empty() ? "" : ", ") + (R"({"name": ")" + std::string(name) + R"(", "motion": "space",
-        "body": {"kind": "box", "size_m": [0.7, 0.7, 0.5]},
-        "limits": {"speed_m_s": 2, "acceleration_m_s2": 3, "yaw_rate_deg_s": 90},
-        "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 6, "columns": 48,
-                   "rows": 36, "rate_hz": 8}})");
-    return {"--task",      write("quick.json", R"({"world": "room", "robots": [)" + robots + "]}"),
-            "--report",    "off",
-            "--stop-time", seconds,
-            "-o",          path(output)};
-  }
-  void expect_same_motions(const std::string& a, const std::string& b) const {
-    expect_same_runs(a, b);
-    EXPECT_GT(content_of(path(a + "/motion.csv")).size(), 1000U);
-    EXPECT_TRUE(content_of(path(a + "/motion.csv")) == content_of(path(b + "/motion.csv")));
-    EXPECT_EQ(Table(path(a + "/events.csv")).without("planning_s"),
-              Table(path(b + "/events.csv")).without("planning_s"));
-    const nlohmann::json x = json_in(a), y = json_in(b);
-    for (const char* name : {"time_s", "auc", "explored_m3", "clearance_min_m", "separation_min_m",
-                             "contacts", "by_robot", "lockstep", "latency_s"})
-      EXPECT_EQ(x.at(name), y.at(name)) << name;
-  }
-};
+using test::Table;
 
 TEST_F(ExploreMotion, ItsFilesAgree) {
   constexpr double kSeconds = 7.0, kLatency = 0.15;
@@ -195,20 +135,36 @@ TEST_F(ExploreMotion, EndsWhenEnoughIsMapped) {
   EXPECT_FALSE(json.at("time_s").contains("90"));
 }
 
-TEST_F(ExploreMotion, GoesOnAfterItWasKilledAtAnyMoment) {
+// The times that plannings took are of this machine, so the latency says which run is warned of.
+TEST_F(ExploreMotion, WarnsWhenPlanningTakesLongerThanTheClockCharges) {
+  const auto warned = [&](const std::string& latency) {
+    const test::Answer answer = run(joined(quick("run", "2"), {"--latency", latency, "--force"}));
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    const nlohmann::json json = json_in("run");
+    const bool slow = json.at("planning_p99_s") > json.at("latency_s");
+    EXPECT_EQ(json.at("warnings").size(), slow ? 1U : 0U);
+    EXPECT_EQ(answer.err, slow ? "warning: " + json.at("warnings").at(0).get<std::string>() + "\n" : "");
+    return answer.err;
+  };
+  test::expect_parts(warned("1e-6"), {"99 % of the plannings took up to ",
+                                      "the clock charges 1e-06 s for each", "explore with --latency "});
+  EXPECT_EQ(warned("100"), "");
+}
+
+// All robots' goals are below such an epsilon, in three plannings each.
+TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
+  const test::Answer answer = run(joined(quick("run", "60"), {"--latency", "1", "--epsilon", "1e6"}));
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const nlohmann::json json = json_in("run");
+  EXPECT_EQ(json.at("end"), "low_gain");
+  EXPECT_LT(json.at("coverage_observable"), 0.9);
+  test::expect_parts(answer.out, {"low_gain: expected gain stayed below 1e+06 frontiers for 3 plannings\n"});
+  test::expect_parts(answer.err, {"warning: the run has ended with ", " of the observable space mapped"});
+  test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
+}
+
+TEST_F(ExploreMotion, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_answer(quick("whole", "5"));
-  for (const int steps : {1, 5}) {
-    SCOPED_TRACE(steps);
-    fs::remove_all(path("killed"));
-    const pid_t child = start_and_wait(quick("killed", "5"), steps);
-    ASSERT_GT(child, 0);
-    kill(child, SIGKILL);
-    const int status = test::status_of(child);
-    EXPECT_TRUE(WIFSIGNALED(status)) << "it was done before";
-    EXPECT_FALSE(fs::exists(path("killed/run.json")));
-    expect_resumed("killed");
-    expect_same_motions("whole", "killed");
-  }
   // In the middle of a step, and at the very end.
   const std::string bytes = content_of(path("whole/run.frontlux"));
   for (const std::size_t size : {bytes.size() * 2 / 3, bytes.size()}) {

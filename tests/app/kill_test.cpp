@@ -1,6 +1,6 @@
 // Commands that are killed at any moment, or whose disk is full, leave what was there as it was.
 
-#include "app/explore_command.hpp"
+#include "app/explore_motion.hpp"
 #include "support/random.hpp"
 
 #include <frontlux/planner/recording.hpp>
@@ -15,7 +15,7 @@ struct Moment {
   Random random{22};
 };
 
-class KilledCommand : public ExploreCommand {
+class KilledCommand : public ExploreMotion {
  protected:
   // Starts a command and kills it at a random moment of the time that it takes.
   void kill_once(const std::vector<std::string>& words, std::chrono::duration<double> whole,
@@ -71,6 +71,60 @@ class KilledCommand : public ExploreCommand {
     EXPECT_GT(moment.kills, runs / 2);
   }
 
+  // Kills a run when this part of its recording is written, or soon after.
+  void kill_at(const std::vector<std::string>& words, double part, Moment& moment) const {
+    const auto enough = part * static_cast<double>(fs::file_size(path("whole/run.frontlux")));
+    const pid_t child = start(joined({FRONTLUX_COMMAND}, words), folder_);
+    siginfo_t ended{};
+    std::error_code error;
+    const auto written = [&] {
+      const auto size = fs::file_size(path("run/run.frontlux"), error);
+      return error ? 0.0 : static_cast<double>(size);
+    };
+    while (written() < enough &&
+           waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    kill(child, SIGKILL);
+    moment.kills += WIFSIGNALED(status_of(child)) ? 1 : 0;
+  }
+
+  // A run in motion, on one thread and on two, that is killed at so many moments from its begin to its end.
+  // @param explore  the words, without threads and folder
+  void expect_motions_survive(const std::vector<std::string>& explore, int kills) const {
+    const auto begin = [&](const char* folder, const char* threads) {
+      return joined(explore, {"--report", "off", "--threads", threads, "-o", path(folder)});
+    };
+    const auto go_on = [&](const char* threads) {
+      return std::vector<std::string>{"explore", "--report", "off",      "--threads",
+                                      threads,   "--resume", path("run")};
+    };
+    const auto part = [&](int i) { return static_cast<double>(i + 1) / kills; };
+    expect_done(begin("whole", "2"));
+    Moment moment;
+    // Again and again the same run, by other threads than before.
+    for (int i = 0; i < kills; ++i)
+      kill_at(i == 0 ? begin("run", "1") : go_on(i % 2 == 0 ? "1" : "2"), part(i), moment);
+    expect_done(go_on("1"));
+    expect_same_motions("whole", "run");
+    EXPECT_GE(moment.kills, kills / 2) << "the others came after its end";
+    if (kills < 10) return;
+    // Each time a new run.
+    moment.kills = 0;
+    const std::array<std::pair<const char*, const char*>, 4> threads = {
+        {{"1", "1"}, {"2", "2"}, {"1", "2"}, {"2", "1"}}};
+    for (const auto& [first, second] : threads)
+      for (int i = 0; i < kills && !HasFailure(); ++i) {
+        SCOPED_TRACE(std::string(first) + " and " + second + " threads, killed at " +
+                     std::to_string(part(i)));
+        fs::remove_all(path("run"));
+        kill_at(begin("run", first), part(i), moment);
+        expect_done(go_on(second));
+        expect_same_motions("whole", "run");
+      }
+    EXPECT_GE(moment.kills, std::ssize(threads) * kills / 2);
+  }
+
   // The commands that write one file, and two versions of each.
   void expect_files_survive(int kills) const {
     expect_done({"explore", "room", "--lockstep", "--max-steps", "1", "--report", "off", "-o", path("run")});
@@ -119,8 +173,12 @@ class KilledCommand : public ExploreCommand {
 };
 
 TEST_F(KilledCommand, LeavesARunThatGoesOn) { expect_runs_survive(5); }
+TEST_F(KilledCommand, LeavesARunInMotionThatGoesOn) {
+  expect_motions_survive(joined({"explore"}, quick("4")), 3);
+}
 TEST_F(KilledCommand, LeavesEarlierFilesIntact) { expect_files_survive(2); }
 TEST_F(KilledCommand, LongLeavesARunThatGoesOn) { expect_runs_survive(50); }
+TEST_F(KilledCommand, LongLeavesARunInMotionThatGoesOn) { expect_motions_survive({"explore", "room"}, 10); }
 TEST_F(KilledCommand, LongLeavesEarlierFilesIntact) { expect_files_survive(50); }
 
 }  // namespace

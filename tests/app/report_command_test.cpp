@@ -1,6 +1,8 @@
 #include "report/explored_run.hpp"
 #include "support/command_test.hpp"
 
+#include <frontlux/planner/recording.hpp>
+
 namespace frontlux::report {
 namespace {
 
@@ -49,6 +51,36 @@ TEST_F(ReportCommandTest, MakesStills) {
     SCOPED_TRACE(name);
     test::expect_png(content_of(folder_ / "one" / name), 700, 400);
   }
+}
+
+// In motion a planning more changes nothing, and a second more does; in lock-step it is the other way round.
+TEST_F(ReportCommandTest, DrawsCoverageOverSecondsInMotionAndOverStepsInLockstep) {
+  const planner::Recording recording = planner::read_recording(folder_ / "one" / "run.frontlux");
+  const auto drawn = [&](bool lockstep, int twice, double seconds) {
+    planner::RecordingHead head = recording.head;
+    head.options = lockstep ? R"({"lockstep": true})" : R"({"lockstep": false})";
+    planner::RecordingWriter writer(folder_ / "one" / "run.frontlux", head);
+    std::uint64_t number = 0;
+    for (const auto& step : recording.steps)
+      for (int i = step.step.number == 2 ? -twice : 0; i <= 0; ++i) {
+        planner::RecordedStep written = step;
+        written.step.number = number++;
+        written.step.time = step.step.time * seconds;
+        writer.write(written);
+      }
+    expect_answer({"one", "--png"});
+    return content_of(folder_ / "one" / "coverage.png");
+  };
+  const std::string motion = drawn(false, 0, 1.0), steps = drawn(true, 0, 1.0);
+  EXPECT_TRUE(motion != steps);
+  EXPECT_TRUE(drawn(false, 1, 1.0) == motion);
+  EXPECT_TRUE(drawn(false, 0, 3.0) != motion);
+  EXPECT_TRUE(drawn(true, 1, 1.0) != steps);
+  EXPECT_TRUE(drawn(true, 0, 3.0) == steps);
+  // Without a clock, or with an endless one.
+  EXPECT_TRUE(drawn(false, 0, 0.0) == steps);
+  test::expect_png(drawn(false, 0, 1e290), 700, 400);
+  test::expect_png(content_of(folder_ / "one" / "final_map.png"), 700, 400);
 }
 
 TEST_F(ReportCommandTest, RefusesWhatIsNoRun) {

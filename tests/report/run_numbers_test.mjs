@@ -6,7 +6,7 @@ import { pathToFileURL } from "node:url";
 
 const part = (name) => import(pathToFileURL(resolve(process.argv[2], "src", name)).href);
 const { clockTime, cubicMetres, lastUpTo, numbersOf, percent, stepOfCoverage } = await part("run_numbers.js");
-const { warnings } = await part("facts_view.js");
+const { ending, warnings } = await part("facts_view.js");
 const { Timeline } = await part("timeline.js");
 
 /** Of two robots; a step is [time, known of each, length of each, who plans (-1: all)]. */
@@ -71,6 +71,18 @@ const RUN = [
   for (const end of ["low_gain", "nothing_to_do"]) assert.deepEqual([said(end, 5), said(end, 6), said(end, 7)], [1, 0, 0], end);
   for (const end of ["time_limit", "coverage", "step_limit", "stopped", null]) assert.deepEqual([said(end, 5), said(end, 7)], [0, 0], end);
   assert.deepEqual([said("cut_off", 5), said("cut_off", 7), said("time_limit", 7, true)], [1, 1, 1]);
+}
+{ // Plannings that take longer than the clock charges; in lock-step nobody moves meanwhile.
+  const result = (options, measured) => numbersOf(factsOf(RUN, { options: JSON.stringify(options), measured })).result;
+  const said = (options) => warnings({ facts: factsOf(RUN, { options: JSON.stringify(options) }), numbers: { result: result(options) } });
+  assert.match(said({ lockstep: false, latency: 0.25 }).join(), /up to 300 ms, and 250 ms are charged/);
+  for (const options of [{ lockstep: false, latency: 0.31 }, { lockstep: true, latency: 0.25 }, { lockstep: false }, { lockstep: false, latency: "0.1" }]) assert.deepEqual(said(options), [], JSON.stringify(options));
+  // What only run.json knows.
+  const measured = { clearance_min_m: 0.125, separation_min_m: null, idle: [1.5, null], held_back: [0, 3] }, shown = result({ lockstep: false, latency: 0.25 }, measured);
+  assert.deepEqual([shown.latency, shown.clearance, shown.separation, shown.idle, shown.heldBack, shown.bumpers], [0.25, 0.125, NaN, [1.5, NaN], [0, 3], true]);
+  assert.deepEqual([result({}, null).clearance, result({}).idle, result({ bumper: false }).bumpers], [NaN, [NaN, NaN], false]);
+  assert.match(ending(factsOf(RUN)), /plannings/);
+  assert.match(ending(factsOf(RUN, { options: "{}" })), /steps/);
 }
 {
   const list = [0, 0, 1, 1, 1, 2.5, 7];

@@ -101,9 +101,11 @@ void add_explore_command(CLI::App& app) {
   command.add("--stop-coverage", options.stop_coverage, "PART",
               "Stop when this part of the observable space is mapped, 0 to 1", kProbability);
   command.add("--stop-time", options.stop_time, "SECONDS", "Stop after this time on the clock", kFromZero);
-  command.add("--max-steps", given->run.max_steps, "N", "Stop after this many steps [1000]", Range<int>{0});
+  command.add("--max-steps", given->run.max_steps, "N",
+              "Stop after this many steps [1000],\nin motion plannings [no limit]", Range<int>{0});
   command.add("--epsilon", options.epsilon, "FRONTIERS",
-              "Stop when the expected gain stays below this for 3 steps;\n"
+              "Stop when the expected gain stays below this for 3 steps,\n"
+              "in motion for 3 plannings of each robot;\n"
               "goals of at least this gain come first [10; --goal nearest: 1]",
               kFromZero);
   command.group("Robots");
@@ -123,8 +125,8 @@ void add_explore_command(CLI::App& app) {
   frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run
   frontlux explore --task data/tasks/maze.json -o maze_run
   frontlux explore --resume station_run
-Files of a run: run.json (options and results), steps.csv, paths.csv, map.ot, map.bt, run.frontlux (the
-recording) and report.html. Ctrl-C ends a run after the current step.)");
+Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv and motion.csv (of robots in
+motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C ends a run after the current step.)");
   command.run([given, team, lockstep, mode = mode, goal = goal] {
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);

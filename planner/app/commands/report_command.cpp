@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "draw/png_file.hpp"
 #include "draw/stills.hpp"
+#include "explore/run_files.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
@@ -78,7 +79,8 @@ void report(const Options& options) {
   const std::vector<Run> runs = read_runs(options);
   const std::filesystem::path output = output_of(options, runs);
   std::vector<report::ReportedRun> reported;
-  for (const Run& run : runs) reported.push_back({run.name, &run.recording});
+  for (const Run& run : runs)
+    reported.push_back({run.name, &run.recording, read_run_json(run.file.parent_path())});
   report::write_report(output, reported, FRONTLUX_VERSION);
   std::cout << output.string() << '\n';
   if (!options.png) return;

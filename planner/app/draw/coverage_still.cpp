@@ -1,4 +1,5 @@
 #include "draw/colors.hpp"
+#include "draw/counts_seconds.hpp"
 #include "draw/stills.hpp"
 #include "text.hpp"
 
@@ -47,6 +48,28 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
   return curves;
 }
 
+// What the steps are drawn over, from 0 on.
+struct Axis {
+  const char* unit;
+  double first;                // the number at its left end
+  std::vector<double> places;  // of each step, behind the first; they never fall
+};
+
+constexpr double kMostSeconds = 1e9;  // 30 years
+
+Axis axis_of(const planner::Recording& recording) {
+  const bool seconds = counts_seconds(recording);
+  const auto first = static_cast<double>(recording.steps.front().step.number);
+  Axis axis{seconds ? "seconds" : "step", seconds ? 0.0 : first, {}};
+  double place = 0.0;
+  for (const planner::RecordedStep& recorded : recording.steps) {
+    const double time = std::min(recorded.step.time, kMostSeconds);
+    place = std::max(place, seconds ? time : static_cast<double>(recorded.step.number) - first);
+    axis.places.push_back(place);
+  }
+  return axis;
+}
+
 // 1, 2 or 5 times a power of ten, so that there are at most ten.
 std::uint64_t tick_of(std::uint64_t most) {
   for (std::uint64_t power = 1;; power *= 10)
@@ -59,9 +82,9 @@ std::uint64_t tick_of(std::uint64_t most) {
 Canvas draw_coverage(const planner::Recording& recording, const std::string& name) {
   std::string of;
   const std::vector<Curve> curves = curves_of(recording, of);
-  const std::uint64_t first = recording.steps.front().step.number, last = recording.steps.back().step.number;
-  const double steps = std::max(1.0, static_cast<double>(last - first));
-  const auto pixel_x = [&](double step) { return kLeft + (kWidth - kLeft - kRight) * step / steps; };
+  const Axis axis = axis_of(recording);
+  const double end = std::max(1.0, axis.places.back());
+  const auto pixel_x = [&](double place) { return kLeft + (kWidth - kLeft - kRight) * place / end; };
   const auto pixel_y = [](double fraction) {
     return kHeight - kBottom - (kHeight - kTop - kBottom) * fraction;
   };
@@ -83,21 +106,20 @@ Canvas draw_coverage(const planner::Recording& recording, const std::string& nam
     const std::string text = percent(tick / 4.0, 0);
     canvas.text(kLeft - 10 - Canvas::text_width(text), y - Canvas::kTextHeight / 2, text, kMuted);
   }
-  const std::uint64_t each = tick_of(last - first);
-  for (std::uint64_t tick = 0; tick <= last - first; tick += each) {
-    const int at = static_cast<int>(std::lround(pixel_x(static_cast<double>(tick))));
+  const auto most = static_cast<std::uint64_t>(axis.places.back()), each = tick_of(most);
+  for (std::uint64_t tick = 0; tick <= most; tick += each) {
+    const auto place = static_cast<double>(tick);
+    const int at = static_cast<int>(std::lround(pixel_x(place)));
     canvas.fill(at, kTop, 1, kHeight - kTop - kBottom, kGrid);
-    const std::string text = std::to_string(first + tick);
+    const std::string text = fixed(axis.first + place, 0);
     canvas.text(at - Canvas::text_width(text) / 2, kHeight - kBottom + 10, text, kMuted);
   }
-  canvas.text(kWidth - kRight - Canvas::text_width("step"), kHeight - 30, "step", kMuted);
+  canvas.text(kWidth - kRight - Canvas::text_width(axis.unit), kHeight - 30, axis.unit, kMuted);
   std::for_each(curves.rbegin(), curves.rend(), [&](const Curve& curve) {
-    for (std::size_t i = 1; i < curve.fractions.size(); ++i) {
-      const auto step = [&](std::size_t k) {
-        return static_cast<double>(recording.steps[k].step.number - first);
-      };
-      canvas.line(pixel_x(step(i - 1)), pixel_y(curve.fractions[i - 1]), pixel_x(step(i)),
-                  pixel_y(curve.fractions[i]), curve.thickness, curve.color);
+    for (std::size_t from = 0, to = 1; to < curve.fractions.size(); from = to++) {
+      const auto x0 = pixel_x(axis.places[from]), y0 = pixel_y(curve.fractions[from]);
+      const auto x1 = pixel_x(axis.places[to]), y1 = pixel_y(curve.fractions[to]);
+      if (x0 != x1 || y0 != y1) canvas.line(x0, y0, x1, y1, curve.thickness, curve.color);
     }
   });
   return canvas;

@@ -1,4 +1,5 @@
 #include "draw/colors.hpp"
+#include "draw/counts_seconds.hpp"
 #include "draw/stills.hpp"
 #include "text.hpp"
 
@@ -162,9 +163,11 @@ std::string summary_of(const planner::Recording& recording) {
   std::uint64_t known = 0;
   for (const planner::KnownVoxels& part : recording.steps.back().known) known += part.observable;
   const double total = static_cast<double>(recording.head.observable);
-  const std::string step = "step " + std::to_string(recording.steps.back().step.number);
-  if (total == 0.0) return "after " + step;
-  return percent(static_cast<double>(known) / total, 1) + " mapped after " + step;
+  const planner::ExplorationStep& last = recording.steps.back().step;
+  const std::string when =
+      counts_seconds(recording) ? fixed(last.time, 1) + " s" : "step " + std::to_string(last.number);
+  if (total == 0.0) return "after " + when;
+  return percent(static_cast<double>(known) / total, 1) + " mapped after " + when;
 }
 
 // The name of a run, and its world if the name does not say it.

@@ -8,8 +8,9 @@
 
 namespace frontlux::app {
 
-/// A chart of what the team and each robot had mapped at the end of each step: fractions of the observable
-/// voxels; where their number is unknown, of those within the bounds, or else of those mapped in the end.
+/// A chart of what the team and each robot had mapped at the end of each step, over steps, or of a run in
+/// motion over the clock's seconds: fractions of the observable voxels; where their number is unknown, of
+/// those within the bounds, or else of those mapped in the end.
 [[nodiscard]] Canvas draw_coverage(const planner::Recording& recording, const std::string& name);
 
 /// The map at a recording's end, seen obliquely from above, with the robots' paths, their starts and their

@@ -38,7 +38,11 @@ ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
   numbers_.robots.resize(setup.head.robots.size());
 }
 
-ExplorationStep ContinuousLoop::step() {
+ExplorationStep ContinuousLoop::step() { return go_on(nullptr); }
+
+bool ContinuousLoop::repeat(const ExplorationStep& recorded) { return same_step(go_on(&recorded), recorded); }
+
+ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
   if (!begun_) {
     begun_ = true;
     ExplorationStep first = exploration_.begin(setup_.head.starts, 0.0);
@@ -50,9 +54,10 @@ ExplorationStep ContinuousLoop::step() {
     // All scans of one moment come before the plannings.
     if (robots_.next_time() > time_)
       if (auto planned = exploration_.plan(time_)) {
-        note_plan(*planned);
+        note_plan(*planned, recorded != nullptr ? *recorded : planned->step);
         if (const auto end = exploration_.end())
-          end_ = {std::string(planner::name_of(*end)), planner::describe(*end, exploration_.options())};
+          end_ = {std::string(planner::name_of(*end)),
+                  planner::describe(*end, exploration_.options(), "plannings")};
         return std::move(planned->step);
       }
     sense();
@@ -62,8 +67,6 @@ ExplorationStep ContinuousLoop::step() {
     }
   }
 }
-
-bool ContinuousLoop::repeat(const ExplorationStep& recorded) { return same_step(step(), recorded); }
 
 void ContinuousLoop::sense() {
   std::vector<sim::MovingRobots::Stopped> stopped;
@@ -115,12 +118,12 @@ void ContinuousLoop::note_motion(double until) {
   }
 }
 
-void ContinuousLoop::note_plan(const planner::PlannedMotion& planned) {
+void ContinuousLoop::note_plan(const planner::PlannedMotion& planned, const ExplorationStep& measured) {
   const planner::RobotStep& robot = planned.step.robots[planned.robot];
   events_ += csv_row(planned.step.time, planned.step.number, setup_.head.robots[planned.robot].robot.name,
                      planner::name_of(planned.reason), planner::name_of(robot.goal.state),
                      robot.gain_predicted, planned.trajectory.begin(), planned.trajectory.end(),
-                     planned.trajectory.length(), planned.step.planning_seconds());
+                     planned.trajectory.length(), measured.planning_seconds());
 }
 
 }  // namespace frontlux::app

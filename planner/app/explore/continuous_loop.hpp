@@ -24,10 +24,12 @@ class ContinuousLoop final : public RunLoop {
   std::string take_motion() override { return std::exchange(motion_, {}); }
 
  private:
+  // The next step; `recorded` if it is taken again, with the times that it took then.
+  planner::ExplorationStep go_on(const planner::ExplorationStep* recorded);
   void sense();
   void count(const MapChange& change);
   void note_motion(double until);
-  void note_plan(const planner::PlannedMotion& planned);
+  void note_plan(const planner::PlannedMotion& planned, const planner::ExplorationStep& measured);
 
   const ExploreSetup& setup_;
   sim::MovingRobots robots_;

@@ -4,6 +4,7 @@
 #include "explore/explore_setup.hpp"
 #include "explore/run_files.hpp"
 #include "explore/run_loop.hpp"
+#include "explore/run_warnings.hpp"
 #include "interrupt.hpp"
 #include "text.hpp"
 
@@ -22,6 +23,7 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace frontlux::app {
 namespace {
@@ -101,19 +103,19 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
 }
 
 // How far the run is, and what each robot does in this step.
-void show(const ExplorationStep& step, const RunSums& sums, const planner::RecordingHead& head,
-          double seconds) {
-  std::string line = "step " + std::to_string(step.number) + ": mapped " + percent(sums.observable) +
-                     " after " + fixed(seconds, 1) + " s, " + std::to_string(step.frontiers) + " frontiers";
-  for (std::size_t r = 0; r < step.robots.size(); ++r) {
-    const planner::RobotStep& robot = step.robots[r];
-    line += "; " + head.robots[r].robot.name + " ";
+void show(const ExplorationStep& step, const RunSums& sums, const ExploreSetup& setup, double seconds) {
+  const auto moves = [&](const planner::RobotStep& robot) -> std::string {
+    if (!setup.lockstep) return "moves " + fixed(robot.length, 1) + " m";
     if (robot.goal.pose)
-      line += "travels " + fixed(robot.length, 1) + " m, expected gain " +
-              std::to_string(robot.gain_predicted) + " of " + std::to_string(robot.goal.assigned);
-    else
-      line += step.number == 0 ? "looks around" : robot.length > 0.0 ? "backs off" : "waits";
-  }
+      return "travels " + fixed(robot.length, 1) + " m, expected gain " +
+             std::to_string(robot.gain_predicted) + " of " + std::to_string(robot.goal.assigned);
+    return step.number == 0 ? "looks around" : robot.length > 0.0 ? "backs off" : "waits";
+  };
+  std::string line = "step " + std::to_string(step.number) + ": mapped " + percent(sums.observable);
+  line += setup.lockstep ? " after " + fixed(seconds, 1) + " s" : " at " + fixed(step.time, 1) + " s";
+  line += ", " + std::to_string(step.frontiers) + " frontiers";
+  for (std::size_t r = 0; r < step.robots.size(); ++r)
+    line += "; " + setup.head.robots[r].robot.name + " " + moves(step.robots[r]);
   if (step.number > 0) line += "; planned in " + fixed(step.planning_seconds(), 3) + " s";
   std::cout << line << std::endl;
 }
@@ -234,18 +236,6 @@ void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSu
   std::cout << out;
 }
 
-// A run that its user did not end himself, and that left much unseen.
-void warn_if_far_from_done(const RunEnd& end, double observable) {
-  constexpr double kDone = 0.95;
-  const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };
-  if (is(planner::ExplorationEnd::kCutOff))
-    std::cerr << "warning: " << end.text << '\n';
-  else if (observable < kDone &&
-           (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)))
-    std::cerr << "warning: the run has ended with " << percent(observable)
-              << " of the observable space mapped; the robots found no way to see the rest\n";
-}
-
 }  // namespace
 
 void explore(ExploreOptions options, const ExploreRun& run) {
@@ -289,7 +279,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       const auto record = [&] {
         writer.write(exploring.last());
         ++*recorded;
-        show(exploring.last().step, exploring.files().sums(), setup.head, watch.seconds());
+        show(exploring.last().step, exploring.files().sums(), setup, watch.seconds());
       };
       const RunLoop& loop = exploring.loop();
       while (!loop.end() && !InterruptNote::taken()) {
@@ -302,16 +292,19 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       writer.write_end(end);
       loop.mapping().write(run.folder / "map.ot");
       loop.mapping().write(run.folder / "map.bt");
-      write_run_json(run, options, setup, exploring.files().sums(), loop.numbers(), end, watch.seconds());
+      const RunSums& sums = exploring.files().sums();
+      const std::vector<std::string> warnings = run_warnings(setup, sums, reason);
+      write_run_json(run, options, setup, sums, loop.numbers(), end, warnings, watch.seconds());
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{
-            fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole};
+            fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole,
+            read_run_json(run.folder)};
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
-      if (reason) warn_if_far_from_done(*reason, exploring.files().sums().observable);
-      print_summary(run, setup, exploring.files().sums(), loop.numbers(),
-                    reason ? end + ": " + reason->text : end, watch.seconds());
+      print_summary(run, setup, sums, loop.numbers(), reason ? end + ": " + reason->text : end,
+                    watch.seconds());
+      for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {

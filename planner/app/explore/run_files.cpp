@@ -33,6 +33,7 @@ constexpr const char* kSteps = "steps.csv";
 constexpr const char* kPaths = "paths.csv";
 constexpr const char* kEvents = "events.csv";
 constexpr const char* kMotion = "motion.csv";
+constexpr const char* kRunJson = "run.json";
 
 std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead& head) {
   std::string rows;
@@ -209,7 +210,8 @@ double mean_coverage(const RunNumbers& numbers, std::uint64_t observable) {
 }
 
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const RunNumbers& numbers, const std::string& end, double seconds) {
+                    const RunSums& sums, const RunNumbers& numbers, const std::string& end,
+                    const std::vector<std::string>& warnings, double seconds) {
   const planner::ExplorationOptions& exploration = setup.exploration;
   Json names = Json::array(), phases = Json::object(), lengths = Json::object(), robots = Json::object(),
        times = Json::object();
@@ -249,6 +251,7 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"machine", machine_name()},
       {"instructions", instruction_set_name()},
       {"end", end},
+      {"warnings", warnings},
       {"steps", sums.steps},
       {"coverage_observable", sums.observable},
       {"coverage_box", sums.bounding},
@@ -276,7 +279,16 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   };
   // File names are bytes, JSON is Unicode.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-  write_file(run.folder / "run.json", [&](std::ostream& out) { out << text; });
+  write_file(run.folder / kRunJson, [&](std::ostream& out) { out << text; });
+}
+
+std::string read_run_json(const std::filesystem::path& folder) {
+  try {
+    constexpr std::uint64_t kMostBytes = 1 << 24;
+    return read_file(folder / kRunJson, kMostBytes);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
 }
 
 }  // namespace frontlux::app

@@ -69,10 +69,15 @@ class RunFiles {
 [[nodiscard]] double mean_coverage(const RunNumbers& numbers, std::uint64_t observable);
 
 /// Writes run.json: what was asked for and what came out.
-/// @param end      why the run ended, in one word
-/// @param seconds  that it took
+/// @param end       why the run ended, in one word
+/// @param warnings  what its reader has to know, see `run_warnings`
+/// @param seconds   that it took
 /// @throws std::runtime_error naming the file, if it cannot be written
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const RunNumbers& numbers, const std::string& end, double seconds);
+                    const RunSums& sums, const RunNumbers& numbers, const std::string& end,
+                    const std::vector<std::string>& warnings, double seconds);
+
+/// The text of a run's run.json, for its report; empty if it cannot be read.
+[[nodiscard]] std::string read_run_json(const std::filesystem::path& folder);
 
 }  // namespace frontlux::app

@@ -67,6 +67,34 @@ json facts_of(const planner::RecordedStep& recorded) {
 
 json numbers_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
+// A member of an object, or null. Nothing is copied: what is nested deeply would take all of the stack.
+const json& member(const json& object, const std::string& name) {
+  static const json kNothing;
+  const auto found = object.find(name);
+  return found == object.end() ? kNothing : *found;
+}
+
+json number_in(const json& object, const char* name) {
+  const json& number = member(object, name);
+  return number.is_number() ? number : json();
+}
+
+// What run.json says besides the recording; null if it is not of this recording's end.
+json measured_of(const std::string& run_json, const planner::Recording& recording) {
+  const json all = json::parse(run_json, nullptr, false);
+  if (!recording.end || member(all, "end") != *recording.end ||
+      member(all, "steps") != recording.steps.back().step.number)
+    return nullptr;
+  json measured = {{"idle", json::array()}, {"held_back", json::array()}};
+  for (const char* name : {"clearance_min_m", "separation_min_m"}) measured[name] = number_in(all, name);
+  for (const planner::RobotDescription& description : recording.head.robots) {
+    const json& robot = member(member(all, "by_robot"), unicode_of(description.robot.name));
+    measured["idle"].push_back(number_in(robot, "idle_s"));
+    measured["held_back"].push_back(number_in(robot, "held_back"));
+  }
+  return measured;
+}
+
 }  // namespace
 
 std::string unicode_of(const std::string& bytes) {
@@ -85,6 +113,7 @@ std::string run_facts(const ReportedRun& run, const std::string& version) {
                 {"bounding", head.bounding},
                 {"options", head.options},  // as text: it need not be the JSON that it should be
                 {"end", nullptr},
+                {"measured", measured_of(run.run_json, recording)},
                 {"truncated", recording.truncated}};
   if (recording.end) facts["end"] = *recording.end;
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)

@@ -63,15 +63,15 @@ std::string_view name_of(ExplorationEnd end) {
   return kNames.at(static_cast<std::size_t>(end));
 }
 
-std::string describe(ExplorationEnd end, const ExplorationOptions& options) {
+std::string describe(ExplorationEnd end, const ExplorationOptions& options, std::string_view steps) {
   if (end == ExplorationEnd::kNothingToDo) return "no robot can see a frontier from anywhere it can go";
   if (end == ExplorationEnd::kStepLimit)
-    return "the limit of " + std::to_string(options.max_steps) + " steps is reached";
+    return "the limit of " + std::to_string(options.max_steps) + " " + std::string(steps) + " is reached";
   if (end == ExplorationEnd::kCutOff)
     return "a robot is where it cannot leave, and there is more to see from where it came from";
   std::ostringstream text;  // 10 without zeros behind it
   text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
-       << " steps";
+       << " " << steps;
   return text.str();
 }
 

@@ -110,7 +110,11 @@ TEST(Exploration, SaysInWordsWhyItIsOver) {
   const ExplorationOptions options;
   EXPECT_EQ(describe(ExplorationEnd::kLowGain, options),
             "expected gain stayed below 10 frontiers for 3 steps");
+  EXPECT_EQ(describe(ExplorationEnd::kLowGain, options, "plannings"),
+            "expected gain stayed below 10 frontiers for 3 plannings");
   EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options), "the limit of 1000 steps is reached");
+  EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options, "plannings"),
+            "the limit of 1000 plannings is reached");
   EXPECT_EQ(name_of(ExplorationEnd::kLowGain), "low_gain");
   EXPECT_EQ(name_of(ExplorationEnd::kCutOff), "cut_off");
 }

@@ -39,7 +39,7 @@ struct ExplorationOptions {
 
   double epsilon = 10.0;  ///< a step has low gain if its paths are expected to see fewer frontiers than this:
                           ///< distinct ones, or with `GainMode::kSum` summed over viewpoints
-  int low_gain_steps = 3;    ///< this many steps of low gain in a row end the exploration
+  int low_gain_steps = 3;    ///< this many steps, in motion plannings, of low gain in a row end it
   int max_steps = 1000;      ///< so does this number of steps
   double latency = 0.1;      ///< [s] that the clock charges for a planning
   double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its way anew
@@ -106,7 +106,7 @@ struct ExplorationStep {
 
 /// Why an exploration is over.
 enum class ExplorationEnd : std::uint8_t {
-  kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps
+  kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps or plannings
   kNothingToDo,  ///< no robot has a goal
   kStepLimit,    ///< `max_steps` are done
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
@@ -114,7 +114,9 @@ enum class ExplorationEnd : std::uint8_t {
 /// One of the words "low_gain", "nothing_to_do", "step_limit", "cut_off".
 [[nodiscard]] std::string_view name_of(ExplorationEnd end);
 /// In words: "expected gain stayed below 10 frontiers for 3 steps".
-[[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options);
+/// @param steps  what is counted: in motion, "plannings"
+[[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options,
+                                   std::string_view steps = "steps");
 
 /// Moves a robot's sensor straight to a viewpoint and returns what it measures there; nothing if the robot
 /// could not go, and is where it was. The one function that a real or a simulated robot has to provide.

@@ -73,7 +73,7 @@ export class Charts {
   /** Of long runs, each bar is the mean of some steps that follow each other. */
   planning(numbers, facts, x) {
     const each = Math.ceil(x.xs.length / MOST_BARS), ends = barEnds(x.xs, each);
-    const note = `stacked, ${numbers.motion ? "one robot's planning" : "whole team"}${each > 1 ? `, mean of ${each} steps` : ""}`;
+    const note = `stacked, ${numbers.motion ? "one robot's planning" : "whole team"}${each > 1 ? `, mean of ${each} ${numbers.motion ? "plannings" : "steps"}` : ""}`;
     return {
       id: "planning", title: "Planning time by phase", note, unit: seconds, x, stacked: true, ends,
       series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: x.xs, ys, color: PHASES[this.theme][p] })),

@@ -1,5 +1,5 @@
 import { el, table } from "./dom.js";
-import { NOT_SET, clockTime, cubicMetres, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
+import { NOT_SET, centimetres, clockTime, cubicMetres, inMotion, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
 
 // Deng, Xu, Zhao and Shimada's results, by world: the team's coverage and steps, planning time of each robot in total and
 // per step, and, before and after optimisation, the UAV's fraction of the coverage and its path.
@@ -11,6 +11,7 @@ const PAPER = {
 
 const ENDS = {
   low_gain: "the expected gain stayed too low for several steps",
+  low_gain_in_motion: "the expected gain stayed too low for several plannings of each robot",
   nothing_to_do: "no robot had a goal left",
   step_limit: "the step limit was reached",
   cut_off: "a robot is where it cannot leave, and there is more to see from where it came from",
@@ -27,7 +28,7 @@ const MOST_ROWS = 500; // in the table of steps
 
 /** Why a run ended, as the end of a sentence. */
 export function ending(facts) {
-  return facts.end === null ? "the recording is incomplete" : (ENDS[facts.end] ?? facts.end);
+  return facts.end === null ? "the recording is incomplete" : ((inMotion(facts) && ENDS[`${facts.end}_in_motion`]) || ENDS[facts.end] || facts.end);
 }
 
 export function teamName(facts) {
@@ -43,9 +44,10 @@ function headline(run) {
 
 /** What a reader must know before trusting the numbers. */
 export function warnings({ facts, numbers }) {
-  const { coverage } = numbers.result, list = [];
+  const { coverage, latency, planningUsual } = numbers.result, list = [];
   if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
   if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
+  if (planningUsual > latency) list.push(`planning was too slow for this run's clock: 99 % of the plannings took up to ${seconds(planningUsual)}, and ${seconds(latency)} are charged for each. On that machine robots would get their trajectories later than shown here; explore with a greater --latency`);
   if (facts.truncated) list.push("the last step of the recording is incomplete and is not shown");
   return list;
 }
@@ -72,8 +74,8 @@ export function header(runs) {
         numbers.clock ? tile("time", clockTime(result.time), [0.5, 0.9, 0.99].filter((part) => result.coverage >= part).map((part) => `${percent(part, 0)} after ${reached(numbers, part, (s) => clockTime(numbers.time[s]))}`).join(", ")) : tile("steps", whole(result.steps)),
         tile("explored volume", cubicMetres(result.volume)),
         tile("path length", metres(result.length), facts.robots.length > 1 ? facts.robots.map((robot, r) => `${robot.name} ${metres(result.lengths[r])}`).join(", ") : ""),
-        tile("planning time", seconds(result.planningMean), `mean of ${whole(result.steps)} ${numbers.motion ? "plannings" : "steps"}, max ${seconds(result.planningMost)}`),
-        tile("collisions", whole(result.collisions)))
+        tile("planning time", seconds(result.planningMean), numbers.motion ? `mean of ${whole(result.steps)} plannings, 99 % within ${seconds(result.planningUsual)}${charged(result)}` : `mean of ${whole(result.steps)} steps, max ${seconds(result.planningMost)}`),
+        tile("contacts", whole(result.contacts), bumpers(result)))
     : null;
   return [
     el("div", { class: "title" }, el("h1", { text: single ? `${facts.world}, explored by ${teamName(facts)}` : `${runs.length} runs compared` }),
@@ -84,7 +86,17 @@ export function header(runs) {
   ].filter(Boolean);
 }
 
-/** One row per run; changes in percent compare it with the first. */
+/** What the clock charges for a planning, as the end of a sentence; empty if that is not recorded. */
+const charged = ({ latency }) => (Number.isFinite(latency) ? `; ${seconds(latency)} are charged` : "");
+
+/** How often all robots were held back; no contacts then says nothing. */
+function bumpers({ bumpers, heldBack }) {
+  if (!bumpers) return "robots without bumpers";
+  const times = heldBack.reduce((a, b) => a + b, 0);
+  return Number.isFinite(times) ? `robots held back ${times === 1 ? "once" : `${whole(times)} times`}` : "";
+}
+
+/** Two tables with one row per run; changes in percent compare it with the first. */
 export function comparison(runs) {
   const first = runs[0].numbers;
   // Only between runs that have mapped the same can less time or path be better.
@@ -93,13 +105,24 @@ export function comparison(runs) {
     return `${format(numbers[list][s])}${numbers === first || !(reference > 0) ? "" : ` (${signed(numbers[list][s], reference)})`}`;
   });
   const timeTo = (numbers, part) => (numbers.clock && first.clock ? to(numbers, "time", part, clockTime) : numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
-  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path", "path to 90 %", "planning", "collisions"];
-  return table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
+  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path", "path to 90 %", "planning"];
+  return [table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
     name, teamName(facts), numbers.motion ? "in motion" : "lock-step", percent(numbers.result.coverage),
     numbers.clock ? clockTime(numbers.result.time) : "not recorded",
     ...MILESTONES.map((part) => timeTo(numbers, part)), cubicMetres(numbers.result.volume),
     metres(numbers.result.length), to(numbers, "teamTravelled", 0.9, metres),
-    seconds(numbers.result.planningMean), whole(numbers.result.collisions),
+    seconds(numbers.result.planningMean),
+  ])), planningAndSafety(runs)];
+}
+
+/** Greater ones are not told apart by the simulator. */
+const clearanceOf = (length) => (length < 1 ? centimetres(length) : "1 m or more");
+
+function planningAndSafety(runs) {
+  const sum = (list) => list.reduce((a, b) => a + b, 0), known = (number, text) => (Number.isFinite(number) ? text(number) : "–");
+  return table("Planning and safety", ["run", "planning, 99 % within", "max", "latency charged", "idle", "clearance", "between robots", "contacts", "held back"], runs.map(({ name, numbers: { result } }) => [
+    name, seconds(result.planningUsual), seconds(result.planningMost), known(result.latency, seconds), known(sum(result.idle), clockTime), known(result.clearance, clearanceOf),
+    known(result.separation, centimetres), whole(result.contacts), result.bumpers ? known(sum(result.heldBack), (times) => `${whole(times)} times`) : "no bumpers",
   ]));
 }
 
@@ -126,8 +149,14 @@ export function details(run, written) {
       ["Explored volume", cubicMetres(result.volume)],
       ["Robots", numbers.motion ? "in motion: each plans for itself while it moves" : "in lock-step: all plan, then all move"],
       ["Steps", numbers.motion ? `${whole(result.steps)}, one for each planning` : `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
-      ["Planning", `${seconds(result.planningTotal)} in total; for each step: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
-      ["Rays cast for planning", whole(result.rays)], ["Collisions", whole(result.collisions)], ["Report written by", `frontlux ${written}`],
+      ["Planning", `${seconds(result.planningTotal)} in total; for each ${numbers.motion ? "planning" : "step"}: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
+      ...(numbers.motion ? [
+        ["Latency charged", Number.isFinite(result.latency) ? `${seconds(result.latency)} for each planning` : "not recorded"],
+        ...(Number.isFinite(result.clearance) ? [["Clearance", `${clearanceOf(result.clearance)}, the least between a body and a surface`]] : []),
+        ...(Number.isFinite(result.separation) ? [["Between robots", `${centimetres(result.separation)}, the least between two bodies`]] : []),
+      ] : []),
+      ["Contacts", [whole(result.contacts), bumpers(result)].filter(Boolean).join("; ")],
+      ["Rays cast for planning", whole(result.rays)], ["Report written by", `frontlux ${written}`],
     ]),
     milestones(numbers),
     table("The team", ["", ...facts.robots.map((robot) => robot.name)], [
@@ -135,6 +164,7 @@ export function details(run, written) {
       ["collision box", ...facts.robots.map((robot) => `${robot.extents.map((k) => k.toFixed(1)).join(" × ")} m`)],
       ["sensor", ...facts.robots.map(sensor)],
       ["path length", ...result.lengths.map(metres)],
+      ...(facts.measured ? [["idle", ...result.idle.map(clockTime)], ["held back", ...result.heldBack.map((times) => (Number.isFinite(times) ? `${whole(times)} times` : "unknown"))]] : []),
       ["fraction of the known space", ...result.fractions.map((fraction) => percent(fraction))],
     ]),
   ];
@@ -195,6 +225,8 @@ const WORDS = [
   ["Path length", "Of all robots together, in metres, unless a robot is named."],
   ["Explored volume", "The volume of all voxels that are known to be free or occupied, within the bounds of the map."],
   ["Step", "In lock-step: all robots plan, then move; the map grows at every viewpoint of their paths; step 0 is a scan at the start. In motion: one robot plans; its path and its scans since the planning before, and those of the others, belong to the step."],
+  ["Idle", "How long a robot rested without turning, in seconds of the run's clock."],
+  ["Contacts", "How often a body touched a surface. A robot with a bumper is held back before it touches one; that is counted as held back."],
   ["Gain", "How many frontiers a path is expected to have in view (expected), and how many the scans of the robot made known (gained)."],
   ["Unassigned", "Frontiers that are assigned to no robot in this step."],
   ["Abandoned", "Frontiers that stayed unknown although a robot looked at them. No robot is sent to them any more."],

@@ -4,7 +4,7 @@ import { comparison, details, glossary, header, stepTable, teamName } from "./fa
 import { addKeys } from "./keys.js";
 import { describePick, pick } from "./picking.js";
 import { readRun } from "./run_data.js";
-import { numbersOf, percent } from "./run_numbers.js";
+import { numbersOf, percent, seconds } from "./run_numbers.js";
 import { NoWebGL, ReplayScene } from "./scene.js";
 import { makeTimeControls } from "./time_controls.js";
 import { Timeline } from "./timeline.js";
@@ -49,7 +49,7 @@ class Page {
     this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of steps" }), el("div", { class: "body" }));
     document.getElementById("app").replaceChildren(
       el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs)),
-      runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, comparison(runs)) : null,
+      runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, ...comparison(runs)) : null,
       el("div", { class: "main" }, this.stage, el("section", { "aria-label": "Charts" }, this.chartHost)),
       this.details, this.steps,
       el("details", { class: "fold" }, el("summary", { text: "Glossary" }), glossary()),
@@ -174,7 +174,7 @@ async function start() {
 
 window.frontlux = { ready: false };
 start().then(
-  (page) => Object.assign(window.frontlux, { page, ready: true, team: teamName, percent }),
+  (page) => Object.assign(window.frontlux, { page, ready: true, team: teamName, percent, seconds }),
   (error) => {
     window.frontlux.error = String(error);
     document.getElementById("app").replaceChildren(el("p", { class: "warning", text: `This report cannot be shown: ${error.message}. Make it again with frontlux report, or open it in a newer browser.` }));

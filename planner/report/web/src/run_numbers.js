@@ -40,6 +40,7 @@ export function numbersOf(facts) {
   };
   numbers.travelled = numbers.length.map(runningSum);
   numbers.teamTravelled = facts.steps.map((_, s) => sum(numbers.travelled.map((list) => list[s])));
+  const { measured } = facts, known = (number) => number ?? NaN, { latency, bumper } = recordedOptions(facts) ?? {};
   const last = steps - 1, planned = facts.steps.map((_, s) => s).filter((s) => facts.steps[s].number > 0);
   const planning = planned.map((s) => numbers.planning[s]);
   numbers.result = {
@@ -55,7 +56,13 @@ export function numbersOf(facts) {
     planningUsual: percentile(planning, 0.99),
     time: clock ? numbers.time[last] : NaN,
     volume: steps ? numbers.volume[last] : NaN,
-    collisions: sum(numbers.collisions),
+    latency: motion && typeof latency === "number" ? latency : NaN,
+    bumpers: bumper !== false,
+    contacts: sum(numbers.collisions),
+    clearance: known(measured?.clearance_min_m),
+    separation: known(measured?.separation_min_m),
+    idle: facts.robots.map((_, r) => known(measured?.idle[r])),
+    heldBack: facts.robots.map((_, r) => known(measured?.held_back[r])),
     rays: sum(numbers.rays),
     robots,
   };
@@ -137,6 +144,8 @@ export function percent(fraction, digits = 1) {
   const text = (100 * fraction).toFixed(digits), step = 10 ** -digits;
   return `${fraction < 1 && Number(text) === 100 ? (100 - step).toFixed(digits) : text} %`;
 }
+/** For distances between bodies. */
+export const centimetres = (length) => `${length.toFixed(2)} m`;
 export const metres = (length) => (Number.isFinite(length) ? `${length.toFixed(length < 100 ? 1 : 0)} m` : "unknown");
 export function seconds(time) {
   if (!Number.isFinite(time)) return "unknown";

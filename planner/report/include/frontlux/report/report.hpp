@@ -12,6 +12,9 @@ namespace frontlux::report {
 struct ReportedRun {
   std::string name;                               ///< for people; any text
   const planner::Recording* recording = nullptr;  ///< not null; lives as long as the report is being made
+  /// The run.json of `frontlux explore`, for what the recording does not hold: times at rest, clearances,
+  /// what bumpers did. Left out if it is empty, damaged, or not of this recording's end.
+  std::string run_json = {};
 };
 
 /// Writes runs into one HTML file that shows them in a browser: replay in 3-D, charts, tables. The file needs

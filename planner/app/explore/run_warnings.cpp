@@ -1,0 +1,42 @@
+#include "explore/run_warnings.hpp"
+
+#include "text.hpp"
+
+#include <frontlux/planner/exploration.hpp>
+
+#include <cmath>
+
+namespace frontlux::app {
+namespace {
+
+constexpr double kDone = 0.95;  // of the observable space, at an end that its user has not asked for
+
+std::string late_planning(double planning, double latency) {
+  constexpr double kUnit = 0.05;  // [s] of the latency that is advised
+  return "99 % of the plannings took up to " + fixed(planning, 3) + " s, and the clock charges " +
+         rounded(latency) +
+         " s for each: on this machine robots would get their trajectories later than in this run; explore "
+         "with --latency " +
+         fixed(std::ceil(planning / kUnit) * kUnit, 2) + " or more";
+}
+
+}  // namespace
+
+std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
+                                      const std::optional<RunEnd>& end) {
+  std::vector<std::string> warnings;
+  const auto is = [&](planner::ExplorationEnd reason) {
+    return end && end->word == planner::name_of(reason);
+  };
+  if (is(planner::ExplorationEnd::kCutOff))
+    warnings.push_back(end->text);
+  else if (sums.observable < kDone &&
+           (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)))
+    warnings.push_back("the run has ended with " + percent(sums.observable) +
+                       " of the observable space mapped; the robots found no way to see the rest");
+  const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
+  if (!setup.lockstep && planning > latency) warnings.push_back(late_planning(planning, latency));
+  return warnings;
+}
+
+}  // namespace frontlux::app

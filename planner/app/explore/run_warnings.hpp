@@ -1,0 +1,19 @@
+#pragma once
+
+#include "explore/explore_setup.hpp"
+#include "explore/run_files.hpp"
+#include "explore/run_loop.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frontlux::app {
+
+/// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
+/// far from done, or that plannings took longer than the clock charges robots in motion for them.
+/// @param end  none: its user has stopped it
+[[nodiscard]] std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
+                                                    const std::optional<RunEnd>& end);
+
+}  // namespace frontlux::app

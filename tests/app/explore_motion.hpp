@@ -1,0 +1,82 @@
+#pragma once
+
+#include "app/explore_command.hpp"
+
+#include <frontlux/planner/recording.hpp>
+
+namespace frontlux::test {
+
+/// A CSV file by its columns' names.
+class Table {
+ public:
+  explicit Table(const fs::path& csv) : rows_(table_of(csv)) {}
+
+  [[nodiscard]] std::size_t size() const { return rows_.size() - 1; }
+  [[nodiscard]] const std::string& text(std::size_t row, const std::string& column) const {
+    const auto& header = rows_.at(0);
+    return rows_.at(row + 1).at(static_cast<std::size_t>(std::ranges::find(header, column) - header.begin()));
+  }
+  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
+    return std::stod(text(row, column));
+  }
+  [[nodiscard]] Eigen::Vector3d point(std::size_t row, const std::string& before,
+                                      const std::string& behind) const {
+    return {number(row, before + "x" + behind), number(row, before + "y" + behind),
+            number(row, before + "z" + behind)};
+  }
+  /// All but one column.
+  [[nodiscard]] std::vector<std::vector<std::string>> without(const std::string& column) const {
+    auto rows = rows_;
+    const auto place = std::ranges::find(rows_.at(0), column) - rows_.at(0).begin();
+    for (auto& row : rows) row.erase(row.begin() + place);
+    return rows;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Runs in motion.
+class ExploreMotion : public ExploreCommand {
+ protected:
+  /// The words for a quick run: two UAVs of few pixels.
+  [[nodiscard]] std::vector<std::string> quick(const std::string& seconds) const {
+    std::string robots;
+    for (const char* name : {"one", "two"})
+      robots += (robots.empty() ? "" : ", ") + (R"({"name": ")" + std::string(name) + R"(", "motion": "space",
+        "body": {"kind": "box", "size_m": [0.7, 0.7, 0.5]},
+        "limits": {"speed_m_s": 2, "acceleration_m_s2": 3, "yaw_rate_deg_s": 90},
+        "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 6, "columns": 48,
+                   "rows": 36, "rate_hz": 8}})");
+    return {"--task", write("quick.json", R"({"world": "room", "robots": [)" + robots + "]}"), "--stop-time",
+            seconds};
+  }
+  [[nodiscard]] std::vector<std::string> quick(const std::string& output, const std::string& seconds) const {
+    return joined(quick(seconds), {"--report", "off", "-o", path(output)});
+  }
+  /// All but the times that it took is that of another run, to the last bit.
+  void expect_same_motions(const std::string& a, const std::string& b) const {
+    expect_same_runs(a, b);
+    EXPECT_GT(content_of(path(a + "/motion.csv")).size(), 1000U);
+    EXPECT_TRUE(content_of(path(a + "/motion.csv")) == content_of(path(b + "/motion.csv")));
+    EXPECT_EQ(Table(path(a + "/events.csv")).without("planning_s"),
+              Table(path(b + "/events.csv")).without("planning_s"));
+    const nlohmann::json x = json_in(a), y = json_in(b);
+    for (const char* name : {"time_s", "auc", "explored_m3", "clearance_min_m", "separation_min_m",
+                             "contacts", "by_robot", "lockstep", "latency_s"})
+      EXPECT_EQ(x.at(name), y.at(name)) << name;
+    for (const std::string& run : {a, b}) expect_planning_times(run);
+  }
+
+ private:
+  // events.csv and the recording tell the same times, also of plannings before the run was resumed.
+  void expect_planning_times(const std::string& output) const {
+    const planner::Recording recording = planner::read_recording(path(output + "/run.frontlux"));
+    const Table events(path(output + "/events.csv"));
+    for (std::size_t i = 0; i < events.size(); ++i)
+      EXPECT_EQ(events.number(i, "planning_s"), recording.steps.at(i + 1).step.planning_seconds())
+          << output << ", step " << i + 1;
+  }
+};
+
+}  // namespace frontlux::test
