@@ -20,7 +20,7 @@ TARGETS = {
 
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
-    "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "view"],
+    "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "frontier", "view"],
     "planner": ["mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "view_path", "exploration",
                 "recording"],
 }

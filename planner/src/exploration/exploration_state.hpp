@@ -2,8 +2,8 @@
 
 #include "frontier/abandoned_frontiers.hpp"
 
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/exploration.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/information_gain.hpp>
 
 #include <cstddef>
