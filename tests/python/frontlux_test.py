@@ -1,10 +1,9 @@
 """The Python module against known answers, against itself, and with arguments that it has to refuse."""
 import ast
 import copy
-import inspect
 import os
 import pathlib
-import statistics
+import re
 import subprocess
 import sys
 import tempfile
@@ -182,6 +181,14 @@ class Refusals(unittest.TestCase):
                     self.refuses(RuntimeError, "", getattr, kind.__new__(kind), name)
         self.refuses(TypeError, "No constructor", frontlux.FieldOfView)
 
+    def test_none_is_no_object(self):
+        self.refuses(TypeError, "incompatible", frontlux.VoxelGrid.count, None)
+        self.refuses(TypeError, "incompatible", frontlux.RayCaster, None)
+        self.refuses(TypeError, "incompatible", frontlux.FrontierSet(frontlux.VoxelGrid(0.1)).update, None)
+        self.refuses(TypeError, "incompatible", frontlux.ViewQualityImage, 0.1, None)
+        self.refuses(TypeError, "incompatible", self.caster.update, None)
+        self.assertNotEqual(frontlux.VoxelGrid(0.1), None)
+
 
 class Maps(unittest.TestCase):
     def test_grids_are_arrays_and_back(self):
@@ -305,6 +312,15 @@ class Module(unittest.TestCase):
         documented = ast.parse("def f" + signature[signature.index("("):signature.rindex(" ->")] + ": ...").body[0].args
         self.assertEqual(names, [a.arg for a in documented.args], signature)
         self.assertEqual(sum(optional), len(documented.defaults), signature)
+
+    def test_the_documentation_quotes_examples_that_run(self):
+        root = MAPS.parents[1]
+        examples = [file.read_text() for file in (root / "docs/examples").glob("*.py")]
+        for page in ("README.md", "docs/python.md"):
+            quoted = re.findall("```python\n(.*?)```", (root / page).read_text(), re.DOTALL)
+            self.assertTrue(quoted, page)
+            for code in quoted:
+                self.assertTrue(any(code in example for example in examples), f"{page}: {code}")
 
     def test_import_is_quick(self):
         def seconds(code):

@@ -5,6 +5,7 @@ import random
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 
@@ -61,7 +62,7 @@ class Misuse:
         """Of the right number, mostly; some by name."""
         signature = (function.__doc__ or "").split("\n")[0]
         names = [part.split(":")[0].strip() for part in signature[signature.find("(") + 1:].split(",") if ":" in part]
-        names = [name for name in names if name.isidentifier() and name != "self"]
+        names = [name for name in names if name.isidentifier() and (name != "self" or not inspect.ismethod(function))]
         values = [self.value() for _ in names]
         if self.random.random() < 0.1:
             return [self.value() for _ in range(self.random.randrange(6))], {}
@@ -80,10 +81,12 @@ class Misuse:
             args, kwargs = self.arguments(function)
         else:
             one = self.random.choice(self.objects)
-            name = self.random.choice([n for n in dir(type(one)) if not n.startswith("__") or n in ("__eq__", "__len__", "__init__", "__copy__")])
+            name = self.random.choice([n for n in dir(type(one)) if not n.startswith("__") or
+                                       n in ("__eq__", "__len__", "__init__", "__copy__")])
             if name == "write":
                 return
-            member = getattr(one, name)
+            # Of the object, or of its class with anything for self.
+            member = getattr(one if self.random.random() < 0.9 else type(one), name)
             if not callable(member):
                 self.keep(member)
                 return
@@ -123,7 +126,8 @@ def run(misuse, end):
 
 
 def main():
-    print(f"seed {SEED}")
+    print(f"seed {SEED}", flush=True)
+    warnings.simplefilter("ignore")  # numpy's, about numbers that do not fit
     objects = first_objects()
     users = [Misuse(SEED + i, objects) for i in range(3)]  # threads that share their objects
     end = time.monotonic() + SECONDS

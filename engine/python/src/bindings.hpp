@@ -2,6 +2,7 @@
 
 #include "guarded.hpp"
 
+#include <frontlux/field_of_view.hpp>
 #include <frontlux/live_map.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -34,3 +35,13 @@ void bind_frontier_set(py::module_& module);
 void bind_view_quality(py::module_& module);
 
 }  // namespace frontlux::python
+
+template <>
+class pybind11::detail::type_caster<std::shared_ptr<frontlux::python::Caster>>
+    : public SomeObject<frontlux::python::Caster> {};
+template <>
+class pybind11::detail::type_caster<std::shared_ptr<frontlux::python::Change>>
+    : public SomeObject<frontlux::python::Change> {};
+template <>
+class pybind11::detail::type_caster<std::shared_ptr<frontlux::FieldOfView>>
+    : public SomeObject<frontlux::FieldOfView> {};

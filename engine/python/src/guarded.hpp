@@ -37,3 +37,19 @@ template <class T>
 using Held = std::shared_ptr<Guarded<T>>;
 
 }  // namespace frontlux::python
+
+namespace pybind11::detail {
+
+/// Refuses None, which pybind11 would hand on as a null pointer.
+template <class T>
+class SomeObject : public copyable_holder_caster<T, std::shared_ptr<T>> {
+ public:
+  bool load(handle source, bool convert) {
+    return !source.is_none() && copyable_holder_caster<T, std::shared_ptr<T>>::load(source, convert);
+  }
+};
+template <class T>
+class type_caster<std::shared_ptr<frontlux::python::Guarded<T>>>
+    : public SomeObject<frontlux::python::Guarded<T>> {};
+
+}  // namespace pybind11::detail
