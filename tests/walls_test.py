@@ -11,6 +11,7 @@ import sys
 # A target: where its headers lie, and whose public headers it may include beside its own.
 TARGETS = {
     "engine": {"public": "engine/include", "private": "engine/src", "knows": []},
+    "python": {"public": None, "private": "engine/python/src", "knows": ["engine"]},
     "planner": {"public": "planner/include", "private": "planner/src", "knows": ["engine"]},
     "io": {"public": "planner/io/include", "private": "planner/io/src", "knows": ["engine", "planner"]},
     "sim": {"public": "planner/sim/include", "private": "planner/sim/src", "knows": ["engine", "planner", "io"]},
@@ -20,7 +21,7 @@ TARGETS = {
 
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
-    "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "view"],
+    "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "frontier", "view"],
     "planner": ["mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "view_path", "exploration",
                 "recording"],
 }
@@ -28,13 +29,14 @@ FLOW = {
 # Libraries, and the files that may include them; all others may not.
 LIBRARIES = [
     (r"embree[34]/", r"engine/src/embree/|planner/sim/src/sensing/surface\.cpp"),
-    (r"octomap/|octomath/", r"engine/src/octomap/|planner/src/mapping/|planner/app/.*\.cpp"),
+    (r"octomap/|octomath/", r"engine/src/octomap/|engine/python/src/bind_live_map\.cpp|planner/src/mapping/|planner/app/.*\.cpp"),
     (r"Ip[A-Z]\w+\.hpp", r"planner/src/view_path/gain_ascent\.cpp"),
     (r"ompl/", r"planner/src/path/.*"),
     (r"assimp/", r"planner/sim/src/mesh/mesh_import\.cpp"),
     (r"nlohmann/json_fwd\.hpp", r"planner/(app|io/src|report/src)/"),
     (r"nlohmann/", r"planner/(app|io/src|report/src)/.*\.cpp"),
     (r"CLI/", r"planner/app/"),
+    (r"pybind11/", r"engine/python/src/"),
     (r"png\.h", r"planner/app/draw/png_file\.cpp"),
     (r"zlib\.h", r"planner/src/recording/.*\.cpp|planner/report/src/report\.cpp"),
     (r"(oneapi/)?tbb/", r"(engine|planner)/.*src/|planner/app/"),

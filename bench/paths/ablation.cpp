@@ -3,7 +3,7 @@
 #include "random.hpp"
 #include "table.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -165,7 +165,7 @@ MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds)
   MapTrial map{name, 0, {}};
   const auto bounds = grid.known_bounds();
   if (!bounds) throw std::runtime_error(name + ": all voxels of this map are unknown");
-  const planner::FrontierSet frontiers(grid, grown(*bounds, 1));
+  const FrontierSet frontiers(grid, grown(*bounds, 1));
   const auto caster = make_ray_caster(grid);
   map.frontiers = frontiers.keys().size();
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -182,7 +182,7 @@ PathTrial run_large_path() {
                     make_key(kOrigin + kLength - 1, kOrigin + kWidth - 1, kOrigin + kHeight - 1)};
   VoxelGrid grid(0.2);
   for_each_key(room, [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
-  const planner::FrontierSet frontiers(grid, grown(room, 1));
+  const FrontierSet frontiers(grid, grown(room, 1));
   std::vector<planner::Pose> path(12);
   for (std::size_t i = 0; i < path.size(); ++i)
     path[i].position = {2.4 + 1.2 * static_cast<double>(i), 0.1 * kWidth, 0.1 * kHeight};

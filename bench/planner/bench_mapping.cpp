@@ -5,7 +5,7 @@
 #include "random.hpp"
 #include "table.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/sim/sensor.hpp>
@@ -27,7 +27,7 @@
 
 namespace {
 
-using frontlux::KeyBox, frontlux::Lattice, frontlux::planner::FrontierSet, frontlux::planner::Mapping,
+using frontlux::KeyBox, frontlux::Lattice, frontlux::FrontierSet, frontlux::planner::Mapping,
     frontlux::planner::Pose, frontlux::planner::Scan;
 
 constexpr double kResolution = 0.3;  // [m]

@@ -64,9 +64,9 @@ class Session {
     subjects_.push_back(load_subject(file, file.stem().string()));
     const Subject& subject = *subjects_.back();
     std::cout << describe(subject) << std::endl;
-    scenes_.push_back(std::make_unique<PlannerScene>(
-        subject, options.corners ? planner::Adjacency::kCorners : planner::Adjacency::kFaces,
-        options.ground_viewpoints, options.aerial_viewpoints));
+    scenes_.push_back(
+        std::make_unique<PlannerScene>(subject, options.corners ? Adjacency::kCorners : Adjacency::kFaces,
+                                       options.ground_viewpoints, options.aerial_viewpoints));
     const PlannerScene& scene = *scenes_.back();
     std::cout << "  " << scene.frontiers.size() << " frontiers; corridors of " << scene.ground_cells.size()
               << " and " << scene.aerial_cells.size()

@@ -63,15 +63,14 @@ std::vector<VoxelKey> scan(VoxelGrid& grid, const RayCaster& caster, const Voxel
   return changed;
 }
 
-std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds,
-                                   planner::Adjacency adjacency) {
-  const planner::FrontierSet set(grid, bounds, adjacency);
+std::vector<VoxelKey> frontiers_of(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency) {
+  const FrontierSet set(grid, bounds, adjacency);
   return {set.keys().begin(), set.keys().end()};
 }
 
 }  // namespace
 
-PlannerScene::PlannerScene(const Subject& map, planner::Adjacency adjacency, std::size_t ground_count,
+PlannerScene::PlannerScene(const Subject& map, Adjacency adjacency, std::size_t ground_count,
                            std::size_t aerial_count)
     : subject(map), ground(planner::ugv()), aerial(planner::uav()), scanned(map.grid) {
   const VoxelGrid& grid = subject.grid;

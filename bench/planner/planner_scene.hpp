@@ -2,8 +2,8 @@
 
 #include "rays/subject.hpp"
 
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/view_quality.hpp>
 
@@ -28,7 +28,7 @@ struct PlannerScene {
   std::vector<VoxelKey> changed;            ///< voxels that the scan changed, sorted
 
   /// @throws std::runtime_error if the map has no frontiers or no free space
-  PlannerScene(const Subject& subject, planner::Adjacency adjacency, std::size_t ground_viewpoints,
+  PlannerScene(const Subject& subject, Adjacency adjacency, std::size_t ground_viewpoints,
                std::size_t aerial_viewpoints);
 
   [[nodiscard]] std::vector<planner::FrontierAgent> agents() const;

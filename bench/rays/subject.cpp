@@ -48,8 +48,7 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
     Contender contender{{std::string(name_of(kind))}, nullptr};
     const double seconds = median_seconds([&] {
       contender.rays.reset();
-      contender.rays = std::visit(
-          [&](const auto& octree) { return make_ray_caster(kind, subject->grid, *octree); }, subject->tree);
+      contender.rays = make_ray_caster(kind, subject->grid, subject->tree);
     });
     if (kind != CasterKind::kOctomap) {
       contender.build_seconds = grid_seconds + seconds;
@@ -62,8 +61,7 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
 
 std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
   auto subject = make_subject(read_octree(file), std::move(name));
-  std::visit([&](const auto& octree) { subject->drop_in = std::make_unique<OctreeRayCaster>(*octree); },
-             subject->tree);
+  subject->drop_in = std::make_unique<OctreeRayCaster>(subject->tree);
   return subject;
 }
 

@@ -186,7 +186,7 @@ std::vector<VoxelKey> slab(const std::vector<VoxelKey>& keys, std::size_t count)
 
 bool run_map(const std::filesystem::path& file, const ViewErrorOptions& options, std::ostream& csv) {
   const auto subject = load_subject(file, file.stem().string());
-  const PlannerScene scene(*subject, planner::Adjacency::kFaces, options.ground_viewpoints, 10'000'000);
+  const PlannerScene scene(*subject, Adjacency::kFaces, options.ground_viewpoints, 10'000'000);
   std::cout << subject->name << ": " << scene.frontiers.size() << " frontiers" << std::endl;
   const Case ground{"ugv", *subject, scene.ground.view, scene.ground_viewpoints, scene.frontiers, 0};
   const Case aerial{"uav",

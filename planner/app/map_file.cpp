@@ -43,7 +43,7 @@ TreeSize tree_size(const MapFile& map) {
 }
 
 std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, CasterKind kind) {
-  return std::visit([&](const auto& tree) { return make_ray_caster(kind, grid, *tree); }, map.tree);
+  return make_ray_caster(kind, grid, map.tree);
 }
 
 std::uint64_t most_voxels(const MapFile& map, std::uint64_t some, std::uint64_t by_leaf) {
@@ -75,8 +75,7 @@ KeyBox robot_space(const MapFile& map, const VoxelGrid& grid, const std::optiona
   return *space;
 }
 
-std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,
-                                                   const KeyBox& bounds) {
+std::optional<FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid, const KeyBox& bounds) {
   const std::uint64_t most = most_voxels(map, std::uint64_t{1} << 27, std::uint64_t{1} << 15);
   constexpr int kBrickEdge = 1 << Brick::kLog2;
   std::uint64_t around = 0;
@@ -87,7 +86,7 @@ std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const Vox
     if (all) around += size_of(*all) - (inside ? size_of(*inside) : 0);
   });
   if (around > most) return std::nullopt;
-  return planner::FrontierSet(grid, bounds);
+  return FrontierSet(grid, bounds);
 }
 
 }  // namespace frontlux::app

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <frontlux/caster_kind.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/octomap.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -56,7 +56,7 @@ struct TreeSize {
 /// The frontiers of a map within bounds.
 /// @param grid  of the map
 /// @return nothing if the map's large free blocks have so wide a surface that it would take too long
-[[nodiscard]] std::optional<planner::FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,
-                                                                 const KeyBox& bounds);
+[[nodiscard]] std::optional<FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& grid,
+                                                        const KeyBox& bounds);
 
 }  // namespace frontlux::app

@@ -91,8 +91,7 @@ TEST_F(PlanCommandTest, ArrivesLookingAheadWithoutAYaw) {
 }
 
 TEST_F(PlanCommandTest, TurnsThePathToSeeMoreFrontiers) {
-  const VoxelGrid grid =
-      std::visit([](const auto& tree) { return make_voxel_grid(*tree); }, read_octree(path("hall.bt")));
+  const VoxelGrid grid = make_voxel_grid(read_octree(path("hall.bt")));
   const auto frontiers = test::frontiers_by_hand(grid, *grid.known_bounds());
   // Frontiers in view of some viewpoint of the path in the file, from the map alone.
   const auto seen = [&] {

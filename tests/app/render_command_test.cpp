@@ -57,7 +57,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
   const KeyBox bounds = room_.grid.known_bounds().value();
   planner::TravelCorridor corridor(robot.travel, room_.grid.lattice(), bounds);
   corridor.update({room_.grid}, room_.key(17, 17, 2));
-  const planner::FrontierSet set(room_.grid, bounds);
+  const FrontierSet set(room_.grid, bounds);
   const std::vector<VoxelKey> frontiers(set.keys().begin(), set.keys().end());
   const auto assigned = naive_assigned(*caster, 0.3, frontiers, corridor.cells(), robot.view);
   ASSERT_GT(assigned.size(), 10U);

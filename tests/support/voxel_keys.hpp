@@ -3,6 +3,7 @@
 #include "support/test.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/map_change.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 namespace frontlux::test {
@@ -31,18 +32,6 @@ inline bool is_free(const VoxelGrid& grid, const KeyBox& box) {
 inline void sort(std::vector<VoxelKey>& keys) {
   std::ranges::sort(keys);
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-}
-
-/// The voxels whose state differs between two maps, sorted.
-inline std::vector<VoxelKey> changed_keys(const VoxelGrid& before, const VoxelGrid& after) {
-  std::vector<VoxelKey> keys;
-  for_each_change(before, after, [&](const Block& block) {
-    for_each_key(cube(block.corner, 1 << block.log2_edge), [&](const VoxelKey& key) {
-      if (before.at(key) != after.at(key)) keys.push_back(key);
-    });
-  });
-  std::ranges::sort(keys);
-  return keys;
 }
 
 }  // namespace frontlux::test

@@ -47,5 +47,7 @@ inline constexpr std::array<std::pair<std::string_view, CasterKind>, 4> kCasterN
                                                          const octomap::OcTree& tree);
 [[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
                                                          const octomap::ColorOcTree& tree);
+[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
+                                                         const Octree& tree);
 
 }  // namespace frontlux

@@ -3,6 +3,7 @@
 #include <frontlux/voxel_grid.hpp>
 
 #include <span>
+#include <vector>
 
 namespace frontlux {
 
@@ -12,5 +13,10 @@ struct MapChange {
   std::span<const VoxelKey> keys =
       {};  ///< every voxel whose state is not what it was before, sorted; more do no harm
 };
+
+/// Every voxel whose state differs between two maps, sorted: the keys of a `MapChange`. Between a grid and
+/// its edited copy this costs as much as the edit did.
+/// @throws std::length_error if there are more than `kMostListedKeys`
+[[nodiscard]] std::vector<VoxelKey> changed_keys(const VoxelGrid& before, const VoxelGrid& after);
 
 }  // namespace frontlux

@@ -9,17 +9,30 @@
 #include <span>
 #include <variant>
 
-// Forward declarations only: include <octomap/OcTree.h> or <octomap/ColorOcTree.h> where you make your trees.
+// Forward declarations only: include <octomap/OcTree.h> or <octomap/ColorOcTree.h> where you use OctoMap's
+// types.
 namespace octomath {
 class Vector3;
 }
 namespace octomap {
 class OcTree;
 class ColorOcTree;
+class OcTreeKey;
+class Pointcloud;
 using point3d = octomath::Vector3;
 }  // namespace octomap
 
 namespace frontlux {
+
+/// OctoMap's types for ours and back, exact in both directions.
+[[nodiscard]] octomap::OcTreeKey to_octomap(const VoxelKey& key);
+[[nodiscard]] octomap::point3d to_octomap(const Eigen::Vector3f& point);
+[[nodiscard]] VoxelKey from_octomap(const octomap::OcTreeKey& key);
+[[nodiscard]] Eigen::Vector3f from_octomap(const octomap::point3d& point);
+
+/// The centres of the occupied voxels that rays ended in, in the order of the hits: what `castRay` would add
+/// to a cloud for each ray that it returns true for.
+[[nodiscard]] octomap::Pointcloud to_pointcloud(std::span<const Hit> hits);
 
 /// A tree read from a file, of the kind the file holds.
 using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<octomap::ColorOcTree>>;
@@ -28,6 +41,14 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 /// end before OctoMap's own reader, which trusts its input, sees it.
 /// @throws std::runtime_error naming the file, what is wrong with it and where
 [[nodiscard]] Octree read_octree(const std::filesystem::path& file);
+
+/// Writes a tree in OctoMap's format: the log-odds of every node (and its colour) to a file named `.ot`, free
+/// and occupied only to one named `.bt`. The file appears complete or not at all.
+/// @throws std::invalid_argument if the name ends otherwise
+/// @throws std::runtime_error naming the file, if it cannot be written
+void write_octree(const octomap::OcTree& tree, const std::filesystem::path& file);
+void write_octree(const octomap::ColorOcTree& tree, const std::filesystem::path& file);
+void write_octree(const Octree& tree, const std::filesystem::path& file);
 
 /// The ternary mirror of a tree: occupied, free and unknown by the tree's own `search` and `isNodeOccupied`.
 /// A pruned leaf is one entry, however large.
@@ -46,6 +67,7 @@ class OctreeMirror {
   ///              `tree.enableChangeDetection(true)` and `tree.resetChangeDetection()` before.
   explicit OctreeMirror(const octomap::OcTree& tree);
   explicit OctreeMirror(const octomap::ColorOcTree& tree);
+  explicit OctreeMirror(const Octree& tree);  ///< shares the tree
   ~OctreeMirror();
   OctreeMirror(OctreeMirror&&) noexcept;
   OctreeMirror& operator=(OctreeMirror&&) noexcept;
@@ -73,6 +95,7 @@ class OctreeMirror {
 /// nothing.
 [[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
 [[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree);
+[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree);
 
 /// A drop-in for `tree.castRay(...)`: the same signature, the same results bit for bit, many times faster.
 ///
@@ -86,6 +109,7 @@ class OctreeRayCaster {
   /// @param tree  read now and by `refresh`: must outlive this object
   explicit OctreeRayCaster(const octomap::OcTree& tree);
   explicit OctreeRayCaster(const octomap::ColorOcTree& tree);
+  explicit OctreeRayCaster(const Octree& tree);  ///< shares the tree
   ~OctreeRayCaster();
   OctreeRayCaster(OctreeRayCaster&&) noexcept;
   OctreeRayCaster& operator=(OctreeRayCaster&&) noexcept;

@@ -132,6 +132,8 @@ class ViewQualityImage {
   [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }
   /// `values()[i]` belongs to `viewpoints()[i]`.
   [[nodiscard]] std::span<const ViewQuality> values() const { return values_; }
+  /// The place of the viewpoint with the greatest gain; of equals the first. @pre size() > 0
+  [[nodiscard]] std::size_t best() const;
   /// Visible targets among the drawn ones of viewpoint `i` in each azimuth bin, for `best_window`; empty
   /// without `azimuth_bins`. Times `gain_per_hit()` they are estimates of all visible targets. @pre i <
   /// size()

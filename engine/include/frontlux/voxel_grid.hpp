@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace frontlux {
 
@@ -89,6 +90,13 @@ class VoxelGrid {
   Lattice lattice_;
   detail::Shared<detail::World> world_;
 };
+
+/// Every voxel in a state, sorted.
+/// @throws std::invalid_argument for unknown voxels, which fill the rest of the key range
+/// @throws std::length_error if there are more than `kMostListedKeys`
+[[nodiscard]] std::vector<VoxelKey> keys_in(const VoxelGrid& grid, Occupancy state);
+
+inline constexpr std::uint64_t kMostListedKeys = std::uint64_t{1} << 28;
 
 /// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
 /// became or were uniform. Parts that both grids share are not read, so between a grid and its edited

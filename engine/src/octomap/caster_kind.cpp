@@ -28,5 +28,8 @@ std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& gri
                                            const octomap::ColorOcTree& tree) {
   return make(kind, grid, tree);
 }
+std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid, const Octree& tree) {
+  return make(kind, grid, tree);
+}
 
 }  // namespace frontlux

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <variant>
 
 namespace frontlux::detail {
@@ -24,10 +25,21 @@ Occupancy state_of(const Tree& tree, const typename Tree::NodeType* node) {
 }
 template <class Tree>
 Occupancy state_at(const Tree& tree, const VoxelKey& key) {
-  return state_of(tree, tree.search(to_octomap(key)));
+  return state_of(tree, tree.search(detail::to_octomap(key)));
 }
 
-/// A tree of either kind that somebody else owns.
-using OctreePointer = std::variant<const octomap::OcTree*, const octomap::ColorOcTree*>;
+/// A tree of either kind, to be read.
+using OctreePointer =
+    std::variant<std::shared_ptr<const octomap::OcTree>, std::shared_ptr<const octomap::ColorOcTree>>;
+
+/// A pointer to a tree that somebody else owns.
+template <class Tree>
+std::shared_ptr<Tree> borrowed(Tree& tree) {
+  return {std::shared_ptr<void>(), &tree};
+}
+
+inline OctreePointer to_read(const Octree& tree) {
+  return std::visit([](const auto& t) { return OctreePointer(t); }, tree);
+}
 
 }  // namespace frontlux::detail

@@ -148,5 +148,8 @@ std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree) 
 std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree) {
   return std::make_unique<OctomapRayCaster<octomap::ColorOcTree>>(tree);
 }
+std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree) {
+  return std::visit([](const auto& t) { return make_octomap_ray_caster(*t); }, tree);
+}
 
 }  // namespace frontlux

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace frontlux {
@@ -35,17 +36,16 @@ VoxelGrid mirror(const Tree& tree) {
   return grid;
 }
 
-VoxelGrid mirror(const detail::OctreePointer& tree) {
-  return std::visit([](const auto* t) { return mirror(*t); }, tree);
+template <class... Trees>
+VoxelGrid mirror(const std::variant<Trees...>& tree) {
+  return std::visit([](const auto& t) { return mirror(*t); }, tree);
 }
 
 }  // namespace
 
 VoxelGrid make_voxel_grid(const octomap::OcTree& tree) { return mirror(tree); }
 VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree) { return mirror(tree); }
-VoxelGrid make_voxel_grid(const Octree& tree) {
-  return std::visit([](const auto& t) { return mirror(*t); }, tree);
-}
+VoxelGrid make_voxel_grid(const Octree& tree) { return mirror(tree); }
 
 struct OctreeMirror::Watch {
   detail::OctreePointer tree;
@@ -57,11 +57,11 @@ struct OctreeMirror::Watch {
   // more.
   std::vector<VoxelKey> reported{};
 
-  explicit Watch(detail::OctreePointer watched) : tree(watched), grid(mirror(watched)) { remember(); }
+  explicit Watch(detail::OctreePointer watched) : tree(std::move(watched)), grid(mirror(tree)) { remember(); }
 
   void remember() {
     std::visit(
-        [this](const auto* t) {
+        [this](const auto& t) {
           detecting = t->isChangeDetectionEnabled();
           root = t->getRoot();
           occupancy_threshold = static_cast<double>(t->getOccupancyThresLog());
@@ -71,7 +71,7 @@ struct OctreeMirror::Watch {
 
   [[nodiscard]] bool changes_are_complete() const {
     return std::visit(
-        [this](const auto* t) {
+        [this](const auto& t) {
           return detecting && t->isChangeDetectionEnabled() && root != nullptr && root == t->getRoot() &&
                  occupancy_threshold == static_cast<double>(t->getOccupancyThresLog()) &&
                  grid.resolution() == t->getResolution();
@@ -87,7 +87,7 @@ struct OctreeMirror::Watch {
 
   void update() {
     std::visit(
-        [this](const auto* t) {
+        [this](const auto& t) {
           const auto refresh = [&](const VoxelKey& key) { grid.set(key, state_at(*t, key)); };
           for (const VoxelKey& key : reported) refresh(key);
           reported.clear();
@@ -101,8 +101,11 @@ struct OctreeMirror::Watch {
   }
 };
 
-OctreeMirror::OctreeMirror(const octomap::OcTree& tree) : watch_(std::make_unique<Watch>(&tree)) {}
-OctreeMirror::OctreeMirror(const octomap::ColorOcTree& tree) : watch_(std::make_unique<Watch>(&tree)) {}
+OctreeMirror::OctreeMirror(const octomap::OcTree& tree)
+    : watch_(std::make_unique<Watch>(detail::borrowed(tree))) {}
+OctreeMirror::OctreeMirror(const octomap::ColorOcTree& tree)
+    : watch_(std::make_unique<Watch>(detail::borrowed(tree))) {}
+OctreeMirror::OctreeMirror(const Octree& tree) : watch_(std::make_unique<Watch>(detail::to_read(tree))) {}
 OctreeMirror::~OctreeMirror() = default;
 OctreeMirror::OctreeMirror(OctreeMirror&&) noexcept = default;
 OctreeMirror& OctreeMirror::operator=(OctreeMirror&&) noexcept = default;

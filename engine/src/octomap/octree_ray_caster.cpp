@@ -3,6 +3,7 @@
 #include <frontlux/octomap.hpp>
 
 #include <memory>
+#include <utility>
 
 namespace frontlux {
 namespace {
@@ -18,14 +19,16 @@ struct OctreeRayCaster::Snapshot {
   std::unique_ptr<RayCaster> caster;
 
   explicit Snapshot(detail::OctreePointer read_from)
-      : tree(read_from),
-        caster(make_ray_caster(std::visit([](const auto* t) { return make_voxel_grid(*t); }, read_from))) {}
+      : tree(std::move(read_from)),
+        caster(make_ray_caster(std::visit([](const auto& t) { return make_voxel_grid(*t); }, tree))) {}
 };
 
 OctreeRayCaster::OctreeRayCaster(const octomap::OcTree& tree)
-    : snapshot_(std::make_unique<Snapshot>(&tree)) {}
+    : snapshot_(std::make_unique<Snapshot>(detail::borrowed(tree))) {}
 OctreeRayCaster::OctreeRayCaster(const octomap::ColorOcTree& tree)
-    : snapshot_(std::make_unique<Snapshot>(&tree)) {}
+    : snapshot_(std::make_unique<Snapshot>(detail::borrowed(tree))) {}
+OctreeRayCaster::OctreeRayCaster(const Octree& tree)
+    : snapshot_(std::make_unique<Snapshot>(detail::to_read(tree))) {}
 OctreeRayCaster::~OctreeRayCaster() = default;
 OctreeRayCaster::OctreeRayCaster(OctreeRayCaster&&) noexcept = default;
 OctreeRayCaster& OctreeRayCaster::operator=(OctreeRayCaster&&) noexcept = default;

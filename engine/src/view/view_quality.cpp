@@ -114,6 +114,13 @@ void ViewQualityImage::render(const RayCaster& caster, std::span<const VoxelKey>
   remake(caster, viewpoints, std::move(order), std::make_shared<const detail::TargetIndex>(targets), kept);
 }
 
+std::size_t ViewQualityImage::best() const {
+  const auto of_greatest_gain =
+      std::max_element(values_.begin(), values_.end(),
+                       [](const ViewQuality& a, const ViewQuality& b) { return a.gain < b.gain; });
+  return static_cast<std::size_t>(of_greatest_gain - values_.begin());
+}
+
 std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                                      std::span<const VoxelKey> targets, const MapChange& change) {
   check_count(viewpoints.size());

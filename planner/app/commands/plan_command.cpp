@@ -4,9 +4,9 @@
 #include "map_file.hpp"
 #include "text.hpp"
 
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/io/path_file.hpp>
 #include <frontlux/key_box.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/path_planner.hpp>
@@ -174,7 +174,7 @@ Optimized optimize(const Options& options, const planner::Robot& robot, const Vo
   const double first_yaw = viewpoints.front().yaw, last_yaw = viewpoints.back().yaw;
   const auto caster = make_ray_caster(grid);
   const double range = robot.view.max_range + (options.move ? position.max_shift : 0.0);
-  const planner::FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
+  const FrontierSet frontiers(grid, surroundings(grid, viewpoints, range));
 
   Optimized result;
   const Stopwatch turning;

@@ -3,8 +3,8 @@
 #include "frontier/abandoned_frontiers.hpp"
 #include "tour/tour_planning.hpp"
 
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/exploration.hpp>
-#include <frontlux/planner/frontier_set.hpp>
 #include <frontlux/planner/information_gain.hpp>
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/ray.hpp>
 
 #include <span>

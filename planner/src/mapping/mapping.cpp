@@ -1,13 +1,12 @@
 #include "mapping/scan_tree.hpp"
 #include "mapping/scan_voxels.hpp"
 
-#include <frontlux/file.hpp>
+#include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/stopwatch.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -153,26 +152,6 @@ const VoxelGrid& Mapping::grid() const { return state_->grid; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
 const InsertionTime& Mapping::insertion_time() const { return state_->time; }
 
-// The headers are our own: OctoMap's functions for whole files report on stderr, and round the resolution.
-void Mapping::write(const std::filesystem::path& file) const {
-  const bool binary = file.extension() == ".bt";
-  if (!binary && file.extension() != ".ot")
-    throw std::invalid_argument(file.string() + ": a map's file name ends in .bt or .ot");
-  const auto write_tree = [&](const octomap::OcTree& tree) {
-    write_file(file, [&](std::ostream& out) {
-      out << (binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file") << "\nid "
-          << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << decimals_of(tree.getResolution())
-          << "\ndata\n";
-      if (tree.size() == 0) return;
-      binary ? tree.writeBinaryNode(out, tree.getRoot()) : tree.writeData(out);
-    });
-  };
-  if (!binary) return write_tree(state_->tree);
-  // Voxels that differ in their probability only are one leaf in such a file.
-  octomap::OcTree likely(state_->tree);
-  likely.toMaxLikelihood();
-  likely.prune();
-  write_tree(likely);
-}
+void Mapping::write(const std::filesystem::path& file) const { write_octree(state_->tree, file); }
 
 }  // namespace frontlux::planner

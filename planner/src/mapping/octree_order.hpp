@@ -1,16 +1,14 @@
 #pragma once
 
+#include <frontlux/brick_table.hpp>
 #include <frontlux/ray.hpp>
-#include <frontlux/voxel_grid.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
 namespace frontlux::planner::detail {
 
-/// A set of the 512 voxels of a brick, layer by layer: word z, bit 8 y + x, as in `Brick`.
-using Layers = std::array<std::uint64_t, 8>;
+using frontlux::detail::Layers;
 
 /// The same set in the order in which an octree holds it: a word for each octant of 4 voxels a side, in it a
 /// byte for each octant of 2, in it a bit for each voxel. Octants are numbered as OctoMap numbers children: x
@@ -57,23 +55,6 @@ using Octants = std::array<std::uint64_t, 8>;
 /// Lowest voxel of the brick that holds a voxel.
 [[nodiscard]] constexpr VoxelKey brick_corner(const VoxelKey& key) {
   return make_key(key.x & ~7, key.y & ~7, key.z & ~7);
-}
-
-/// The voxels of a brick that lie in a box.
-[[nodiscard]] inline Layers part_inside(const VoxelKey& corner, const KeyBox& box) {
-  const auto bits = [](int first, int last) {  // of a byte, clipped to it
-    return (0xFFU << std::clamp(first, 0, 8)) & (0xFFU >> std::clamp(7 - last, 0, 8)) & 0xFFU;
-  };
-  const std::uint64_t row = bits(box.min.x - corner.x, box.max.x - corner.x);
-  const unsigned rows = bits(box.min.y - corner.y, box.max.y - corner.y);
-  const unsigned layers = bits(box.min.z - corner.z, box.max.z - corner.z);
-  std::uint64_t square = 0;
-  for (unsigned y = 0; y < 8; ++y)
-    if (((rows >> y) & 1U) != 0) square |= row << (8 * y);
-  Layers inside{};
-  for (unsigned z = 0; z < 8; ++z)
-    if (((layers >> z) & 1U) != 0) inside[z] = square;
-  return inside;
 }
 
 }  // namespace frontlux::planner::detail

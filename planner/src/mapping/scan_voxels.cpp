@@ -40,7 +40,7 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
 
   std::vector<BrickUpdate> updates;
   all.for_each_brick([&](const VoxelKey& corner) {
-    const Layers inside = part_inside(corner, bounds), hit = hits.brick(corner);
+    const Layers inside = frontlux::detail::part_inside(corner, bounds), hit = hits.brick(corner);
     Layers miss = all.brick(corner), hit_inside{};
     std::uint64_t any = 0;
     for (std::size_t z = 0; z < 8; ++z) {

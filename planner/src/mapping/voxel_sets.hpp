@@ -1,8 +1,9 @@
 #pragma once
 
-#include "mapping/brick_table.hpp"
 #include "mapping/octree_order.hpp"
 #include "mapping/ray_path.hpp"
+
+#include <frontlux/brick_table.hpp>
 
 #include <array>
 #include <cstddef>
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace frontlux::planner::detail {
+
+using frontlux::detail::BrickTable;
 
 /// A set of voxels in a box and one voxel around it, which may lie beyond the key range. A bit for each: for
 /// boxes small enough to be cleared for every scan.

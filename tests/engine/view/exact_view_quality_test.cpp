@@ -285,7 +285,7 @@ TEST(ExactViewQuality, AfterUpdatesEqualsRenderingAgain) {
       if (random.one_in(3)) some.targets.erase(some.targets.begin() + random.below(9));
       if (random.one_in(3)) some.viewpoints.erase(some.viewpoints.begin() + random.below(9));
       if (random.one_in(3)) some.viewpoints.push_back(make_key(near.x ^ 1, near.y, near.z));
-      const std::vector<VoxelKey> changed = test::changed_keys(before, some.grid);
+      const std::vector<VoxelKey> changed = changed_keys(before, some.grid);
       caster->update(some.grid);
       rendered += updated.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
       all += some.viewpoints.size();

@@ -327,7 +327,7 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
           changed.push_back(k);
         }
         std::sort(changed.begin(), changed.end());
-        if (exactly) changed = test::changed_keys(before, hall.grid);
+        if (exactly) changed = changed_keys(before, hall.grid);
         hall.observe();
         // Targets and viewpoints come and go for other reasons than the map as well.
         if (random.one_in(3)) hall.targets.erase(hall.targets.begin() + random.below(300));

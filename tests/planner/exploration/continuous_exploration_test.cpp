@@ -3,7 +3,7 @@
 #include "planner/exploration/team_in_motion.hpp"
 #include "support/complaint.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/sim/coverage.hpp>
 

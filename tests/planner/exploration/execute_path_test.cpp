@@ -165,7 +165,7 @@ TEST_F(ExecutePathTest, MarksFreeWhatIsKnown) {
   step.planned = {path_[0]};
   detail::execute_path(0, step, nullptr, {}, mapping_, known);
   std::vector<VoxelChange> expected;
-  for (const VoxelKey& key : test::changed_keys(before, mapping_.grid()))
+  for (const VoxelKey& key : changed_keys(before, mapping_.grid()))
     expected.push_back({key, Occupancy::kUnknown, Occupancy::kFree});
   EXPECT_EQ(expected.size(), 18U) << "of 27 one layer was free";
   EXPECT_EQ(step.changed, expected);

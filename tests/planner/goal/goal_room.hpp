@@ -5,7 +5,7 @@
 #include "support/views.hpp"
 #include "support/voxel_keys.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -46,7 +46,7 @@ struct GoalRoom {
   }
 
   [[nodiscard]] std::vector<VoxelKey> frontiers() const {
-    const planner::FrontierSet set(grid, bounds());
+    const FrontierSet set(grid, bounds());
     return {set.keys().begin(), set.keys().end()};
   }
 

@@ -186,7 +186,7 @@ TEST(GoalSelection, FollowsAMapAsIfItHadNotSeenItBefore) {
       const std::array poses = {room.pose(x, y, 2), room.pose(y, x, 5)};
       const auto frontiers = room.frontiers();
       GoalSelection fresh(team, room.grid.lattice(), room.bounds());
-      const auto changed = test::changed_keys(before, room.grid);
+      const auto changed = changed_keys(before, room.grid);
       expect_same(kept.select(*caster, {room.grid, changed}, frontiers, poses),
                   fresh.select(*caster, {room.grid}, frontiers, poses), false);
     }

@@ -228,7 +228,7 @@ TEST(Mapping, ScansEqualTheirDefinitionAndTheMirrorFollows) {
       expect_same_nodes(mapping.tree(), oracle.tree(), "scan " + std::to_string(i));
       if (HasFatalFailure()) return;
       ASSERT_TRUE(mapping.grid() == make_voxel_grid(mapping.tree())) << "scan " << i;
-      ASSERT_TRUE(std::ranges::equal(changed, test::changed_keys(before, mapping.grid()))) << "scan " << i;
+      ASSERT_TRUE(std::ranges::equal(changed, changed_keys(before, mapping.grid()))) << "scan " << i;
     }
     const auto known = mapping.grid().known_bounds();
     ASSERT_TRUE(known.has_value());
@@ -287,7 +287,7 @@ TEST(Mapping, MarksVoxelsFree) {
     for (int i = 0; i < 200; ++i)  // some of them outside the bounds, some twice
       chosen.push_back(random.key_in(cube({32748, 32748, 32748}, 40)));
     const auto changed = mapping.mark_free(chosen).keys;
-    EXPECT_TRUE(std::ranges::equal(changed, test::changed_keys(grid_before, mapping.grid())));
+    EXPECT_TRUE(std::ranges::equal(changed, changed_keys(grid_before, mapping.grid())));
     EXPECT_TRUE(mapping.grid() == make_voxel_grid(mapping.tree()));
     const std::set<VoxelKey> marked(chosen.begin(), chosen.end());
     for_each_key(cube({32748, 32748, 32748}, 40), [&](const VoxelKey& key) {

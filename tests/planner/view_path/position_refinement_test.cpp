@@ -3,7 +3,7 @@
 #include "support/plain_frontiers.hpp"
 #include "support/random.hpp"
 
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/position_refinement.hpp>
 

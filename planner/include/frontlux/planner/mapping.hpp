@@ -83,10 +83,7 @@ class Mapping {
 
   [[nodiscard]] const InsertionTime& insertion_time() const;
 
-  /// Writes the map in OctoMap's format: the log-odds of every node to a file named `.ot`, free and occupied
-  /// only to one named `.bt`. The file appears complete or not at all.
-  /// @throws std::invalid_argument if the name ends otherwise
-  /// @throws std::runtime_error naming the file, if it cannot be written
+  /// `write_octree` of the tree.
   void write(const std::filesystem::path& file) const;
 
  private:

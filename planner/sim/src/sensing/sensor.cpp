@@ -1,6 +1,7 @@
 #include "sensing/keyed_random.hpp"
 
 #include <frontlux/parallel.hpp>
+#include <frontlux/sensor_rays.hpp>
 #include <frontlux/sim/sensor.hpp>
 
 #include <algorithm>
@@ -12,52 +13,6 @@
 
 namespace frontlux::sim {
 namespace {
-
-constexpr std::size_t kMostRays = std::size_t{1} << 26;
-
-std::vector<Eigen::Vector3d> pyramid(const FieldOfView& view, std::size_t columns, std::size_t rows) {
-  // Offset of a pixel's centre from the middle of the image, in halves of the image: in (-1, 1).
-  const auto offset = [](std::size_t pixel, std::size_t count) {
-    return 1.0 - (2.0 * static_cast<double>(pixel) + 1.0) / static_cast<double>(count);
-  };
-  const double width = std::tan(view.horizontal / 2), height = std::tan(view.vertical / 2);
-  std::vector<Eigen::Vector3d> directions;
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column)
-      directions.push_back(
-          Eigen::Vector3d(1.0, width * offset(column, columns), height * offset(row, rows)).normalized());
-  return directions;
-}
-
-std::vector<Eigen::Vector3d> spinning(const FieldOfView& view, std::size_t columns, std::size_t rows) {
-  std::vector<Eigen::Vector3d> directions;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double down = rows == 1 ? 0.5 : static_cast<double>(row) / static_cast<double>(rows - 1);
-    const double elevation = view.vertical * (0.5 - down);
-    for (std::size_t column = 0; column < columns; ++column) {
-      const double azimuth =
-          2.0 * std::numbers::pi * static_cast<double>(column) / static_cast<double>(columns);
-      directions.emplace_back(std::cos(elevation) * std::cos(azimuth),
-                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-    }
-  }
-  return directions;
-}
-
-std::vector<Eigen::Vector3d> cone(const FieldOfView& view, std::size_t count) {
-  // Equal steps of height cut a sphere into rings of equal area; the golden angle between successive rays
-  // keeps rays on neighbouring rings apart.
-  const double cap = 1.0 - std::cos(view.horizontal / 2);
-  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<Eigen::Vector3d> directions;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double below = cap * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    const double off_axis = std::sqrt(below * (2.0 - below));
-    const double turn = golden_angle * static_cast<double>(i);
-    directions.emplace_back(1.0 - below, off_axis * std::cos(turn), off_axis * std::sin(turn));
-  }
-  return directions;
-}
 
 // Between 0 and 1, neither of them included.
 double open_unit(SplitMix64& random) { return (static_cast<double>(random.bits() >> 12) + 0.5) * 0x1p-52; }
@@ -71,21 +26,15 @@ double normal(SplitMix64& random) {
 }  // namespace
 
 Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors)
-    : field_of_view_(field_of_view), errors_(errors) {
-  field_of_view.check();
-  if (columns == 0 || rows == 0 || columns > kMostRays / rows)
-    throw std::invalid_argument("sensor: " + std::to_string(columns) + " x " + std::to_string(rows) +
-                                " rays, but there have to be between 1 and 2^26");
+    : field_of_view_(field_of_view),
+      errors_(errors),
+      directions_(sensor_directions(field_of_view, columns, rows)) {
   if (!(errors.sigma >= 0.0 && std::isfinite(errors.sigma)))
     throw std::invalid_argument("sensor: sigma is " + std::to_string(errors.sigma) +
                                 " m, but has to be 0 or more");
   if (!(errors.dropout >= 0.0 && errors.dropout <= 1.0))
     throw std::invalid_argument("sensor: dropout is " + std::to_string(errors.dropout) +
                                 ", but has to be a probability");
-  directions_ = field_of_view.shape == FieldOfView::Shape::kPyramid ? pyramid(field_of_view, columns, rows)
-                : field_of_view.shape == FieldOfView::Shape::kSpinning
-                    ? spinning(field_of_view, columns, rows)
-                    : cone(field_of_view, columns * rows);
 }
 
 Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {

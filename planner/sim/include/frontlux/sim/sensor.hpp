@@ -24,11 +24,7 @@ struct RangeErrors {
 /// A range sensor: its field of view, the rays that fill it, and its errors.
 class Sensor {
  public:
-  /// Rays by the shape of the field of view, row by row from the top:
-  /// - pyramid: pixels of equal size on the image plane, rays through their centres, columns from the left;
-  /// - spinning: rows are beams, elevations evenly spaced with both extremes included (one row: elevation 0);
-  ///   columns are azimuths 2 pi c / columns, counter-clockwise, from straight ahead;
-  /// - cone: columns x rows rays in a spiral from the axis outwards, each for the same solid angle.
+  /// Rays: `sensor_directions`.
   /// @throws std::invalid_argument naming the value, if the field of view does not pass its `check`, there
   /// are no rays or more than 2^26, sigma is negative or not finite, or dropout is not a probability
   Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors = {});

@@ -1,10 +1,35 @@
 #pragma once
 
+#include <frontlux/key_box.hpp>
+
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace frontlux::planner::detail {
+/// Sets of voxels by brick. Not part of the public interface.
+namespace frontlux::detail {
+
+/// A set of the 512 voxels of a brick, layer by layer: word z, bit 8 y + x, as in `Brick`.
+using Layers = std::array<std::uint64_t, 8>;
+
+/// The voxels of a brick that lie in a box.
+[[nodiscard]] inline Layers part_inside(const VoxelKey& corner, const KeyBox& box) {
+  const auto bits = [](int first, int last) {  // of a byte, clipped to it
+    return (0xFFU << std::clamp(first, 0, 8)) & (0xFFU >> std::clamp(7 - last, 0, 8)) & 0xFFU;
+  };
+  const std::uint64_t row = bits(box.min.x - corner.x, box.max.x - corner.x);
+  const unsigned rows = bits(box.min.y - corner.y, box.max.y - corner.y);
+  const unsigned layers = bits(box.min.z - corner.z, box.max.z - corner.z);
+  std::uint64_t square = 0;
+  for (unsigned y = 0; y < 8; ++y)
+    if (((rows >> y) & 1U) != 0) square |= row << (8 * y);
+  Layers inside{};
+  for (unsigned z = 0; z < 8; ++z)
+    if (((layers >> z) & 1U) != 0) inside[z] = square;
+  return inside;
+}
 
 /// Values for bricks, by the number of the brick: a hash table with the values side by side, in the order in
 /// which they came. Numbers are any that tell bricks apart.
@@ -62,4 +87,4 @@ class BrickTable {
   std::vector<Entry> entries_;
 };
 
-}  // namespace frontlux::planner::detail
+}  // namespace frontlux::detail

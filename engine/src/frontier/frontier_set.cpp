@@ -1,7 +1,5 @@
-#include "mapping/brick_table.hpp"
-#include "mapping/octree_order.hpp"
-
-#include <frontlux/planner/frontier_set.hpp>
+#include <frontlux/brick_table.hpp>
+#include <frontlux/frontier_set.hpp>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-namespace frontlux::planner {
+namespace frontlux {
 namespace {
 
 using detail::BrickTable, detail::Layers;
@@ -204,4 +202,4 @@ bool FrontierSet::contains(const VoxelKey& key) const {
   return layers != nullptr && (((*layers)[key.z & 7U] >> Brick::bit(key)) & 1U) != 0;
 }
 
-}  // namespace frontlux::planner
+}  // namespace frontlux

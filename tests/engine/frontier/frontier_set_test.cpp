@@ -2,9 +2,9 @@
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 
-#include <frontlux/planner/mapping.hpp>
+#include <frontlux/frontier_set.hpp>
 
-namespace frontlux::planner {
+namespace frontlux {
 namespace {
 
 using test::frontiers_by_hand;
@@ -46,39 +46,6 @@ TEST(FrontierSet, EqualsBruteForceUnderRandomEdits) {
     }
 }
 
-Scan random_scan(Random& random) {
-  Scan scan;
-  scan.origin = random.point(-2.5, 2.5).cast<float>();
-  scan.max_range = 4.0;
-  const double yaw = random.uniform(-3.1, 3.1);
-  for (int i = 0; i < 400; ++i) {
-    const double azimuth = yaw + random.uniform(-0.8, 0.8), up = random.uniform(-0.6, 0.6);
-    scan.directions.push_back(
-        Eigen::Vector3d(std::cos(azimuth) * std::cos(up), std::sin(azimuth) * std::cos(up), std::sin(up))
-            .cast<float>());
-    scan.ranges.push_back(random.one_in(5) ? std::numeric_limits<float>::infinity()
-                                           : static_cast<float>(random.uniform(0.5, 4.0)));
-  }
-  return scan;
-}
-
-TEST(FrontierSet, EqualsBruteForceAfterEveryScan) {
-  Random random(12);
-  const Lattice lattice(0.3);
-  const KeyBox bounds = voxels_of(lattice, {Eigen::Vector3d(-4, -4, -2), Eigen::Vector3d(4, 5, 2)});
-  for (const Adjacency adjacency : {Adjacency::kFaces, Adjacency::kCorners}) {
-    Mapping mapping({.resolution = 0.3, .bounds = bounds});
-    FrontierSet set(mapping.grid(), bounds, adjacency);
-    EXPECT_EQ(set.size(), 0U);
-    for (int i = 0; i < 40; ++i) {
-      set.update(i == 3 ? mapping.mark_free(test::keys_of(around(32771, 32771, 32768, 4)))
-                        : mapping.insert(random_scan(random)));
-      expect_frontiers(set, mapping.grid(), bounds, adjacency, "scan " + std::to_string(i));
-      if (HasFatalFailure()) return;
-    }
-  }
-}
-
 // Pruned blocks as large as whole tiles: their surface is full of frontiers.
 TEST(FrontierSet, FindsTheSurfaceOfLargeBlocks) {
   VoxelGrid grid(0.1);
@@ -92,4 +59,4 @@ TEST(FrontierSet, FindsTheSurfaceOfLargeBlocks) {
 }
 
 }  // namespace
-}  // namespace frontlux::planner
+}  // namespace frontlux

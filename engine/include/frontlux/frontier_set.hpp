@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-namespace frontlux::planner {
+namespace frontlux {
 
 /// Which neighbours make an unknown voxel a frontier if one of them is free.
 enum class Adjacency : std::uint8_t {
@@ -41,4 +41,4 @@ class FrontierSet {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace frontlux::planner
+}  // namespace frontlux

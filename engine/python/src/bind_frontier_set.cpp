@@ -1,0 +1,65 @@
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+#include <frontlux/frontier_set.hpp>
+
+namespace frontlux::python {
+namespace {
+
+using Self = Held<FrontierSet>;
+
+// Every brick beside free voxels is looked at: of a giant leaf there are too many.
+void check_surface(const VoxelGrid& grid) {
+  constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 26;
+  std::uint64_t bricks = 0;
+  grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    if (brick == nullptr && state == Occupancy::kFree)
+      bricks += std::uint64_t{6} << (2 * (block.log2_edge - Brick::kLog2));
+  });
+  if (bricks > kMostBricks)
+    throw std::invalid_argument(
+        "the free space is too large: its surface has more than 2^26 bricks of 8 x 8 x 8 voxels");
+}
+
+Self make(const Held<VoxelGrid>& held, const py::object& min_key, const py::object& max_key, bool corners) {
+  KeyBox bounds = kAllVoxels;
+  if (!min_key.is_none()) bounds.min = Keys("min_key", min_key).one();
+  if (!max_key.is_none()) bounds.max = Keys("max_key", max_key).one();
+  if (!bounds.contains(bounds.min)) throw py::value_error("min_key: above max_key");
+  return held->use([&](const VoxelGrid& grid) {
+    check_surface(grid);
+    return std::make_shared<Guarded<FrontierSet>>(grid, bounds,
+                                                  corners ? Adjacency::kCorners : Adjacency::kFaces);
+  });
+}
+
+}  // namespace
+
+void bind_frontier_set(py::module_& module) {
+  py::class_<Guarded<FrontierSet>, Self>(
+      module, "FrontierSet", "The frontiers of a map: its unknown voxels that have a free neighbour.")
+      .def(py::init(&make), py::arg("grid"), py::arg("min_key") = py::none(), py::arg("max_key") = py::none(),
+           py::arg("corners") = false,
+           R"(The frontiers within a box, whose lowest and highest key have shape (3,); None: everywhere.
+
+corners: voxels that share an edge or a corner are neighbours too, not only those that share a face.)")
+      .def(
+          "update",
+          [](const Self& self, const std::shared_ptr<Change>& change) {
+            self->use([&](FrontierSet& frontiers) { frontiers.update(change->change()); });
+          },
+          py::arg("change"), "Takes in a change of the map: every one, in their order.")
+      .def_property_readonly(
+          "keys",
+          [](const Self& self) {
+            return to_array(self->use([](const FrontierSet& frontiers) {
+              return std::vector<VoxelKey>(frontiers.keys().begin(), frontiers.keys().end());
+            }));
+          },
+          "uint16 (n, 3), sorted: all frontiers.")
+      .def("__len__", [](const Self& self) {
+        return self->use([](const FrontierSet& frontiers) { return frontiers.size(); });
+      });
+}
+
+}  // namespace frontlux::python

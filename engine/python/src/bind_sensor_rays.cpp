@@ -1,0 +1,81 @@
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+#include <frontlux/sensor_rays.hpp>
+
+namespace frontlux::python {
+namespace {
+
+using View = std::shared_ptr<FieldOfView>;
+
+View make_view(FieldOfView::Shape shape, double horizontal, double vertical, double max_range) {
+  const FieldOfView view{shape, horizontal, vertical, max_range};
+  view.check();
+  return std::make_shared<FieldOfView>(view);
+}
+
+py::array_t<float> to_array(const std::vector<Eigen::Vector3d>& directions, std::size_t columns,
+                            std::size_t rows) {
+  py::array_t<float> array(Shape{static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns), 3});
+  float* data = array.mutable_data();
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    Eigen::Map<Eigen::Vector3f>(data + 3 * i) = directions[i].cast<float>();
+  return array;
+}
+
+py::array_t<float> directions(const View& self, std::size_t columns, std::size_t rows) {
+  return to_array(sensor_directions(*self, columns, rows), columns, rows);
+}
+
+py::array_t<float> pinhole(const py::object& object, std::size_t columns, std::size_t rows) {
+  const Numbers numbers("intrinsics", object, 3);
+  if (numbers.shape() != Shape{3}) throw py::value_error("intrinsics: has to be of shape (3, 3)");
+  Eigen::Matrix3d intrinsics;
+  for (Eigen::Index row = 0; row < 3; ++row)
+    intrinsics.row(row) = numbers.point(static_cast<std::size_t>(row)).cast<double>();
+  return to_array(pinhole_directions(intrinsics, columns, rows), columns, rows);
+}
+
+}  // namespace
+
+void bind_sensor_rays(py::module_& module) {
+  py::class_<FieldOfView, View>(
+      module, "FieldOfView",
+      "The space that a range sensor sees; x forward, y left, z up. Angles in radians.")
+      .def_static(
+          "spinning",
+          [](double vertical, double max_range) {
+            return make_view(FieldOfView::Shape::kSpinning, 0.0, vertical, max_range);
+          },
+          py::arg("vertical"), py::arg("max_range"),
+          "A lidar: all azimuths, elevations within +-vertical / 2 [rad]; max_range in metres.")
+      .def_static(
+          "pyramid",
+          [](double horizontal, double vertical, double max_range) {
+            return make_view(FieldOfView::Shape::kPyramid, horizontal, vertical, max_range);
+          },
+          py::arg("horizontal"), py::arg("vertical"), py::arg("max_range"),
+          "A camera with these full opening angles [rad]; max_range in metres.")
+      .def_static(
+          "cone",
+          [](double opening, double max_range) {
+            return make_view(FieldOfView::Shape::kCone, opening, 0.0, max_range);
+          },
+          py::arg("opening"), py::arg("max_range"),
+          "A sonar with this full opening angle [rad]; max_range in metres.")
+      .def_property_readonly(
+          "max_range", [](const View& self) { return self->max_range; }, "[m]")
+      .def(
+          "directions", &directions, py::arg("columns"), py::arg("rows"),
+          R"(float32 (rows, columns, 3): unit vectors that fill the view, in the sensor's frame, rows from the top.
+
+Spinning: rows are beams, columns azimuths counter-clockwise from straight ahead. Pyramid: through the centres of
+pixels, columns from the left. Cone: in a spiral from the axis outwards. Turn them by `directions @ R.T`.)");
+  module.def(
+      "pinhole_directions", &pinhole, py::arg("intrinsics"), py::arg("columns"), py::arg("rows"),
+      R"(float32 (rows, columns, 3): unit vectors through the centres of a camera's pixels, rows from the top.
+
+intrinsics: (3, 3), (fx 0 cx, 0 fy cy, 0 0 1) [pixels]. Optical frame: x right, y down, z forward.)");
+}
+
+}  // namespace frontlux::python

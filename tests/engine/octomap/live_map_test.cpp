@@ -1,0 +1,101 @@
+// After every update the grid, the caster, the keys and what they update are as if made anew.
+
+#include "support/maps.hpp"
+#include "support/plain_frontiers.hpp"
+#include "support/random.hpp"
+#include "support/views.hpp"
+#include "support/voxel_keys.hpp"
+
+#include <frontlux/live_map.hpp>
+#include <frontlux/view_quality.hpp>
+
+namespace frontlux::test {
+namespace {
+
+const KeyBox kBounds{key_at(-14, -14, -14), key_at(13, 13, 13)};
+const FieldOfView kView{FieldOfView::Shape::kSpinning, 0.0, 1.2, 2.0};
+
+std::vector<VoxelKey> different(const VoxelGrid& a, const VoxelGrid& b, const KeyBox& box) {
+  std::vector<VoxelKey> keys = keys_of(box);
+  std::erase_if(keys, [&](const VoxelKey& key) { return a.at(key) == b.at(key); });
+  std::ranges::sort(keys);
+  return keys;
+}
+
+octomap::Pointcloud random_cloud(Random& random) {
+  octomap::Pointcloud cloud;
+  for (int i = 0; i < 60; ++i) cloud.push_back(to_octomap(random.point(-2.0, 2.0).cast<float>()));
+  return cloud;
+}
+
+void expect_same_answers(const RayCaster& caster, const VoxelGrid& grid, Random& random) {
+  const auto fresh = make_grid_ray_caster(grid);
+  for (int i = 0; i < 200; ++i) {
+    const Ray ray{random.point(-2.0, 2.0).cast<float>(), random.point(-1.0, 1.0).cast<float>(), -1.0};
+    for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass}) {
+      const Hit hit = caster.cast(ray, unknown), expected = fresh->cast(ray, unknown);
+      ASSERT_EQ(hit.stop, expected.stop);
+      ASSERT_EQ(hit.key, expected.key);
+    }
+  }
+}
+
+template <class Tree>
+void expect_in_step(std::uint64_t seed) {
+  Random random(seed);
+  Tree tree(0.2);
+  tree.insertPointCloud(random_cloud(random), {0.1F, 0.1F, 0.1F});
+  LiveMap map(tree);
+  FrontierSet frontiers(map.grid(), kBounds);
+  const std::vector<VoxelKey> viewpoints = keys_of({key_at(-3, -3, -1), key_at(3, 3, 1)});
+  ViewQualityImage image(map.grid().lattice(), kView, {});
+  image.render(map.caster(), viewpoints, frontiers.keys());
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE(round);
+    const VoxelGrid before = map.grid();
+    if (round == 5) tree.clear();
+    if (round != 7) tree.insertPointCloud(random_cloud(random), {0.1F, 0.1F, 0.1F}, round == 8 ? 1.0 : -1.0);
+    if (round == 9) tree.setNodeValue(0.5F, 0.5F, 0.5F, -2.0F);  // not reported
+    const MapChange change = round == 9 ? map.rebuild() : map.update();
+
+    ASSERT_TRUE(map.grid() == make_voxel_grid(tree));
+    EXPECT_EQ(&change.grid, &map.grid());
+    EXPECT_TRUE(std::ranges::equal(change.keys, different(before, map.grid(), kBounds)));
+    EXPECT_EQ(change.keys.empty(), round == 7);
+    expect_same_answers(map.caster(), map.grid(), random);
+    frontiers.update(change);
+    EXPECT_TRUE(std::ranges::equal(frontiers.keys(), frontiers_by_hand(map.grid(), kBounds)));
+    image.update(map.caster(), viewpoints, frontiers.keys(), change);
+    const ViewQualityImage anew =
+        render_view_quality(map.caster(), map.grid().lattice(), viewpoints, frontiers.keys(), kView);
+    EXPECT_TRUE(std::ranges::equal(image.values(), anew.values()));
+  }
+}
+
+TEST(LiveMap, IsInStepAfterEveryUpdate) {
+  expect_in_step<octomap::OcTree>(1);
+  expect_in_step<octomap::ColorOcTree>(2);
+}
+
+TEST(LiveMap, SharesTheTreeOfAFile) {
+  Octree tree = read_octree(FRONTLUX_DATA_DIR "/maps/room_0.2m.ot");
+  const auto room = std::get<0>(tree);
+  LiveMap map(std::move(tree));
+  room->insertRay({0.1F, 0.1F, 1.0F}, {0.1F, 0.1F, 1.9F});
+  LiveMap moved(std::move(map));
+  moved.update();
+  EXPECT_TRUE(moved.grid() == make_voxel_grid(*room));
+}
+
+TEST(ChangedKeys, AreRefusedIfThereAreTooMany) {
+  const VoxelGrid unknown(0.1);
+  VoxelGrid filled(0.1);
+  filled.fill({{}, 7}, Occupancy::kFree);
+  filled.set({3, 4, 200}, Occupancy::kOccupied);
+  EXPECT_EQ(changed_keys(unknown, filled), different(unknown, filled, cube({}, 256)));
+  filled.fill({{}, 16}, Occupancy::kFree);
+  EXPECT_THROW(static_cast<void>(changed_keys(unknown, filled)), std::length_error);
+}
+
+}  // namespace
+}  // namespace frontlux::test

@@ -1,0 +1,337 @@
+"""The Python module against known answers, against itself, and with arguments that it has to refuse."""
+import ast
+import copy
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import frontlux
+from frontlux import Occupancy, RayStop
+
+MAPS = pathlib.Path(__file__).parents[2] / "data/maps"
+
+
+def room():
+    """A box of 2 x 2 x 2 m with walls of one voxel, 0.1 m, whose lower corner is the origin; free inside."""
+    states = np.full((20, 20, 20), Occupancy.OCCUPIED, np.uint8)
+    states[1:-1, 1:-1, 1:-1] = Occupancy.FREE
+    return states
+
+
+def random_rays(count, seed=1, low=(0.5, 0.5, 0.2), high=(11.5, 11.5, 2.8)):
+    random = np.random.default_rng(seed)
+    return random.uniform(low, high, (count, 3)), random.normal(size=(count, 3))
+
+
+class Casting(unittest.TestCase):
+    def setUp(self):
+        self.grid = frontlux.VoxelGrid.from_occupancy(room(), 0.1)
+        self.caster = frontlux.RayCaster(self.grid)
+
+    def test_a_ray_in_a_room(self):
+        hit = self.caster.cast((1.05, 1.05, 1.05), (1, 0, 0))
+        self.assertEqual(hit["stop"], RayStop.OCCUPIED)
+        self.assertEqual(hit["state"], Occupancy.OCCUPIED)
+        np.testing.assert_array_equal(hit["key"], [32768 + 19, 32768 + 10, 32768 + 10])
+        np.testing.assert_allclose(hit["end"], [1.95, 1.05, 1.05], atol=1e-6)
+        np.testing.assert_allclose(hit["entry"], [1.9, 1.05, 1.05], atol=1e-6)
+        np.testing.assert_allclose(hit["distance"], 0.85, atol=1e-6)
+        dtypes = {name: str(array.dtype) for name, array in hit.items()}
+        self.assertEqual(dtypes, {"stop": "uint8", "state": "uint8", "key": "uint16", "end": "float32",
+                                  "entry": "float32", "distance": "float32"})
+
+    def test_shapes_follow_the_arguments(self):
+        directions = frontlux.FieldOfView.spinning(0.5, 10.0).directions(columns=12, rows=5)
+        self.assertEqual(directions.shape, (5, 12, 3))
+        for origins, ranges in [((1, 1, 1), -1), (np.ones((5, 12, 3)), np.full((5, 12), 0.3)),
+                                (np.ones(3, np.float32), np.full((5, 12), 0.3, np.float32))]:
+            hits = self.caster.cast(origins, directions, ranges)
+            self.assertEqual(hits["end"].shape, (5, 12, 3))
+            self.assertEqual(hits["distance"].shape, (5, 12))
+        self.assertTrue((hits["stop"] == RayStop.OUT_OF_RANGE).all())
+        self.assertEqual(self.caster.cast(np.ones((7, 3)), (0, 0, 1.0))["key"].shape, (7, 3))
+        self.assertEqual(self.caster.cast(np.ones((0, 3)), np.ones((0, 3)))["end"].shape, (0, 3))
+        self.assertEqual(self.caster.visible((1, 1, 1), np.ones((4, 6, 3))).shape, (4, 6))
+
+    def test_all_casters_agree_on_a_real_map_and_float64_is_rounded(self):
+        grid = frontlux.VoxelGrid.read(MAPS / "room_0.1m.bt")
+        origins, directions = random_rays(200_000)
+        for unknown in ("block", "pass"):
+            answers = [frontlux.RayCaster(grid, kind).cast(o, d, 5.0, unknown)
+                       for kind, o, d in [("grid", origins, directions), ("embree", origins, directions),
+                                          ("fast", np.float32(origins), np.float32(directions))]]
+            for other in answers[1:]:
+                for name, array in answers[0].items():
+                    np.testing.assert_array_equal(array, other[name], name)
+            self.assertGreater(len(np.unique(answers[0]["stop"])), 1)
+
+    def test_out_is_written_and_nothing_else(self):
+        origins, directions = np.ones((1000, 3)), random_rays(1000)[1]
+        expected = self.caster.cast(origins, directions)
+        out = {"distance": np.empty(1000, np.float32), "key": np.empty((1000, 3), np.uint16)}
+        self.assertIs(self.caster.cast(origins, directions, out=out), out)
+        self.assertEqual(set(out), {"distance", "key"})
+        np.testing.assert_array_equal(out["distance"], expected["distance"])
+        np.testing.assert_array_equal(out["key"], expected["key"])
+
+    def test_visibility_and_counts(self):
+        inside, outside = (1.05, 1.05, 1.05), (3.05, 1.05, 1.05)
+        self.assertTrue(self.caster.visible(inside, (1.95, 1.05, 1.05)))
+        self.assertFalse(self.caster.visible(inside, outside))
+        keys = self.grid.keys_of(np.array([inside, outside]))
+        self.assertFalse(self.caster.visible(keys[0], keys[1], unknown="pass"))
+        count = self.caster.count(inside, (1, 0, 0))
+        self.assertEqual([int(count[n]) for n in ("unknown", "free", "occupied", "stop")], [0, 9, 0, RayStop.OCCUPIED])
+        between = self.caster.count_between(keys[:1], keys[1:], unknown="pass")
+        self.assertEqual([int(between[n][0]) for n in ("unknown", "free", "occupied")], [0, 9, 0])
+        single = self.caster.count_between(keys[0], np.array([keys[0], keys[1]]))
+        self.assertEqual(single["stop"].tolist(), [RayStop.REACHED, RayStop.OCCUPIED])
+
+    def test_others_run_meanwhile(self):
+        caster = frontlux.RayCaster(self.grid, "grid")
+        origins, directions = np.ones((3_000_000, 3), np.float32), random_rays(3_000_000)[1]
+        worker = threading.Thread(target=caster.cast, args=(origins, directions))
+        worker.start()
+        turns = 0
+        while worker.is_alive():
+            time.sleep(0.001)
+            turns += 1
+        self.assertGreater(turns, 3)
+
+
+class Refusals(unittest.TestCase):
+    def setUp(self):
+        self.caster = frontlux.RayCaster(frontlux.VoxelGrid.from_occupancy(room(), 0.1))
+        self.points = np.ones((4, 3))
+
+    def refuses(self, error, pattern, function, *args, **kwargs):
+        with self.assertRaisesRegex(error, pattern):
+            function(*args, **kwargs)
+
+    def test_arrays_that_are_none_of_ours(self):
+        cast, p = self.caster.cast, self.points
+        self.refuses(ValueError, r"origins: shape \(4, 2\), but has to be \(\.\.\., 3\)", cast, np.ones((4, 2)), p)
+        self.refuses(ValueError, r"directions: shape \(\)", cast, p, np.float64(1))
+        self.refuses(TypeError, "directions: dtype int64, but has to be float32 or float64", cast, p, np.ones((4, 3), int))
+        self.refuses(TypeError, "origins: dtype float16", cast, np.ones((4, 3), np.float16), p)
+        self.refuses(TypeError, "origins: dtype >f8", cast, p.astype(">f8"), p)
+        self.refuses(ValueError, "origins: not contiguous.*ascontiguousarray", cast, np.ones((8, 3))[::2], p)
+        self.refuses(ValueError, "directions: not contiguous", cast, p, np.asfortranarray(np.ones((4, 3))))
+        self.refuses(ValueError, r"directions and origins: for shapes \(3,\) and \(4,\)", cast, p, np.ones((3, 3)))
+        self.refuses(ValueError, "max_range and origins", cast, p, p, np.ones(3))
+        self.refuses(TypeError, "origins: no array", cast, "here", p)
+        self.refuses(ValueError, "unknown: 'stop', but has to be 'block' or 'pass'", cast, p, p, unknown="stop")
+        unaligned = np.frombuffer(b"\0" * 97, np.uint8)[1:].view(np.float64).reshape(4, 3)
+        self.refuses(ValueError, "not contiguous", cast, unaligned, p)
+
+    def test_read_only_arguments_are_read(self):
+        self.points.flags.writeable = False
+        self.assertEqual(self.caster.cast(self.points, self.points)["stop"].shape, (4,))
+
+    def test_outputs_that_do_not_fit(self):
+        def cast(out):
+            return self.caster.cast(self.points, self.points, out=out)
+        self.refuses(ValueError, r'out\["distance"\]: shape \(5,\), but has to be \(4,\)', cast, {"distance": np.empty(5, "f4")})
+        self.refuses(TypeError, r'out\["distance"\]: dtype float64, but has to be float32', cast, {"distance": np.empty(4)})
+        self.refuses(ValueError, r'out\["end"\]: not contiguous', cast, {"end": np.empty((4, 6), "f4")[:, ::2]})
+        read_only = np.empty(4, np.float32)
+        read_only.flags.writeable = False
+        self.refuses(ValueError, r'out\["distance"\]: read-only', cast, {"distance": read_only})
+        self.refuses(TypeError, r'out\["key"\]: no numpy array', cast, {"key": [1, 2]})
+        self.refuses(ValueError, "none of an answer's arrays", cast, {"normal": np.empty(4)})
+
+    def test_grids(self):
+        make = frontlux.VoxelGrid.from_occupancy
+        self.refuses(TypeError, "states: dtype float64", make, np.zeros((2, 2, 2)), 0.1)
+        self.refuses(ValueError, "states: 2 axes", make, np.zeros((2, 2), bool), 0.1)
+        self.refuses(ValueError, "states: holds 7", make, np.full((2, 2, 2), 7, np.uint8), 0.1)
+        self.refuses(ValueError, "axis 2 ends at key 65537", make, np.zeros((1, 1, 5), bool), 0.1, (0, 0, 3276.5))
+        self.refuses(ValueError, "corner", make, np.zeros((1, 1, 5), bool), 0.1, (0, 0, np.nan))
+        self.refuses(ValueError, "resolution", frontlux.VoxelGrid, -1.0)
+        grid = make(room(), 0.1)
+        self.refuses(ValueError, r"min_key: has to be one key, of shape \(3,\)", grid.states, np.zeros((2, 3), "u2"), (0, 0, 0))
+        self.refuses(ValueError, "at most 2\\^31", grid.states, (0, 0, 0), (65535, 65535, 65535))
+        self.refuses(ValueError, "points: number 1", grid.keys_of, np.array([[0, 0, 0], [0, 0, 1e9]]))
+        self.refuses(ValueError, "free or occupied", grid.keys, Occupancy.UNKNOWN)
+        self.refuses(RuntimeError, "no_such_file.bt", frontlux.VoxelGrid.read, "no_such_file.bt")
+        self.refuses(ValueError, "resolution", self.caster.update, frontlux.VoxelGrid(0.2))
+
+    def test_live_maps(self):
+        live = frontlux.LiveMap(0.1)
+        self.refuses(ValueError, "LiveMap", live.caster.update, live.grid)
+        self.refuses(ValueError, "origin", live.insert, self.points, (np.nan, 0, 0))
+        self.refuses(ValueError, "max_range", live.insert, self.points, (0, 0, 0), np.nan)
+        self.refuses(ValueError, r"pose: has to be of shape \(4, 4\)", live.insert_scan, self.points, np.ones((3, 4)))
+        self.refuses(ValueError, "rotation", live.insert_scan, self.points, 2 * np.eye(4))
+        self.refuses(ValueError, r"ends in \.bt or \.ot", live.write, "map.txt")
+
+    def test_objects_that_were_never_made(self):
+        for kind in (frontlux.VoxelGrid, frontlux.RayCaster, frontlux.LiveMap, frontlux.FieldOfView, frontlux.MapChange,
+                     frontlux.FrontierSet, frontlux.ViewQualityImage):
+            for name, member in vars(kind).items():
+                if isinstance(member, property):
+                    self.refuses(RuntimeError, "", getattr, kind.__new__(kind), name)
+        self.refuses(TypeError, "No constructor", frontlux.FieldOfView)
+
+    def test_none_is_no_object(self):
+        self.refuses(TypeError, "incompatible", frontlux.VoxelGrid.count, None)
+        self.refuses(TypeError, "incompatible", frontlux.RayCaster, None)
+        self.refuses(TypeError, "incompatible", frontlux.FrontierSet(frontlux.VoxelGrid(0.1)).update, None)
+        self.refuses(TypeError, "incompatible", frontlux.ViewQualityImage, 0.1, None)
+        self.refuses(TypeError, "incompatible", self.caster.update, None)
+        self.assertNotEqual(frontlux.VoxelGrid(0.1), None)
+
+
+class Maps(unittest.TestCase):
+    def test_grids_are_arrays_and_back(self):
+        states = np.random.default_rng(2).integers(0, 3, (9, 20, 17), np.uint8)
+        grid = frontlux.VoxelGrid.from_occupancy(states, 0.2, corner=(-1.0, 0.4, 3.0))
+        low = grid.keys_of((-0.9, 0.5, 3.1))
+        np.testing.assert_array_equal(grid.states(low, low + np.uint16([8, 19, 16])), states)
+        self.assertEqual(grid.count()[1:], [(states == 1).sum(), (states == 2).sum()])
+        np.testing.assert_array_equal(grid.keys(Occupancy.FREE), np.argwhere(states == 1) + low)
+        np.testing.assert_array_equal(grid.at(grid.keys(Occupancy.OCCUPIED)), 2)
+        np.testing.assert_allclose(grid.centers(low), [-0.9, 0.5, 3.1], atol=1e-6)
+        grid.set_states(low, states > 1)
+        self.assertEqual(grid.count()[2], (states == 2).sum())
+        self.assertEqual(grid.count()[1], (states != 2).sum())
+
+    def test_copies_are_snapshots(self):
+        grid = frontlux.VoxelGrid.from_occupancy(room(), 0.1)
+        for other in (grid.copy(), copy.copy(grid), copy.deepcopy(grid)):
+            self.assertEqual(grid, other)
+            other.set_states((1, 2, 3), np.ones((1, 1, 1), bool))
+            self.assertNotEqual(grid, other)
+        self.assertNotEqual(grid, 3)
+        self.assertIsNone(frontlux.VoxelGrid(0.1).known_bounds)
+        np.testing.assert_array_equal(grid.known_bounds, [[32768] * 3, [32787] * 3])
+
+    def test_a_caster_follows_its_live_map(self):
+        live = frontlux.LiveMap(0.1)
+        caster, frontiers = live.caster, frontlux.FrontierSet(live.grid)
+        random = np.random.default_rng(3)
+        for _ in range(5):
+            before = live.grid
+            change = live.insert(random.uniform(-2, 2, (300, 3)), (0.05, 0.05, 0.05), max_range=1.5)
+            self.assertFalse(change.keys.flags.writeable)
+            self.assertTrue((before.at(change.keys) != live.grid.at(change.keys)).all())
+            self.assertEqual(change.grid, live.grid)
+            origins, directions = random_rays(2000, 4, -1, 1)
+            np.testing.assert_array_equal(caster.cast(origins, directions)["key"],
+                                          frontlux.RayCaster(live.grid).cast(origins, directions)["key"])
+            frontiers.update(change)
+            np.testing.assert_array_equal(frontiers.keys, frontlux.FrontierSet(live.grid).keys)
+
+    def test_scans_with_poses(self):
+        points = np.random.default_rng(5).normal(size=(500, 3))
+        pose = np.eye(4)
+        pose[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+        pose[:3, 3] = [0.3, 0.2, 0.1]
+        a, b = frontlux.LiveMap(0.1), frontlux.LiveMap(0.1)
+        a.insert_scan(points, pose, 2.0)
+        b.insert(np.float32(points) @ pose[:3, :3].T + pose[:3, 3], pose[:3, 3].copy(), 2.0)
+        self.assertEqual(a.grid, b.grid)
+        points[::7] = np.nan
+        points[::11] = np.inf
+        a.insert_scan(points, pose)
+        self.assertGreater(a.grid.count()[2], 100)
+
+    def test_files(self):
+        live = frontlux.LiveMap.read(MAPS / "color_room_0.2m.ot")
+        live.insert(np.array([[1.0, 1.0, 1.0]]), (2, 2, 1))
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("map.bt", "map.ot"):
+                live.write(os.path.join(folder, name))
+                self.assertEqual(frontlux.VoxelGrid.read(pathlib.Path(folder) / name), live.grid)
+
+    def test_view_quality(self):
+        grid = frontlux.VoxelGrid.read(MAPS / "storage_0.2m.bt")
+        caster, view = frontlux.RayCaster(grid), frontlux.FieldOfView.pyramid(1.5, 1.0, 5.0)
+        free = np.ascontiguousarray(grid.keys(Occupancy.FREE)[::997])
+        targets = frontlux.FrontierSet(grid, *grid.known_bounds).keys
+        exact = frontlux.ViewQualityImage(0.2, view, "exact", azimuth_bins=16)
+        exact.render(caster, free, targets)
+        every = frontlux.ViewQualityImage(0.2, view, samples=None)
+        every.render(caster, free, targets)
+        np.testing.assert_array_equal(exact.gain, every.gain)
+        np.testing.assert_array_equal(exact.bin_hits.sum(axis=1), exact.gain)
+        self.assertEqual(exact.best, np.argmax(exact.gain))
+        np.testing.assert_array_equal(exact.viewpoints, free)
+        yaw, hits = frontlux.best_window(exact.bin_hits[exact.best], 1.5)
+        self.assertLessEqual(hits, exact.gain[exact.best])
+        self.assertLessEqual(abs(yaw), np.pi)
+        # By hand, for the best one.
+        seen = caster.visible(free[exact.best], targets)
+        self.assertGreaterEqual(seen.sum(), exact.gain[exact.best])
+
+    def test_cameras(self):
+        intrinsics = np.array([[500.0, 0, 320], [0, 510, 240], [0, 0, 1]])
+        directions = frontlux.pinhole_directions(intrinsics, 640, 480)
+        self.assertEqual(directions.shape, (480, 640, 3))
+        pixels = directions[17, 5] @ intrinsics.T
+        np.testing.assert_allclose(pixels[:2] / pixels[2], [5.5, 17.5], atol=1e-3)
+        self.assertEqual(frontlux.FieldOfView.cone(0.3, 2.0).directions(10, 3).shape, (3, 10, 3))
+
+
+class Module(unittest.TestCase):
+    def test_everything_is_documented_and_typed(self):
+        stub = ast.parse((pathlib.Path(frontlux.__file__).parent / "__init__.pyi").read_text())
+        typed = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        public = {name for name in vars(frontlux) if not name.startswith("_") and name != "IntEnum"}
+        self.assertEqual(set(typed), public)
+        for name in public:
+            value = getattr(frontlux, name)
+            self.assertTrue(value.__doc__, name)
+            if isinstance(typed[name], ast.FunctionDef):
+                self.expect_arguments(value, typed[name])
+                continue
+            members = {node.name: node for node in typed[name].body if isinstance(node, ast.FunctionDef)}
+            own = {n for n, v in vars(value).items() if not n.startswith("_") and (callable(v) or isinstance(v, (property, staticmethod)))}
+            if not issubclass(value, int):
+                self.assertEqual({n for n in members if not n.startswith("_")}, own, name)
+            for member, node in members.items():
+                self.assertTrue(getattr(value, member).__doc__, f"{name}.{member}")
+                if not node.decorator_list or node.decorator_list[0].id == "staticmethod":
+                    self.expect_arguments(getattr(value, member), node)
+
+    def expect_arguments(self, function, node):
+        """pybind11 writes the signature into the docstring's first line."""
+        if node.name in ("__eq__", "__len__", "__copy__", "__deepcopy__"):
+            return
+        signature = function.__doc__.split("\n")[0]
+        names = [argument.arg for argument in node.args.args]
+        optional = [False] * (len(names) - len(node.args.defaults)) + [True] * len(node.args.defaults)
+        documented = ast.parse("def f" + signature[signature.index("("):signature.rindex(" ->")] + ": ...").body[0].args
+        self.assertEqual(names, [a.arg for a in documented.args], signature)
+        self.assertEqual(sum(optional), len(documented.defaults), signature)
+
+    def test_the_documentation_quotes_examples_that_run(self):
+        root = MAPS.parents[1]
+        examples = [file.read_text() for file in (root / "docs/examples").glob("*.py")]
+        for page in ("README.md", "docs/python.md"):
+            quoted = re.findall("```python\n(.*?)```", (root / page).read_text(), re.DOTALL)
+            self.assertTrue(quoted, page)
+            for code in quoted:
+                self.assertTrue(any(code in example for example in examples), f"{page}: {code}")
+
+    def test_import_is_quick(self):
+        def seconds(code):
+            begin = time.perf_counter()
+            subprocess.run([sys.executable, "-c", code], check=True)
+            return time.perf_counter() - begin
+        with_us, without = ([seconds(code) for _ in range(5)] for code in ("import frontlux", "pass"))
+        took = min(with_us) - min(without)
+        print(f"import frontlux: {1e3 * took:.0f} ms")
+        self.assertLess(took, 0.2)
+
+
+if __name__ == "__main__":
+    unittest.main()
