@@ -153,7 +153,9 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   for (const char* pose : {"ugv", "car=1,1,1,0", "ugv=1,1,0.75", "ugv=1,1,0.75,0,0", "ugv=1,1,x,0",
                            "ugv=nan,1,1,0", "ugv=-5,-5,0.75,0", "uav=1e300,1,1,0", "=1,1,1,0", ""})
     expect_refused(with({"--pose", pose}), {"--pose"});
-  expect_refused(with({"--goal", "best"}), {"--goal", "'best'", "render, cluster, nearest"});
+  expect_refused(with({"--goal", "best"}), {"--goal", "'best'", "tour, render, cluster, nearest"});
+  expect_refused(with({"--goal", "tour", "--lockstep"}), {"--goal tour is not for --lockstep"});
+  expect_refused(with({"--goal", "tour", "--mode", "paper"}), {"--goal tour is not for --mode paper"});
   expect_refused(with({"--caster", "gpu"}), {"--caster", "'gpu'", "fast, embree, grid, octomap"});
   expect_refused(with({"--mode", "fast"}), {"--mode", "'fast'"});
   expect_refused(with({"--planner", "prm"}), {"--planner", "'prm'"});

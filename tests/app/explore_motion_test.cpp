@@ -153,7 +153,8 @@ TEST_F(ExploreMotion, WarnsWhenPlanningTakesLongerThanTheClockCharges) {
 
 // All robots' goals are below such an epsilon, in three plannings each.
 TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
-  const test::Answer answer = run(joined(quick("run", "60"), {"--latency", "1", "--epsilon", "1e6"}));
+  const test::Answer answer =
+      run(joined(quick("run", "60"), {"--goal", "render", "--latency", "1", "--epsilon", "1e6"}));
   EXPECT_EQ(answer.code, 0) << answer.err;
   const nlohmann::json json = json_in("run");
   EXPECT_EQ(json.at("end"), "low_gain");

@@ -87,7 +87,8 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({path("whole.ply"), "--start", "0.02,6,1"}, {"whole.ply", "in a wall: triangle"});
   expect({write("half.ply", content_of(path("whole.ply")).substr(0, 5000)), "--start", "6,3,1"},
          {"half.ply"});
-  expect({path("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"}, {"too many: a map holds at most 2147483648"});
+  expect({path("whole.ply"), "--start", "8000,8000,100", "--scale", "1000"},
+         {"too many: a map holds at most 2147483648"});
 }
 
 TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {

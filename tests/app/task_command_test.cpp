@@ -105,7 +105,7 @@ TEST_F(TaskCommand, GivesWayToTheCommandLine) {
   EXPECT_EQ(task.at("seed"), 6);
   EXPECT_EQ(task.at("latency_s"), 0.3);
   EXPECT_EQ(task.at("lockstep"), false);
-  EXPECT_EQ(task.at("method"), "render");
+  EXPECT_EQ(task.at("method"), "tour");
   EXPECT_EQ(task.at("resolution_m"), 0.3);
   EXPECT_EQ(task.at("end"), nlohmann::json::parse(R"({"coverage": 0.4, "time_s": 2.0})"));
   EXPECT_EQ(task.at("options"), nlohmann::json::parse(R"({"caster": "grid", "max-steps": "3"})"));
@@ -178,7 +178,7 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
   refuse(R"({"name": "n"})", {"world is missing"});
   refuse(R"({"world": "castle"})", {"world is 'castle'", "frontlux world"});
   refuse(R"({"world": "court.ply", "world_seed": 3})", {"world_seed is 3", "leave it out"});
-  refuse(R"({"world": "room", "method": "tour"})", {"method is 'tour'", "nearest"});
+  refuse(R"({"world": "room", "method": "greedy"})", {"method is 'greedy'", "nearest"});
   refuse(R"({"world": "room", "team": "car"})", {"team: 'car' is not a team"});
   refuse(R"({"world": "room", "team": ""})", {"team: ''"});
   refuse(R"({"world": "room", "latency_s": 0})", {"latency_s is 0", "above 0"});

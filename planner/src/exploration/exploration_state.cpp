@@ -155,7 +155,9 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
 
 void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kGoals);
-  selection->keep_goal({solid ? *solid : mapping.grid(), changed}, robot, poses[robot]);
+  // A robot that does not move measures the same again and again; if beams that graze the floor had freed it
+  // before the robot, it would never go on.
+  selection->keep_goal({tours ? *solid : mapping.grid(), changed}, robot, poses[robot]);
   step.frontiers = frontiers.size();
 }
 

@@ -98,6 +98,7 @@ void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> chan
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
   }
   member.graph.update(query.corridor, cells);
+  member.distances.clear();
 }
 
 ViewpointQuery TourPlanning::sight_of(const Query& query) const {
@@ -174,19 +175,32 @@ double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
   return time + kReluctance * lost / robot.limits.acceleration;
 }
 
-// [m] between two cells, given the distances from the first one's node.
-double TourPlanning::distance_between(const Member& member, const std::vector<double>& from,
-                                      const VoxelKey& a, const VoxelKey& b) const {
+// Finds the distances from the nodes of some cells to all others.
+void TourPlanning::measure_from(Member& member, std::vector<VoxelKey> cells) {
+  std::vector<std::uint32_t> nodes;
+  for (const VoxelKey& cell : cells)
+    if (const auto node = member.graph.node(cell); node && !member.distances.contains(*node))
+      nodes.push_back(*node);
+  std::ranges::sort(nodes);
+  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  std::vector<std::vector<double>> distances(nodes.size());
+  for_each_index(nodes.size(), [&](std::size_t i) { distances[i] = member.graph.distances(nodes[i]); });
+  for (std::size_t i = 0; i < nodes.size(); ++i) member.distances[nodes[i]] = std::move(distances[i]);
+}
+
+// [m] between two cells, the first of which has been measured from; `kNever` if there is no way.
+double TourPlanning::distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
   const double straight = (lattice_.exact_center(b) - lattice_.exact_center(a)).norm();
-  const auto node = member.graph.node(b);
-  if (!node || from.empty() || from[*node] == TravelGraph::kFar) return TourProblem::kNever;
-  if (straight >= from[*node]) return straight;
+  const auto from = member.graph.node(a), to = member.graph.node(b);
+  if (!from || !to) return TourProblem::kNever;
+  const double way = member.distances.at(*from)[*to];
+  if (way == TravelGraph::kFar) return TourProblem::kNever;
+  if (straight >= way) return straight;
   constexpr double kClear = 8.0;  // [m]
-  if (straight < kClear &&
-      SegmentVoxels(lattice_, lattice_.exact_center(a), lattice_.exact_center(b))
-          .all_of([&](const VoxelKey& key) { return member.graph.node(key).has_value(); }))
-    return straight;
-  return from[*node];
+  const bool clear = straight < kClear &&
+                     SegmentVoxels(lattice_, lattice_.exact_center(a), lattice_.exact_center(b))
+                         .all_of([&](const VoxelKey& key) { return member.graph.node(key).has_value(); });
+  return clear ? straight : way;
 }
 
 const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::uint32_t cluster) const {
@@ -239,41 +253,43 @@ TourPlanning::Stop TourPlanning::in_order(const Member& member, const Stop& stop
 }
 
 TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
-                                              std::span<const Stop> stops) const {
-  const Member& member = members_[r];
+                                              std::span<const Stop> stops) {
+  Member& member = members_[r];
   const MotionState& start = query.starts[r];
   const std::size_t count = stops.size();
   TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), CostTable(count, count)};
-  const auto cell = lattice_.key(start.pose.position);
-  const auto node = cell ? member.graph.node(*cell) : std::nullopt;
-  const std::vector<double> away = node ? member.graph.distances(*node) : std::vector<double>();
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
+  const auto here = lattice_.key(start.pose.position);
+  if (!here || !member.graph.node(*here)) return robot;
+
   std::vector<const ClusterViewpoint*> at(count);
-  std::vector<std::vector<double>> from(count);
+  std::vector<VoxelKey> cells{*here};
+  for (std::size_t i = 0; i < count; ++i)
+    if ((at[i] = best_viewpoint(member, stops[i].front())) != nullptr) cells.push_back(at[i]->cell);
+  measure_from(member, std::move(cells));
   std::vector<double> within(count);  // [s] from cluster to cluster of a stop
-  for_each_index(count, [&](std::size_t i) {
-    at[i] = best_viewpoint(member, stops[i].front());
-    if (at[i] == nullptr) return;
-    const auto place = member.graph.node(at[i]->cell);
-    if (!place) return;
-    if (away.empty() || away[*place] == TravelGraph::kFar) return;
-    from[i] = member.graph.distances(*place);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (at[i] == nullptr) continue;
+    const double distance = r == query.robot
+                                ? query.corridor.distance(at[i]->cell).value_or(TourProblem::kNever)
+                                : distance_between(member, *here, at[i]->cell);
+    if (distance == TourProblem::kNever) {
+      at[i] = nullptr;
+      continue;
+    }
     Eigen::Vector3d before = lattice_.exact_center(at[i]->cell);
     for (const std::uint32_t cluster : in_order(member, stops[i], before)) {
       const Eigen::Vector3d next = lattice_.exact_center(best_viewpoint(member, cluster)->cell);
       within[i] += seconds(member.robot, (next - before).norm(), 0.0);
       before = next;
     }
-  });
+    robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
+  }
   for_each_index(count, [&](std::size_t i) {
-    for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
-    if (from[i].empty()) return;
-    double distance = distance_between(member, away, *cell, at[i]->cell);
-    if (r == query.robot) distance = query.corridor.distance(at[i]->cell).value_or(TourProblem::kNever);
-    if (distance != TourProblem::kNever)
-      robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
-    for (std::size_t j = 0; j < i; ++j) {
-      if (from[j].empty()) continue;
-      const double way = distance_between(member, from[i], at[i]->cell, at[j]->cell);
+    for (std::size_t j = 0; j < i && at[i] != nullptr; ++j) {
+      if (at[j] == nullptr) continue;
+      const double way = distance_between(member, at[i]->cell, at[j]->cell);
       if (way != TourProblem::kNever)
         robot.between(i, j) =
             seconds(member.robot, way, turn_between(at[i]->yaw, at[j]->yaw)) + (within[i] + within[j]) / 2;
@@ -284,7 +300,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   return robot;
 }
 
-TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stops) const {
+TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stops) {
   TourProblem problem;
   problem.stops = stops.size();
   for (std::size_t r = 0; r < members_.size(); ++r) problem.robots.push_back(travel_times(query, r, stops));
@@ -312,16 +328,13 @@ void TourPlanning::refine(const Query& query) {
     node.cost = seconds_to(member.robot, start, *node.viewpoint, *distance);
   }
   for (std::size_t s = 1; s < count; ++s) {
-    std::vector<std::vector<double>> from(stages[s - 1].size());
-    for_each_index(from.size(), [&](std::size_t i) {
-      if (const auto node = member.graph.node(stages[s - 1][i].viewpoint->cell))
-        from[i] = member.graph.distances(*node);
-    });
+    std::vector<VoxelKey> cells;
+    for (const Node& node : stages[s - 1]) cells.push_back(node.viewpoint->cell);
+    measure_from(member, std::move(cells));
     for (Node& node : stages[s])
       for (std::size_t b = 0; b < stages[s - 1].size(); ++b) {
         const Node& before = stages[s - 1][b];
-        const double distance =
-            distance_between(member, from[b], before.viewpoint->cell, node.viewpoint->cell);
+        const double distance = distance_between(member, before.viewpoint->cell, node.viewpoint->cell);
         const double cost = before.cost + seconds(member.robot, distance,
                                                   turn_between(before.viewpoint->yaw, node.viewpoint->yaw));
         if (cost >= node.cost) continue;

@@ -33,7 +33,7 @@ class TourPlanning {
     // Of the greatest range of a robot's sensor: edges of the cubes in which
     double cluster_edge = 0.4;  ///< frontiers make a cluster,
     double zone_edge = 0.8;     ///< clusters that are far from all robots make one stop,
-    double graph_edge = 0.4;    ///< a robot's cells make a node
+    double graph_edge = 0.2;    ///< a robot's cells make a node
     double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
     double least_area = 1.5;    ///< [m2] of a cluster worth a stop
     double least_gain = 10.0;   ///< [frontiers] that a stop shows
@@ -78,7 +78,8 @@ class TourPlanning {
     Robot robot;
     ViewRegion region;
     TravelGraph graph;
-    std::vector<VoxelKey> changed = {};  // since its graph was updated
+    std::vector<VoxelKey> changed = {};                           // since its graph was updated
+    std::map<std::uint32_t, std::vector<double>> distances = {};  // [m] by node, in this graph
     std::map<std::uint64_t, Sight> sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
@@ -94,15 +95,15 @@ class TourPlanning {
   using Stop = std::vector<std::uint32_t>;
   [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;
   [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
-  [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops) const;
+  [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
-                                                std::span<const Stop> stops) const;
+                                                std::span<const Stop> stops);
+  static void measure_from(Member& member, std::vector<VoxelKey> cells);
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   void refine(const Query& query);
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
-  [[nodiscard]] double distance_between(const Member& member, const std::vector<double>& from,
-                                        const VoxelKey& a, const VoxelKey& b) const;
+  [[nodiscard]] double distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
 
   Lattice lattice_;
   KeyBox bounds_;

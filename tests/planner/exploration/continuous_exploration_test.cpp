@@ -62,8 +62,13 @@ double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
   return sim::measure(team.truth, grid).of_observable();
 }
 
-TEST(ContinuousExploration, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits) {
-  TeamInMotion scene("room", {small_uav()});
+// With one goal after the other, and with tours.
+class ContinuousExplorationBy : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Each, ContinuousExplorationBy, testing::Bool(),
+                         [](const auto& now) { return now.param ? "Tours" : "Goals"; });
+
+TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits) {
+  TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GetParam());
   const Robot& robot = scene.exploration().options().team[0].robot;
   std::set<VoxelKey> open;  // not free when it was planned
   std::optional<Trajectory> before;
@@ -114,8 +119,8 @@ TEST(ContinuousExploration, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits
 }
 
 // Steps tell all that happened: numbers, times, scans and changes.
-TEST(ContinuousExploration, StepsAddUpToTheMap) {
-  TeamInMotion scene("room", {small_uav(), small_uav()});
+TEST_P(ContinuousExplorationBy, StepsAddUpToTheMap) {
+  TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
   scene.explore(6.0);
   scene.steps.push_back(scene.exploration().finish(scene.time()));
   RecordedMap map(0.3);
@@ -144,10 +149,11 @@ TEST(ContinuousExploration, StepsAddUpToTheMap) {
   }
 }
 
-TEST(ContinuousExploration, IsTheSameOnOneAndTwoThreads) {
+TEST_P(ContinuousExplorationBy, IsTheSameOnOneAndTwoThreads) {
   const auto told = [](int threads) {
     return tbb::task_arena(threads).execute([] {
-      TeamInMotion scene("room", {small_uav(), planner::ugv_description()});
+      TeamInMotion scene("room", {small_uav(), planner::ugv_description()}, sim::AtContact::kGoOn,
+                         GetParam());
       std::ostringstream text;
       text << std::hexfloat;
       scene.explore(4.0, [&](const PlannedMotion& now) {
@@ -166,8 +172,8 @@ TEST(ContinuousExploration, IsTheSameOnOneAndTwoThreads) {
   EXPECT_TRUE(one == told(2));
 }
 
-void expect_apart(std::size_t count, double seconds) {
-  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()));
+void expect_apart(std::size_t count, double seconds, bool tours) {
+  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()), sim::AtContact::kGoOn, tours);
   const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
   double least = std::numeric_limits<double>::infinity();
   const auto look = [&](double from, double to) {
@@ -185,8 +191,8 @@ void expect_apart(std::size_t count, double seconds) {
   EXPECT_LT(least, 3.0) << "they are never near each other";
   for (std::size_t r = 0; r < count; ++r) EXPECT_GT(scene.robots().records()[r].length, 1.0);
 }
-TEST(ContinuousExploration, KeepsTwoRobotsApart) { expect_apart(2, 20.0); }
-TEST(ContinuousExploration, KeepsThreeRobotsApart) { expect_apart(3, 12.0); }
+TEST_P(ContinuousExplorationBy, KeepsTwoRobotsApart) { expect_apart(2, 20.0, GetParam()); }
+TEST_P(ContinuousExplorationBy, KeepsThreeRobotsApart) { expect_apart(3, 12.0, GetParam()); }
 
 // Explores for a while, and plans all that there is to plan.
 void begin_to_fly(TeamInMotion& scene) {

@@ -27,10 +27,10 @@ class TeamInMotion {
   using Moves = std::function<void(double from, double to)>;
 
   TeamInMotion(std::string_view world, std::vector<planner::RobotDescription> robots,
-               sim::AtContact at_contact = sim::AtContact::kGoOn)
+               sim::AtContact at_contact = sim::AtContact::kGoOn, bool tours = false)
       : team_(world, 1, std::move(robots)),
         robots_(team_.world, team_.truth, team_.robots, poses_of(team_), {}, 1, at_contact),
-        exploration_(options(team_), team_.empty_map()) {
+        exploration_(options(team_, tours), team_.empty_map()) {
     steps.push_back(exploration_.begin(team_.starts, 0.0));
   }
 
@@ -55,8 +55,9 @@ class TeamInMotion {
     }
   }
 
-  static planner::ExplorationOptions options(const TeamInWorld& team) {
+  static planner::ExplorationOptions options(const TeamInWorld& team, bool tours = false) {
     planner::ExplorationOptions options = team.options();
+    options.tours = tours;
     for (planner::TeamMember& member : options.team) member.options.advance = 2.0;
     return options;
   }
