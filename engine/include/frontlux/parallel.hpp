@@ -1,14 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 namespace frontlux {
 namespace detail {
 
-void run_chunks(std::size_t size, std::size_t chunk, const void* work,
+void run_ranges(std::size_t size, const void* work,
                 void (*call)(const void* work, std::size_t begin, std::size_t end));
+void isolate(const void* work, void (*call)(const void* work));
 
 }  // namespace detail
+
+/// Calls `work(begin, end)` for ranges that make up [0, size), on the threads of TBB's current task arena;
+/// for as few as keep the threads busy.
+template <class Work>
+void for_each_range(std::size_t size, const Work& work) {
+  detail::run_ranges(size, &work, [](const void* w, std::size_t begin, std::size_t end) {
+    (*static_cast<const Work*>(w))(begin, end);
+  });
+}
 
 /// Calls `work(begin, end)` for the chunks of [0, size): each has `chunk` elements, the last one may have
 /// fewer. Chunks run on the threads of TBB's current task arena. A single chunk runs on the calling thread,
@@ -19,8 +30,8 @@ void for_each_chunk(std::size_t size, std::size_t chunk, const Work& work) {
     work(std::size_t{0}, size);
     return;
   }
-  detail::run_chunks(size, chunk, &work, [](const void* w, std::size_t begin, std::size_t end) {
-    (*static_cast<const Work*>(w))(begin, end);
+  for_each_range((size + chunk - 1) / chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i * chunk, std::min(size, (i + 1) * chunk));
   });
 }
 
@@ -30,6 +41,12 @@ void for_each_index(std::size_t size, const Work& work) {
   for_each_chunk(size, 1, [&work](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) work(i);
   });
+}
+
+/// Calls `work()`. While it waits for loops inside it, this thread takes up no other work.
+template <class Work>
+void run_isolated(const Work& work) {
+  detail::isolate(&work, [](const void* w) { (*static_cast<const Work*>(w))(); });
 }
 
 }  // namespace frontlux

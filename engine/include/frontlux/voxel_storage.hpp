@@ -103,23 +103,27 @@ struct Tile {
   bool fill(const VoxelKey& corner, int log2_edge, Occupancy state);
 };
 
-/// 2^kBits children a side.
+/// 2^kBits children a side. Slots are as a tile's: below 3 for the uniform children, which every branch keeps
+/// in front. So memory grows with the children that are not uniform, and so does what a copy costs.
 template <class ChildNode, int kBits>
 struct Branch {
   using Child = ChildNode;
   static constexpr int kChildBits = kBits;
   static constexpr int kLog2 = Child::kLog2 + kBits;
   static constexpr int kChildren = 1 << (3 * kBits);
-  std::vector<Shared<Child>> children;
+  std::array<std::uint16_t, kChildren> slots{};
+  std::vector<Shared<Child>> nodes;
+  std::vector<std::uint16_t> unused;
 
   explicit Branch(Occupancy state);
 
   [[nodiscard]] static constexpr int index(const VoxelKey& key) {
     return child_index<Child::kLog2, kBits>(key);
   }
-  [[nodiscard]] const Shared<Child>& child(const VoxelKey& key) const {
-    return children[static_cast<std::size_t>(index(key))];
+  [[nodiscard]] const Shared<Child>& child(int number) const {
+    return nodes[slots[static_cast<std::size_t>(number)]];
   }
+  [[nodiscard]] const Shared<Child>& child(const VoxelKey& key) const { return child(index(key)); }
   [[nodiscard]] bool uniform(Occupancy state) const;
   bool fill(const VoxelKey& corner, int log2_edge, Occupancy state);
 };

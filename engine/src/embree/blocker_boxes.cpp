@@ -68,7 +68,7 @@ class Survey {
   void descend(const Node& node, const VoxelKey& corner) {
     using Child = typename Node::Child;
     for (int i = 0; i < Node::kChildren; ++i) {
-      const auto& child = node.children[static_cast<std::size_t>(i)];
+      const auto& child = node.child(i);
       const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
       if (blocks_everywhere(child)) {
         if (!is_shell<Child>(at)) continue;
@@ -192,8 +192,25 @@ std::size_t Blockers::box_count() const {
 
 namespace {
 
-Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* old,
-                  const StaleUnits* stale) {
+// What was built of an earlier grid.
+struct Earlier {
+  const Blockers& blockers;
+  const VoxelGrid& grid;
+  const StaleUnits& stale;
+
+  [[nodiscard]] std::shared_ptr<const BoxGroup> group(const VoxelKey& corner) const {
+    const auto found =
+        std::lower_bound(blockers.groups.begin() + 1, blockers.groups.end(), corner,
+                         [](const auto& group, const VoxelKey& key) { return group->corner < key; });
+    return found != blockers.groups.end() && (*found)->corner == corner ? *found : nullptr;
+  }
+  // Whether it had cubes where this one is: else whole nodes stood for it.
+  [[nodiscard]] bool had_cubes(const VoxelKey& corner) const {
+    return !uniform_state(node_at(grid, corner, static_cast<const Tile*>(nullptr)));
+  }
+};
+
+Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Earlier* earlier) {
   Survey survey(grid, unknown);
   std::vector<VoxelKey> corners;
   for (const VoxelKey& tile : survey.mixed_tiles)
@@ -207,30 +224,29 @@ Blockers assemble(const VoxelGrid& grid, UnknownPolicy unknown, const Blockers* 
   blockers.groups[0] = std::make_shared<BoxGroup>(std::move(survey.whole_nodes));
   for_each_chunk(corners.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::shared_ptr<const BoxGroup> known;
-      if (old != nullptr) {
-        const auto found =
-            std::lower_bound(old->groups.begin() + 1, old->groups.end(), corners[i],
-                             [](const auto& group, const VoxelKey& key) { return group->corner < key; });
-        if (found != old->groups.end() && (*found)->corner == corners[i]) known = *found;
-      }
-      const bool fresh = known && !stale->touches(corners[i]);
-      blockers.groups[i + 1] = fresh ? known : make_group(grid, unknown, corners[i], known.get(), stale);
+      std::shared_ptr<const BoxGroup>& group = blockers.groups[i + 1];
+      if (earlier != nullptr) group = earlier->group(corners[i]);
+      if (earlier == nullptr || earlier->stale.touches(corners[i]) ||
+          (!group && !earlier->had_cubes(corners[i])))
+        group = make_group(grid, unknown, corners[i], group.get(), earlier ? &earlier->stale : nullptr);
+      if (group && group->boxes.empty()) group.reset();
     }
   });
+  std::erase(blockers.groups, nullptr);
   return blockers;
 }
 
 }  // namespace
 
 Blockers make_blockers(const VoxelGrid& grid, UnknownPolicy unknown) {
-  return assemble(grid, unknown, nullptr, nullptr);
+  return assemble(grid, unknown, nullptr);
 }
 
 Blockers update_blockers(const Blockers& blockers, const VoxelGrid& before, const VoxelGrid& after,
                          UnknownPolicy unknown) {
   const StaleUnits stale(before, after);
-  return stale.everything() ? make_blockers(after, unknown) : assemble(after, unknown, &blockers, &stale);
+  const Earlier earlier{blockers, before, stale};
+  return assemble(after, unknown, stale.everything() ? nullptr : &earlier);
 }
 
 }  // namespace frontlux::detail

@@ -5,6 +5,7 @@
 #include "embree/probe_order.hpp"
 
 #include <frontlux/floating_point_mode.hpp>
+#include <frontlux/thread_sanitizer.hpp>
 
 #include <algorithm>
 #include <array>
@@ -41,6 +42,7 @@ struct View {
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& view = *static_cast<const View*>(args->geometryUserPtr);
+  take_over(&view);
   const LocalBox box = view.box(args->primID);
   // Padded beyond the tolerance, since the traversal rounds too: what the box test would call too close must
   // be reached.
@@ -52,6 +54,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   bounds.upper_x = box.center[0] + box.half[0] + pad;
   bounds.upper_y = box.center[1] + box.half[1] + pad;
   bounds.upper_z = box.center[2] + box.half[2] + pad;
+  hand_over(&view);
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* args) {
@@ -135,6 +138,7 @@ struct BoxScene::Embree {
     rtcSetGeometryIntersectFunction(geometry, &intersect_callback);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
     rtcCommitGeometry(geometry);
+    hand_over(view.get());
     const unsigned id = rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
     if (id == RTC_INVALID_GEOMETRY_ID) throw std::runtime_error("Embree cannot take another geometry");
@@ -228,6 +232,8 @@ void BoxScene::update(const Blockers& blockers) {
   }
   embree_->mean_edge = static_cast<float>(std::sqrt(face_area / std::max(count, 1.0)));
   rtcCommitScene(embree_->scene);
+  for (const auto& view : embree_->views)
+    if (view) take_over(view.get());
   const RTCError error = rtcGetDeviceError(embree_->device->get());
   if (error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree cannot build a scene of " + std::to_string(blockers.box_count()) +

@@ -142,6 +142,17 @@ class Grower {
 
 // Whether a unit and all around it is one solid piece, or free of blockers: most of a map's units.
 bool has_no_shell(const VoxelGrid& grid, UnknownPolicy unknown, const VoxelKey& corner) {
+  const auto slot = [&tile = grid.tile(corner), &corner](int x, int y, int z) {
+    return tile
+        .slots[static_cast<std::size_t>(Tile::index(as_key({corner.x + x, corner.y + y, corner.z + z})))];
+  };
+  const auto open = [unknown](std::uint16_t s) {
+    return s == static_cast<std::uint16_t>(Occupancy::kFree) ||
+           (s == static_cast<std::uint16_t>(Occupancy::kUnknown) && unknown == UnknownPolicy::kPass);
+  };
+  bool all_open = true;
+  for (int i = 0; i < 8; ++i) all_open = all_open && open(slot((i & 1) * 8, (i & 2) * 4, (i & 4) * 2));
+  if (all_open) return true;
   bool all = true, none = true;
   for (int bz = 0; bz < kUnitEdge; bz += 8)
     for (int by = 0; by < kUnitEdge; by += 8)

@@ -1,20 +1,24 @@
 #include <frontlux/parallel.hpp>
+#include <frontlux/thread_sanitizer.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-
-#include <algorithm>
+#include <tbb/task_arena.h>
 
 namespace frontlux::detail {
 
-void run_chunks(std::size_t size, std::size_t chunk, const void* work,
+void run_ranges(std::size_t size, const void* work,
                 void (*call)(const void* work, std::size_t begin, std::size_t end)) {
-  const std::size_t chunks = (size + chunk - 1) / chunk;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks),
+  const ForkAndJoin whole;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size),
                     [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i)
-                        call(work, i * chunk, std::min(size, (i + 1) * chunk));
+                      const ForkAndJoin::Part part(whole);
+                      call(work, range.begin(), range.end());
                     });
+}
+
+void isolate(const void* work, void (*call)(const void* work)) {
+  tbb::this_task_arena::isolate([&] { call(work); });
 }
 
 }  // namespace frontlux::detail

@@ -1,6 +1,6 @@
 #include "view/target_index.hpp"
 
-#include <tbb/parallel_sort.h>
+#include "parallel/parallel_sort.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,7 +15,7 @@ TargetIndex::TargetIndex(std::span<const VoxelKey> targets) {
                                 " targets, but at most 2^32 - 1 can be numbered");
   codes_.resize(targets.size());
   std::transform(targets.begin(), targets.end(), codes_.begin(), cell_code);
-  tbb::parallel_sort(codes_.begin(), codes_.end());
+  parallel_sort(codes_);
   codes_.erase(std::unique(codes_.begin(), codes_.end()), codes_.end());
   keys_.resize(codes_.size());
   std::transform(codes_.begin(), codes_.end(), keys_.begin(), cell_of_code);

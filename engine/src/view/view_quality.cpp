@@ -2,10 +2,8 @@
 #include "view/exact/exact_render.hpp"
 #include "view/view_render.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/view_quality.hpp>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +33,10 @@ std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<c
                                      const ViewRegion& view, std::span<const KeyBox> changed) {
   std::vector<std::uint32_t> kept(now.size(), kStale);
   const std::vector<std::size_t> tiles = detail::tiles_of(now);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size() - 1), [&](const auto& range) {
+  for_each_range(tiles.size() - 1, [&](std::size_t begin, std::size_t end) {
     std::vector<KeyBox> near;
     const auto by_code = [](const Viewpoint& v, std::uint64_t code) { return v.code < code; };
-    for (std::size_t t = range.begin(); t < range.end(); ++t) {
+    for (std::size_t t = begin; t < end; ++t) {
       const KeyBox tile = detail::cube_of_code(now[tiles[t]].code);
       near.clear();
       for (const KeyBox& box : changed)

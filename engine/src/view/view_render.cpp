@@ -1,11 +1,9 @@
 #include "view/view_render.hpp"
 
+#include "parallel/parallel_sort.hpp"
 #include "view/rank_draw.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -62,7 +60,7 @@ class TileRenderer {
     visible_.resize(
         segments_.size());  // perhaps 0: viewpoints without targets have their answers written too
     // Without isolation this thread would start further tiles while it waits, each with a batch of its own.
-    tbb::this_task_arena::isolate([&] { scene.caster.visible(segments_, visible_, UnknownPolicy::kBlock); });
+    run_isolated([&] { scene.caster.visible(segments_, visible_, UnknownPolicy::kBlock); });
     const auto bins = static_cast<std::size_t>(scene.options.azimuth_bins);
     std::size_t begin = 0;
     for (const Drawn& drawn : drawn_) {
@@ -200,7 +198,7 @@ std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints) {
   std::vector<Viewpoint> sorted(viewpoints.size());
   for (std::size_t i = 0; i < viewpoints.size(); ++i)
     sorted[i] = {cell_code(viewpoints[i]), static_cast<std::uint32_t>(i)};
-  tbb::parallel_sort(sorted.begin(), sorted.end(), [](const Viewpoint& a, const Viewpoint& b) {
+  parallel_sort(sorted, [](const Viewpoint& a, const Viewpoint& b) {
     return a.code < b.code || (a.code == b.code && a.index < b.index);
   });
   return sorted;
@@ -219,15 +217,13 @@ void render_views(const ViewScene& scene, std::span<const Viewpoint> viewpoints,
                   std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
   const std::vector<std::size_t> tiles = tiles_of(viewpoints);
   SpareRenderers spares;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size() - 1),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      auto renderer = spares.take();
-                      for (std::size_t t = range.begin(); t < range.end(); ++t)
-                        renderer->render(scene, viewpoints.subspan(tiles[t], tiles[t + 1] - tiles[t]), values,
-                                         bin_hits);
-                      renderer->finish(scene, values, bin_hits);
-                      spares.give_back(std::move(renderer));
-                    });
+  for_each_range(tiles.size() - 1, [&](std::size_t begin, std::size_t end) {
+    auto renderer = spares.take();
+    for (std::size_t t = begin; t < end; ++t)
+      renderer->render(scene, viewpoints.subspan(tiles[t], tiles[t + 1] - tiles[t]), values, bin_hits);
+    renderer->finish(scene, values, bin_hits);
+    spares.give_back(std::move(renderer));
+  });
 }
 
 }  // namespace frontlux::detail

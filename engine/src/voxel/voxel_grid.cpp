@@ -32,7 +32,7 @@ template <class Node, class Visit>
 void visit_blocks(const Node& node, const VoxelKey& corner, const Visit& visit) {
   using Child = typename Node::Child;
   for (int i = 0; i < Node::kChildren; ++i) {
-    const Shared<Child>& child = node.children[static_cast<std::size_t>(i)];
+    const Shared<Child>& child = node.child(i);
     if (child == uniform_node<Child>(Occupancy::kUnknown)) continue;
     const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
     if (const auto state = uniform_state(child))
@@ -56,8 +56,7 @@ template <class Node, class Visit>
 void visit_changes(const Node& before, const Node& after, const VoxelKey& corner, const Visit& visit) {
   using Child = typename Node::Child;
   for (int i = 0; i < Node::kChildren; ++i) {
-    const auto &a = before.children[static_cast<std::size_t>(i)],
-               &b = after.children[static_cast<std::size_t>(i)];
+    const auto &a = before.child(i), &b = after.child(i);
     if (a == b) continue;
     const VoxelKey at = child_corner<Child::kLog2, Node::kChildBits>(corner, i);
     if (uniform_state(a) && uniform_state(b))
@@ -74,8 +73,9 @@ std::size_t bytes(const Tile& tile) {
 
 template <class Node>
 std::size_t bytes(const Node& node) {
-  std::size_t sum = sizeof(Node) + node.children.capacity() * sizeof(node.children[0]);
-  for (const auto& child : node.children)
+  std::size_t sum = sizeof(Node) + node.nodes.capacity() * sizeof(node.nodes[0]) +
+                    node.unused.capacity() * sizeof(std::uint16_t);
+  for (const auto& child : node.nodes)
     if (!uniform_state(child)) sum += bytes(*child);
   return sum;
 }

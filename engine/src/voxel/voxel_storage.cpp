@@ -37,6 +37,26 @@ void fill_voxels(Brick& brick, const VoxelKey& corner, int log2_edge, Occupancy 
   }
 }
 
+template <std::size_t kSize>
+bool all_are(const std::array<std::uint16_t, kSize>& slots, Occupancy state) {
+  return std::all_of(slots.begin(), slots.end(),
+                     [&](auto slot) { return slot == static_cast<std::uint16_t>(state); });
+}
+
+// The slot in which a new element is kept.
+template <class Element>
+std::uint16_t take(std::vector<Element>& elements, std::vector<std::uint16_t>& unused,
+                   const Element& element) {
+  if (unused.empty()) {
+    elements.push_back(element);
+    return static_cast<std::uint16_t>(elements.size() - 1);
+  }
+  const std::uint16_t slot = unused.back();
+  unused.pop_back();
+  elements[slot] = element;
+  return slot;
+}
+
 }  // namespace
 
 Tile::Tile(Occupancy state) {
@@ -44,10 +64,7 @@ Tile::Tile(Occupancy state) {
   for (const Occupancy s : kStates) bricks.push_back(uniform_brick(s));
 }
 
-bool Tile::uniform(Occupancy state) const {
-  return std::all_of(slots.begin(), slots.end(),
-                     [&](auto slot) { return slot == static_cast<std::uint16_t>(state); });
-}
+bool Tile::uniform(Occupancy state) const { return all_are(slots, state); }
 
 bool Tile::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
   const auto uniform_slot = static_cast<std::uint16_t>(state);
@@ -63,15 +80,8 @@ bool Tile::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
   std::uint16_t& slot = slots[static_cast<std::size_t>(index(corner))];
   if (slot == uniform_slot) return uniform(state);
   if (slot < kStates.size()) {
-    const Brick copy = bricks[slot];
-    if (unused.empty()) {
-      slot = static_cast<std::uint16_t>(bricks.size());
-      bricks.push_back(copy);
-    } else {
-      slot = unused.back();
-      unused.pop_back();
-      bricks[slot] = copy;
-    }
+    const Brick before = bricks[slot];
+    slot = take(bricks, unused, before);
   }
   fill_voxels(bricks[slot], corner, log2_edge, state);
   if (bricks[slot] != bricks[uniform_slot]) return false;
@@ -80,25 +90,39 @@ bool Tile::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
 }
 
 template <class Child, int kBits>
-Branch<Child, kBits>::Branch(Occupancy state) : children(kChildren, uniform_node<Child>(state)) {}
+Branch<Child, kBits>::Branch(Occupancy state) {
+  slots.fill(static_cast<std::uint16_t>(state));
+  for (const Occupancy s : kStates) nodes.push_back(uniform_node<Child>(s));
+}
 
 template <class Child, int kBits>
 bool Branch<Child, kBits>::uniform(Occupancy state) const {
-  const auto& all = uniform_node<Child>(state);
-  return std::all_of(children.begin(), children.end(), [&](const auto& child) { return child == all; });
+  return all_are(slots, state);
 }
 
 template <class Child, int kBits>
 bool Branch<Child, kBits>::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
-  const auto& all = uniform_node<Child>(state);
+  const auto uniform_slot = static_cast<std::uint16_t>(state);
+  const auto release = [&](std::uint16_t& slot) {
+    if (slot >= kStates.size()) {
+      nodes[slot] = nodes[uniform_slot];
+      unused.push_back(slot);
+    }
+    slot = uniform_slot;
+  };
   if (log2_edge >= Child::kLog2) {
-    for_each_covered_child<Child::kLog2, kBits>(corner, log2_edge,
-                                                [&](int i) { children[static_cast<std::size_t>(i)] = all; });
+    for_each_covered_child<Child::kLog2, kBits>(
+        corner, log2_edge, [&](int number) { release(slots[static_cast<std::size_t>(number)]); });
     return uniform(state);
   }
-  Shared<Child>& child = children[static_cast<std::size_t>(index(corner))];
-  if (child == all || !child.own().fill(corner, log2_edge, state)) return false;
-  child = all;
+  std::uint16_t& slot = slots[static_cast<std::size_t>(index(corner))];
+  if (slot == uniform_slot) return false;
+  if (slot < kStates.size()) {
+    const Shared<Child> before = nodes[slot];
+    slot = take(nodes, unused, before);
+  }
+  if (!nodes[slot].own().fill(corner, log2_edge, state)) return false;
+  release(slot);
   return uniform(state);
 }
 

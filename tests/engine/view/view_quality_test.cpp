@@ -10,6 +10,8 @@
 
 #include <tbb/task_arena.h>
 
+#include <thread>
+
 namespace frontlux::test {
 namespace {
 
@@ -343,6 +345,32 @@ TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {
       EXPECT_LT(rendered, all * 3 / 4) << "of " << all;
       EXPECT_EQ(image.update(*caster, hall.viewpoints, hall.targets, {hall.grid}), 0U);
     }
+}
+
+// Copies of an image, each updated by a thread of its own, while the caster is updated to maps that do not
+// differ.
+TEST(ViewQualityImage, CopiesAreUpdatedInDifferentThreads) {
+  for (const auto renderer : {ViewQualityOptions::Renderer::kRays, ViewQualityOptions::Renderer::kExact}) {
+    Hall hall(12);
+    const auto caster = make_ray_caster(hall.grid);
+    const ViewQualityOptions options{.renderer = renderer, .azimuth_bins = 8};
+    const auto image = render(*caster, hall, hall.viewpoints, camera(4), options);
+    const VoxelKey changed = hall.middle();
+    hall.grid.set(changed, Occupancy::kOccupied);
+    hall.observe();
+    caster->update(hall.grid);
+    const auto updated = [&](ViewQualityImage copy) {
+      (void)copy.update(*caster, hall.viewpoints, hall.targets, {hall.grid, {&changed, 1}});
+      return copy;
+    };
+    const auto expected = updated(image);
+    std::vector<ViewQualityImage> images(3, image);
+    std::vector<std::thread> threads;
+    for (ViewQualityImage& copy : images) threads.emplace_back([&] { copy = updated(std::move(copy)); });
+    for (int i = 0; i < 5; ++i) caster->update(VoxelGrid(hall.grid));
+    for (std::thread& thread : threads) thread.join();
+    for (const ViewQualityImage& copy : images) expect_equal(copy, expected);
+  }
 }
 
 TEST(ViewQualityImage, TakesItsOwnViewpointsBack) {

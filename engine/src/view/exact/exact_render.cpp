@@ -1,11 +1,9 @@
 #include "view/exact/exact_render.hpp"
 
+#include "parallel/parallel_sort.hpp"
 #include "view/exact/view_window.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-#include <tbb/task_arena.h>
+#include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <array>
@@ -161,7 +159,7 @@ std::shared_ptr<const RayTrie> RayTries::get(const ViewRegion& view, int azimuth
   if (!make) return nullptr;
   std::optional<RayTrie> trie;
   // Without isolation this thread could meet its own lock in a task it takes up while it waits.
-  tbb::this_task_arena::isolate(
+  run_isolated(
       [&] { trie = RayTrie::make(view, azimuth_bins == 0 ? kSectors : azimuth_bins, stride_x, stride_y); });
   known_.push_back({stride_x, stride_y, trie ? std::make_shared<const RayTrie>(std::move(*trie)) : nullptr});
   return known_.back().trie;
@@ -176,7 +174,7 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
   std::vector<Placed> placed(viewpoints.size());
   for (std::size_t i = 0; i < placed.size(); ++i)
     placed[i] = tiling.place(viewpoints[i], static_cast<std::uint32_t>(i));
-  tbb::parallel_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+  parallel_sort(placed, [](const Placed& a, const Placed& b) {
     return a.order < b.order || (a.order == b.order && a.number < b.number);
   });
 
@@ -191,9 +189,9 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
                                                     dense.size() >= scene.thresholds.trie);
   if (trie) {
     const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns.size() - 1), [&](const auto& range) {
+    for_each_range(columns.size() - 1, [&](std::size_t begin, std::size_t end) {
       ColumnRenderer renderer(scene, tiling, *trie);
-      for (std::size_t c = range.begin(); c < range.end(); ++c)
+      for (std::size_t c = begin; c < end; ++c)
         renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
     });
     for (const Placed& one : dense) walked[one.number] = true;

@@ -1,3 +1,4 @@
+import { RunError } from "./byte_reader.js";
 import { Charts } from "./charts.js";
 import { el } from "./dom.js";
 import { comparison, details, glossary, header, stepTable, teamName } from "./facts_view.js";
@@ -177,7 +178,8 @@ start().then(
   (page) => Object.assign(window.frontlux, { page, ready: true, team: teamName, percent, seconds }),
   (error) => {
     window.frontlux.error = String(error);
-    document.getElementById("app").replaceChildren(el("p", { class: "warning", text: `This report cannot be shown: ${error.message}. Make it again with frontlux report, or open it in a newer browser.` }));
+    const said = error instanceof RunError ? error.message : `${error.message}. Make it again with frontlux report, or open it in a newer browser.`;
+    document.getElementById("app").replaceChildren(el("p", { class: "warning", text: `This report cannot be shown: ${said}` }));
     throw error;
   },
 );

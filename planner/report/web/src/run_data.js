@@ -1,8 +1,11 @@
-import { ByteReader } from "./byte_reader.js";
+import { ByteReader, RunError, damaged } from "./byte_reader.js";
+import { readFacts } from "./run_facts.js";
 import { inMotion } from "./run_numbers.js";
 
 export const CHUNK = 32; // edge of a chunk in voxels; src/run_data.cpp cuts them
 export const UNKNOWN = 0, FREE = 1, OCCUPIED = 2;
+const MOST_CHUNKS = 2 ** 15; // VoxelStore takes 32 KiB for each
+const INFLATED = 2 ** 24, TIMES = 100; // bytes that the data may take: so many, and this many for each packed one
 
 /** A growing list of numbers in one typed array. */
 class Pool {
@@ -23,13 +26,38 @@ class Pool {
   }
 }
 
-/** From base64 of zlib's format. */
+/** From base64 of zlib's format, whose checksum is checked. */
 async function inflate(text) {
-  const binary = atob(text);
+  let binary;
+  try {
+    binary = atob(text);
+  } catch {
+    throw damaged("they are not in base64");
+  }
   const packed = new Uint8Array(binary.length);
   for (let i = 0; i < binary.length; ++i) packed[i] = binary.charCodeAt(i);
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const parts = [], most = INFLATED + TIMES * packed.length;
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
+  let length = 0;
+  for (;;) {
+    const { done, value } = await stream.read().catch(() => {
+      throw damaged("they cannot be decompressed");
+    });
+    if (done) break;
+    parts.push(value);
+    length += value.length;
+    if (length > most) {
+      stream.cancel().catch(() => {});
+      throw damaged(`they take more than ${most} bytes`);
+    }
+  }
+  const bytes = new Uint8Array(length);
+  let at = 0;
+  for (const part of parts) {
+    bytes.set(part, at);
+    at += part.length;
+  }
+  return bytes;
 }
 
 /** The cubes of voxels that a run touches, by number. */
@@ -61,12 +89,11 @@ export class ChunkTable {
 /**
  * A run as the page needs it. Changes are in groups of one chunk each; the groups of step s and robot r are
  * those from blocks[s * robots + r] to the next one, and the changes of group g those from begins[g] on.
+ * Throws a RunError, and nothing else, if the text is not what src/run_data.cpp and src/run_facts.cpp wrote.
  */
 export async function readRun(text) {
-  const bytes = await inflate(text);
-  const head = new DataView(bytes.buffer).getUint32(0, true);
-  const facts = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + head)));
-  const reader = new ByteReader(bytes, 4 + head);
+  const reader = new ByteReader(await inflate(text));
+  const facts = readFacts(new TextDecoder().decode(reader.take(reader.u32())));
   const robots = facts.robots.length, steps = facts.steps.length;
   const chunks = new ChunkTable();
   const groups = new Pool(Int32Array), begins = new Pool(Int32Array), blocks = new Pool(Int32Array);
@@ -76,22 +103,26 @@ export async function readRun(text) {
   for (let block = 0; block < steps * robots; ++block) {
     blocks.push(groups.length);
     for (let left = reader.count(); left > 0; --left) {
-      const x = reader.count(), y = reader.count(), z = reader.count();
+      const [x, y, z] = [0, 1, 2].map(() => reader.below(65536 / CHUNK, "the place of a chunk"));
       groups.push(chunks.number(x, y, z));
+      if (chunks.length > MOST_CHUNKS) throw new RunError(`the run's map lies in more than ${MOST_CHUNKS} cubes of ${CHUNK} voxels a side, which is more than a page can hold. Explore in larger voxels or smaller bounds.`);
       begins.push(locals.length);
       let local = 0;
       for (let voxels = reader.count(); voxels > 0; --voxels) {
-        const change = reader.count();
+        const change = reader.below(4 * (CHUNK ** 3 - local), "the place of a voxel");
+        if ((change & 3) > OCCUPIED) throw damaged("a voxel's state is 3");
         local += change >> 2;
         locals.push(local);
         states.push(change & 3);
       }
     }
     images.push(readImage(reader));
-    const count = reader.count(), travelled = reader.count();
+    const count = reader.count(), travelled = reader.below(count + 1, "the travelled part of a path");
+    reader.need(count, 16);
     paths.push({ begin: poses.length, count, travelled });
     for (let i = 0; i < 4 * count; ++i) poses.push(reader.f32());
   }
+  if (reader.at !== reader.bytes.length) throw damaged("there is something after the last step");
   blocks.push(groups.length);
   begins.push(locals.length);
   const motion = inMotion(facts);
@@ -100,7 +131,7 @@ export async function readRun(text) {
     facts, motion, steps, robots, chunks, images, paths,
     groups: groups.done(), begins: begins.done(), blocks: blocks.done(),
     locals: locals.done(), states: states.done(), poses: poses.done(),
-    size: bytes.length,
+    size: reader.bytes.length,
   };
 }
 
@@ -114,11 +145,16 @@ function holdImages(facts, images) {
 function readImage(reader) {
   const count = reader.count();
   if (count === 0) return null;
+  reader.need(count, 5);
   const gainMost = reader.f32(), qualityMost = reader.f32();
   const axes = [0, 1, 2].map(() => {
     const keys = new Uint16Array(count);
     let key = 0;
-    for (let i = 0; i < count; ++i) keys[i] = key += reader.difference();
+    for (let i = 0; i < count; ++i) {
+      key += reader.difference();
+      if (!(key >= 0 && key < 65536)) throw damaged(`the key of a cell is ${key}`);
+      keys[i] = key;
+    }
     return keys;
   });
   return { count, gainMost, qualityMost, x: axes[0], y: axes[1], z: axes[2], gain: reader.take(count), quality: reader.take(count) };

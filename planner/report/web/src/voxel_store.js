@@ -15,7 +15,8 @@ export class VoxelStore {
     const { chunks } = run;
     this.inner = chunks.length; // the chunks after them are neighbours, which hold frontiers only
     for (let c = 0; c < this.inner; ++c) this.addNeighbours(c);
-    this.chunks = Array.from({ length: chunks.length }, () => new Uint8Array(VOXELS));
+    const unknown = new Uint8Array(VOXELS); // one for all neighbours, in which nothing changes
+    this.chunks = Array.from({ length: chunks.length }, (_, c) => (c < this.inner ? new Uint8Array(VOXELS) : unknown));
     this.neighbours = new Int32Array(6 * chunks.length);
     for (let c = 0; c < chunks.length; ++c)
       for (let side = 0; side < 6; ++side) this.neighbours[6 * c + side] = this.findNeighbour(c, side);

@@ -3,6 +3,7 @@
 #include <frontlux/floating_point_mode.hpp>
 #include <frontlux/parallel.hpp>
 #include <frontlux/sim/surface.hpp>
+#include <frontlux/thread_sanitizer.hpp>
 
 #if FRONTLUX_EMBREE == 3
 #include <embree3/rtcore.h>
@@ -62,6 +63,7 @@ float widened(double length) { return static_cast<float>(std::max(length, 0.0) *
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
+  detail::take_over(&geometry);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& corner : geometry.triangles[args->primID])
     box.extend(corner.cast<double>() - geometry.middle);
@@ -74,6 +76,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   bounds.upper_x = high.x();
   bounds.upper_y = high.y();
   bounds.upper_z = high.z();
+  detail::hand_over(&geometry);
 }
 
 void intersect_callback(const RTCIntersectFunctionNArguments* args) {
@@ -127,7 +130,9 @@ struct Surface::Scene {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
+    detail::hand_over(&mesh);
     rtcCommitScene(scene);
+    detail::take_over(&mesh);
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE)
       throw std::runtime_error("Embree cannot build a scene of " + std::to_string(mesh.triangles.size()) +

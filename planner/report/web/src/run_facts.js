@@ -1,0 +1,61 @@
+import { damaged } from "./byte_reader.js";
+
+// What src/run_facts.cpp writes, an example of each. A number that is not finite is written as null.
+const ROBOT = { name: "", plane: true, extents: [0], sensor_height: 0, shape: "", horizontal: 0, vertical: 0, max_range: 0, columns: 0, rows: 0 };
+const ROBOT_STEP = { state: "", reason: "", assigned: 0, released: 0, received: 0, uncovered: 0, path: "", gain_tangent: 0, gain_predicted: 0, gained: 0, length: 0, still_unknown: 0 };
+const STEP = { number: 0, time: 0, frontiers: 0, unassigned: 0, abandoned: 0, rays: 0, collisions: 0, seconds: [0], known: [[0]], robots: [ROBOT_STEP] };
+const FACTS = {
+  name: "", written_by: "", world: "", resolution: 0, bounds: [[0]], observable: 0, bounding: 0, options: "", truncated: true,
+  phases: [""], robots: [ROBOT], steps: [STEP],
+};
+const GOAL = { goal: [0], distance: 0, gain: 0, standard_error: 0, quality: 0 };
+
+function check(value, example, name) {
+  if (Array.isArray(example)) {
+    if (!Array.isArray(value)) throw damaged(`${name} is no list`);
+    value.forEach((item, i) => check(item, example[0], `${name}[${i}]`));
+  } else if (typeof example === "object") {
+    if (typeof value !== "object" || value === null) throw damaged(`${name} is no object`);
+    for (const member of Object.keys(example)) check(value[member], example[member], `${name}.${member}`);
+  } else if (typeof value !== typeof example && !(typeof example === "number" && value === null)) throw damaged(`${name} is no ${typeof example}`);
+}
+
+function checkLength(list, length, name) {
+  if (list.length !== length) throw damaged(`${name} has ${list.length} elements instead of ${length}`);
+}
+
+/** The facts of a run, from JSON. Throws a RunError unless they have the shape that the page relies on. */
+export function readFacts(text) {
+  let facts;
+  try {
+    facts = JSON.parse(text);
+  } catch {
+    throw damaged("the facts are no JSON");
+  }
+  check(facts, FACTS, "facts");
+  if (!(facts.resolution > 0)) throw damaged(`facts.resolution is ${facts.resolution}`);
+  if (facts.end !== null) check(facts.end, "", "facts.end");
+  checkLength(facts.bounds, 2, "facts.bounds");
+  for (const corner of facts.bounds) checkLength(corner, 3, "a corner of facts.bounds");
+  if (facts.robots.length === 0 || facts.steps.length === 0) throw damaged("there are no robots or no steps");
+  for (const robot of facts.robots) {
+    checkLength(robot.extents, 3, "the extents of a robot");
+    if (robot.start !== undefined) checkPose(robot.start, "the start of a robot");
+  }
+  for (const step of facts.steps) {
+    checkLength(step.seconds, facts.phases.length, "the seconds of a step");
+    for (const list of [step.known, step.robots]) checkLength(list, facts.robots.length, "a list by robot");
+    for (const known of step.known) checkLength(known, 2, "known voxels");
+    for (const robot of step.robots)
+      if (robot.goal !== undefined) {
+        check(robot, GOAL, "a robot's step");
+        checkPose(robot.goal, "a goal");
+      }
+  }
+  return facts;
+}
+
+function checkPose(pose, name) {
+  check(pose, [0], name);
+  checkLength(pose, 4, name);
+}
