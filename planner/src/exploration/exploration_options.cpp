@@ -64,7 +64,9 @@ std::string_view name_of(ExplorationEnd end) {
 }
 
 std::string describe(ExplorationEnd end, const ExplorationOptions& options, std::string_view steps) {
-  if (end == ExplorationEnd::kNothingToDo) return "no robot can see a frontier from anywhere it can go";
+  if (end == ExplorationEnd::kNothingToDo)
+    return options.tours ? "no robot can see a cluster of frontiers worth a stop from anywhere it can go"
+                         : "no robot can see a frontier from anywhere it can go";
   if (end == ExplorationEnd::kStepLimit)
     return "the limit of " + std::to_string(options.max_steps) + " " + std::string(steps) + " is reached";
   if (end == ExplorationEnd::kCutOff)

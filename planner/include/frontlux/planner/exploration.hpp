@@ -37,8 +37,9 @@ struct ExplorationOptions {
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
-  double epsilon = 10.0;  ///< a step has low gain if its paths are expected to see fewer frontiers than this:
-                          ///< distinct ones, or with `GainMode::kSum` summed over viewpoints
+  /// A step has low gain if its paths are expected to see fewer frontiers than this: distinct ones, or with
+  /// `GainMode::kSum` summed over viewpoints. A stop of a tour shows at least so many.
+  double epsilon = 10.0;
   int low_gain_steps = 3;    ///< this many steps, in motion plannings, of low gain in a row end it
   int max_steps = 1000;      ///< so does this number of steps
   double latency = 0.1;      ///< [s] that the clock charges for a planning
