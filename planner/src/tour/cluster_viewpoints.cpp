@@ -48,7 +48,7 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
         if (const auto cell = query.lattice.key(at); cell && query.graph.node(*cell)) cells.push_back(*cell);
       }
   std::ranges::sort(cells);
-  cells.erase(std::ranges::unique(cells).begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
 

@@ -67,11 +67,11 @@ void FrontierClusters::join_small(std::vector<Keys>& pieces) const {
 }
 
 // The id of the cluster in which most of its frontiers were before, unless a larger one has it.
-void FrontierClusters::name(FrontierCluster& cluster, std::vector<std::uint64_t>& taken) {
-  std::map<std::uint64_t, std::size_t> before;
+void FrontierClusters::name(FrontierCluster& cluster, std::vector<std::uint32_t>& taken) {
+  std::map<std::uint32_t, std::size_t> before;
   for (const VoxelKey& key : cluster.keys)
     if (cluster_[key] != 0) ++before[cluster_[key]];
-  std::pair<std::size_t, std::uint64_t> best{0, 0};
+  std::pair<std::size_t, std::uint32_t> best{0, 0};
   for (const auto& [id, count] : before)
     if (count > best.first && std::ranges::find(taken, id) == taken.end()) best = {count, id};
   cluster.id = best.second != 0 ? best.second : next_id_++;
@@ -86,10 +86,10 @@ void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
   for (Keys& keys : parts) std::ranges::sort(keys);
   std::ranges::stable_sort(parts, [](const Keys& a, const Keys& b) { return a.size() > b.size(); });
 
-  std::map<std::uint64_t, FrontierCluster> before;
+  std::map<std::uint32_t, FrontierCluster> before;
   for (FrontierCluster& cluster : clusters_) before[cluster.id] = std::move(cluster);
   clusters_.clear();
-  std::vector<std::uint64_t> taken;
+  std::vector<std::uint32_t> taken;
   for (Keys& keys : parts) {
     FrontierCluster cluster;
     cluster.keys = std::move(keys);

@@ -15,7 +15,7 @@ namespace frontlux::planner::detail {
 
 /// Frontiers that touch each other, in a box of bounded size: what a robot looks at from one place.
 struct FrontierCluster {
-  std::uint64_t id = 0;        ///< stays the same while most of its frontiers do; never used again
+  std::uint32_t id = 0;        ///< stays the same while most of its frontiers do; never used again
   std::uint64_t revision = 0;  ///< another one whenever its frontiers are others
   std::vector<VoxelKey> keys;  ///< sorted
   KeyBox box;                  ///< around them
@@ -42,14 +42,15 @@ class FrontierClusters {
   }
   [[nodiscard]] std::vector<std::vector<VoxelKey>> pieces(std::span<const VoxelKey> frontiers);
   void join_small(std::vector<std::vector<VoxelKey>>& pieces) const;
-  void name(FrontierCluster& cluster, std::vector<std::uint64_t>& taken);
+  void name(FrontierCluster& cluster, std::vector<std::uint32_t>& taken);
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   BoxArray<std::uint32_t> piece_;    // of each frontier, from 1 on; 0 elsewhere
-  BoxArray<std::uint64_t> cluster_;  // that each voxel was in last
-  std::uint64_t next_id_ = 1, next_revision_ = 1;
+  BoxArray<std::uint32_t> cluster_;  // that each voxel was in last
+  std::uint32_t next_id_ = 1;
+  std::uint64_t next_revision_ = 1;
 };
 
 }  // namespace frontlux::planner::detail

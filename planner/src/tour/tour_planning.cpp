@@ -46,7 +46,6 @@ double turn_between(double a, double b) { return std::abs(std::remainder(b - a, 
 TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> starts, const Lattice& lattice,
                            const KeyBox& bounds, const Options& options)
     : lattice_(lattice),
-      bounds_(bounds),
       options_(options),
       zone_edge_(voxels(options.zone_edge * greatest_range(robots), lattice)),
       clusters_(bounds, voxels(options.cluster_edge * greatest_range(robots), lattice),
@@ -81,7 +80,7 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
   for (const VoxelKey& key : std::exchange(member.changed, {}))
     cubes.push_back(make_key(key.x / kCube, key.y / kCube, key.z / kCube));
   std::ranges::sort(cubes);
-  cubes.erase(std::ranges::unique(cubes).begin(), cubes.end());
+  cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
   std::vector<KeyBox> boxes;
   for (const VoxelKey& at : cubes)
     boxes.push_back(cube(make_key(at.x * kCube, at.y * kCube, at.z * kCube), kCube));
@@ -110,7 +109,7 @@ ViewpointQuery TourPlanning::sight_of(const Query& query) const {
 void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
   const ViewpointQuery view = sight_of(query);
-  std::map<std::uint64_t, Sight> sights;
+  std::map<std::uint32_t, Sight> sights;
   std::vector<std::pair<const FrontierCluster*, Sight*>> search;
   const auto near = [&](const FrontierCluster& cluster) {
     const KeyBox around = grown(cluster.box, member.region.reach());
@@ -159,7 +158,7 @@ void TourPlanning::look_from_anywhere(const Query& query, const ViewpointQuery& 
       if (std::ranges::binary_search(cluster->keys, frontiers[seen.frontiers[i]]))
         cells.push_back(seen.seen_from[i]);
     std::ranges::sort(cells);
-    cells.erase(std::ranges::unique(cells).begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     member.sights[cluster->id].viewpoints = best_viewpoints(view, *cluster, cells);
   }
 }
@@ -182,7 +181,7 @@ void TourPlanning::measure_from(Member& member, std::vector<VoxelKey> cells) {
     if (const auto node = member.graph.node(cell); node && !member.distances.contains(*node))
       nodes.push_back(*node);
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   std::vector<std::vector<double>> distances(nodes.size());
   for_each_index(nodes.size(), [&](std::size_t i) { distances[i] = member.graph.distances(nodes[i]); });
   for (std::size_t i = 0; i < nodes.size(); ++i) member.distances[nodes[i]] = std::move(distances[i]);
@@ -363,7 +362,7 @@ void TourPlanning::update(const Query& query) {
   const auto clusters = clusters_.clusters();
   const std::vector<Stop> places = stops(query.starts);
   TourProblem all = problem(query, places);
-  std::map<std::uint64_t, std::uint32_t> stop_of;  // cluster
+  std::map<std::uint32_t, std::uint32_t> stop_of;  // cluster
   for (std::uint32_t i = 0; i < places.size(); ++i)
     for (const std::uint32_t cluster : places[i]) stop_of[clusters[cluster].id] = i;
   // What is left of the tours before.

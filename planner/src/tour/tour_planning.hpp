@@ -19,7 +19,7 @@ namespace frontlux::planner::detail {
 
 /// A place to which a robot's tour leads, to look at a cluster of frontiers.
 struct TourStop {
-  std::uint64_t cluster = 0;  ///< id
+  std::uint32_t cluster = 0;  ///< id
   Pose pose;                  ///< of the sensor
   VoxelKey cell;              ///< of the pose
   std::size_t seen = 0;       ///< frontiers of the cluster in view
@@ -80,7 +80,7 @@ class TourPlanning {
     TravelGraph graph;
     std::vector<VoxelKey> changed = {};                           // since its graph was updated
     std::map<std::uint32_t, std::vector<double>> distances = {};  // [m] by node, in this graph
-    std::map<std::uint64_t, Sight> sights = {};
+    std::map<std::uint32_t, Sight> sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
   };
@@ -106,7 +106,6 @@ class TourPlanning {
   [[nodiscard]] double distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
 
   Lattice lattice_;
-  KeyBox bounds_;
   Options options_;
   int zone_edge_;  // [voxels]
   FrontierClusters clusters_;

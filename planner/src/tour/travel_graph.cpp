@@ -85,7 +85,7 @@ void TravelGraph::link(std::size_t index) {
     });
   }
   std::ranges::sort(cube.links);
-  cube.links.erase(std::ranges::unique(cube.links).begin(), cube.links.end());
+  cube.links.erase(std::unique(cube.links.begin(), cube.links.end()), cube.links.end());
 }
 
 // Numbers the nodes, and connects each with its neighbours and with theirs: so a way along a diagonal is
@@ -114,7 +114,7 @@ void TravelGraph::connect() {
     for (const std::uint32_t next : touching[node])
       near.insert(near.end(), touching[next].begin(), touching[next].end());
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     for (const std::uint32_t to : near)
       if (to != node) edges_.push_back({to, static_cast<float>((centers_[to] - centers_[node]).norm())});
     begin_.push_back(edges_.size());

@@ -41,7 +41,6 @@ class TravelGraph {
 
   /// [m] from a node to all others, from middle to middle; `kFar` where there is no way.
   [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
-  [[nodiscard]] const Eigen::Vector3d& center(std::uint32_t node) const { return centers_[node]; }
 
  private:
   struct Cube {

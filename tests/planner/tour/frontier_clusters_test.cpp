@@ -52,7 +52,7 @@ TEST(FrontierClusters, HoldEachFrontierOnceInConnectedPartsOfBoundedSize) {
     FrontierClusters clusters(kBounds, kEdge, kLeast);
     clusters.update(frontiers);
     std::set<VoxelKey> seen;
-    std::set<std::uint64_t> ids;
+    std::set<std::uint32_t> ids;
     for (const FrontierCluster& cluster : clusters.clusters()) {
       EXPECT_TRUE(ids.insert(cluster.id).second);
       EXPECT_GE(cluster.keys.size(), kLeast);
