@@ -98,12 +98,18 @@ class ExploreCommand : public CommandTest {
   }
 
   /// Starts the command and waits until it has printed so many steps.
-  [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps) const {
+  [[nodiscard]] pid_t start_and_wait(const std::vector<std::string>& words, int steps,
+                                     User user = kSelf) const {
     fs::remove(path("out"));
-    const pid_t child = start(joined({FRONTLUX_COMMAND, "explore"}, words), folder_);
+    const pid_t child = start(joined({FRONTLUX_COMMAND, "explore"}, words), folder_, user);
     const std::string last = "step " + std::to_string(steps) + ":";
-    for (int i = 0; i < 6000 && content_of(path("out")).find(last) == std::string::npos; ++i)
+    for (int i = 0; i < 6000 && content_of(path("out")).find(last) == std::string::npos; ++i) {
+      siginfo_t ended{};
+      if (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+          ended.si_pid == child)
+        break;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     return child;
   }
 };

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <fcntl.h>
 
 namespace frontlux::planner {
 namespace {
@@ -87,6 +88,31 @@ TEST_F(RunFolder, IsMissedWhenItIsGone) {
     EXPECT_EQ(said.find("continues the run") != std::string::npos, resumable) << said;
     if (resumable) expect_resumed("run");
   }
+}
+
+// Nobody is told to resume what cannot be written. Root may write anything, so the command runs as nobody
+// then.
+TEST_F(RunFolder, SaysThatTheRecordingIsReadOnly) {
+  fs::permissions(folder_, fs::perms::all);
+  const std::string recording = path("run/run.frontlux");
+  const pid_t child = start_and_wait(long_run("run"), 1, test::kNobody);
+  const int file = ::open(recording.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) {
+    EXPECT_EQ(test::exit_code(test::status_of(child)), test::kCannotBe);
+    GTEST_SKIP() << "cannot be another user here";
+  }
+  fs::permissions(recording, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
+  EXPECT_EQ(ftruncate(file, static_cast<off_t>(fs::file_size(recording) / 2)), 0);
+  ::close(file);
+  const std::string said = complaint_of(child);
+  expect_parts(said, {recording + ": was ", "kept, but " + recording + " is read-only: make it writable"});
+  EXPECT_EQ(said.find("--resume"), std::string::npos) << said;
+
+  const std::vector<std::string> resume = {FRONTLUX_COMMAND, "explore",  "--report", "off",
+                                           "--resume",       path("run")};
+  expect_parts(complaint_of(test::start(resume, folder_, test::kNobody)), {recording, "permission"});
+  fs::permissions(recording, fs::perms::owner_all);
+  expect_resumed("run");
 }
 
 // A run that was killed before its first record leaves nothing to go on with, and nothing in the way.

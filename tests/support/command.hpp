@@ -38,13 +38,17 @@ inline Answer run_frontlux(const std::vector<std::string>& words, const std::fil
   return {exit_code(status), content_of(out), content_of(err)};
 }
 
+enum User : bool { kSelf, kNobody };  ///< who runs a program: root runs it as nobody
+inline constexpr int kCannotBe = 77;  ///< its exit code if that is not possible
+
 /// Starts a program, whose name is the first word, and does not wait for it. It prints into the same files.
-inline pid_t start(std::vector<std::string> words, const std::filesystem::path& folder) {
+inline pid_t start(std::vector<std::string> words, const std::filesystem::path& folder, User user = kSelf) {
   const pid_t child = fork();
   if (child != 0) return child;
   std::signal(SIGINT, SIG_DFL);
   static_cast<void>(std::freopen((folder / "out").c_str(), "w", stdout));
   static_cast<void>(std::freopen((folder / "err").c_str(), "w", stderr));
+  if (user == kNobody && geteuid() == 0 && setuid(65534) != 0) _exit(kCannotBe);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
