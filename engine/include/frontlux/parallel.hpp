@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/thread_sanitizer.hpp>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -16,8 +18,15 @@ void isolate(const void* work, void (*call)(const void* work));
 /// for as few as keep the threads busy.
 template <class Work>
 void for_each_range(std::size_t size, const Work& work) {
-  detail::run_ranges(size, &work, [](const void* w, std::size_t begin, std::size_t end) {
-    (*static_cast<const Work*>(w))(begin, end);
+  struct Loop {
+    const Work& work;
+    detail::ForkAndJoin whole;
+  };
+  const Loop loop{work, {}};
+  detail::run_ranges(size, &loop, [](const void* l, std::size_t begin, std::size_t end) {
+    const auto& all = *static_cast<const Loop*>(l);
+    const detail::ForkAndJoin::Part part(all.whole);
+    all.work(begin, end);
   });
 }
 

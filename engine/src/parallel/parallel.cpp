@@ -1,5 +1,4 @@
 #include <frontlux/parallel.hpp>
-#include <frontlux/thread_sanitizer.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -9,12 +8,9 @@ namespace frontlux::detail {
 
 void run_ranges(std::size_t size, const void* work,
                 void (*call)(const void* work, std::size_t begin, std::size_t end)) {
-  const ForkAndJoin whole;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      const ForkAndJoin::Part part(whole);
-                      call(work, range.begin(), range.end());
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, size),
+      [&](const tbb::blocked_range<std::size_t>& range) { call(work, range.begin(), range.end()); });
 }
 
 void isolate(const void* work, void (*call)(const void* work)) {

@@ -2,10 +2,11 @@
 
 #include <frontlux/thread_sanitizer.hpp>
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <functional>
+#ifndef FRONTLUX_THREAD_SANITIZER
+#include <tbb/parallel_sort.h>
+#endif
 
 namespace frontlux::detail {
 

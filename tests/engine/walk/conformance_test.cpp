@@ -7,10 +7,9 @@
 #include "support/ray_samples.hpp"
 
 #include <frontlux/octomap.hpp>
+#include <frontlux/parallel.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/synthetic/maps.hpp>
-
-#include <tbb/parallel_for.h>
 
 #include <iostream>
 
@@ -38,7 +37,7 @@ class Disagreements {
              const std::function<std::string(std::size_t)>& describe) {
     checked_ += count;
     std::vector<std::uint8_t> fine(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { fine[i] = agrees(i) ? 1 : 0; });
+    for_each_index(count, [&](std::size_t i) { fine[i] = agrees(i) ? 1 : 0; });
     for (std::size_t i = 0; i < count; ++i)
       if (fine[i] == 0 && ++found_ <= 3) ADD_FAILURE() << describe(i);
   }

@@ -8,7 +8,8 @@
 #include "support/ray_samples.hpp"
 #include "support/tree_state.hpp"
 
-#include <tbb/parallel_for.h>
+#include <frontlux/parallel.hpp>
+
 #include <tbb/task_arena.h>
 
 #include <ostream>
@@ -161,8 +162,7 @@ template <class Path>
 std::array<std::uint64_t, 9> expect_counts(const octomap::OcTree& tree, const Casters& casters,
                                            const std::vector<Path>& paths, UnknownPolicy unknown) {
   std::vector<PathCount> expected(paths.size());
-  tbb::parallel_for(std::size_t{0}, paths.size(),
-                    [&](std::size_t i) { expected[i] = expected_count(tree, paths[i], unknown); });
+  for_each_index(paths.size(), [&](std::size_t i) { expected[i] = expected_count(tree, paths[i], unknown); });
   for (const auto& [name, caster] : casters.all)
     for (const int threads : {1, 2}) {
       std::vector<PathCount> counts(paths.size(), kNotWritten);
