@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -15,6 +16,7 @@ constexpr std::array kRadii = {0.125, 0.25, 0.375, 0.5};
 constexpr int kAzimuths = 16;
 constexpr std::array kHeights = {0.0, -0.15, 0.15};  // of the range, above the middle
 constexpr std::size_t kSample = 48;                  // frontiers that candidates are compared by
+constexpr std::size_t kSmallSample = 16;             // and of other clusters, what a viewpoint sees of them
 constexpr std::size_t kKept = 6;                     // viewpoints
 constexpr double kAsGood = 0.7;                      // of what the best one sees
 constexpr double kApart = 0.1;                       // of the range
@@ -105,6 +107,35 @@ std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const
   });
   std::ranges::stable_sort(best, [](const auto& a, const auto& b) { return a.seen > b.seen; });
   return best;
+}
+
+NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewpoint> viewpoints,
+                       std::span<const FrontierCluster* const> clusters) {
+  std::vector<std::vector<VoxelKey>> samples;
+  for (const FrontierCluster* cluster : clusters) samples.push_back(some_of(cluster->keys, kSmallSample));
+  std::vector<KeySegment> segments;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // viewpoint and cluster of each segment
+  for (std::size_t v = 0; v < viewpoints.size(); ++v) {
+    const VoxelKey& cell = viewpoints[v].cell;
+    const Eigen::Vector3d from = query.lattice.exact_center(cell);
+    const KeyBox reach = grown({cell, cell}, query.region.reach());
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      if (!intersection(reach, clusters[c]->box)) continue;
+      for (const VoxelKey& key : samples[c]) {
+        if (!query.view.contains(query.lattice.exact_center(key) - from, viewpoints[v].yaw)) continue;
+        segments.push_back({cell, key});
+        pairs.emplace_back(v, c);
+      }
+    }
+  }
+  std::vector<std::uint8_t> visible(segments.size());
+  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  NumberTable parts(viewpoints.size(), clusters.size());
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const auto& [v, c] = pairs[s];
+    if (visible[s] != 0) parts(v, c) += 1.0 / static_cast<double>(samples[c].size());
+  }
+  return parts;
 }
 
 std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const VoxelKey> frontiers,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tour/frontier_clusters.hpp"
+#include "tour/number_table.hpp"
 #include "tour/travel_graph.hpp"
 
 #include <frontlux/field_of_view.hpp>
@@ -39,6 +40,12 @@ struct ViewpointQuery {
 [[nodiscard]] std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query,
                                                             const FrontierCluster& cluster,
                                                             std::span<const VoxelKey> cells);
+
+/// The part of each cluster that a robot sees from each viewpoint, at its yaw; by a sample of the frontiers.
+/// Viewpoints are rows, clusters are columns.
+[[nodiscard]] NumberTable parts_seen(const ViewpointQuery& query,
+                                     std::span<const ClusterViewpoint> viewpoints,
+                                     std::span<const FrontierCluster* const> clusters);
 
 /// The frontiers that a robot in a cell has in view at a yaw [rad], and sees through free space.
 [[nodiscard]] std::vector<VoxelKey> visible_from(const ViewpointQuery& query,

@@ -1,5 +1,7 @@
 #include "tour/tour_planning.hpp"
 
+#include "tour/joined_stops.hpp"
+
 #include <frontlux/parallel.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
@@ -39,6 +41,34 @@ double seconds(const Robot& robot, double distance, double turn) {
   return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
 }
 
+// One place of each stage, so that the way from the first to the last of them costs least.
+template <class First, class Between>
+std::vector<std::size_t> shortest_choice(std::span<const std::vector<std::size_t>> stages, const First& first,
+                                         const Between& between) {
+  struct Way {
+    double cost = TourProblem::kNever;
+    std::size_t before = 0;
+  };
+  std::vector<std::vector<Way>> ways;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    ways.emplace_back(stages[s].size());
+    for (std::size_t i = 0; i < stages[s].size(); ++i) {
+      Way& way = ways[s][i];
+      if (s == 0) way.cost = first(stages[s][i]);
+      for (std::size_t b = 0; s > 0 && b < stages[s - 1].size(); ++b) {
+        const double cost = ways[s - 1][b].cost + between(stages[s - 1][b], stages[s][i]);
+        if (cost < way.cost) way = {cost, b};
+      }
+    }
+  }
+  std::vector<std::size_t> choice(stages.size());
+  if (stages.empty()) return choice;
+  auto at =
+      static_cast<std::size_t>(std::ranges::min_element(ways.back(), {}, &Way::cost) - ways.back().begin());
+  for (std::size_t s = stages.size(); s-- > 0; at = ways[s][at].before) choice[s] = stages[s][at];
+  return choice;
+}
+
 double turn_between(double a, double b) { return std::abs(std::remainder(b - a, 2 * std::numbers::pi)); }
 
 }  // namespace
@@ -64,11 +94,17 @@ void TourPlanning::note(std::span<const VoxelKey> changed) {
   for (Member& member : members_) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
 }
 
+const FrontierCluster& TourPlanning::cluster(std::uint32_t id) const {
+  return *std::ranges::find(clusters_.clusters(), id, &FrontierCluster::id);
+}
+
 Keys TourPlanning::frontiers_of(std::size_t robot) const {
   Keys all;
-  for (const FrontierCluster& cluster : clusters_.clusters())
-    if (std::ranges::find(members_[robot].tour, cluster.id, &TourStop::cluster) != members_[robot].tour.end())
-      all.insert(all.end(), cluster.keys.begin(), cluster.keys.end());
+  for (const TourStop& stop : members_[robot].tour)
+    for (const std::uint32_t id : stop.clusters) {
+      const Keys& keys = cluster(id).keys;
+      all.insert(all.end(), keys.begin(), keys.end());
+    }
   std::ranges::sort(all);
   return all;
 }
@@ -256,7 +292,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   Member& member = members_[r];
   const MotionState& start = query.starts[r];
   const std::size_t count = stops.size();
-  TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), CostTable(count, count)};
+  TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), NumberTable(count, count)};
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
   const auto here = lattice_.key(start.pose.position);
@@ -306,52 +342,77 @@ TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stop
   return problem;
 }
 
-// Chooses the viewpoints of the next stops together: the shortest way through one of each.
-void TourPlanning::refine(const Query& query) {
+// Looks at the clusters that come next in the robot's tour from as few places as see them. Their order, and
+// the viewpoints of the next few, are those of the shortest ways.
+void TourPlanning::join_next_stops(const Query& query) {
   Member& member = members_[query.robot];
-  const std::size_t count = std::min(options_.refined, member.tour.size());
-  if (count == 0) return;
   const MotionState& start = query.starts[query.robot];
-  struct Node {
-    const ClusterViewpoint* viewpoint;
-    double cost = TourProblem::kNever;
-    std::size_t before = 0;
-  };
-  std::vector<std::vector<Node>> stages(count);
-  for (std::size_t s = 0; s < count; ++s)
-    for (const ClusterViewpoint& viewpoint : member.sights[member.tour[s].cluster].viewpoints)
-      stages[s].push_back({&viewpoint});
-  for (Node& node : stages[0]) {
-    const auto distance = query.corridor.distance(node.viewpoint->cell);
-    if (!distance) continue;
-    node.cost = seconds_to(member.robot, start, *node.viewpoint, *distance);
-  }
-  for (std::size_t s = 1; s < count; ++s) {
-    std::vector<VoxelKey> cells;
-    for (const Node& node : stages[s - 1]) cells.push_back(node.viewpoint->cell);
-    measure_from(member, std::move(cells));
-    for (Node& node : stages[s])
-      for (std::size_t b = 0; b < stages[s - 1].size(); ++b) {
-        const Node& before = stages[s - 1][b];
-        const double distance = distance_between(member, before.viewpoint->cell, node.viewpoint->cell);
-        const double cost = before.cost + seconds(member.robot, distance,
-                                                  turn_between(before.viewpoint->yaw, node.viewpoint->yaw));
-        if (cost >= node.cost) continue;
-        node.cost = cost;
-        node.before = b;
+  const std::size_t count = std::min(options_.joined, member.tour.size());
+  std::vector<const FrontierCluster*> clusters;
+  std::vector<ClusterViewpoint> viewpoints;
+  std::vector<double> distances;  // [m] to the viewpoints
+  SharedViews views;
+  for (std::size_t c = 0; c < count; ++c) {
+    clusters.push_back(&cluster(member.tour[c].clusters.front()));
+    views.sizes.push_back(static_cast<double>(clusters.back()->keys.size()));
+    for (const ClusterViewpoint& viewpoint : member.sights[clusters.back()->id].viewpoints)
+      if (const auto distance = query.corridor.distance(viewpoint.cell)) {
+        viewpoints.push_back(viewpoint);
+        distances.push_back(*distance);
+        views.found_for.push_back(c);
       }
   }
-  const auto best = std::ranges::min_element(stages.back(), {}, &Node::cost);
-  if (best == stages.back().end() || best->cost == TourProblem::kNever) return;
-  auto at = static_cast<std::size_t>(best - stages.back().begin());
-  for (std::size_t s = count; s-- > 0;) {
-    const Node& node = stages[s][at];
-    TourStop& stop = member.tour[s];
-    stop.cell = node.viewpoint->cell;
-    stop.pose = {lattice_.exact_center(stop.cell), node.viewpoint->yaw};
-    stop.seen = node.viewpoint->seen;
-    at = node.before;
+  views.parts = parts_seen(sight_of(query), viewpoints, clusters);
+  const std::vector<JoinedStop> joined = join_clusters(views);
+  const auto first = [&](std::size_t v) {
+    return seconds_to(member.robot, start, viewpoints[v], distances[v]);
+  };
+  const auto between = [&](std::size_t a, std::size_t b) {  // the first one has been measured from
+    return seconds(member.robot, distance_between(member, viewpoints[a].cell, viewpoints[b].cell),
+                   turn_between(viewpoints[a].yaw, viewpoints[b].yaw));
+  };
+
+  TourProblem::Robot robot{{}, NumberTable(joined.size(), joined.size())};
+  std::vector<double> weights;
+  std::vector<std::uint32_t> order;
+  std::vector<VoxelKey> cells;
+  for (const JoinedStop& stop : joined) {
+    robot.first.push_back(first(stop.viewpoints.front()));
+    weights.push_back(static_cast<double>(stop.clusters.size()));
+    order.push_back(static_cast<std::uint32_t>(order.size()));
+    cells.push_back(viewpoints[stop.viewpoints.front()].cell);
   }
+  measure_from(member, cells);
+  for (std::size_t i = 0; i < joined.size(); ++i)
+    for (std::size_t j = i + 1; j < joined.size(); ++j)
+      robot.between(i, j) = robot.between(j, i) =
+          between(joined[i].viewpoints.front(), joined[j].viewpoints.front());
+  order = soonest_order(robot, weights, std::move(order));
+
+  std::vector<std::vector<std::size_t>> stages;
+  for (std::size_t s = 0; s < std::min(options_.refined, order.size()); ++s) {
+    stages.push_back(joined[order[s]].viewpoints);
+    for (const std::size_t v : stages.back()) cells.push_back(viewpoints[v].cell);
+  }
+  measure_from(member, std::move(cells));
+  const std::vector<std::size_t> choice = shortest_choice(stages, first, between);
+  std::vector<TourStop> tour;
+  for (std::size_t s = 0; s < order.size(); ++s) {
+    const JoinedStop& stop = joined[order[s]];
+    const std::size_t v = s < choice.size() ? choice[s] : stop.viewpoints.front();
+    const ClusterViewpoint& viewpoint = viewpoints[v];
+    TourStop next{{}, {lattice_.exact_center(viewpoint.cell), viewpoint.yaw}, viewpoint.cell, 0};
+    double seen = 0.0;
+    for (const std::size_t c : stop.clusters) {
+      next.clusters.push_back(clusters[c]->id);
+      seen +=
+          views.found_for[v] == c ? static_cast<double>(viewpoint.seen) : views.parts(v, c) * views.sizes[c];
+    }
+    next.seen = static_cast<std::size_t>(seen);
+    tour.push_back(std::move(next));
+  }
+  tour.insert(tour.end(), member.tour.begin() + static_cast<std::ptrdiff_t>(count), member.tour.end());
+  member.tour = std::move(tour);
 }
 
 void TourPlanning::update(const Query& query) {
@@ -369,20 +430,21 @@ void TourPlanning::update(const Query& query) {
   Tours before(members_.size());
   std::vector<bool> taken(places.size());
   for (std::size_t r = 0; r < members_.size(); ++r)
-    for (const TourStop& stop : members_[r].tour) {
-      const auto place = stop_of.find(stop.cluster);
-      if (place == stop_of.end() || taken[place->second] ||
-          all.robots[r].first[place->second] == TourProblem::kNever)
-        continue;
-      taken[place->second] = true;
-      before[r].push_back(place->second);
-      // Where another robot goes already, it goes.
-      if (r != query.robot && &stop == members_[r].tour.data()) all.robots[r].fixed = 1;
-    }
+    for (const TourStop& stop : members_[r].tour)
+      for (const std::uint32_t cluster : stop.clusters) {
+        const auto place = stop_of.find(cluster);
+        if (place == stop_of.end() || taken[place->second] ||
+            all.robots[r].first[place->second] == TourProblem::kNever)
+          continue;
+        taken[place->second] = true;
+        before[r].push_back(place->second);
+        // Where another robot goes already, it goes.
+        if (r != query.robot && &stop == members_[r].tour.data()) ++all.robots[r].fixed;
+      }
   Tours tours = shortened_tours(all, before);
   Tours begun(members_.size());
   for (std::size_t r = 0; r < members_.size(); ++r)
-    if (all.robots[r].fixed != 0) begun[r] = {before[r].front()};
+    begun[r].assign(before[r].begin(), before[r].begin() + static_cast<std::ptrdiff_t>(all.robots[r].fixed));
   Tours anew = shortened_tours(all, begun);
   constexpr double kWorth = 0.95;  // else robots would change their minds all the time
   if (cost_of(all, anew) < kWorth * cost_of(all, tours)) tours = std::move(anew);
@@ -394,20 +456,21 @@ void TourPlanning::update(const Query& query) {
       for (const std::uint32_t cluster : in_order(member, places[place], at)) {
         const ClusterViewpoint& viewpoint = *best_viewpoint(member, cluster);
         at = lattice_.exact_center(viewpoint.cell);
-        tour.push_back({clusters[cluster].id, {at, viewpoint.yaw}, viewpoint.cell, viewpoint.seen});
+        tour.push_back({{clusters[cluster].id}, {at, viewpoint.yaw}, viewpoint.cell, viewpoint.seen});
       }
     member.tour = std::move(tour);
   }
-  refine(query);
+  join_next_stops(query);
 
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;
   const TourStop& first = member.tour.front();
-  const ViewpointQuery view = sight_of(query);
-  for (const FrontierCluster& cluster : clusters)
-    if (cluster.id == first.cluster)
-      member.first_view = visible_from(view, cluster.keys, first.cell, first.pose.yaw);
+  for (const std::uint32_t id : first.clusters) {
+    const Keys seen = visible_from(sight_of(query), cluster(id).keys, first.cell, first.pose.yaw);
+    member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
+  }
+  std::ranges::sort(member.first_view);
 }
 
 }  // namespace frontlux::planner::detail

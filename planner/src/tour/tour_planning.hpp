@@ -17,12 +17,12 @@
 
 namespace frontlux::planner::detail {
 
-/// A place to which a robot's tour leads, to look at a cluster of frontiers.
+/// A place to which a robot's tour leads, to look at clusters of frontiers.
 struct TourStop {
-  std::uint32_t cluster = 0;  ///< id
-  Pose pose;                  ///< of the sensor
-  VoxelKey cell;              ///< of the pose
-  std::size_t seen = 0;       ///< frontiers of the cluster in view
+  std::vector<std::uint32_t> clusters;  ///< ids
+  Pose pose;                            ///< of the sensor
+  VoxelKey cell;                        ///< of the pose
+  std::size_t seen = 0;                 ///< frontiers of the clusters in view, about
 };
 
 /// Who looks at which cluster of frontiers, and in what order: tours for all robots together. They are kept
@@ -37,7 +37,8 @@ class TourPlanning {
     double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
     double least_area = 1.5;    ///< [m2] of a cluster worth a stop
     double least_gain = 10.0;   ///< [frontiers] that a stop shows
-    std::size_t refined = 5;    ///< stops whose viewpoints are chosen together
+    std::size_t joined = 40;  ///< clusters that come next, which are looked at from as few places as see them
+    std::size_t refined = 5;  ///< stops whose viewpoints are chosen together
   };
 
   /// @param starts  of the robots; those on a plane stay on it
@@ -100,7 +101,8 @@ class TourPlanning {
                                                 std::span<const Stop> stops);
   static void measure_from(Member& member, std::vector<VoxelKey> cells);
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
-  void refine(const Query& query);
+  [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
+  void join_next_stops(const Query& query);
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
   [[nodiscard]] double distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;

@@ -1,29 +1,15 @@
 #pragma once
 
+#include "tour/number_table.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace frontlux::planner::detail {
-
-/// A square table of numbers.
-class CostTable {
- public:
-  CostTable() = default;
-  CostTable(std::size_t rows, std::size_t columns) : columns_(columns), costs_(rows * columns) {}
-  [[nodiscard]] double& operator()(std::size_t row, std::size_t column) {
-    return costs_[row * columns_ + column];
-  }
-  [[nodiscard]] double operator()(std::size_t row, std::size_t column) const {
-    return costs_[row * columns_ + column];
-  }
-
- private:
-  std::size_t columns_ = 0;
-  std::vector<double> costs_;
-};
 
 /// Stops to be shared out to robots, each of which begins where it is and need not come back.
 struct TourProblem {
@@ -32,7 +18,7 @@ struct TourProblem {
   /// One robot's travel times [s]; `kNever` for stops that are not for it.
   struct Robot {
     std::vector<double> first;  ///< from where it is to each stop
-    CostTable between;          ///< from stop to stop; the same in both directions
+    NumberTable between;        ///< from stop to stop; the same in both directions
     std::size_t fixed = 0;      ///< so many stops at the begin of its tour stay there
   };
   std::size_t stops = 0;
@@ -51,5 +37,18 @@ using Tours = std::vector<std::vector<std::uint32_t>>;
 
 /// What `shortened_tours` makes smaller [s].
 [[nodiscard]] double cost_of(const TourProblem& problem, const Tours& tours);
+
+/// One robot's stops in an order in which it gets to them soon: by the length of the tour and the mean time
+/// of arrival. Of two tours of the same length the one with much to see at its begin is better, since what a
+/// robot plans to do later rarely comes to pass; small stops on the way are not left behind.
+/// @param weights  of the stops in the mean
+/// @param order    to begin with, and to improve
+[[nodiscard]] std::vector<std::uint32_t> soonest_order(const TourProblem::Robot& robot,
+                                                       std::span<const double> weights,
+                                                       std::vector<std::uint32_t> order);
+
+/// What `soonest_order` makes smaller [s].
+[[nodiscard]] double cost_of_order(const TourProblem::Robot& robot, std::span<const double> weights,
+                                   std::span<const std::uint32_t> order);
 
 }  // namespace frontlux::planner::detail

@@ -77,6 +77,38 @@ TEST(ClusterViewpoints, SeeWhatTheyCount) {
   EXPECT_GT(found, 60u);
 }
 
+// Of clusters so small that each frontier is in the sample.
+TEST(ClusterViewpoints, SeePartsOfOtherClusters) {
+  Random random(63);
+  std::size_t partly = 0;
+  for (int round = 0; round < 20; ++round) {
+    const Room room(random);
+    const FieldOfView view = round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0);
+    const ViewRegion region(view, kResolution);
+    const auto caster = make_grid_ray_caster(room.grid);
+    const ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
+    const auto viewpoints = find_viewpoints(query, room.cluster);
+    std::vector<FrontierCluster> clusters;
+    for (std::size_t first = 0; first + 16 <= room.cluster.keys.size(); first += 16) {
+      const auto begin = room.cluster.keys.begin() + static_cast<std::ptrdiff_t>(first);
+      clusters.emplace_back();
+      clusters.back().keys.assign(begin, begin + (first == 0 ? 5 : 16));
+      clusters.back().box = bounds_of(clusters.back().keys);
+    }
+    std::vector<const FrontierCluster*> pointers;
+    for (const FrontierCluster& cluster : clusters) pointers.push_back(&cluster);
+    const NumberTable parts = parts_seen(query, viewpoints, pointers);
+    for (std::size_t v = 0; v < viewpoints.size(); ++v)
+      for (std::size_t c = 0; c < clusters.size(); ++c) {
+        const Keys seen = visible_from(query, clusters[c].keys, viewpoints[v].cell, viewpoints[v].yaw);
+        const double part = static_cast<double>(seen.size()) / static_cast<double>(clusters[c].keys.size());
+        EXPECT_NEAR(parts(v, c), part, 1e-12);
+        partly += part > 0.0 && part < 1.0 ? 1 : 0;
+      }
+  }
+  EXPECT_GT(partly, 20u);
+}
+
 TEST(ClusterViewpoints, AreNoneWhereNothingIsVisible) {
   Random random(62);
   const Room room(random);

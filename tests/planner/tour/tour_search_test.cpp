@@ -16,7 +16,7 @@ TourProblem random_problem(Random& random, std::size_t robots, std::size_t stops
   for (std::size_t r = 0; r < robots; ++r) {
     const Eigen::Vector2d start(random.uniform(0, 20), random.uniform(0, 20));
     const double speed = random.uniform(0.5, 2.0);
-    TourProblem::Robot robot{std::vector<double>(stops), CostTable(stops, stops)};
+    TourProblem::Robot robot{std::vector<double>(stops), NumberTable(stops, stops)};
     std::vector<bool> can(stops, true);
     if (choosy && r + 1 == robots)
       for (std::size_t i = 0; i < stops; ++i) can[i] = !random.one_in(3);
@@ -124,6 +124,67 @@ TEST(TourSearch, KeepsFixedStopsFirst) {
     EXPECT_EQ(stops_in(tours), problem.stops);
   }
 }
+
+std::vector<double> random_weights(Random& random, std::size_t count) {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < count; ++i) weights.push_back(1 + random.below(4));
+  return weights;
+}
+
+TEST(SoonestOrder, IsCloseToTheBestOfAllOrders) {
+  Random random(36);
+  std::size_t best = 0;
+  for (int round = 0; round < 200; ++round) {
+    const TourProblem problem = random_problem(random, 1, 6, false);
+    const TourProblem::Robot& robot = problem.robots[0];
+    const std::vector<double> weights = random_weights(random, 6);
+    std::vector<std::uint32_t> order(6);
+    std::iota(order.begin(), order.end(), 0u);
+    double least = TourProblem::kNever;
+    do least = std::min(least, cost_of_order(robot, weights, order));
+    while (std::next_permutation(order.begin(), order.end()));
+    const double found = cost_of_order(robot, weights, soonest_order(robot, weights, order));
+    EXPECT_GE(found, least - 1e-9);
+    EXPECT_LT(found, 1.3 * least);
+    best += found < least + 1e-9 ? 1 : 0;
+  }
+  EXPECT_GT(best, 150u);
+}
+
+TEST(SoonestOrder, KeepsAllStopsAndNeverGetsWorse) {
+  Random random(37);
+  for (int round = 0; round < 20; ++round) {
+    const TourProblem problem = random_problem(random, 1, 30, false);
+    const TourProblem::Robot& robot = problem.robots[0];
+    const std::vector<double> weights = random_weights(random, 30);
+    std::vector<std::uint32_t> given(30);
+    std::iota(given.begin(), given.end(), 0u);
+    for (std::size_t i = given.size(); i > 1; --i)
+      std::swap(given[i - 1], given[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    const auto order = soonest_order(robot, weights, given);
+    EXPECT_EQ(stops_in({order}), 30u);
+    EXPECT_LE(cost_of_order(robot, weights, order), cost_of_order(robot, weights, given));
+    EXPECT_EQ(soonest_order(robot, weights, order), order);  // nothing is left to improve
+  }
+}
+
+// Along a line: a far stop on one side, three on the other side, a little farther each. A short tour begins
+// with the single one, a soon one with the three.
+TEST(SoonestOrder, TakesManyStopsBeforeOne) {
+  const std::vector<double> places = {-1.0, 1.2, 1.3, 1.4};
+  TourProblem::Robot robot{std::vector<double>(4), NumberTable(4, 4)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    robot.first[i] = std::abs(places[i]);
+    for (std::size_t j = 0; j < 4; ++j) robot.between(i, j) = std::abs(places[i] - places[j]);
+  }
+  EXPECT_EQ(shortened_tours({4, {robot}}, {}).front(), (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(soonest_order(robot, std::vector<double>(4, 1.0), {0, 1, 2, 3}),
+            (std::vector<std::uint32_t>{1, 2, 3, 0}));
+  EXPECT_EQ(soonest_order(robot, std::vector<double>{9.0, 1.0, 1.0, 1.0}, {1, 2, 3, 0}),
+            (std::vector<std::uint32_t>{0, 1, 2, 3}));
+}
+
+TEST(SoonestOrder, OfNothingIsNothing) { EXPECT_TRUE(soonest_order({}, {}, {}).empty()); }
 
 TEST(TourSearch, HasNoToursWithoutRobotsOrStops) {
   EXPECT_TRUE(shortened_tours({}, {}).empty());

@@ -1,0 +1,50 @@
+#include "tour/joined_stops.hpp"
+
+#include <algorithm>
+
+namespace frontlux::planner::detail {
+namespace {
+
+constexpr double kAsGood = 0.7;  // of what the best viewpoint sees of a cluster
+
+}  // namespace
+
+std::vector<JoinedStop> join_clusters(const SharedViews& views) {
+  const std::size_t viewpoints = views.found_for.size(), clusters = views.sizes.size();
+  std::vector<double> most(clusters);
+  for (std::size_t v = 0; v < viewpoints; ++v)
+    for (std::size_t c = 0; c < clusters; ++c) most[c] = std::max(most[c], views.parts(v, c));
+  const auto sees = [&](std::size_t v, std::size_t c) {
+    const double part = views.parts(v, c);
+    return views.found_for[v] == c || (part > 0.0 && part >= kAsGood * most[c]);
+  };
+  std::vector<bool> joined(clusters);
+  std::vector<JoinedStop> stops;
+  for (;;) {
+    JoinedStop stop;
+    std::size_t best = viewpoints;
+    for (std::size_t v = 0; v < viewpoints; ++v) {
+      double seen = 0.0;
+      for (std::size_t c = 0; c < clusters; ++c)
+        if (!joined[c] && sees(v, c)) seen += std::max(1.0, views.parts(v, c) * views.sizes[c]);
+      if (seen <= stop.seen) continue;
+      stop.seen = seen;
+      best = v;
+    }
+    if (best == viewpoints) break;
+    for (std::size_t c = 0; c < clusters; ++c)
+      if (!joined[c] && sees(best, c)) {
+        joined[c] = true;
+        stop.clusters.push_back(c);
+      }
+    stop.viewpoints.push_back(best);
+    for (std::size_t v = 0; v < viewpoints; ++v)
+      if (v != best && std::ranges::all_of(stop.clusters, [&](std::size_t c) { return sees(v, c); }))
+        stop.viewpoints.push_back(v);
+    stops.push_back(std::move(stop));
+  }
+  std::ranges::sort(stops, {}, [](const JoinedStop& stop) { return stop.clusters.front(); });
+  return stops;
+}
+
+}  // namespace frontlux::planner::detail
