@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <cstdint>
@@ -8,7 +10,7 @@ namespace frontlux {
 
 /// The space that a range sensor sees: a solid of directions, cut off at a range. Sensor frame: x forward, y
 /// left, z up. A robot turns about z only: pitch and roll are 0.
-struct FieldOfView {
+struct FRONTLUX_EXPORT FieldOfView {
   enum class Shape : std::uint8_t {
     kSpinning,  ///< all azimuths, elevations within +-vertical / 2: a lidar
     kPyramid,   ///< |left| <= tan(horizontal / 2) forward and |up| <= tan(vertical / 2) forward: a camera

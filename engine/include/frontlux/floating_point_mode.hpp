@@ -1,12 +1,14 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <cstdint>
 
 namespace frontlux {
 
 /// How this thread computes with floating-point numbers, for as long as the object lives; then the caller's
 /// mode comes back, exception flags included.
-class FloatingPointMode {
+class FRONTLUX_EXPORT FloatingPointMode {
  public:
   enum Mode : std::uint8_t {
     kToNearest,  ///< as the standard has it: rounded to the nearest, tiny numbers kept

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/ray.hpp>
 
 #include <Eigen/Core>
@@ -12,7 +13,7 @@ namespace frontlux {
 
 /// The voxel lattice of an OctoMap of one resolution: keys from points and points from keys, in OctoMap's own
 /// arithmetic, so that both agree to the last bit (ray contract, rule 1).
-class Lattice {
+class FRONTLUX_EXPORT Lattice {
  public:
   static constexpr int kOrigin = 32768;  ///< key of the voxel whose lower face lies at 0
   static constexpr int kKeysPerAxis = 65536;

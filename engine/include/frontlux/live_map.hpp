@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/map_change.hpp>
 #include <frontlux/octomap.hpp>
 
@@ -19,7 +20,7 @@ namespace frontlux {
 ///
 /// Thread safety: queries of the caster may run at the same time as `update`, which reads the tree and must
 /// not run while it changes; as a standard container otherwise.
-class LiveMap {
+class FRONTLUX_EXPORT LiveMap {
  public:
   /// @param tree  must outlive this object, which uses the tree's change detection: nothing else may
   /// @throws std::invalid_argument if the tree has not OctoMap's standard depth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/key_box.hpp>
 
@@ -15,7 +16,7 @@ namespace frontlux {
 /// smaller heights are in view too, upwards and downwards.
 ///
 /// Offsets are in voxels. Thread safety: const members may run at the same time.
-class ViewRegion {
+class FRONTLUX_EXPORT ViewRegion {
  public:
   static constexpr int kMaxRange = 4096;  ///< [voxels]
   static constexpr int kMargin = 16;  ///< [voxels] beyond the reach; the table has entries for these as well

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
@@ -38,7 +39,7 @@ struct Block {
 /// A copy costs nothing and is a snapshot: copies share their bricks until one of them is written to.
 ///
 /// Thread safety: as a standard container. Copies in different threads are independent.
-class VoxelGrid {
+class FRONTLUX_EXPORT VoxelGrid {
  public:
   /// A grid of unknown voxels.
   /// @param resolution edge length of a voxel [m]
@@ -94,14 +95,14 @@ class VoxelGrid {
 /// Every voxel in a state, sorted.
 /// @throws std::invalid_argument for unknown voxels, which fill the rest of the key range
 /// @throws std::length_error if there are more than `kMostListedKeys`
-[[nodiscard]] std::vector<VoxelKey> keys_in(const VoxelGrid& grid, Occupancy state);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<VoxelKey> keys_in(const VoxelGrid& grid, Occupancy state);
 
 inline constexpr std::uint64_t kMostListedKeys = std::uint64_t{1} << 28;
 
 /// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
 /// became or were uniform. Parts that both grids share are not read, so between a grid and its edited
 /// copy this costs as much as the edit did.
-void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
-                     const std::function<void(const Block&)>& visit);
+FRONTLUX_EXPORT void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
+                                     const std::function<void(const Block&)>& visit);
 
 }  // namespace frontlux

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/trajectory.hpp>
 
@@ -22,7 +23,7 @@ enum class PlanReason : std::uint8_t {
   kPeriod,    ///< its plan is as old as `ExplorationOptions::period`
 };
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
-[[nodiscard]] std::string_view name_of(PlanReason reason);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PlanReason reason);
 
 /// One robot's planning, and what all robots have done since the planning before.
 struct PlannedMotion {
@@ -50,7 +51,7 @@ struct PlannedMotion {
 ///
 /// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
 /// arena. Thread safety: as a standard container.
-class ContinuousExploration {
+class FRONTLUX_EXPORT ContinuousExploration {
  public:
   /// @throws std::invalid_argument naming the value that is out of bounds
   ContinuousExploration(ExplorationOptions options, Mapping mapping);

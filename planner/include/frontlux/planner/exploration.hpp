@@ -1,6 +1,7 @@
 #pragma once
 
 #include <frontlux/caster_kind.hpp>
+#include <frontlux/export.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
@@ -25,7 +26,7 @@ namespace detail {
 struct ExplorationState;
 }
 
-struct ExplorationOptions {
+struct FRONTLUX_EXPORT ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
   CasterKind caster = CasterKind::kFast;
   /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
@@ -54,7 +55,7 @@ struct ExplorationOptions {
 
 /// All but the team. By default robots take the corridor's own shortest paths, since a random search finds
 /// longer ones; `kPaper` searches by RRT.
-[[nodiscard]] ExplorationOptions exploration_options(Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT ExplorationOptions exploration_options(Method method = Method::kDefault);
 
 /// Where a robot begins, and what it knows to be free there without having seen it.
 struct ExplorationStart {
@@ -90,9 +91,9 @@ struct RobotStep {
 enum class Phase : std::uint8_t { kFrontiers, kCaster, kGoals, kPaths, kOptimization, kMoving };
 inline constexpr std::size_t kPhases = 6;
 /// "frontiers", "caster", "goals", "paths", "optimization", "moving"
-[[nodiscard]] std::string_view name_of(Phase phase);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(Phase phase);
 
-struct ExplorationStep {
+struct FRONTLUX_EXPORT ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   double time = 0.0;              ///< [s] of the clock, at its end
   std::size_t frontiers = 0;      ///< in the map when the step was planned
@@ -113,11 +114,11 @@ enum class ExplorationEnd : std::uint8_t {
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };
 /// One of the words "low_gain", "nothing_to_do", "step_limit", "cut_off".
-[[nodiscard]] std::string_view name_of(ExplorationEnd end);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(ExplorationEnd end);
 /// In words: "expected gain stayed below 10 frontiers for 3 steps".
 /// @param steps  what is counted: in motion, "plannings"
-[[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options,
-                                   std::string_view steps = "steps");
+[[nodiscard]] FRONTLUX_EXPORT std::string describe(ExplorationEnd end, const ExplorationOptions& options,
+                                                   std::string_view steps = "steps");
 
 /// Moves a robot's sensor straight to a viewpoint and returns what it measures there; nothing if the robot
 /// could not go, and is where it was. The one function that a real or a simulated robot has to provide.
@@ -132,7 +133,7 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 /// The result depends on the options, the starts and the scans only: not on time, not on the number of
 /// threads, not on the choice among the fast, the embree and the grid caster. Works in TBB's current arena.
 /// Thread safety: as a standard container.
-class Exploration {
+class FRONTLUX_EXPORT Exploration {
  public:
   /// @param mapping  the map to fill; empty, or with what is known already
   /// @throws std::invalid_argument naming the value that is out of bounds

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -33,7 +34,7 @@ enum class TravelDistance : std::uint8_t {
 };
 
 /// How goals are chosen. Eq. 1: view quality = exp(-lambda * distance) * gain.
-struct GoalOptions {
+struct FRONTLUX_EXPORT GoalOptions {
   GoalRule rule = GoalRule::kViewQuality;
   TravelDistance distance = TravelDistance::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
@@ -71,7 +72,7 @@ struct GoalOptions {
 /// By default, view quality for all robots: on a plane counted exactly; in space drawn from buckets at every
 /// second voxel, pruned, and counted for the best cells. As printed: on a plane by hits among the drawn
 /// frontiers, in space by clusters.
-[[nodiscard]] GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 
 /// Which frontiers a robot's goal is for, or why it has no goal.
 enum class GoalState : std::uint8_t {
@@ -85,7 +86,7 @@ enum class GoalState : std::uint8_t {
 };
 
 /// As it is written in logs: "assigned", "no_corridor", ...
-[[nodiscard]] std::string_view name_of(GoalState state);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(GoalState state);
 
 /// A robot's next goal.
 struct Goal {
@@ -139,7 +140,7 @@ struct TeamMember {
 /// same as that of a new object, on any number of threads and with any exact caster.
 ///
 /// Thread safety: as a standard container. Works in TBB's current arena.
-class GoalSelection {
+class FRONTLUX_EXPORT GoalSelection {
  public:
   /// @param bounds  of all collision boxes, as `TravelCorridor` takes them
   /// @param assign  whether each frontier is assigned to one robot (Alg. 2), else to all that see it

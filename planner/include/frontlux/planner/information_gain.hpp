@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
@@ -19,7 +20,7 @@ enum class GainMode : std::uint8_t {
   kSum,  ///< once for each of them, as printed in the paper
 };
 
-struct GainOptions {
+struct FRONTLUX_EXPORT GainOptions {
   GainMode mode = GainMode::kOr;
   double detection = 0.97;       ///< probability of a detection in full view, in (0, 1); for `kOr`
   double range_sharpness = 4.0;  ///< [1/m] of the logistic that fades the gain out about the maximum range
@@ -47,7 +48,7 @@ struct PoseGradient {
 ///
 /// Sharpness is in (0, 100]. Wrong sizes, values that are not finite and other sharpnesses throw
 /// std::invalid_argument. Thread safety: const members may run at the same time.
-class InformationGain {
+class FRONTLUX_EXPORT InformationGain {
  public:
   static constexpr double kMaxSharpness = 100.0;
 
@@ -97,6 +98,6 @@ class InformationGain {
 };
 
 /// @throws std::invalid_argument unless it is in (0, InformationGain::kMaxSharpness]
-void check_sharpness(double sharpness);
+FRONTLUX_EXPORT void check_sharpness(double sharpness);
 
 }  // namespace frontlux::planner

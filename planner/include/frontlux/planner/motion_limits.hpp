@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <numbers>
@@ -7,7 +9,7 @@
 namespace frontlux::planner {
 
 /// How fast a robot may move and turn.
-struct MotionLimits {
+struct FRONTLUX_EXPORT MotionLimits {
   double speed = 1.0;                      ///< [m/s]
   double acceleration = 2.0;               ///< [m/s2], curves included
   double yaw_rate = std::numbers::pi / 3;  ///< [rad/s]

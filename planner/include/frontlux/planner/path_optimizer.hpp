@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/information_gain.hpp>
 #include <frontlux/planner/pose.hpp>
@@ -20,7 +21,7 @@ enum class YawStart : std::uint8_t {
   kTangent,   ///< along the path
 };
 
-struct PathOptimizerOptions {
+struct FRONTLUX_EXPORT PathOptimizerOptions {
   GainOptions gain;
   YawStart start = YawStart::kGreedy;
   int yaw_bins = 24;   ///< 1 to 63, around the full circle
@@ -36,7 +37,7 @@ struct PathOptimizerOptions {
 
 /// As printed in the paper: the sum of all views, from the path's tangent. The result still never has fewer
 /// distinct frontiers in view than the tangent.
-[[nodiscard]] PathOptimizerOptions paper_path_options();
+[[nodiscard]] FRONTLUX_EXPORT PathOptimizerOptions paper_path_options();
 
 /// A path's gain: the differentiable one at the last sharpness, and the number of distinct frontiers in view.
 struct PathGain {
@@ -57,7 +58,7 @@ enum class PathEnd : std::uint8_t {
 };
 
 /// In words.
-[[nodiscard]] std::string_view describe(PathEnd end);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathEnd end);
 
 struct OptimizedPath {
   std::vector<double> yaws;  ///< [rad] in [-pi, pi], one for each viewpoint; first and last as they were
@@ -78,13 +79,13 @@ struct OptimizedPath {
 /// May be called from several threads; their ascents wait for each other, since Ipopt keeps global counters.
 /// @param frontiers  centres [m]
 /// @throws std::invalid_argument if a value is not finite, sizes do not match or an option is out of bounds
-[[nodiscard]] OptimizedPath optimize_path(std::span<const Pose> viewpoints,
-                                          std::span<const Eigen::Vector3d> frontiers,
-                                          const VisiblePairs& pairs, const FieldOfView& view,
-                                          const PathOptimizerOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT OptimizedPath optimize_path(std::span<const Pose> viewpoints,
+                                                          std::span<const Eigen::Vector3d> frontiers,
+                                                          const VisiblePairs& pairs, const FieldOfView& view,
+                                                          const PathOptimizerOptions& options = {});
 
 /// Yaws along a path [rad]: each viewpoint between the ends looks to the next. A viewpoint straight below or
 /// above the next one has the yaw of the one before it. The first and the last keep their yaws.
-[[nodiscard]] std::vector<double> tangent_yaws(std::span<const Pose> viewpoints);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<double> tangent_yaws(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -22,7 +23,7 @@ enum class PathSearch : std::uint8_t {
 };
 
 /// "rrt", "rrt-connect", "rrt-star", "corridor"
-[[nodiscard]] std::string_view name_of(PathSearch search);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathSearch search);
 
 struct PathOptions {
   PathSearch search = PathSearch::kRrt;
@@ -52,10 +53,10 @@ enum class PathOutcome : std::uint8_t {
 };
 
 /// As it is written in logs: "found", "fell_back", ...
-[[nodiscard]] std::string_view name_of(PathOutcome outcome);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathOutcome outcome);
 
 /// In words, as the end of a sentence about the path.
-[[nodiscard]] std::string_view describe(PathOutcome outcome);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathOutcome outcome);
 
 /// A path from pose to pose.
 struct PathPlan {
@@ -87,16 +88,17 @@ struct PathPlan {
 /// @param corridor  of voxels; in one of nodes, a robot at the edge of a node would reach into the next
 /// @throws std::invalid_argument if a number of a pose or of the options is not finite or out of its range,
 /// or if the corridor is made of nodes
-[[nodiscard]] PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const Pose& start,
-                                 const Pose& goal, const PathKey& key, const PathOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice,
+                                                 const Pose& start, const Pose& goal, const PathKey& key,
+                                                 const PathOptions& options = {});
 
 /// Whether the body of a robot that goes straight from one point [m] to another stays in space that is known
 /// to be free: every voxel that a box of the corridor's `reach()` around the robot enters has to be a
 /// passable cell (see `SegmentVoxels`). False if an end is not finite or beyond the key range.
-[[nodiscard]] bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
-                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+[[nodiscard]] FRONTLUX_EXPORT bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
+                                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Sum of the distances between successive viewpoints [m].
-[[nodiscard]] double path_length(std::span<const Pose> viewpoints);
+[[nodiscard]] FRONTLUX_EXPORT double path_length(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -13,7 +14,7 @@
 
 namespace frontlux::planner {
 
-struct PositionOptions {
+struct FRONTLUX_EXPORT PositionOptions {
   int outer_iterations = 3;  ///< 1 to 1000; each finds the visible pairs anew
   int steps = 8;             ///< 1 to 1000 in each iteration: evaluations of the differentiable gain
   double max_shift = 0.6;    ///< [m] of a viewpoint from its given position
@@ -49,9 +50,10 @@ struct RefinedPath {
 /// @throws std::invalid_argument if a viewpoint is not finite, or a value of the options or of the field of
 /// view is
 ///                               out of bounds
-[[nodiscard]] RefinedPath refine_positions(std::span<const Pose> viewpoints,
-                                           std::span<const VoxelKey> frontiers, const RayCaster& caster,
-                                           const VoxelGrid& grid, const TravelCorridor& corridor,
-                                           const Robot& robot, const PositionOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT RefinedPath refine_positions(std::span<const Pose> viewpoints,
+                                                           std::span<const VoxelKey> frontiers,
+                                                           const RayCaster& caster, const VoxelGrid& grid,
+                                                           const TravelCorridor& corridor, const Robot& robot,
+                                                           const PositionOptions& options = {});
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -50,7 +51,7 @@ struct Recording {
 };
 
 /// Writes a recording step by step. After each call the file holds all steps, even if the process is killed.
-class RecordingWriter {
+class FRONTLUX_EXPORT RecordingWriter {
  public:
   /// A new recording; a file of that name is replaced, unless another process is writing it.
   /// @throws std::runtime_error naming the file, if it cannot be written; so do the others, also if it is not
@@ -71,7 +72,7 @@ class RecordingWriter {
 };
 
 /// The file ends before the head of a recording does: the run had not begun when its process was killed.
-class UnbegunRecording : public std::runtime_error {
+class FRONTLUX_EXPORT UnbegunRecording : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -79,6 +80,6 @@ class UnbegunRecording : public std::runtime_error {
 /// Reads a whole recording. Everything in the file is checked: lengths, checksums, ranges of all values.
 /// @throws std::runtime_error naming the file, what is wrong, where, and what to do: it is not a recording,
 /// it has another format, or it is damaged; UnbegunRecording
-[[nodiscard]] Recording read_recording(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT Recording read_recording(const std::filesystem::path& file);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -19,7 +20,7 @@ struct VisiblePair {
 };
 
 /// Which frontiers each viewpoint sees at some yaw: V_ij of the information gain, as a sparse matrix.
-class VisiblePairs {
+class FRONTLUX_EXPORT VisiblePairs {
  public:
   VisiblePairs() = default;
 
@@ -46,14 +47,16 @@ class VisiblePairs {
 /// viewpoint and of the frontier do not. Casts one batch of rays for the whole path.
 /// @param grid  on whose lattice the keys lie
 /// @throws std::invalid_argument if a viewpoint is not finite, or a value of the view is out of bounds
-[[nodiscard]] VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
-                                         std::span<const Pose> viewpoints,
-                                         std::span<const VoxelKey> frontiers, const FieldOfView& view);
+[[nodiscard]] FRONTLUX_EXPORT VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
+                                                         std::span<const Pose> viewpoints,
+                                                         std::span<const VoxelKey> frontiers,
+                                                         const FieldOfView& view);
 
 /// Centres of voxels [m].
-[[nodiscard]] std::vector<Eigen::Vector3d> centers(const Lattice& lattice, std::span<const VoxelKey> keys);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> centers(const Lattice& lattice,
+                                                                   std::span<const VoxelKey> keys);
 
 /// @throws std::invalid_argument naming the first viewpoint that is not finite
-void check_finite(std::span<const Pose> viewpoints);
+FRONTLUX_EXPORT void check_finite(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

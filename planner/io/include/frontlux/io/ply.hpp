@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/file.hpp>
 
 #include <Eigen/Core>
@@ -22,6 +23,7 @@ struct RawMesh {
 /// properties and elements are checked and left out. Time and memory are bounded by the size of the file,
 /// whatever its header says.
 /// @throws std::runtime_error naming the file, the line or byte, what is wrong there, and what to do
-[[nodiscard]] RawMesh read_ply(const std::filesystem::path& file, std::uint64_t max_bytes = kMaxFileBytes);
+[[nodiscard]] FRONTLUX_EXPORT RawMesh read_ply(const std::filesystem::path& file,
+                                               std::uint64_t max_bytes = kMaxFileBytes);
 
 }  // namespace frontlux::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 
 #include <Eigen/Geometry>
@@ -22,7 +23,7 @@ struct RecordedPose {
 
 /// Reads a line for each scan: `file,x,y,z,qx,qy,qz,qw` or `file,x,y,z,yaw` [m, rad].
 /// @throws std::runtime_error naming the file, the line, what is wrong and what to do
-[[nodiscard]] std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file);
 
 /// A pose of a list.
 struct ListedPose {
@@ -32,6 +33,6 @@ struct ListedPose {
 
 /// Reads a pose on each line: `x,y,z,yaw` [m, rad].
 /// @throws std::runtime_error naming the file, the line, what is wrong and what to do
-[[nodiscard]] std::vector<ListedPose> read_pose_list(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<ListedPose> read_pose_list(const std::filesystem::path& file);
 
 }  // namespace frontlux::io

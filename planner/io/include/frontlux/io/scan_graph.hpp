@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -15,11 +17,11 @@ struct RecordedScan {
 };
 
 /// The end points in the world frame [m], computed in double.
-[[nodiscard]] std::vector<Eigen::Vector3f> points_in_world(const RecordedScan& scan);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3f> points_in_world(const RecordedScan& scan);
 
 /// Reads all scans of an OctoMap scan graph, the binary kind, usually named `.graph`. The whole file is
 /// checked; edges are read and left out.
 /// @throws std::runtime_error naming the file, what is wrong, the byte where it was found, and what to do
-[[nodiscard]] std::vector<RecordedScan> read_scan_graph(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<RecordedScan> read_scan_graph(const std::filesystem::path& file);
 
 }  // namespace frontlux::io

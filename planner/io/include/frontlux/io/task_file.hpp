@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
 
@@ -22,7 +23,7 @@ inline constexpr std::size_t kMostRobots = 32;  ///< in a task
 /// How robots choose where to go.
 enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNearest };
 /// One of the words "tour", "render", "paper", "cluster", "nearest".
-[[nodiscard]] std::string_view name_of(TaskMethod method);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(TaskMethod method);
 
 /// A robot of a task.
 struct TaskRobot {
@@ -51,14 +52,14 @@ struct Task {
 /// Reads a task from a JSON file, and the robots' files that it names; docs/tasks.md says what each member
 /// means. The world is not opened: its name is as in the file.
 /// @throws std::runtime_error naming the file, the member, its value and what to do
-[[nodiscard]] Task read_task(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT Task read_task(const std::filesystem::path& file);
 
 /// A task as a JSON object. Reading it gives the same task.
-[[nodiscard]] std::string task_text(const Task& task);
+[[nodiscard]] FRONTLUX_EXPORT std::string task_text(const Task& task);
 
 /// The robots alone, as a JSON array, and back.
-[[nodiscard]] std::string robots_text(std::span<const TaskRobot> robots);
+[[nodiscard]] FRONTLUX_EXPORT std::string robots_text(std::span<const TaskRobot> robots);
 /// @throws std::runtime_error if the text is not such an array
-[[nodiscard]] std::vector<TaskRobot> robots_of(const std::string& text);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<TaskRobot> robots_of(const std::string& text);
 
 }  // namespace frontlux::io
