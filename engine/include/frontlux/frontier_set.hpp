@@ -34,7 +34,9 @@ class FRONTLUX_EXPORT FrontierSet {
 
   /// All frontiers, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> keys() const;
+  /// How many frontiers there are.
   [[nodiscard]] std::size_t size() const { return keys().size(); }
+  /// Whether a voxel is a frontier.
   [[nodiscard]] bool contains(const VoxelKey& key) const;
 
  private:

@@ -25,6 +25,7 @@ class FRONTLUX_EXPORT LiveMap {
   /// @param tree  must outlive this object, which uses the tree's change detection: nothing else may
   /// @throws std::invalid_argument if the tree has not OctoMap's standard depth
   explicit LiveMap(octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit LiveMap(octomap::ColorOcTree& tree);
   explicit LiveMap(Octree tree);  ///< shares the tree
   ~LiveMap();
@@ -40,7 +41,9 @@ class FRONTLUX_EXPORT LiveMap {
   /// The same by reading the whole tree: after calls that OctoMap reports no change for (`OctreeMirror`).
   MapChange rebuild();
 
+  /// What the tree held at the last update; a copy is a snapshot.
   [[nodiscard]] const VoxelGrid& grid() const;
+  /// Answers from `grid()`.
   [[nodiscard]] const RayCaster& caster() const;
 
  private:

@@ -67,12 +67,14 @@ class FRONTLUX_EXPORT OctreeMirror {
   /// @param tree  watched by reference: must outlive the mirror. For `update` to be incremental, call
   ///              `tree.enableChangeDetection(true)` and `tree.resetChangeDetection()` before.
   explicit OctreeMirror(const octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit OctreeMirror(const octomap::ColorOcTree& tree);
   explicit OctreeMirror(const Octree& tree);  ///< shares the tree
   ~OctreeMirror();
   OctreeMirror(OctreeMirror&&) noexcept;
   OctreeMirror& operator=(OctreeMirror&&) noexcept;
 
+  /// The mirror.
   [[nodiscard]] const VoxelGrid& grid() const;
 
   /// Reads the keys that the tree reports as changed; call `tree.resetChangeDetection()` afterwards. Rebuilds
@@ -110,6 +112,7 @@ class FRONTLUX_EXPORT OctreeRayCaster {
  public:
   /// @param tree  read now and by `refresh`: must outlive this object
   explicit OctreeRayCaster(const octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit OctreeRayCaster(const octomap::ColorOcTree& tree);
   explicit OctreeRayCaster(const Octree& tree);  ///< shares the tree
   ~OctreeRayCaster();

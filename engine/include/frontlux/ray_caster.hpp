@@ -78,7 +78,9 @@ class FRONTLUX_EXPORT RayCaster {
   [[nodiscard]] std::size_t memory_bytes() const { return do_memory_bytes(); }
 
  protected:
+  /// For casters of voxels on this lattice.
   explicit RayCaster(const Lattice& lattice) : lattice_(lattice) {}
+  /// The lattice of the voxels.
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
 
  private:

@@ -50,13 +50,18 @@ struct FRONTLUX_EXPORT ViewQualityOptions {
   /// For `samples`: never draw, always look at every target.
   static constexpr int kAll = std::numeric_limits<int>::max();
 
+  /// How visible targets are found.
   Renderer renderer = Renderer::kRays;
   int samples = 64;  ///< most targets drawn for a viewpoint; if there are no more than that, all are taken
+  /// Which targets are drawn from.
   Sampling sampling = Sampling::kFeasible;
+  /// How gains follow from the drawn targets.
   Estimator estimator = Estimator::kUnbiased;
+  /// Of the draws.
   std::uint64_t seed = 1;
   int azimuth_bins = 0;  ///< equal sectors of the horizon in which visible targets are counted; 0: none
 
+  /// The most azimuth bins.
   static constexpr int kMaxAzimuthBins = 3600;
 
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -130,7 +135,9 @@ class FRONTLUX_EXPORT ViewQualityImage {
   std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                      std::span<const VoxelKey> targets, const MapChange& change);
 
+  /// Number of viewpoints.
   [[nodiscard]] std::size_t size() const { return viewpoints_.size(); }
+  /// The viewpoints, in the order given.
   [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }
   /// `values()[i]` belongs to `viewpoints()[i]`.
   [[nodiscard]] std::span<const ViewQuality> values() const { return values_; }
@@ -143,6 +150,7 @@ class FRONTLUX_EXPORT ViewQualityImage {
     return std::span(bin_hits_).subspan(i * bins(), bins());
   }
 
+  /// As given.
   [[nodiscard]] const ViewQualityOptions& options() const { return options_; }
 
  private:

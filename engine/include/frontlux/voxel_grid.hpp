@@ -46,9 +46,12 @@ class FRONTLUX_EXPORT VoxelGrid {
   /// @throws std::invalid_argument unless it is finite and positive
   explicit VoxelGrid(double resolution);
 
+  /// The lattice of the voxels.
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  /// Edge of a voxel [m].
   [[nodiscard]] double resolution() const { return lattice_.resolution(); }
 
+  /// The state of a voxel.
   [[nodiscard]] Occupancy at(const VoxelKey& key) const { return brick(key).at(key); }
 
   /// The brick that holds a voxel.
@@ -82,6 +85,7 @@ class FRONTLUX_EXPORT VoxelGrid {
   [[nodiscard]] const detail::Tile& tile(const VoxelKey& key) const {
     return *world_->child(key)->child(key)->child(key);
   }
+  /// How the voxels are stored; for the engine itself.
   [[nodiscard]] const detail::Shared<detail::World>& storage() const { return world_; }
 
   friend void for_each_change(const VoxelGrid& before, const VoxelGrid& after,

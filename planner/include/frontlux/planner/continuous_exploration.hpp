@@ -27,7 +27,9 @@ enum class PlanReason : std::uint8_t {
 
 /// One robot's planning, and what all robots have done since the planning before.
 struct PlannedMotion {
+  /// Who planned: a number in the team.
   std::size_t robot = 0;
+  /// Why it planned.
   PlanReason reason = PlanReason::kStart;
   Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
   /// `RobotStep::planned` holds the poses at which each robot took a scan, after the last of the planning
@@ -86,7 +88,9 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
+  /// As given.
   [[nodiscard]] const ExplorationOptions& options() const;
+  /// The map so far.
   [[nodiscard]] const Mapping& mapping() const;
 
  private:

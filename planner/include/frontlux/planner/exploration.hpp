@@ -26,15 +26,19 @@ namespace detail {
 struct ExplorationState;
 }
 
+/// A team, and how it explores.
 struct FRONTLUX_EXPORT ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
+  /// Which caster plans.
   CasterKind caster = CasterKind::kFast;
   /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
   /// the other.
   bool tours = false;
   bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;  ///< off: robots look ahead along their paths
+  /// How paths are found.
   PathOptions path;
+  /// How their yaws are optimised.
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
@@ -60,13 +64,16 @@ struct FRONTLUX_EXPORT ExplorationOptions {
 /// Where a robot begins, and what it knows to be free there without having seen it.
 struct ExplorationStart {
   Pose pose;  ///< of its sensor
+  /// Voxels; of its body at least.
   std::vector<VoxelKey> known_free;
 };
 
 /// A voxel that became unknown, free or occupied and was not so before.
 struct VoxelChange {
+  /// The voxel.
   VoxelKey key;
-  Occupancy before = Occupancy::kUnknown, after = Occupancy::kUnknown;
+  Occupancy before = Occupancy::kUnknown;  ///< what it was
+  Occupancy after = Occupancy::kUnknown;   ///< what it is now
   friend constexpr auto operator<=>(const VoxelChange&, const VoxelChange&) = default;
 };
 
@@ -74,16 +81,17 @@ struct VoxelChange {
 struct RobotStep {
   Goal goal;                        ///< or why there is none
   std::vector<RenderedCell> image;  ///< of a robot on a plane: the cells rendered for its goal
+  /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
-  std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
-  /// Distinct frontiers of its own that the path has in view: with the robot looking ahead, and as optimised.
-  std::uint64_t gain_tangent = 0, gain_predicted = 0;
-  std::uint64_t gain_sum = 0;           ///< of its own frontiers in view, summed over the path's viewpoints
-  std::size_t travelled = 0;            ///< viewpoints of `planned` that it reached, the first included
-  double length = 0.0;                  ///< [m] that it travelled
-  std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans mapped
-  std::vector<VoxelChange> changed;     ///< by its scans, sorted by key
-  std::vector<VoxelKey> blocked;        ///< cells that it could not go through; sorted
+  std::vector<Pose> planned;         ///< from where it was to the goal; empty if it stays
+  std::uint64_t gain_tangent = 0;    ///< distinct frontiers of its own in the path's view, if it looked ahead
+  std::uint64_t gain_predicted = 0;  ///< the same with the yaws as optimised
+  std::uint64_t gain_sum = 0;        ///< of its own frontiers in view, summed over the path's viewpoints
+  std::size_t travelled = 0;         ///< viewpoints of `planned` that it reached, the first included
+  double length = 0.0;               ///< [m] that it travelled
+  std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans mapped
+  std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
+  std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
   std::vector<VoxelKey> still_unknown;  ///< frontiers in view of its viewpoints that stayed unknown; sorted
 };
 
@@ -93,6 +101,7 @@ inline constexpr std::size_t kPhases = 6;
 /// "frontiers", "caster", "goals", "paths", "optimization", "moving"
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(Phase phase);
 
+/// What a team planned, did and mapped between two moments.
 struct FRONTLUX_EXPORT ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   double time = 0.0;              ///< [s] of the clock, at its end
@@ -103,6 +112,7 @@ struct FRONTLUX_EXPORT ExplorationStep {
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
 
+  /// Of all phases but moving [s].
   [[nodiscard]] double planning_seconds() const;
 };
 
@@ -159,7 +169,9 @@ class FRONTLUX_EXPORT Exploration {
   /// Alg. 1, line 3: why the exploration is over; nothing while it goes on.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
+  /// As given.
   [[nodiscard]] const ExplorationOptions& options() const;
+  /// The map so far.
   [[nodiscard]] const Mapping& mapping() const;
   /// Of the robots' sensors.
   [[nodiscard]] std::span<const Pose> poses() const;

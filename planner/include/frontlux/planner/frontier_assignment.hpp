@@ -14,12 +14,14 @@ namespace frontlux::planner {
 
 /// A frontier and a cell that sees it, or saw it once.
 struct FrontierViewpoint {
-  VoxelKey frontier, cell;
+  VoxelKey frontier;  ///< what is seen
+  VoxelKey cell;      ///< from where
 };
 
 /// A robot in terms of frontiers: where it can go and what it sees from there.
 struct FrontierAgent {
   std::span<const VoxelKey> corridor;  ///< in any order; if empty, the agent gets no frontiers
+  /// What its sensor sees.
   FieldOfView view;
   /// Cells to test first, sorted by frontier. They do not change which frontiers are found, only how soon:
   /// most frontiers are still seen from where they were seen before.

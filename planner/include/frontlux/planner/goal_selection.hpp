@@ -35,7 +35,9 @@ enum class TravelDistance : std::uint8_t {
 
 /// How goals are chosen. Eq. 1: view quality = exp(-lambda * distance) * gain.
 struct FRONTLUX_EXPORT GoalOptions {
+  /// What makes a goal.
   GoalRule rule = GoalRule::kViewQuality;
+  /// How the distance to a goal is measured.
   TravelDistance distance = TravelDistance::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
   double min_distance = 0.6;  ///< [m] cells nearer to the robot are not goals
@@ -92,6 +94,7 @@ enum class GoalState : std::uint8_t {
 struct Goal {
   std::optional<Pose> pose;  ///< of its sensor; if there is none, the robot stays where it is
   VoxelKey cell;             ///< of the pose; a cell of its corridor
+  /// Which frontiers it is for, or why there is none.
   GoalState state = GoalState::kNoCorridor;
   std::string reason;           ///< the state in words, with numbers
   double distance = 0.0;        ///< [m] as eq. 1 takes it
@@ -115,6 +118,7 @@ struct TeamGoals {
 
 /// A cell as it was rendered for a robot's goal.
 struct RenderedCell {
+  /// A cell of the corridor.
   VoxelKey cell;
   double distance = 0.0;        ///< [m] as eq. 1 takes it
   double gain = 0.0;            ///< expected number of frontiers visible at the best yaw
@@ -126,7 +130,9 @@ struct RenderedCell {
 
 /// A robot and how its goals are chosen.
 struct TeamMember {
+  /// Its body and its sensor.
   Robot robot;
+  /// How its goals are chosen.
   GoalOptions options;
 };
 
@@ -175,6 +181,7 @@ class FRONTLUX_EXPORT GoalSelection {
   /// @pre robot < team().size()
   void keep_out_of(std::size_t robot, std::vector<KeyBox> boxes);
 
+  /// As given.
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 
   /// The robot's corridor at the last step. @pre robot < team().size()

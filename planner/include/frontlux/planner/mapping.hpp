@@ -24,6 +24,7 @@ namespace frontlux::planner {
 /// @throws std::invalid_argument if the box is empty, not a number, or outside the key range
 [[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
 
+/// The map that scans go into.
 struct MappingOptions {
   double resolution = 0.3;       ///< [m] edge of a voxel
   KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched
@@ -80,8 +81,10 @@ class FRONTLUX_EXPORT Mapping {
   /// The same as `make_voxel_grid(tree())`, kept in step.
   [[nodiscard]] const VoxelGrid& grid() const;
 
+  /// Voxels outside are never touched.
   [[nodiscard]] const KeyBox& bounds() const;
 
+  /// Of the last insertion.
   [[nodiscard]] const InsertionTime& insertion_time() const;
 
   /// `write_octree` of the tree.

@@ -20,6 +20,7 @@ struct FRONTLUX_EXPORT MotionLimits {
   [[nodiscard]] double speed_along(const Eigen::Vector3d& direction) const {
     return per_axis ? speed / direction.cwiseAbs().maxCoeff() : speed;
   }
+  /// The greatest acceleration in a direction [m/s^2].
   [[nodiscard]] double acceleration_along(const Eigen::Vector3d& direction) const {
     return per_axis ? acceleration / direction.cwiseAbs().maxCoeff() : acceleration;
   }

@@ -21,8 +21,11 @@ enum class YawStart : std::uint8_t {
   kTangent,   ///< along the path
 };
 
+/// How the yaws of a path are optimised.
 struct FRONTLUX_EXPORT PathOptimizerOptions {
+  /// What is to become greater.
   GainOptions gain;
+  /// From which yaws the ascent begins.
   YawStart start = YawStart::kGreedy;
   int yaw_bins = 24;   ///< 1 to 63, around the full circle
   bool ascend = true;  ///< along the gradient, with Ipopt; if false, the start is the result
@@ -41,7 +44,9 @@ struct FRONTLUX_EXPORT PathOptimizerOptions {
 
 /// A path's gain: the differentiable one at the last sharpness, and the number of distinct frontiers in view.
 struct PathGain {
+  /// The differentiable gain.
   double fuzzy = 0.0;
+  /// Frontiers in view of at least one viewpoint.
   std::uint64_t distinct = 0;
 };
 
@@ -60,12 +65,15 @@ enum class PathEnd : std::uint8_t {
 /// In words.
 [[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathEnd end);
 
+/// A path with optimised yaws, and what they gain.
 struct OptimizedPath {
   std::vector<double> yaws;  ///< [rad] in [-pi, pi], one for each viewpoint; first and last as they were
   PathGain tangent;          ///< before the optimisation: each viewpoint looks to the next
   PathGain start;            ///< where the ascent began
+  /// Where the ascent ended.
   PathGain result;
   int evaluations = 0;  ///< of the differentiable gain
+  /// Why it ended.
   PathEnd end = PathEnd::kConverged;
 };
 

@@ -25,7 +25,9 @@ enum class PathSearch : std::uint8_t {
 /// "rrt", "rrt-connect", "rrt-star", "corridor"
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathSearch search);
 
+/// How paths are searched.
 struct PathOptions {
+  /// The method.
   PathSearch search = PathSearch::kRrt;
   /// Of the search, at most; 1 to a million. RRT* uses them all, which takes a hundred times as long as RRT;
   /// 2,000 suit it well.
@@ -38,7 +40,9 @@ struct PathOptions {
 
 /// The key of a random search. The same key gives the same path; another key may give another path.
 struct PathKey {
-  std::uint64_t seed = 0, step = 0, robot = 0;
+  std::uint64_t seed = 0;   ///< of the run
+  std::uint64_t step = 0;   ///< of the exploration
+  std::uint64_t robot = 0;  ///< number in the team
 };
 
 /// How a search for a path ended.
@@ -60,6 +64,7 @@ enum class PathOutcome : std::uint8_t {
 
 /// A path from pose to pose.
 struct PathPlan {
+  /// How the path was found, or why there is none.
   PathOutcome outcome = PathOutcome::kNoCorridor;
   /// From start to goal, with all bends; the robot goes straight from each to the next. Start and goal are
   /// exactly those given. At the others the robot looks where it goes next; before a vertical segment it
@@ -68,6 +73,7 @@ struct PathPlan {
   double length = 0.0;  ///< [m]
   int iterations = 0;   ///< used by the search
 
+  /// Whether there is a path.
   [[nodiscard]] bool found() const { return !viewpoints.empty(); }
 };
 

@@ -14,6 +14,7 @@
 
 namespace frontlux::planner {
 
+/// How far and how often viewpoints are moved.
 struct FRONTLUX_EXPORT PositionOptions {
   int outer_iterations = 3;  ///< 1 to 1000; each finds the visible pairs anew
   int steps = 8;             ///< 1 to 1000 in each iteration: evaluations of the differentiable gain
@@ -29,7 +30,8 @@ struct FRONTLUX_EXPORT PositionOptions {
 /// A path whose viewpoints have moved.
 struct RefinedPath {
   std::vector<Pose> viewpoints;  ///< as many as were given; the first and the last are unchanged
-  PathGain before, after;        ///< each with the visible pairs of its own positions
+  PathGain before;               ///< of the path given, with the visible pairs of its positions
+  PathGain after;                ///< of this path, with the visible pairs of its own positions
   int outer_iterations = 0;      ///< that were kept; 0: no viewpoint has moved or turned
   std::uint64_t rays = 0;        ///< cast in all
 };

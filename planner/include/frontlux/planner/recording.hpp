@@ -22,9 +22,9 @@ struct RecordingHead {
   KeyBox bounds = kAllVoxels;            ///< of the map
   std::vector<RobotDescription> robots;  ///< in the team's order
   std::vector<ExplorationStart> starts;  ///< of each of them
-  std::uint64_t observable = 0,
-                bounding = 0;  ///< voxels that can be observed, and within the bounds; 0: unknown
-  std::string options;         ///< JSON object of the run's options, as its maker writes it
+  std::uint64_t observable = 0;          ///< voxels that can be observed; 0: unknown
+  std::uint64_t bounding = 0;            ///< voxels within the bounds; 0: unknown
+  std::string options;                   ///< JSON object of the run's options, as its maker writes it
 };
 
 /// How many voxels of a world one robot has mapped first, up to the end of a step.
@@ -36,6 +36,7 @@ struct KnownVoxels {
 
 /// A step, and what is mapped at its end.
 struct RecordedStep {
+  /// As the exploration returned it.
   ExplorationStep step;
   std::vector<KnownVoxels> known;  ///< of each robot; a voxel counts for the robot that mapped it first
   std::uint64_t collisions = 0;    ///< of robots with the true world, in this step
@@ -43,6 +44,7 @@ struct RecordedStep {
 
 /// A run as it was recorded.
 struct Recording {
+  /// What holds for all steps.
   RecordingHead head;
   std::vector<RecordedStep> steps;  ///< from step 0
   std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
@@ -63,7 +65,9 @@ class FRONTLUX_EXPORT RecordingWriter {
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
 
+  /// The next step.
   void write(const RecordedStep& step);
+  /// Why the run ended: one word of small letters and `_`.
   void write_end(const std::string& reason);
 
  private:

@@ -47,9 +47,11 @@ struct FRONTLUX_EXPORT Robot {
 
 /// A robot with the number of rays in a scan of its sensor, and how often it takes one.
 struct RobotDescription {
+  /// Its body, its sensor and its limits.
   Robot robot;
-  std::size_t columns = 0, rows = 0;  ///< azimuths and beams of a spinning sensor, pixels of a camera
-  double rate = 10.0;                 ///< [1/s] of scans, in motion
+  std::size_t columns = 0;  ///< azimuths of a spinning sensor, pixels in a row of a camera
+  std::size_t rows = 0;     ///< beams of a spinning sensor, pixels in a column of a camera
+  double rate = 10.0;       ///< [1/s] of scans, in motion
 };
 
 /// The paper's robots: 32 beams x 720 azimuths, 10 a second; 160 x 120 pixels, 15 a second.

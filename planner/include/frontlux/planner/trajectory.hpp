@@ -16,6 +16,7 @@ namespace frontlux::planner {
 
 /// Where a robot is at a moment, and how it moves.
 struct MotionState {
+  /// Of the sensor.
   Pose pose;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   double yaw_rate = 0.0;                               ///< [rad/s]
@@ -29,7 +30,9 @@ struct FRONTLUX_EXPORT PathPiece {
   double curvature = 0.0;                             ///< [1/m] 0: a line
   double length = 0.0;                                ///< [m]
 
+  /// The point that lies so far along the piece [m].
   [[nodiscard]] Eigen::Vector3d position(double along) const;
+  /// Unit vector of travel there.
   [[nodiscard]] Eigen::Vector3d direction_at(double along) const;
   /// What remains of it after a length.
   [[nodiscard]] PathPiece from(double along) const;

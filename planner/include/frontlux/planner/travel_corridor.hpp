@@ -36,9 +36,11 @@ enum class PathMetric : std::uint8_t {
 /// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
 /// above that face, and the box has the fewest layers that cover its height and hold the sensor.
 struct FRONTLUX_EXPORT TravelOptions {
+  /// On a plane or in space.
   Motion motion = Motion::kSpace;
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z
   double margin = 0.0;  ///< [m] kept free around the body, on a plane to its sides
+  /// How paths are measured.
   PathMetric metric = PathMetric::kEuclidean;
 
   double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
@@ -139,6 +141,7 @@ class FRONTLUX_EXPORT TravelCorridor {
 
   /// All cells, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> cells() const;
+  /// Whether a cell belongs to the corridor.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return distance(key).has_value(); }
 
   /// Length of the shortest path from the robot [m]; nothing if the key is not a cell of the corridor.

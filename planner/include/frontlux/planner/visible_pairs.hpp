@@ -15,7 +15,8 @@ namespace frontlux::planner {
 
 /// One viewpoint of a path and one frontier that it sees at some yaw, by their places in their lists.
 struct VisiblePair {
-  std::uint32_t viewpoint = 0, frontier = 0;
+  std::uint32_t viewpoint = 0;  ///< index among the viewpoints
+  std::uint32_t frontier = 0;   ///< index among the frontiers
   friend constexpr auto operator<=>(const VisiblePair&, const VisiblePair&) = default;
 };
 
@@ -28,8 +29,11 @@ class FRONTLUX_EXPORT VisiblePairs {
   /// @throws std::invalid_argument naming a pair that is out of range or given twice
   VisiblePairs(std::size_t viewpoints, std::size_t frontiers, std::span<const VisiblePair> pairs);
 
+  /// Number of viewpoints.
   [[nodiscard]] std::size_t viewpoints() const { return first_.size() - 1; }
+  /// Number of frontiers.
   [[nodiscard]] std::size_t frontiers() const { return frontiers_; }
+  /// Number of visible pairs.
   [[nodiscard]] std::size_t size() const { return seen_.size(); }
 
   /// Frontiers that a viewpoint sees, ascending.

@@ -14,6 +14,7 @@ namespace frontlux::io {
 
 /// Vertices and triangles as a file has them: in the file's unit and frame, no coordinate or index checked.
 struct RawMesh {
+  /// [m]
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint64_t, 3>> triangles;  ///< indices of vertices
 };

@@ -18,6 +18,7 @@ namespace frontlux::io {
 struct RecordedPose {
   std::string file;      ///< as the pose file names it
   std::size_t line = 0;  ///< of the pose file, from 1
+  /// Pose of the sensor in the world.
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
 };
 
@@ -27,6 +28,7 @@ struct RecordedPose {
 
 /// A pose of a list.
 struct ListedPose {
+  /// Of the sensor.
   planner::Pose pose;
   std::size_t line = 0;  ///< of the file, from 1
 };

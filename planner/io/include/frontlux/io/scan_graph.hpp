@@ -12,6 +12,7 @@ namespace frontlux::io {
 
 /// A scan as it was recorded: the end points of its rays in the sensor's frame, and where the sensor was.
 struct RecordedScan {
+  /// Pose of the sensor in the world.
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3f> points;  ///< [m] a point that is not finite is no measurement
 };

@@ -27,6 +27,7 @@ enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNeares
 
 /// A robot of a task.
 struct TaskRobot {
+  /// Its body, its sensor and its limits.
   planner::RobotDescription description;
   std::optional<planner::Pose> start;  ///< of its sensor; if not given, near the others'
 };
@@ -35,15 +36,21 @@ struct TaskRobot {
 struct Task {
   std::string name;   ///< for people
   std::string world;  ///< a file, or the name of a built-in world
+  /// Of a built-in world.
   std::optional<std::uint64_t> world_seed;
   std::optional<Eigen::AlignedBox3d> box;  ///< [m] what is to be explored
   std::optional<double> resolution;        ///< [m]
+  /// Of the run.
   std::optional<std::uint64_t> seed;
   std::optional<double> latency;  ///< [s]
+  /// Whether robots wait for each other, as in Alg. 1.
   std::optional<bool> lockstep;
+  /// How goals are chosen.
   std::optional<TaskMethod> method;
-  std::optional<double> end_coverage, end_time;  ///< 0 to 1, [s]
-  std::optional<std::string> team;               ///< words for robots that are known; not beside `robots`
+  std::optional<double> end_coverage;  ///< 0 to 1
+  std::optional<double> end_time;      ///< [s]
+  std::optional<std::string> team;     ///< words for robots that are known; not beside `robots`
+  /// Named one by one.
   std::vector<TaskRobot> robots;
   /// Further options of the command by name, without dashes, and as they are written on its command line.
   std::vector<std::pair<std::string, std::string>> options;
