@@ -10,7 +10,8 @@ import sys
 CALLED_FROM_HEADERS = {"frontlux::detail::run_ranges", "frontlux::detail::isolate"}
 PUBLIC = {
     "engine": ["frontlux::make_ray_caster", "frontlux::read_octree", "frontlux::OctreeRayCaster::castRay",
-               "frontlux::FieldOfView::check", "frontlux::LiveMap::update"],
+               "frontlux::FieldOfView::check", "frontlux::LiveMap::update",
+               "frontlux::operator=="],
     "planner": ["frontlux::planner::plan_path", "frontlux::planner::Exploration::step",
                 "frontlux::planner::ContinuousExploration::plan", "frontlux::planner::read_recording",
                 "typeinfo for frontlux::planner::UnbegunRecording"],

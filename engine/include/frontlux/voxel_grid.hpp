@@ -79,7 +79,7 @@ class FRONTLUX_EXPORT VoxelGrid {
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// True if every voxel has the same state in both, and the resolutions are equal.
-  friend bool operator==(const VoxelGrid& a, const VoxelGrid& b);
+  friend FRONTLUX_EXPORT bool operator==(const VoxelGrid& a, const VoxelGrid& b);
 
   /// The storage behind the grid, for the casters' inner loops.
   [[nodiscard]] const detail::Tile& tile(const VoxelKey& key) const {
