@@ -8,7 +8,8 @@ option(FRONTLUX_PRECOMPILE_HEADERS "Precompile Eigen and the standard library" $
 function(frontlux_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED_BY" "PRECOMPILE")
   target_compile_features(${name} PUBLIC cxx_std_20)
-  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  # Of a shared library only what FRONTLUX_EXPORT names is visible (<frontlux/export.hpp>).
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # The ray contract is bit for bit: a fused multiply-add rounds once where castRay rounds twice
   # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do.
   target_compile_options(${name} PRIVATE -fPIC -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
@@ -46,6 +47,18 @@ function(frontlux_compile_together name first)
   endif()
 endfunction()
 
+# frontlux_shared_twin(NAME): the shared library frontlux_NAME_shared of the same objects, for the tests of what leaves it.
+function(frontlux_shared_twin name)
+  add_library(frontlux_${name}_shared SHARED $<TARGET_OBJECTS:frontlux_${name}>)
+  get_target_property(linked frontlux_${name} LINK_LIBRARIES)
+  list(TRANSFORM linked REPLACE "^frontlux::(.*)$" "frontlux_\\1_shared")
+  get_target_property(folders frontlux_${name} INTERFACE_INCLUDE_DIRECTORIES)
+  target_link_libraries(frontlux_${name}_shared PUBLIC ${linked})
+  target_include_directories(frontlux_${name}_shared INTERFACE ${folders})
+  target_compile_features(frontlux_${name}_shared INTERFACE cxx_std_20)
+  set_target_properties(frontlux_${name}_shared PROPERTIES LINKER_LANGUAGE CXX)
+endfunction()
+
 # frontlux_install(NAME EXPORT): installs the library frontlux_NAME and its public headers as frontlux::NAME.
 function(frontlux_install name export)
   # Before 1.0 a new minor version may break users, so it is a new library name.
@@ -54,5 +67,8 @@ function(frontlux_install name export)
   if(FRONTLUX_INSTALL)
     install(TARGETS frontlux_${name} EXPORT ${export})
     install(DIRECTORY include/frontlux DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  endif()
+  if(FRONTLUX_BUILD_TESTS)
+    frontlux_shared_twin(${name})
   endif()
 endfunction()

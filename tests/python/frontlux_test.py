@@ -1,6 +1,7 @@
 """The Python module against known answers, against itself, and with arguments that it has to refuse."""
 import ast
 import copy
+import inspect
 import os
 import pathlib
 import re
@@ -306,9 +307,14 @@ class Module(unittest.TestCase):
         """pybind11 writes the signature into the docstring's first line."""
         if node.name in ("__eq__", "__len__", "__copy__", "__deepcopy__"):
             return
-        signature = function.__doc__.split("\n")[0]
         names = [argument.arg for argument in node.args.args]
         optional = [False] * (len(names) - len(node.args.defaults)) + [True] * len(node.args.defaults)
+        if inspect.isfunction(function):
+            parameters = inspect.signature(function).parameters
+            self.assertEqual(names, list(parameters), function)
+            self.assertEqual(optional, [p.default is not p.empty for p in parameters.values()], function)
+            return
+        signature = function.__doc__.split("\n")[0]
         documented = ast.parse("def f" + signature[signature.index("("):signature.rindex(" ->")] + ": ...").body[0].args
         self.assertEqual(names, [a.arg for a in documented.args], signature)
         self.assertEqual(sum(optional), len(documented.defaults), signature)

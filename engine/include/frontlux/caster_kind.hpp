@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -43,11 +44,14 @@ inline constexpr std::array<std::pair<std::string_view, CasterKind>, 4> kCasterN
 /// @param grid  the mirror of `tree`
 /// @param tree  if `kind` is kOctomap, queried by reference: must outlive the caster
 /// @throws std::runtime_error if Embree cannot make its device
-[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
-                                                         const octomap::OcTree& tree);
-[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
-                                                         const octomap::ColorOcTree& tree);
-[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid,
-                                                         const Octree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind,
+                                                                         const VoxelGrid& grid,
+                                                                         const octomap::OcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind,
+                                                                         const VoxelGrid& grid,
+                                                                         const octomap::ColorOcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind,
+                                                                         const VoxelGrid& grid,
+                                                                         const Octree& tree);
 
 }  // namespace frontlux

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <cstdint>
@@ -8,13 +10,15 @@ namespace frontlux {
 
 /// The space that a range sensor sees: a solid of directions, cut off at a range. Sensor frame: x forward, y
 /// left, z up. A robot turns about z only: pitch and roll are 0.
-struct FieldOfView {
+struct FRONTLUX_EXPORT FieldOfView {
+  /// The form of the solid.
   enum class Shape : std::uint8_t {
     kSpinning,  ///< all azimuths, elevations within +-vertical / 2: a lidar
     kPyramid,   ///< |left| <= tan(horizontal / 2) forward and |up| <= tan(vertical / 2) forward: a camera
     kCone,      ///< within horizontal / 2 of the forward axis: a sonar
   };
 
+  /// Its form.
   Shape shape = Shape::kSpinning;
   double horizontal = 0.0;  ///< [rad] full opening angle, in (0, pi) for pyramids and cones; else not used
   double vertical = 0.0;    ///< [rad] full opening angle, in (0, pi); not used by cones

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -18,7 +20,8 @@
 namespace frontlux {
 
 /// @throws std::runtime_error "file: what; advice"
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, const std::string& advice);
+[[noreturn]] FRONTLUX_EXPORT void fail(const std::filesystem::path& file, const std::string& what,
+                                       const std::string& advice);
 
 inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 
@@ -26,17 +29,18 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 /// @throws std::runtime_error naming the file and what to do, unless it is a regular file that can be read
 /// and
 ///         has at most `max_bytes`
-[[nodiscard]] std::string read_file(const std::filesystem::path& file,
-                                    std::uint64_t max_bytes = kMaxFileBytes);
+[[nodiscard]] FRONTLUX_EXPORT std::string read_file(const std::filesystem::path& file,
+                                                    std::uint64_t max_bytes = kMaxFileBytes);
 
 /// Removes what processes that were killed while they wrote this file have left beside it.
-void remove_unfinished(const std::filesystem::path& file);
+FRONTLUX_EXPORT void remove_unfinished(const std::filesystem::path& file);
 
 /// Writes a file complete or not at all: into a file beside it first, which then takes its name.
 /// @param write  writes the bytes
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws
-void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
-void write_file(const std::filesystem::path& file, std::string_view bytes);
+FRONTLUX_EXPORT void write_file(const std::filesystem::path& file,
+                                const std::function<void(std::ostream&)>& write);
+FRONTLUX_EXPORT void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// Appends a number to binary data: lowest byte first, on every machine.
 template <std::unsigned_integral Number>
@@ -55,7 +59,7 @@ template <class Number>
 }
 
 /// The ending of a file's name in lower case, with its dot.
-[[nodiscard]] std::string lower_extension(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::string lower_extension(const std::filesystem::path& file);
 
 /// The number that a text is, from end to end and in every locale; nan and inf are numbers, +1 is none.
 template <class Number>
@@ -73,6 +77,6 @@ template <class Number>
 }
 
 /// A piece of a file that may be shown on a terminal: in quotes, printable, not too long.
-[[nodiscard]] std::string quote(std::string_view text);
+[[nodiscard]] FRONTLUX_EXPORT std::string quote(std::string_view text);
 
 }  // namespace frontlux

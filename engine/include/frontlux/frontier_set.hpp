@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/map_change.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -20,7 +21,7 @@ enum class Adjacency : std::uint8_t {
 ///
 /// An update takes time in proportion to the bricks around the changed voxels; the result is the same as that
 /// of a new set. Thread safety: as a standard container.
-class FrontierSet {
+class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
   FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency = Adjacency::kFaces);
@@ -33,7 +34,9 @@ class FrontierSet {
 
   /// All frontiers, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> keys() const;
+  /// How many frontiers there are.
   [[nodiscard]] std::size_t size() const { return keys().size(); }
+  /// Whether a voxel is a frontier.
   [[nodiscard]] bool contains(const VoxelKey& key) const;
 
  private:

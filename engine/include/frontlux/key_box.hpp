@@ -24,7 +24,9 @@ namespace frontlux {
 
 /// An axis-aligned box of voxels, both ends included.
 struct KeyBox {
-  VoxelKey min, max;
+  VoxelKey min;  ///< the least key on each axis
+  VoxelKey max;  ///< the greatest key on each axis; it belongs to the box
+  /// Whether a voxel lies in the box.
   [[nodiscard]] constexpr bool contains(const VoxelKey& k) const {
     return min.x <= k.x && k.x <= max.x && min.y <= k.y && k.y <= max.y && min.z <= k.z && k.z <= max.z;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/ray.hpp>
 
 #include <Eigen/Core>
@@ -12,15 +13,17 @@ namespace frontlux {
 
 /// The voxel lattice of an OctoMap of one resolution: keys from points and points from keys, in OctoMap's own
 /// arithmetic, so that both agree to the last bit (ray contract, rule 1).
-class Lattice {
+class FRONTLUX_EXPORT Lattice {
  public:
   static constexpr int kOrigin = 32768;  ///< key of the voxel whose lower face lies at 0
+  /// Keys on an axis: from 0 to one less.
   static constexpr int kKeysPerAxis = 65536;
 
   /// @param resolution edge length of a voxel [m]
   /// @throws std::invalid_argument unless it is finite, positive and has a finite inverse
   explicit Lattice(double resolution);
 
+  /// Edge of a voxel [m].
   [[nodiscard]] double resolution() const { return resolution_; }
 
   /// Key along one axis of a coordinate [m]; none outside the key range or if it is not finite.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/map_change.hpp>
 #include <frontlux/octomap.hpp>
 
@@ -19,11 +20,12 @@ namespace frontlux {
 ///
 /// Thread safety: queries of the caster may run at the same time as `update`, which reads the tree and must
 /// not run while it changes; as a standard container otherwise.
-class LiveMap {
+class FRONTLUX_EXPORT LiveMap {
  public:
   /// @param tree  must outlive this object, which uses the tree's change detection: nothing else may
   /// @throws std::invalid_argument if the tree has not OctoMap's standard depth
   explicit LiveMap(octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit LiveMap(octomap::ColorOcTree& tree);
   explicit LiveMap(Octree tree);  ///< shares the tree
   ~LiveMap();
@@ -39,7 +41,9 @@ class LiveMap {
   /// The same by reading the whole tree: after calls that OctoMap reports no change for (`OctreeMirror`).
   MapChange rebuild();
 
+  /// What the tree held at the last update; a copy is a snapshot.
   [[nodiscard]] const VoxelGrid& grid() const;
+  /// Answers from `grid()`.
   [[nodiscard]] const RayCaster& caster() const;
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <span>
@@ -17,6 +18,7 @@ struct MapChange {
 /// Every voxel whose state differs between two maps, sorted: the keys of a `MapChange`. Between a grid and
 /// its edited copy this costs as much as the edit did.
 /// @throws std::length_error if there are more than `kMostListedKeys`
-[[nodiscard]] std::vector<VoxelKey> changed_keys(const VoxelGrid& before, const VoxelGrid& after);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<VoxelKey> changed_keys(const VoxelGrid& before,
+                                                                 const VoxelGrid& after);
 
 }  // namespace frontlux

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -25,14 +26,14 @@ using point3d = octomath::Vector3;
 namespace frontlux {
 
 /// OctoMap's types for ours and back, exact in both directions.
-[[nodiscard]] octomap::OcTreeKey to_octomap(const VoxelKey& key);
-[[nodiscard]] octomap::point3d to_octomap(const Eigen::Vector3f& point);
-[[nodiscard]] VoxelKey from_octomap(const octomap::OcTreeKey& key);
-[[nodiscard]] Eigen::Vector3f from_octomap(const octomap::point3d& point);
+[[nodiscard]] FRONTLUX_EXPORT octomap::OcTreeKey to_octomap(const VoxelKey& key);
+[[nodiscard]] FRONTLUX_EXPORT octomap::point3d to_octomap(const Eigen::Vector3f& point);
+[[nodiscard]] FRONTLUX_EXPORT VoxelKey from_octomap(const octomap::OcTreeKey& key);
+[[nodiscard]] FRONTLUX_EXPORT Eigen::Vector3f from_octomap(const octomap::point3d& point);
 
 /// The centres of the occupied voxels that rays ended in, in the order of the hits: what `castRay` would add
 /// to a cloud for each ray that it returns true for.
-[[nodiscard]] octomap::Pointcloud to_pointcloud(std::span<const Hit> hits);
+[[nodiscard]] FRONTLUX_EXPORT octomap::Pointcloud to_pointcloud(std::span<const Hit> hits);
 
 /// A tree read from a file, of the kind the file holds.
 using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<octomap::ColorOcTree>>;
@@ -40,38 +41,40 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 /// Reads an OctoMap file, `.bt` or `.ot`, by its header and not by its name. The file is checked from end to
 /// end before OctoMap's own reader, which trusts its input, sees it.
 /// @throws std::runtime_error naming the file, what is wrong with it and where
-[[nodiscard]] Octree read_octree(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT Octree read_octree(const std::filesystem::path& file);
 
 /// Writes a tree in OctoMap's format: the log-odds of every node (and its colour) to a file named `.ot`, free
 /// and occupied only to one named `.bt`. The file appears complete or not at all.
 /// @throws std::invalid_argument if the name ends otherwise
 /// @throws std::runtime_error naming the file, if it cannot be written
-void write_octree(const octomap::OcTree& tree, const std::filesystem::path& file);
-void write_octree(const octomap::ColorOcTree& tree, const std::filesystem::path& file);
-void write_octree(const Octree& tree, const std::filesystem::path& file);
+FRONTLUX_EXPORT void write_octree(const octomap::OcTree& tree, const std::filesystem::path& file);
+FRONTLUX_EXPORT void write_octree(const octomap::ColorOcTree& tree, const std::filesystem::path& file);
+FRONTLUX_EXPORT void write_octree(const Octree& tree, const std::filesystem::path& file);
 
 /// The ternary mirror of a tree: occupied, free and unknown by the tree's own `search` and `isNodeOccupied`.
 /// A pruned leaf is one entry, however large.
-[[nodiscard]] VoxelGrid make_voxel_grid(const octomap::OcTree& tree);
-[[nodiscard]] VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
-[[nodiscard]] VoxelGrid make_voxel_grid(const Octree& tree);
+[[nodiscard]] FRONTLUX_EXPORT VoxelGrid make_voxel_grid(const octomap::OcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT VoxelGrid make_voxel_grid(const Octree& tree);
 
 /// Keeps a VoxelGrid in step with one tree.
 ///
 /// OctoMap's change detection reports the keys that updates and scan insertions changed, but not what
 /// `setOccupancyThres`, `clear`, `deleteNode`, `setNodeValue`, a file read into the tree or direct
 /// writes to nodes changed (docs/ray_contract.md). After any of those call `rebuild`.
-class OctreeMirror {
+class FRONTLUX_EXPORT OctreeMirror {
  public:
   /// @param tree  watched by reference: must outlive the mirror. For `update` to be incremental, call
   ///              `tree.enableChangeDetection(true)` and `tree.resetChangeDetection()` before.
   explicit OctreeMirror(const octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit OctreeMirror(const octomap::ColorOcTree& tree);
   explicit OctreeMirror(const Octree& tree);  ///< shares the tree
   ~OctreeMirror();
   OctreeMirror(OctreeMirror&&) noexcept;
   OctreeMirror& operator=(OctreeMirror&&) noexcept;
 
+  /// The mirror.
   [[nodiscard]] const VoxelGrid& grid() const;
 
   /// Reads the keys that the tree reports as changed; call `tree.resetChangeDetection()` afterwards. Rebuilds
@@ -93,9 +96,10 @@ class OctreeMirror {
 /// cases it differs from the other casters' integer rule.
 /// @param tree  queried by reference: must outlive the caster and not change during a query. `update` does
 /// nothing.
-[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
-[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree);
-[[nodiscard]] std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(
+    const octomap::ColorOcTree& tree);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree);
 
 /// A drop-in for `tree.castRay(...)`: the same signature, the same results bit for bit, many times faster.
 ///
@@ -104,10 +108,11 @@ class OctreeMirror {
 ///
 /// It answers from a snapshot of the tree, taken at construction and by `refresh`. It prints none of
 /// OctoMap's warnings. Thread safety: const members may run at the same time as each other.
-class OctreeRayCaster {
+class FRONTLUX_EXPORT OctreeRayCaster {
  public:
   /// @param tree  read now and by `refresh`: must outlive this object
   explicit OctreeRayCaster(const octomap::OcTree& tree);
+  /// The same for a tree with colours.
   explicit OctreeRayCaster(const octomap::ColorOcTree& tree);
   explicit OctreeRayCaster(const Octree& tree);  ///< shares the tree
   ~OctreeRayCaster();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/thread_sanitizer.hpp>
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 namespace frontlux {
 namespace detail {
 
-void run_ranges(std::size_t size, const void* work,
-                void (*call)(const void* work, std::size_t begin, std::size_t end));
-void isolate(const void* work, void (*call)(const void* work));
+FRONTLUX_EXPORT void run_ranges(std::size_t size, const void* work,
+                                void (*call)(const void* work, std::size_t begin, std::size_t end));
+FRONTLUX_EXPORT void isolate(const void* work, void (*call)(const void* work));
 
 }  // namespace detail
 

@@ -16,7 +16,9 @@ enum class UnknownPolicy : std::uint8_t { kBlock, kPass };
 /// Discrete address of a voxel: OctoMap's `OcTreeKey`. Voxel (32768, 32768, 32768) has its lower corner at
 /// the world's origin.
 struct VoxelKey {
-  std::uint16_t x = 0, y = 0, z = 0;
+  std::uint16_t x = 0;  ///< number of the voxel along x
+  std::uint16_t y = 0;  ///< along y
+  std::uint16_t z = 0;  ///< along z
   friend constexpr auto operator<=>(const VoxelKey&, const VoxelKey&) = default;
 };
 
@@ -36,7 +38,8 @@ struct Segment {
 
 /// A straight line from the centre of one voxel to the centre of another.
 struct KeySegment {
-  VoxelKey from, to;
+  VoxelKey from;  ///< where it begins
+  VoxelKey to;    ///< where it ends
 };
 
 /// Why a ray or a counted segment ended.
@@ -51,6 +54,7 @@ enum class RayStop : std::uint8_t {
 
 /// Where a ray ended. With `kInvalid` every other field keeps its default.
 struct Hit {
+  /// Why it ended.
   RayStop stop = RayStop::kInvalid;
   Occupancy state = Occupancy::kUnknown;          ///< of the voxel in which the ray ended
   VoxelKey key;                                   ///< of that voxel
@@ -70,8 +74,10 @@ struct Hit {
 /// `occupied` is 0 for a ray, which every occupied voxel stops, and at most 1 for a segment, whose first
 /// voxel never blocks.
 struct PathCount {
-  std::uint32_t unknown = 0, free = 0, occupied = 0;  ///< [voxels]
-  RayStop stop = RayStop::kInvalid;                   ///< with `kInvalid` nothing is counted
+  std::uint32_t unknown = 0;         ///< [voxels]
+  std::uint32_t free = 0;            ///< [voxels]
+  std::uint32_t occupied = 0;        ///< [voxels]
+  RayStop stop = RayStop::kInvalid;  ///< with `kInvalid` nothing is counted
 
   friend constexpr bool operator==(const PathCount&, const PathCount&) = default;
 };

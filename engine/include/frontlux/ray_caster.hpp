@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -24,7 +25,7 @@ namespace frontlux {
 ///
 /// Thread safety: const members may run at the same time as each other and as `update`; a query answers
 /// from the map as it was when the query began. Calls of `update` must not overlap.
-class RayCaster {
+class FRONTLUX_EXPORT RayCaster {
  public:
   virtual ~RayCaster() = default;
   RayCaster(const RayCaster&) = delete;
@@ -77,7 +78,9 @@ class RayCaster {
   [[nodiscard]] std::size_t memory_bytes() const { return do_memory_bytes(); }
 
  protected:
+  /// For casters of voxels on this lattice.
   explicit RayCaster(const Lattice& lattice) : lattice_(lattice) {}
+  /// The lattice of the voxels.
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
 
  private:
@@ -110,15 +113,15 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 /// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
 ///                       building: `make_grid_ray_caster(grid)`
 /// @throws std::runtime_error if Embree cannot make its device
-[[nodiscard]] std::unique_ptr<RayCaster> make_ray_caster(const VoxelGrid& grid,
-                                                         std::uint64_t expected_rays = kManyRays);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(
+    const VoxelGrid& grid, std::uint64_t expected_rays = kManyRays);
 
 /// Embree's BVH of boxes alone. Where its rounding could change an answer, the grid's walk decides.
 /// @throws std::runtime_error if Embree cannot make its device
-[[nodiscard]] std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
 
 /// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The
 /// reference. Costs nothing to build, and shares the grid's memory.
-[[nodiscard]] std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
+[[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_grid_ray_caster(const VoxelGrid& grid);
 
 }  // namespace frontlux

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/ray.hpp>
 
@@ -20,8 +21,9 @@ namespace frontlux {
 /// - cone: rows * columns rays in a spiral from the axis outwards, each for the same solid angle.
 /// @throws std::invalid_argument naming the value, if the field of view does not pass its `check`, or there
 ///         are no rays or more than 2^26
-[[nodiscard]] std::vector<Eigen::Vector3d> sensor_directions(const FieldOfView& view, std::size_t columns,
-                                                             std::size_t rows);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> sensor_directions(const FieldOfView& view,
+                                                                             std::size_t columns,
+                                                                             std::size_t rows);
 
 /// Unit vectors through the pixels of a calibrated camera, in the camera's optical frame: x right, y down,
 /// z forward. There are `rows` x `columns` of them, row by row from the top; that of row r and column c is at
@@ -29,14 +31,14 @@ namespace frontlux {
 /// @param intrinsics  (fx 0 cx, 0 fy cy, 0 0 1) [pixels]; other entries are not read
 /// @throws std::invalid_argument naming the value, if an entry is not finite, fx or fy is not positive, or
 ///         there are no rays or more than 2^26
-[[nodiscard]] std::vector<Eigen::Vector3d> pinhole_directions(const Eigen::Matrix3d& intrinsics,
-                                                              std::size_t columns, std::size_t rows);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> pinhole_directions(
+    const Eigen::Matrix3d& intrinsics, std::size_t columns, std::size_t rows);
 
 /// Rays in the map's frame for `RayCaster::cast`: `rays[i]` goes along `directions[i]`.
 /// @param T_map_sensor  the pose of the sensor, with the frame of the directions
 /// @param max_range     [m] of each ray; <= 0: no limit
-[[nodiscard]] std::vector<Ray> rays_from(const Eigen::Isometry3d& T_map_sensor,
-                                         std::span<const Eigen::Vector3d> directions,
-                                         double max_range = -1.0);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Ray> rays_from(const Eigen::Isometry3d& T_map_sensor,
+                                                         std::span<const Eigen::Vector3d> directions,
+                                                         double max_range = -1.0);
 
 }  // namespace frontlux

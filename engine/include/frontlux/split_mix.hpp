@@ -10,6 +10,7 @@ namespace frontlux {
 /// depend on nothing else.
 class SplitMix64 {
  public:
+  /// What the state grows by with each number.
   static constexpr std::uint64_t kStep = 0x9E3779B97F4A7C15U;
 
   /// Every bit of the result depends on every bit of `z`; different numbers have different results.
@@ -19,6 +20,7 @@ class SplitMix64 {
     return z ^ (z >> 31U);
   }
 
+  /// Numbers that depend on this state only.
   constexpr explicit SplitMix64(std::uint64_t state) : state_(state) {}
 
   /// 64 random bits.

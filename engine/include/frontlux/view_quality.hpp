@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/map_change.hpp>
@@ -27,7 +28,7 @@ struct Viewpoint;
 }  // namespace detail
 
 /// How the view quality of a viewpoint is estimated.
-struct ViewQualityOptions {
+struct FRONTLUX_EXPORT ViewQualityOptions {
   /// How the visible targets are found.
   enum class Renderer : std::uint8_t {
     kRays,   ///< by a ray to each of the targets that are drawn
@@ -49,13 +50,18 @@ struct ViewQualityOptions {
   /// For `samples`: never draw, always look at every target.
   static constexpr int kAll = std::numeric_limits<int>::max();
 
+  /// How visible targets are found.
   Renderer renderer = Renderer::kRays;
   int samples = 64;  ///< most targets drawn for a viewpoint; if there are no more than that, all are taken
+  /// Which targets are drawn from.
   Sampling sampling = Sampling::kFeasible;
+  /// How gains follow from the drawn targets.
   Estimator estimator = Estimator::kUnbiased;
+  /// Of the draws.
   std::uint64_t seed = 1;
   int azimuth_bins = 0;  ///< equal sectors of the horizon in which visible targets are counted; 0: none
 
+  /// The most azimuth bins.
   static constexpr int kMaxAzimuthBins = 3600;
 
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -63,7 +69,7 @@ struct ViewQualityOptions {
 };
 
 /// What a viewpoint would see.
-struct ViewQuality {
+struct FRONTLUX_EXPORT ViewQuality {
   std::uint32_t population = 0;  ///< targets drawn from: those in view at some yaw, or those in the buckets
   std::uint32_t drawn = 0;       ///< of them, without replacement
   std::uint32_t hits = 0;        ///< of the drawn: in view at some yaw and visible
@@ -91,8 +97,9 @@ struct AzimuthWindow {
 /// @param opening     [rad] a window has as many whole bins as fit into this angle, at most all
 /// @param containing  [rad] if given, only windows with the bin of this azimuth are considered
 /// @throws std::invalid_argument if there is no bin, if not even one fits, or if an angle is not finite
-[[nodiscard]] AzimuthWindow best_window(std::span<const std::uint32_t> bin_hits, double opening,
-                                        std::optional<double> containing = std::nullopt);
+[[nodiscard]] FRONTLUX_EXPORT AzimuthWindow best_window(std::span<const std::uint32_t> bin_hits,
+                                                        double opening,
+                                                        std::optional<double> containing = std::nullopt);
 
 /// The view quality of many viewpoints (the paper's Monte-Carlo rendering), which is updated as the map
 /// changes.
@@ -103,7 +110,7 @@ struct AzimuthWindow {
 /// around it. Its draws repeat, which does no harm: a change of the targets shuffles them.
 ///
 /// Thread safety: as a standard container.
-class ViewQualityImage {
+class FRONTLUX_EXPORT ViewQualityImage {
  public:
   /// An image without viewpoints.
   /// @param lattice  of the keys
@@ -128,7 +135,9 @@ class ViewQualityImage {
   std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                      std::span<const VoxelKey> targets, const MapChange& change);
 
+  /// Number of viewpoints.
   [[nodiscard]] std::size_t size() const { return viewpoints_.size(); }
+  /// The viewpoints, in the order given.
   [[nodiscard]] std::span<const VoxelKey> viewpoints() const { return viewpoints_; }
   /// `values()[i]` belongs to `viewpoints()[i]`.
   [[nodiscard]] std::span<const ViewQuality> values() const { return values_; }
@@ -141,6 +150,7 @@ class ViewQualityImage {
     return std::span(bin_hits_).subspan(i * bins(), bins());
   }
 
+  /// As given.
   [[nodiscard]] const ViewQualityOptions& options() const { return options_; }
 
  private:
@@ -162,10 +172,11 @@ class ViewQualityImage {
 };
 
 /// Renders an image from scratch: see `ViewQualityImage`.
-[[nodiscard]] ViewQualityImage render_view_quality(const RayCaster& caster, const Lattice& lattice,
-                                                   std::span<const VoxelKey> viewpoints,
-                                                   std::span<const VoxelKey> targets,
-                                                   const FieldOfView& field_of_view,
-                                                   const ViewQualityOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT ViewQualityImage render_view_quality(const RayCaster& caster,
+                                                                   const Lattice& lattice,
+                                                                   std::span<const VoxelKey> viewpoints,
+                                                                   std::span<const VoxelKey> targets,
+                                                                   const FieldOfView& field_of_view,
+                                                                   const ViewQualityOptions& options = {});
 
 }  // namespace frontlux

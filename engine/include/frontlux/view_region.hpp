@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/key_box.hpp>
 
@@ -15,7 +16,7 @@ namespace frontlux {
 /// smaller heights are in view too, upwards and downwards.
 ///
 /// Offsets are in voxels. Thread safety: const members may run at the same time.
-class ViewRegion {
+class FRONTLUX_EXPORT ViewRegion {
  public:
   static constexpr int kMaxRange = 4096;  ///< [voxels]
   static constexpr int kMargin = 16;  ///< [voxels] beyond the reach; the table has entries for these as well
@@ -30,7 +31,9 @@ class ViewRegion {
     if (std::abs(dx) > reach_ || std::abs(dy) > reach_) return -1;
     return heights()[entry(dx, dy)];
   }
+  /// Whether a voxel so many voxels away is in the region.
   [[nodiscard]] bool contains(int dx, int dy, int dz) const { return std::abs(dz) <= height(dx, dy); }
+  /// Whether one voxel is in the region of another.
   [[nodiscard]] bool contains(const VoxelKey& from, const VoxelKey& to) const {
     return contains(to.x - from.x, to.y - from.y, to.z - from.z);
   }
@@ -58,6 +61,7 @@ class ViewRegion {
   /// an axis. Entries are linear in the offset, so that the entry of a difference is the difference of
   /// entries; they may be negative.
   [[nodiscard]] std::int32_t entry(int dx, int dy) const { return dx * (2 * (reach_ + kMargin) + 1) + dy; }
+  /// The heights of all columns, to be indexed by `entry`.
   [[nodiscard]] const std::int16_t* heights() const { return heights_.data() + heights_.size() / 2; }
 
  private:

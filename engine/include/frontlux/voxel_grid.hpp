@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
@@ -38,16 +39,19 @@ struct Block {
 /// A copy costs nothing and is a snapshot: copies share their bricks until one of them is written to.
 ///
 /// Thread safety: as a standard container. Copies in different threads are independent.
-class VoxelGrid {
+class FRONTLUX_EXPORT VoxelGrid {
  public:
   /// A grid of unknown voxels.
   /// @param resolution edge length of a voxel [m]
   /// @throws std::invalid_argument unless it is finite and positive
   explicit VoxelGrid(double resolution);
 
+  /// The lattice of the voxels.
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  /// Edge of a voxel [m].
   [[nodiscard]] double resolution() const { return lattice_.resolution(); }
 
+  /// The state of a voxel.
   [[nodiscard]] Occupancy at(const VoxelKey& key) const { return brick(key).at(key); }
 
   /// The brick that holds a voxel.
@@ -75,12 +79,13 @@ class VoxelGrid {
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// True if every voxel has the same state in both, and the resolutions are equal.
-  friend bool operator==(const VoxelGrid& a, const VoxelGrid& b);
+  friend FRONTLUX_EXPORT bool operator==(const VoxelGrid& a, const VoxelGrid& b);
 
   /// The storage behind the grid, for the casters' inner loops.
   [[nodiscard]] const detail::Tile& tile(const VoxelKey& key) const {
     return *world_->child(key)->child(key)->child(key);
   }
+  /// How the voxels are stored; for the engine itself.
   [[nodiscard]] const detail::Shared<detail::World>& storage() const { return world_; }
 
   friend void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
@@ -94,14 +99,14 @@ class VoxelGrid {
 /// Every voxel in a state, sorted.
 /// @throws std::invalid_argument for unknown voxels, which fill the rest of the key range
 /// @throws std::length_error if there are more than `kMostListedKeys`
-[[nodiscard]] std::vector<VoxelKey> keys_in(const VoxelGrid& grid, Occupancy state);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<VoxelKey> keys_in(const VoxelGrid& grid, Occupancy state);
 
 inline constexpr std::uint64_t kMostListedKeys = std::uint64_t{1} << 28;
 
 /// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
 /// became or were uniform. Parts that both grids share are not read, so between a grid and its edited
 /// copy this costs as much as the edit did.
-void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
-                     const std::function<void(const Block&)>& visit);
+FRONTLUX_EXPORT void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
+                                     const std::function<void(const Block&)>& visit);
 
 }  // namespace frontlux

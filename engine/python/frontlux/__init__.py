@@ -4,6 +4,7 @@ from enum import IntEnum
 
 from ._engine import (FieldOfView, FrontierSet, LiveMap, MapChange, RayCaster, ViewQualityImage, VoxelGrid,
                       best_window, instruction_set, pinhole_directions)
+from ._recording import Recording, read_recording
 
 
 class Occupancy(IntEnum):

@@ -136,3 +136,20 @@ class ViewQualityImage:
 def best_window(bin_hits: UInt32, opening: float, containing: Optional[float] = ...) -> Tuple[float, int]: ...
 def instruction_set() -> str: ...
 def pinhole_directions(intrinsics: Floats, columns: int, rows: int) -> Float32: ...
+
+class Recording:
+    world: str
+    resolution: float
+    bounds: UInt16
+    options: Dict[str, Any]
+    robots: List[str]
+    starts: Float64
+    observable: int
+    steps: Arrays
+    poses: Arrays
+    changes: Arrays
+    end: Optional[str]
+    truncated: bool
+    def grid(self, step: Optional[int] = None) -> VoxelGrid: ...
+
+def read_recording(file: File) -> Recording: ...

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/trajectory.hpp>
 
@@ -22,11 +23,13 @@ enum class PlanReason : std::uint8_t {
   kPeriod,    ///< its plan is as old as `ExplorationOptions::period`
 };
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
-[[nodiscard]] std::string_view name_of(PlanReason reason);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PlanReason reason);
 
 /// One robot's planning, and what all robots have done since the planning before.
 struct PlannedMotion {
+  /// Who planned: a number in the team.
   std::size_t robot = 0;
+  /// Why it planned.
   PlanReason reason = PlanReason::kStart;
   Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
   /// `RobotStep::planned` holds the poses at which each robot took a scan, after the last of the planning
@@ -50,7 +53,7 @@ struct PlannedMotion {
 ///
 /// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
 /// arena. Thread safety: as a standard container.
-class ContinuousExploration {
+class FRONTLUX_EXPORT ContinuousExploration {
  public:
   /// @throws std::invalid_argument naming the value that is out of bounds
   ContinuousExploration(ExplorationOptions options, Mapping mapping);
@@ -85,7 +88,9 @@ class ContinuousExploration {
   /// row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
+  /// As given.
   [[nodiscard]] const ExplorationOptions& options() const;
+  /// The map so far.
   [[nodiscard]] const Mapping& mapping() const;
 
  private:

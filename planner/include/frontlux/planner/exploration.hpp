@@ -1,6 +1,7 @@
 #pragma once
 
 #include <frontlux/caster_kind.hpp>
+#include <frontlux/export.hpp>
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
@@ -25,15 +26,19 @@ namespace detail {
 struct ExplorationState;
 }
 
-struct ExplorationOptions {
+/// A team, and how it explores.
+struct FRONTLUX_EXPORT ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
+  /// Which caster plans.
   CasterKind caster = CasterKind::kFast;
   /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
   /// the other.
   bool tours = false;
   bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;  ///< off: robots look ahead along their paths
+  /// How paths are found.
   PathOptions path;
+  /// How their yaws are optimised.
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
@@ -54,18 +59,21 @@ struct ExplorationOptions {
 
 /// All but the team. By default robots take the corridor's own shortest paths, since a random search finds
 /// longer ones; `kPaper` searches by RRT.
-[[nodiscard]] ExplorationOptions exploration_options(Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT ExplorationOptions exploration_options(Method method = Method::kDefault);
 
 /// Where a robot begins, and what it knows to be free there without having seen it.
 struct ExplorationStart {
   Pose pose;  ///< of its sensor
+  /// Voxels; of its body at least.
   std::vector<VoxelKey> known_free;
 };
 
 /// A voxel that became unknown, free or occupied and was not so before.
 struct VoxelChange {
+  /// The voxel.
   VoxelKey key;
-  Occupancy before = Occupancy::kUnknown, after = Occupancy::kUnknown;
+  Occupancy before = Occupancy::kUnknown;  ///< what it was
+  Occupancy after = Occupancy::kUnknown;   ///< what it is now
   friend constexpr auto operator<=>(const VoxelChange&, const VoxelChange&) = default;
 };
 
@@ -73,16 +81,17 @@ struct VoxelChange {
 struct RobotStep {
   Goal goal;                        ///< or why there is none
   std::vector<RenderedCell> image;  ///< of a robot on a plane: the cells rendered for its goal
+  /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
-  std::vector<Pose> planned;  ///< from where it was to the goal; empty if it stays
-  /// Distinct frontiers of its own that the path has in view: with the robot looking ahead, and as optimised.
-  std::uint64_t gain_tangent = 0, gain_predicted = 0;
-  std::uint64_t gain_sum = 0;           ///< of its own frontiers in view, summed over the path's viewpoints
-  std::size_t travelled = 0;            ///< viewpoints of `planned` that it reached, the first included
-  double length = 0.0;                  ///< [m] that it travelled
-  std::uint64_t gained = 0;             ///< frontiers of the step's beginning that its scans mapped
-  std::vector<VoxelChange> changed;     ///< by its scans, sorted by key
-  std::vector<VoxelKey> blocked;        ///< cells that it could not go through; sorted
+  std::vector<Pose> planned;         ///< from where it was to the goal; empty if it stays
+  std::uint64_t gain_tangent = 0;    ///< distinct frontiers of its own in the path's view, if it looked ahead
+  std::uint64_t gain_predicted = 0;  ///< the same with the yaws as optimised
+  std::uint64_t gain_sum = 0;        ///< of its own frontiers in view, summed over the path's viewpoints
+  std::size_t travelled = 0;         ///< viewpoints of `planned` that it reached, the first included
+  double length = 0.0;               ///< [m] that it travelled
+  std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans mapped
+  std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
+  std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
   std::vector<VoxelKey> still_unknown;  ///< frontiers in view of its viewpoints that stayed unknown; sorted
 };
 
@@ -90,9 +99,10 @@ struct RobotStep {
 enum class Phase : std::uint8_t { kFrontiers, kCaster, kGoals, kPaths, kOptimization, kMoving };
 inline constexpr std::size_t kPhases = 6;
 /// "frontiers", "caster", "goals", "paths", "optimization", "moving"
-[[nodiscard]] std::string_view name_of(Phase phase);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(Phase phase);
 
-struct ExplorationStep {
+/// What a team planned, did and mapped between two moments.
+struct FRONTLUX_EXPORT ExplorationStep {
   std::uint64_t number = 0;       ///< 0: the start, where robots only look around
   double time = 0.0;              ///< [s] of the clock, at its end
   std::size_t frontiers = 0;      ///< in the map when the step was planned
@@ -102,6 +112,7 @@ struct ExplorationStep {
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
 
+  /// Of all phases but moving [s].
   [[nodiscard]] double planning_seconds() const;
 };
 
@@ -113,11 +124,11 @@ enum class ExplorationEnd : std::uint8_t {
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };
 /// One of the words "low_gain", "nothing_to_do", "step_limit", "cut_off".
-[[nodiscard]] std::string_view name_of(ExplorationEnd end);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(ExplorationEnd end);
 /// In words: "expected gain stayed below 10 frontiers for 3 steps".
 /// @param steps  what is counted: in motion, "plannings"
-[[nodiscard]] std::string describe(ExplorationEnd end, const ExplorationOptions& options,
-                                   std::string_view steps = "steps");
+[[nodiscard]] FRONTLUX_EXPORT std::string describe(ExplorationEnd end, const ExplorationOptions& options,
+                                                   std::string_view steps = "steps");
 
 /// Moves a robot's sensor straight to a viewpoint and returns what it measures there; nothing if the robot
 /// could not go, and is where it was. The one function that a real or a simulated robot has to provide.
@@ -132,7 +143,7 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 /// The result depends on the options, the starts and the scans only: not on time, not on the number of
 /// threads, not on the choice among the fast, the embree and the grid caster. Works in TBB's current arena.
 /// Thread safety: as a standard container.
-class Exploration {
+class FRONTLUX_EXPORT Exploration {
  public:
   /// @param mapping  the map to fill; empty, or with what is known already
   /// @throws std::invalid_argument naming the value that is out of bounds
@@ -158,7 +169,9 @@ class Exploration {
   /// Alg. 1, line 3: why the exploration is over; nothing while it goes on.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
+  /// As given.
   [[nodiscard]] const ExplorationOptions& options() const;
+  /// The map so far.
   [[nodiscard]] const Mapping& mapping() const;
   /// Of the robots' sensors.
   [[nodiscard]] std::span<const Pose> poses() const;

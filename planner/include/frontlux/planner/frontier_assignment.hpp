@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -13,12 +14,14 @@ namespace frontlux::planner {
 
 /// A frontier and a cell that sees it, or saw it once.
 struct FrontierViewpoint {
-  VoxelKey frontier, cell;
+  VoxelKey frontier;  ///< what is seen
+  VoxelKey cell;      ///< from where
 };
 
 /// A robot in terms of frontiers: where it can go and what it sees from there.
 struct FrontierAgent {
   std::span<const VoxelKey> corridor;  ///< in any order; if empty, the agent gets no frontiers
+  /// What its sensor sees.
   FieldOfView view;
   /// Cells to test first, sorted by frontier. They do not change which frontiers are found, only how soon:
   /// most frontiers are still seen from where they were seen before.
@@ -47,15 +50,17 @@ struct FrontierAssignment {
 /// @param caster  on the same map as `grid`, with rays between keys by the integer rule (not OctoMap's own)
 /// @throws std::invalid_argument if the field of view is not valid, or if the corridor spans more than 2^24
 /// cubes of 16 voxels
-[[nodiscard]] AssignedFrontiers find_visible_frontiers(const RayCaster& caster, const VoxelGrid& grid,
-                                                       std::span<const VoxelKey> frontiers,
-                                                       const FrontierAgent& agent);
+[[nodiscard]] FRONTLUX_EXPORT AssignedFrontiers find_visible_frontiers(const RayCaster& caster,
+                                                                       const VoxelGrid& grid,
+                                                                       std::span<const VoxelKey> frontiers,
+                                                                       const FrontierAgent& agent);
 
 /// Assigns each frontier to the first agent that sees it: the paper's frontier distribution, Alg. 2, which
 /// takes the UGV first, then the UAV.
 /// @throws std::invalid_argument as `find_visible_frontiers`
-[[nodiscard]] FrontierAssignment assign_frontiers(const RayCaster& caster, const VoxelGrid& grid,
-                                                  std::span<const VoxelKey> frontiers,
-                                                  std::span<const FrontierAgent> agents);
+[[nodiscard]] FRONTLUX_EXPORT FrontierAssignment assign_frontiers(const RayCaster& caster,
+                                                                  const VoxelGrid& grid,
+                                                                  std::span<const VoxelKey> frontiers,
+                                                                  std::span<const FrontierAgent> agents);
 
 }  // namespace frontlux::planner

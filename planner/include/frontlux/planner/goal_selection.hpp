@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -33,8 +34,10 @@ enum class TravelDistance : std::uint8_t {
 };
 
 /// How goals are chosen. Eq. 1: view quality = exp(-lambda * distance) * gain.
-struct GoalOptions {
+struct FRONTLUX_EXPORT GoalOptions {
+  /// What makes a goal.
   GoalRule rule = GoalRule::kViewQuality;
+  /// How the distance to a goal is measured.
   TravelDistance distance = TravelDistance::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
   double min_distance = 0.6;  ///< [m] cells nearer to the robot are not goals
@@ -71,7 +74,7 @@ struct GoalOptions {
 /// By default, view quality for all robots: on a plane counted exactly; in space drawn from buckets at every
 /// second voxel, pruned, and counted for the best cells. As printed: on a plane by hits among the drawn
 /// frontiers, in space by clusters.
-[[nodiscard]] GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 
 /// Which frontiers a robot's goal is for, or why it has no goal.
 enum class GoalState : std::uint8_t {
@@ -85,12 +88,13 @@ enum class GoalState : std::uint8_t {
 };
 
 /// As it is written in logs: "assigned", "no_corridor", ...
-[[nodiscard]] std::string_view name_of(GoalState state);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(GoalState state);
 
 /// A robot's next goal.
 struct Goal {
   std::optional<Pose> pose;  ///< of its sensor; if there is none, the robot stays where it is
   VoxelKey cell;             ///< of the pose; a cell of its corridor
+  /// Which frontiers it is for, or why there is none.
   GoalState state = GoalState::kNoCorridor;
   std::string reason;           ///< the state in words, with numbers
   double distance = 0.0;        ///< [m] as eq. 1 takes it
@@ -114,6 +118,7 @@ struct TeamGoals {
 
 /// A cell as it was rendered for a robot's goal.
 struct RenderedCell {
+  /// A cell of the corridor.
   VoxelKey cell;
   double distance = 0.0;        ///< [m] as eq. 1 takes it
   double gain = 0.0;            ///< expected number of frontiers visible at the best yaw
@@ -125,7 +130,9 @@ struct RenderedCell {
 
 /// A robot and how its goals are chosen.
 struct TeamMember {
+  /// Its body and its sensor.
   Robot robot;
+  /// How its goals are chosen.
   GoalOptions options;
 };
 
@@ -139,7 +146,7 @@ struct TeamMember {
 /// same as that of a new object, on any number of threads and with any exact caster.
 ///
 /// Thread safety: as a standard container. Works in TBB's current arena.
-class GoalSelection {
+class FRONTLUX_EXPORT GoalSelection {
  public:
   /// @param bounds  of all collision boxes, as `TravelCorridor` takes them
   /// @param assign  whether each frontier is assigned to one robot (Alg. 2), else to all that see it
@@ -174,6 +181,7 @@ class GoalSelection {
   /// @pre robot < team().size()
   void keep_out_of(std::size_t robot, std::vector<KeyBox> boxes);
 
+  /// As given.
   [[nodiscard]] const std::vector<TeamMember>& team() const;
 
   /// The robot's corridor at the last step. @pre robot < team().size()

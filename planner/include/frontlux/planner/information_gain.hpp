@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/visible_pairs.hpp>
@@ -19,7 +20,9 @@ enum class GainMode : std::uint8_t {
   kSum,  ///< once for each of them, as printed in the paper
 };
 
-struct GainOptions {
+/// What counts as seen, and how sharply.
+struct FRONTLUX_EXPORT GainOptions {
+  /// What several views of a frontier count.
   GainMode mode = GainMode::kOr;
   double detection = 0.97;       ///< probability of a detection in full view, in (0, 1); for `kOr`
   double range_sharpness = 4.0;  ///< [1/m] of the logistic that fades the gain out about the maximum range
@@ -47,8 +50,9 @@ struct PoseGradient {
 ///
 /// Sharpness is in (0, 100]. Wrong sizes, values that are not finite and other sharpnesses throw
 /// std::invalid_argument. Thread safety: const members may run at the same time.
-class InformationGain {
+class FRONTLUX_EXPORT InformationGain {
  public:
+  /// The greatest sharpness that is allowed.
   static constexpr double kMaxSharpness = 100.0;
 
   /// @param viewpoints  where the sensor is; their yaws are not used
@@ -57,6 +61,7 @@ class InformationGain {
   InformationGain(std::span<const Pose> viewpoints, std::span<const Eigen::Vector3d> frontiers,
                   const VisiblePairs& pairs, const FieldOfView& view, const GainOptions& options = {});
 
+  /// Number of viewpoints of the path.
   [[nodiscard]] std::size_t viewpoints() const { return positions_.size(); }
 
   /// The differentiable gain.
@@ -76,7 +81,9 @@ class InformationGain {
   /// For each of `frontiers_of(viewpoint)`: 1 if it is in view at this yaw, else 0.
   void in_view(std::size_t viewpoint, double yaw, std::span<std::uint8_t> in_view) const;
 
+  /// What the sensor sees.
   [[nodiscard]] const FieldOfView& view() const { return view_; }
+  /// Number of frontiers.
   [[nodiscard]] std::size_t frontiers() const { return frontiers_.size(); }
 
  private:
@@ -97,6 +104,6 @@ class InformationGain {
 };
 
 /// @throws std::invalid_argument unless it is in (0, InformationGain::kMaxSharpness]
-void check_sharpness(double sharpness);
+FRONTLUX_EXPORT void check_sharpness(double sharpness);
 
 }  // namespace frontlux::planner

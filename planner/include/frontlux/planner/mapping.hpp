@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/map_change.hpp>
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -21,8 +22,9 @@ namespace frontlux::planner {
 /// The voxels that a box [m] reaches into. A face that lies on the lattice, give or take a millionth of a
 /// voxel, adds no voxels beyond it; what lies outside the key range is cut off.
 /// @throws std::invalid_argument if the box is empty, not a number, or outside the key range
-[[nodiscard]] KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
+[[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
 
+/// The map that scans go into.
 struct MappingOptions {
   double resolution = 0.3;       ///< [m] edge of a voxel
   KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched
@@ -49,7 +51,7 @@ struct InsertionTime {
 ///
 /// Thread safety: as a standard container. Insertion spreads its rays over TBB's current arena; what comes
 /// out does not depend on the number of threads.
-class Mapping {
+class FRONTLUX_EXPORT Mapping {
  public:
   /// @throws std::invalid_argument naming the value, if the resolution is no length, the bounds are empty, or
   /// the depth is negative or not finite
@@ -79,8 +81,10 @@ class Mapping {
   /// The same as `make_voxel_grid(tree())`, kept in step.
   [[nodiscard]] const VoxelGrid& grid() const;
 
+  /// Voxels outside are never touched.
   [[nodiscard]] const KeyBox& bounds() const;
 
+  /// Of the last insertion.
   [[nodiscard]] const InsertionTime& insertion_time() const;
 
   /// `write_octree` of the tree.

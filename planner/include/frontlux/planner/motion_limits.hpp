@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <numbers>
@@ -7,7 +9,7 @@
 namespace frontlux::planner {
 
 /// How fast a robot may move and turn.
-struct MotionLimits {
+struct FRONTLUX_EXPORT MotionLimits {
   double speed = 1.0;                      ///< [m/s]
   double acceleration = 2.0;               ///< [m/s2], curves included
   double yaw_rate = std::numbers::pi / 3;  ///< [rad/s]
@@ -18,6 +20,7 @@ struct MotionLimits {
   [[nodiscard]] double speed_along(const Eigen::Vector3d& direction) const {
     return per_axis ? speed / direction.cwiseAbs().maxCoeff() : speed;
   }
+  /// The greatest acceleration in a direction [m/s^2].
   [[nodiscard]] double acceleration_along(const Eigen::Vector3d& direction) const {
     return per_axis ? acceleration / direction.cwiseAbs().maxCoeff() : acceleration;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/information_gain.hpp>
 #include <frontlux/planner/pose.hpp>
@@ -20,8 +21,11 @@ enum class YawStart : std::uint8_t {
   kTangent,   ///< along the path
 };
 
-struct PathOptimizerOptions {
+/// How the yaws of a path are optimised.
+struct FRONTLUX_EXPORT PathOptimizerOptions {
+  /// What is to become greater.
   GainOptions gain;
+  /// From which yaws the ascent begins.
   YawStart start = YawStart::kGreedy;
   int yaw_bins = 24;   ///< 1 to 63, around the full circle
   bool ascend = true;  ///< along the gradient, with Ipopt; if false, the start is the result
@@ -36,11 +40,13 @@ struct PathOptimizerOptions {
 
 /// As printed in the paper: the sum of all views, from the path's tangent. The result still never has fewer
 /// distinct frontiers in view than the tangent.
-[[nodiscard]] PathOptimizerOptions paper_path_options();
+[[nodiscard]] FRONTLUX_EXPORT PathOptimizerOptions paper_path_options();
 
 /// A path's gain: the differentiable one at the last sharpness, and the number of distinct frontiers in view.
 struct PathGain {
+  /// The differentiable gain.
   double fuzzy = 0.0;
+  /// Frontiers in view of at least one viewpoint.
   std::uint64_t distinct = 0;
 };
 
@@ -57,14 +63,17 @@ enum class PathEnd : std::uint8_t {
 };
 
 /// In words.
-[[nodiscard]] std::string_view describe(PathEnd end);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathEnd end);
 
+/// A path with optimised yaws, and what they gain.
 struct OptimizedPath {
   std::vector<double> yaws;  ///< [rad] in [-pi, pi], one for each viewpoint; first and last as they were
   PathGain tangent;          ///< before the optimisation: each viewpoint looks to the next
   PathGain start;            ///< where the ascent began
+  /// Where the ascent ended.
   PathGain result;
   int evaluations = 0;  ///< of the differentiable gain
+  /// Why it ended.
   PathEnd end = PathEnd::kConverged;
 };
 
@@ -78,13 +87,13 @@ struct OptimizedPath {
 /// May be called from several threads; their ascents wait for each other, since Ipopt keeps global counters.
 /// @param frontiers  centres [m]
 /// @throws std::invalid_argument if a value is not finite, sizes do not match or an option is out of bounds
-[[nodiscard]] OptimizedPath optimize_path(std::span<const Pose> viewpoints,
-                                          std::span<const Eigen::Vector3d> frontiers,
-                                          const VisiblePairs& pairs, const FieldOfView& view,
-                                          const PathOptimizerOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT OptimizedPath optimize_path(std::span<const Pose> viewpoints,
+                                                          std::span<const Eigen::Vector3d> frontiers,
+                                                          const VisiblePairs& pairs, const FieldOfView& view,
+                                                          const PathOptimizerOptions& options = {});
 
 /// Yaws along a path [rad]: each viewpoint between the ends looks to the next. A viewpoint straight below or
 /// above the next one has the yaw of the one before it. The first and the last keep their yaws.
-[[nodiscard]] std::vector<double> tangent_yaws(std::span<const Pose> viewpoints);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<double> tangent_yaws(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

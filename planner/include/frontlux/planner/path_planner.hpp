@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -22,9 +23,11 @@ enum class PathSearch : std::uint8_t {
 };
 
 /// "rrt", "rrt-connect", "rrt-star", "corridor"
-[[nodiscard]] std::string_view name_of(PathSearch search);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathSearch search);
 
+/// How paths are searched.
 struct PathOptions {
+  /// The method.
   PathSearch search = PathSearch::kRrt;
   /// Of the search, at most; 1 to a million. RRT* uses them all, which takes a hundred times as long as RRT;
   /// 2,000 suit it well.
@@ -37,7 +40,9 @@ struct PathOptions {
 
 /// The key of a random search. The same key gives the same path; another key may give another path.
 struct PathKey {
-  std::uint64_t seed = 0, step = 0, robot = 0;
+  std::uint64_t seed = 0;   ///< of the run
+  std::uint64_t step = 0;   ///< of the exploration
+  std::uint64_t robot = 0;  ///< number in the team
 };
 
 /// How a search for a path ended.
@@ -52,13 +57,14 @@ enum class PathOutcome : std::uint8_t {
 };
 
 /// As it is written in logs: "found", "fell_back", ...
-[[nodiscard]] std::string_view name_of(PathOutcome outcome);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathOutcome outcome);
 
 /// In words, as the end of a sentence about the path.
-[[nodiscard]] std::string_view describe(PathOutcome outcome);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathOutcome outcome);
 
 /// A path from pose to pose.
 struct PathPlan {
+  /// How the path was found, or why there is none.
   PathOutcome outcome = PathOutcome::kNoCorridor;
   /// From start to goal, with all bends; the robot goes straight from each to the next. Start and goal are
   /// exactly those given. At the others the robot looks where it goes next; before a vertical segment it
@@ -67,6 +73,7 @@ struct PathPlan {
   double length = 0.0;  ///< [m]
   int iterations = 0;   ///< used by the search
 
+  /// Whether there is a path.
   [[nodiscard]] bool found() const { return !viewpoints.empty(); }
 };
 
@@ -87,16 +94,17 @@ struct PathPlan {
 /// @param corridor  of voxels; in one of nodes, a robot at the edge of a node would reach into the next
 /// @throws std::invalid_argument if a number of a pose or of the options is not finite or out of its range,
 /// or if the corridor is made of nodes
-[[nodiscard]] PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const Pose& start,
-                                 const Pose& goal, const PathKey& key, const PathOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice,
+                                                 const Pose& start, const Pose& goal, const PathKey& key,
+                                                 const PathOptions& options = {});
 
 /// Whether the body of a robot that goes straight from one point [m] to another stays in space that is known
 /// to be free: every voxel that a box of the corridor's `reach()` around the robot enters has to be a
 /// passable cell (see `SegmentVoxels`). False if an end is not finite or beyond the key range.
-[[nodiscard]] bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
-                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+[[nodiscard]] FRONTLUX_EXPORT bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
+                                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// Sum of the distances between successive viewpoints [m].
-[[nodiscard]] double path_length(std::span<const Pose> viewpoints);
+[[nodiscard]] FRONTLUX_EXPORT double path_length(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

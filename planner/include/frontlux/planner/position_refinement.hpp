@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -13,7 +14,8 @@
 
 namespace frontlux::planner {
 
-struct PositionOptions {
+/// How far and how often viewpoints are moved.
+struct FRONTLUX_EXPORT PositionOptions {
   int outer_iterations = 3;  ///< 1 to 1000; each finds the visible pairs anew
   int steps = 8;             ///< 1 to 1000 in each iteration: evaluations of the differentiable gain
   double max_shift = 0.6;    ///< [m] of a viewpoint from its given position
@@ -28,7 +30,8 @@ struct PositionOptions {
 /// A path whose viewpoints have moved.
 struct RefinedPath {
   std::vector<Pose> viewpoints;  ///< as many as were given; the first and the last are unchanged
-  PathGain before, after;        ///< each with the visible pairs of its own positions
+  PathGain before;               ///< of the path given, with the visible pairs of its positions
+  PathGain after;                ///< of this path, with the visible pairs of its own positions
   int outer_iterations = 0;      ///< that were kept; 0: no viewpoint has moved or turned
   std::uint64_t rays = 0;        ///< cast in all
 };
@@ -49,9 +52,10 @@ struct RefinedPath {
 /// @throws std::invalid_argument if a viewpoint is not finite, or a value of the options or of the field of
 /// view is
 ///                               out of bounds
-[[nodiscard]] RefinedPath refine_positions(std::span<const Pose> viewpoints,
-                                           std::span<const VoxelKey> frontiers, const RayCaster& caster,
-                                           const VoxelGrid& grid, const TravelCorridor& corridor,
-                                           const Robot& robot, const PositionOptions& options = {});
+[[nodiscard]] FRONTLUX_EXPORT RefinedPath refine_positions(std::span<const Pose> viewpoints,
+                                                           std::span<const VoxelKey> frontiers,
+                                                           const RayCaster& caster, const VoxelGrid& grid,
+                                                           const TravelCorridor& corridor, const Robot& robot,
+                                                           const PositionOptions& options = {});
 
 }  // namespace frontlux::planner

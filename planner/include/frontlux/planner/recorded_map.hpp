@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -15,7 +16,7 @@ namespace frontlux::planner {
 ///     for (const RecordedStep& step : recording.steps) map.apply(step);
 ///
 /// Takes some 50 megabytes for a map of a million known voxels. Thread safety: as a standard container.
-class RecordedMap {
+class FRONTLUX_EXPORT RecordedMap {
  public:
   /// The map before step 0: all is unknown.
   /// @param resolution [m]

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -21,9 +22,9 @@ struct RecordingHead {
   KeyBox bounds = kAllVoxels;            ///< of the map
   std::vector<RobotDescription> robots;  ///< in the team's order
   std::vector<ExplorationStart> starts;  ///< of each of them
-  std::uint64_t observable = 0,
-                bounding = 0;  ///< voxels that can be observed, and within the bounds; 0: unknown
-  std::string options;         ///< JSON object of the run's options, as its maker writes it
+  std::uint64_t observable = 0;          ///< voxels that can be observed; 0: unknown
+  std::uint64_t bounding = 0;            ///< voxels within the bounds; 0: unknown
+  std::string options;                   ///< JSON object of the run's options, as its maker writes it
 };
 
 /// How many voxels of a world one robot has mapped first, up to the end of a step.
@@ -35,6 +36,7 @@ struct KnownVoxels {
 
 /// A step, and what is mapped at its end.
 struct RecordedStep {
+  /// As the exploration returned it.
   ExplorationStep step;
   std::vector<KnownVoxels> known;  ///< of each robot; a voxel counts for the robot that mapped it first
   std::uint64_t collisions = 0;    ///< of robots with the true world, in this step
@@ -42,6 +44,7 @@ struct RecordedStep {
 
 /// A run as it was recorded.
 struct Recording {
+  /// What holds for all steps.
   RecordingHead head;
   std::vector<RecordedStep> steps;  ///< from step 0
   std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
@@ -50,7 +53,7 @@ struct Recording {
 };
 
 /// Writes a recording step by step. After each call the file holds all steps, even if the process is killed.
-class RecordingWriter {
+class FRONTLUX_EXPORT RecordingWriter {
  public:
   /// A new recording; a file of that name is replaced, unless another process is writing it.
   /// @throws std::runtime_error naming the file, if it cannot be written; so do the others, also if it is not
@@ -62,7 +65,9 @@ class RecordingWriter {
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
 
+  /// The next step.
   void write(const RecordedStep& step);
+  /// Why the run ended: one word of small letters and `_`.
   void write_end(const std::string& reason);
 
  private:
@@ -71,7 +76,7 @@ class RecordingWriter {
 };
 
 /// The file ends before the head of a recording does: the run had not begun when its process was killed.
-class UnbegunRecording : public std::runtime_error {
+class FRONTLUX_EXPORT UnbegunRecording : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -79,6 +84,6 @@ class UnbegunRecording : public std::runtime_error {
 /// Reads a whole recording. Everything in the file is checked: lengths, checksums, ranges of all values.
 /// @throws std::runtime_error naming the file, what is wrong, where, and what to do: it is not a recording,
 /// it has another format, or it is damaged; UnbegunRecording
-[[nodiscard]] Recording read_recording(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT Recording read_recording(const std::filesystem::path& file);
 
 }  // namespace frontlux::planner

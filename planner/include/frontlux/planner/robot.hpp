@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/motion_limits.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -18,7 +19,7 @@ enum class Method : std::uint8_t {
 
 /// A robot as planning sees it. Its pose is that of its sensor: on a plane above the floor, in space the
 /// middle of its body.
-struct Robot {
+struct FRONTLUX_EXPORT Robot {
   std::string name;      ///< in messages
   TravelOptions travel;  ///< where it fits
   FieldOfView view;      ///< what it sees from there
@@ -38,21 +39,23 @@ struct Robot {
 
 /// The paper's ground robot: 1.0 x 1.0 x 0.7 m on one plane, a lidar that sees all around, 20 degrees up and
 /// down, and 6 m far. Limits as in `MotionLimits`, which the paper does not say.
-[[nodiscard]] Robot ugv();
+[[nodiscard]] FRONTLUX_EXPORT Robot ugv();
 
 /// The paper's aerial robot: a cube of 0.8 m, a depth camera of 90 x 72 degrees that sees 10 m far. It goes
 /// where its box fits; as printed, through free octree nodes of 1.2 m. 1.5 m/s, else as the ground robot.
-[[nodiscard]] Robot uav(Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT Robot uav(Method method = Method::kDefault);
 
 /// A robot with the number of rays in a scan of its sensor, and how often it takes one.
 struct RobotDescription {
+  /// Its body, its sensor and its limits.
   Robot robot;
-  std::size_t columns = 0, rows = 0;  ///< azimuths and beams of a spinning sensor, pixels of a camera
-  double rate = 10.0;                 ///< [1/s] of scans, in motion
+  std::size_t columns = 0;  ///< azimuths of a spinning sensor, pixels in a row of a camera
+  std::size_t rows = 0;     ///< beams of a spinning sensor, pixels in a column of a camera
+  double rate = 10.0;       ///< [1/s] of scans, in motion
 };
 
 /// The paper's robots: 32 beams x 720 azimuths, 10 a second; 160 x 120 pixels, 15 a second.
-[[nodiscard]] RobotDescription ugv_description();
-[[nodiscard]] RobotDescription uav_description(Method method = Method::kDefault);
+[[nodiscard]] FRONTLUX_EXPORT RobotDescription ugv_description();
+[[nodiscard]] FRONTLUX_EXPORT RobotDescription uav_description(Method method = Method::kDefault);
 
 }  // namespace frontlux::planner

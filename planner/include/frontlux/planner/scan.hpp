@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <vector>
@@ -19,6 +21,6 @@ struct Scan {
 /// @throws std::invalid_argument naming the value, if the sizes differ, the origin is not finite, the range
 /// is not positive, a direction is not of unit length, or a range is negative or finite and beyond
 /// `max_range`
-void check(const Scan& scan);
+FRONTLUX_EXPORT void check(const Scan& scan);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 
@@ -18,7 +19,7 @@ namespace frontlux::planner {
 /// so that none is missed that the segment touches. So at an edge or corner all voxels that meet there count.
 /// Along an axis none count beyond those that hold the ends, so of a segment that lies in a face only the
 /// voxels of one side count: those that hold its points, since voxels are half open.
-class SegmentVoxels {
+class FRONTLUX_EXPORT SegmentVoxels {
  public:
   /// @param from, to  [m]
   /// @param reach  [m] of the box to each side of its middle, which moves from `from` to `to`

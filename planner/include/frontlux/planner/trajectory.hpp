@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/motion_limits.hpp>
 #include <frontlux/planner/pose.hpp>
 
@@ -15,20 +16,23 @@ namespace frontlux::planner {
 
 /// Where a robot is at a moment, and how it moves.
 struct MotionState {
+  /// Of the sensor.
   Pose pose;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
   double yaw_rate = 0.0;                               ///< [rad/s]
 };
 
 /// A line or a circular arc, by the length along it.
-struct PathPiece {
+struct FRONTLUX_EXPORT PathPiece {
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();       ///< [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< at the begin, of length 1
   Eigen::Vector3d inwards = Eigen::Vector3d::Zero();  ///< at the begin, of length 1, towards an arc's centre
   double curvature = 0.0;                             ///< [1/m] 0: a line
   double length = 0.0;                                ///< [m]
 
+  /// The point that lies so far along the piece [m].
   [[nodiscard]] Eigen::Vector3d position(double along) const;
+  /// Unit vector of travel there.
   [[nodiscard]] Eigen::Vector3d direction_at(double along) const;
   /// What remains of it after a length.
   [[nodiscard]] PathPiece from(double along) const;
@@ -44,7 +48,7 @@ using SegmentTest = std::function<bool(const Eigen::Vector3d& from, const Eigen:
 ///
 /// Speed and acceleration stay within the limits at every moment; the yaw, which has no limit on its
 /// acceleration, keeps its rate. A trajectory is a value.
-class Trajectory {
+class FRONTLUX_EXPORT Trajectory {
  public:
   /// A robot that rests.
   Trajectory(const Pose& pose, double time);
@@ -103,6 +107,7 @@ class Trajectory {
 };
 
 /// [s] that a robot takes along some viewpoints if it stops at each of them.
-[[nodiscard]] double stop_and_go_time(std::span<const Pose> viewpoints, const MotionLimits& limits);
+[[nodiscard]] FRONTLUX_EXPORT double stop_and_go_time(std::span<const Pose> viewpoints,
+                                                      const MotionLimits& limits);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/map_change.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -34,10 +35,12 @@ enum class PathMetric : std::uint8_t {
 /// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the
 /// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
 /// above that face, and the box has the fewest layers that cover its height and hold the sensor.
-struct TravelOptions {
+struct FRONTLUX_EXPORT TravelOptions {
+  /// On a plane or in space.
   Motion motion = Motion::kSpace;
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z
   double margin = 0.0;  ///< [m] kept free around the body, on a plane to its sides
+  /// How paths are measured.
   PathMetric metric = PathMetric::kEuclidean;
 
   double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
@@ -64,27 +67,28 @@ struct TravelOptions {
 };
 
 /// The paper's robots: a UGV of 1.0 x 1.0 x 0.7 m, a UAV of 0.8 m, and the UAV on nodes of 1.2 m.
-[[nodiscard]] TravelOptions ugv_travel();
-[[nodiscard]] TravelOptions uav_travel();
-[[nodiscard]] TravelOptions uav_node_travel();
+[[nodiscard]] FRONTLUX_EXPORT TravelOptions ugv_travel();
+[[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_travel();
+[[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_node_travel();
 
 /// [m] The body of a robot whose sensor is at the origin.
-[[nodiscard]] Eigen::AlignedBox3d body_of(const TravelOptions& travel);
+[[nodiscard]] FRONTLUX_EXPORT Eigen::AlignedBox3d body_of(const TravelOptions& travel);
 
 /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
-[[nodiscard]] VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel);
+[[nodiscard]] FRONTLUX_EXPORT VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice,
+                                               const VoxelKey& voxel);
 
 /// The voxels that have to be free for a robot in a cell: its collision box, or the cell's node. Cut off at
 /// the end of the key range.
-[[nodiscard]] KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice,
-                                    const VoxelKey& cell);
+[[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice,
+                                                    const VoxelKey& cell);
 
 /// How far a body that is not in the middle of a voxel may stick out of the collision box around the voxel,
 /// along each axis [m]. The body fits at a position if all cells are passable that a box of this half width
 /// around the position touches. It is 0 along axes on which the collision box has room for the body anywhere
 /// in the voxel, on a plane along z, and for nodes. A ten thousandth of a voxel does not count, so that a
 /// body as wide as its collision box fits in the middle.
-[[nodiscard]] Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
+[[nodiscard]] FRONTLUX_EXPORT Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
 
 /// Why there is a corridor, or none.
 enum class CorridorState : std::uint8_t {
@@ -99,7 +103,7 @@ enum class CorridorState : std::uint8_t {
 };
 
 /// In words, as the end of a sentence about the robot.
-[[nodiscard]] std::string_view describe(CorridorState state);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(CorridorState state);
 
 /// The cells that a robot can reach through what is known to be free, and how far they are.
 ///
@@ -108,7 +112,7 @@ enum class CorridorState : std::uint8_t {
 /// update the result is the same as that of a new corridor.
 ///
 /// Takes memory for each voxel of the bounds, or of one layer. Thread safety: as a standard container.
-class TravelCorridor {
+class FRONTLUX_EXPORT TravelCorridor {
  public:
   /// @param bounds  of the collision box; on a plane only x and y are used
   /// @throws std::invalid_argument naming the option that is not valid, or if the bounds hold over 2^29 cells
@@ -137,6 +141,7 @@ class TravelCorridor {
 
   /// All cells, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> cells() const;
+  /// Whether a cell belongs to the corridor.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return distance(key).has_value(); }
 
   /// Length of the shortest path from the robot [m]; nothing if the key is not a cell of the corridor.

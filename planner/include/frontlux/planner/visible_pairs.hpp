@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -14,12 +15,13 @@ namespace frontlux::planner {
 
 /// One viewpoint of a path and one frontier that it sees at some yaw, by their places in their lists.
 struct VisiblePair {
-  std::uint32_t viewpoint = 0, frontier = 0;
+  std::uint32_t viewpoint = 0;  ///< index among the viewpoints
+  std::uint32_t frontier = 0;   ///< index among the frontiers
   friend constexpr auto operator<=>(const VisiblePair&, const VisiblePair&) = default;
 };
 
 /// Which frontiers each viewpoint sees at some yaw: V_ij of the information gain, as a sparse matrix.
-class VisiblePairs {
+class FRONTLUX_EXPORT VisiblePairs {
  public:
   VisiblePairs() = default;
 
@@ -27,8 +29,11 @@ class VisiblePairs {
   /// @throws std::invalid_argument naming a pair that is out of range or given twice
   VisiblePairs(std::size_t viewpoints, std::size_t frontiers, std::span<const VisiblePair> pairs);
 
+  /// Number of viewpoints.
   [[nodiscard]] std::size_t viewpoints() const { return first_.size() - 1; }
+  /// Number of frontiers.
   [[nodiscard]] std::size_t frontiers() const { return frontiers_; }
+  /// Number of visible pairs.
   [[nodiscard]] std::size_t size() const { return seen_.size(); }
 
   /// Frontiers that a viewpoint sees, ascending.
@@ -46,14 +51,16 @@ class VisiblePairs {
 /// viewpoint and of the frontier do not. Casts one batch of rays for the whole path.
 /// @param grid  on whose lattice the keys lie
 /// @throws std::invalid_argument if a viewpoint is not finite, or a value of the view is out of bounds
-[[nodiscard]] VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
-                                         std::span<const Pose> viewpoints,
-                                         std::span<const VoxelKey> frontiers, const FieldOfView& view);
+[[nodiscard]] FRONTLUX_EXPORT VisiblePairs visible_pairs(const RayCaster& caster, const VoxelGrid& grid,
+                                                         std::span<const Pose> viewpoints,
+                                                         std::span<const VoxelKey> frontiers,
+                                                         const FieldOfView& view);
 
 /// Centres of voxels [m].
-[[nodiscard]] std::vector<Eigen::Vector3d> centers(const Lattice& lattice, std::span<const VoxelKey> keys);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> centers(const Lattice& lattice,
+                                                                   std::span<const VoxelKey> keys);
 
 /// @throws std::invalid_argument naming the first viewpoint that is not finite
-void check_finite(std::span<const Pose> viewpoints);
+FRONTLUX_EXPORT void check_finite(std::span<const Pose> viewpoints);
 
 }  // namespace frontlux::planner

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 
 #include <filesystem>
@@ -14,6 +15,6 @@ namespace frontlux::io {
 /// the tip of an arrow of 0.3 m in that direction, and as edges the arrows and the path.
 /// @throws std::invalid_argument if the name ends otherwise
 /// @throws std::runtime_error naming the file, if it cannot be written
-void write_path(const std::filesystem::path& file, std::span<const planner::Pose> viewpoints);
+FRONTLUX_EXPORT void write_path(const std::filesystem::path& file, std::span<const planner::Pose> viewpoints);
 
 }  // namespace frontlux::io

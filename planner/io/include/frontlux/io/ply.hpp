@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/file.hpp>
 
 #include <Eigen/Core>
@@ -13,6 +14,7 @@ namespace frontlux::io {
 
 /// Vertices and triangles as a file has them: in the file's unit and frame, no coordinate or index checked.
 struct RawMesh {
+  /// [m]
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint64_t, 3>> triangles;  ///< indices of vertices
 };
@@ -22,6 +24,7 @@ struct RawMesh {
 /// properties and elements are checked and left out. Time and memory are bounded by the size of the file,
 /// whatever its header says.
 /// @throws std::runtime_error naming the file, the line or byte, what is wrong there, and what to do
-[[nodiscard]] RawMesh read_ply(const std::filesystem::path& file, std::uint64_t max_bytes = kMaxFileBytes);
+[[nodiscard]] FRONTLUX_EXPORT RawMesh read_ply(const std::filesystem::path& file,
+                                               std::uint64_t max_bytes = kMaxFileBytes);
 
 }  // namespace frontlux::io

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 
 #include <filesystem>
@@ -11,6 +13,7 @@ namespace frontlux::io {
 /// name's ending. Other fields and elements are left out. A coordinate may be NaN; it is infinite if too
 /// large for a float.
 /// @throws std::runtime_error naming the file, what is wrong, the line or byte where it is, and what to do
-[[nodiscard]] std::vector<Eigen::Vector3f> read_point_cloud(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3f> read_point_cloud(
+    const std::filesystem::path& file);
 
 }  // namespace frontlux::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/pose.hpp>
 
 #include <Eigen/Geometry>
@@ -17,21 +18,23 @@ namespace frontlux::io {
 struct RecordedPose {
   std::string file;      ///< as the pose file names it
   std::size_t line = 0;  ///< of the pose file, from 1
+  /// Pose of the sensor in the world.
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
 };
 
 /// Reads a line for each scan: `file,x,y,z,qx,qy,qz,qw` or `file,x,y,z,yaw` [m, rad].
 /// @throws std::runtime_error naming the file, the line, what is wrong and what to do
-[[nodiscard]] std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file);
 
 /// A pose of a list.
 struct ListedPose {
+  /// Of the sensor.
   planner::Pose pose;
   std::size_t line = 0;  ///< of the file, from 1
 };
 
 /// Reads a pose on each line: `x,y,z,yaw` [m, rad].
 /// @throws std::runtime_error naming the file, the line, what is wrong and what to do
-[[nodiscard]] std::vector<ListedPose> read_pose_list(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<ListedPose> read_pose_list(const std::filesystem::path& file);
 
 }  // namespace frontlux::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <frontlux/export.hpp>
 #include <frontlux/planner/robot.hpp>
 
 #include <filesystem>
@@ -8,6 +9,6 @@ namespace frontlux::io {
 
 /// Reads a robot from a JSON file; docs/robots.md shows one and says what each member means.
 /// @throws std::runtime_error naming the file, the member, what is wrong and what to do
-[[nodiscard]] planner::RobotDescription read_robot(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT planner::RobotDescription read_robot(const std::filesystem::path& file);
 
 }  // namespace frontlux::io

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/export.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -10,16 +12,17 @@ namespace frontlux::io {
 
 /// A scan as it was recorded: the end points of its rays in the sensor's frame, and where the sensor was.
 struct RecordedScan {
+  /// Pose of the sensor in the world.
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3f> points;  ///< [m] a point that is not finite is no measurement
 };
 
 /// The end points in the world frame [m], computed in double.
-[[nodiscard]] std::vector<Eigen::Vector3f> points_in_world(const RecordedScan& scan);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3f> points_in_world(const RecordedScan& scan);
 
 /// Reads all scans of an OctoMap scan graph, the binary kind, usually named `.graph`. The whole file is
 /// checked; edges are read and left out.
 /// @throws std::runtime_error naming the file, what is wrong, the byte where it was found, and what to do
-[[nodiscard]] std::vector<RecordedScan> read_scan_graph(const std::filesystem::path& file);
+[[nodiscard]] FRONTLUX_EXPORT std::vector<RecordedScan> read_scan_graph(const std::filesystem::path& file);
 
 }  // namespace frontlux::io

@@ -1,0 +1,14 @@
+# `cpack` in the build folder makes one archive and one Debian package of all that is built.
+set(CPACK_GENERATOR TGZ DEB)
+set(CPACK_PACKAGE_VENDOR "the frontlux authors")
+set(CPACK_PACKAGE_CONTACT "the frontlux authors <authors@frontlux.invalid>")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS  # where a shared build has its own libraries
+  ${PROJECT_BINARY_DIR}/engine ${PROJECT_BINARY_DIR}/planner ${PROJECT_BINARY_DIR}/planner/io)
+# Debian's packages hold the same files.
+set(CPACK_DEBIAN_PACKAGE_CONFLICTS "libfrontlux0, libfrontlux-dev")
+include(CPack)

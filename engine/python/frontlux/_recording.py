@@ -1,0 +1,264 @@
+"""Recordings of explorations (run.frontlux) as arrays. Needs nothing but numpy."""
+import json
+import struct
+import zlib
+from dataclasses import dataclass
+from os import fspath
+from typing import Any, Dict, List, Optional
+
+import numpy as np
+
+from ._engine import VoxelGrid
+
+_TITLE = b"frontlux recording, format "
+_FORMAT = 3
+_MOST_BYTES = 1 << 30  # of a record
+
+_STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "collisions")
+_ROBOT_COUNTS = ("gain_tangent", "gain_predicted", "gain_sum", "gained", "travelled")
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A run: n steps (in motion: plannings) of r robots. Step 0 is the start. Times are in seconds on the run's clock,
+    lengths in metres, poses (x, y, z, yaw) of sensors in metres and radians in the map's frame.
+
+    world         str, for people
+    resolution    float [m], the edge of a voxel
+    bounds        (2, 3) uint16, the least and the greatest key of the map
+    options       dict, the run's own options
+    robots        r names
+    starts        (r, 4) float64, poses
+    steps         dict of arrays, one row a step: number, frontiers, unassigned, abandoned, rays, collisions (n,) int64;
+                  time (n,) float64 [s] at the step's end; seconds (n, 6) float64, what planning and moving took
+                  [s]: frontiers, caster, goals, paths, optimization, moving; known (n, r) int64, the observable voxels that
+                  each robot mapped first, and known_in_bounds, of all voxels; length (n, r) float64 [m]
+                  travelled in the step; gained, gain_tangent, gain_predicted, gain_sum, travelled (n, r) int64
+    observable    int, voxels that can be observed; 0 if that is not known
+    poses         dict of arrays, one row a viewpoint or, in motion, a scan: step, robot (p,) int64, pose (p, 4) float64
+    changes       dict of arrays, one row for each voxel that a robot changed in a step: step, robot (c,) int64; keys
+                  (c, 3) uint16; before, after (c,) uint8, as in Occupancy
+    end           str, why the run ended; None if it was cut off
+    truncated     bool, an unfinished step at the end of the file was left out
+    """
+    world: str
+    resolution: float
+    bounds: np.ndarray
+    options: Dict[str, Any]
+    robots: List[str]
+    starts: np.ndarray
+    observable: int
+    steps: Dict[str, np.ndarray]
+    poses: Dict[str, np.ndarray]
+    changes: Dict[str, np.ndarray]
+    end: Optional[str]
+    truncated: bool
+
+    def grid(self, step: Optional[int] = None) -> VoxelGrid:
+        """The map after a step, counted from 0; without one, after the last step. ValueError if there is no such step."""
+        last = len(self.steps["number"]) - 1
+        step = last if step is None else step
+        if not 0 <= step <= last:
+            raise ValueError(f"step is {step}, but has to be 0 to {last}")
+        grid = VoxelGrid(self.resolution)
+        rows = self.changes["step"] <= step
+        if rows.any():
+            keys = self.changes["keys"][rows].astype(np.int64)
+            low = keys.min(axis=0)
+            states = np.zeros(keys.max(axis=0) - low + 1, np.uint8)
+            # Of equal places the last one counts.
+            _, places = np.unique(np.ravel_multi_index((keys[::-1] - low).T, states.shape), return_index=True)
+            newest = len(keys) - 1 - places
+            states[tuple((keys[newest] - low).T)] = self.changes["after"][rows][newest]
+            grid.set_states(low.astype(np.uint16), states)
+        return grid
+
+
+class _Bytes:
+    """A record: whole numbers of 7 bits a byte, lowest first; doubles; texts."""
+
+    def __init__(self, data):
+        self.bytes, self.at = np.frombuffer(data, np.uint8), 0
+        self.ends = np.flatnonzero(self.bytes < 0x80)  # the last bytes of whole numbers, among others
+
+    def take(self, size):
+        if size > len(self.bytes) - self.at:
+            raise ValueError("a record ends too early")
+        self.at += size
+        return self.bytes[self.at - size:self.at]
+
+    def counts(self, how_many):
+        """(how_many,) int64"""
+        if how_many == 0:
+            return np.empty(0, np.int64)
+        first = np.searchsorted(self.ends, self.at)
+        ends = self.ends[first:first + how_many]
+        if len(ends) < how_many:
+            raise ValueError("a record ends too early")
+        begins = np.concatenate(([self.at], ends[:-1] + 1))
+        if (ends - begins).max() > 9:
+            raise ValueError("a whole number has more than 64 bits")
+        digits = self.take(int(ends[-1]) + 1 - self.at).astype(np.int64) & 0x7F
+        shifts = 7 * (np.arange(len(digits)) - np.repeat(begins - begins[0], ends - begins + 1))
+        return np.add.reduceat(digits << shifts, begins - begins[0])
+
+    def count(self):
+        value = shift = 0
+        while shift < 64:
+            byte = int(self.take(1)[0])
+            value, shift = value | (byte & 0x7F) << shift, shift + 7
+            if byte < 0x80:
+                return value
+        raise ValueError("a whole number has more than 64 bits")
+
+    def length(self):
+        """Of a list, each of whose elements has a byte at least."""
+        size = self.count()
+        if size > len(self.bytes) - self.at:
+            raise ValueError("a list is longer than what is there")
+        return size
+
+    def doubles(self, *shape):
+        return self.take(8 * int(np.prod(shape))).view("<f8").astype(np.float64).reshape(shape)
+
+    def text(self):
+        return self.take(self.length()).tobytes().decode()
+
+    def keys(self, how_many):
+        """(how_many, 3) uint16, from differences: all x, then y, then z"""
+        zigzag = self.counts(3 * how_many).reshape(3, how_many)
+        keys = np.cumsum(np.where(zigzag & 1, -(zigzag >> 1) - 1, zigzag >> 1), axis=1).T
+        if keys.size and (keys.min() < 0 or keys.max() > 0xFFFF):
+            raise ValueError("a voxel lies outside the key range")
+        return keys.astype(np.uint16)
+
+
+def _read_robot(record):
+    name = record.text()
+    record.count(), record.doubles(3), record.count(), record.doubles(2), record.count()
+    record.doubles(2 if record.count() else 0)
+    record.count(), record.counts(6 * record.length()), record.doubles(3)
+    record.count(), record.doubles(3)  # its field of view
+    record.doubles(3), record.count()  # its limits
+    record.doubles(1), record.counts(2)
+    return name
+
+
+def _read_head(record):
+    head = {"world": record.text(), "resolution": float(record.doubles(1)[0]),
+            "bounds": record.counts(6).reshape(2, 3).astype(np.uint16), "observable": record.count()}
+    record.count()
+    head["options"] = json.loads(record.text())
+    head["robots"] = [_read_robot(record) for _ in range(record.length())]
+    starts = []
+    for _ in range(record.length()):
+        starts.append(record.doubles(4))
+        record.keys(record.length())
+    head["starts"] = np.array(starts).reshape(-1, 4)
+    return head
+
+
+def _read_step(record, number, run):
+    step = dict(zip(_STEP_COUNTS, record.counts(len(_STEP_COUNTS))))
+    if step["number"] != number:
+        raise ValueError(f"step {number} has another number")
+    step["time"] = record.doubles(1)[0]
+    step["seconds"] = record.doubles(6)
+    known = record.counts(2 * record.length()).reshape(-1, 2)
+    step["known"], step["known_in_bounds"] = known.T
+    robots = []
+    for robot in range(record.length()):
+        of_robot = dict(zip(_ROBOT_COUNTS, record.counts(len(_ROBOT_COUNTS))))
+        of_robot["length"] = record.doubles(1)[0]
+        record.counts(2)  # outcome of the path search, state of the goal
+        record.doubles(4 if record.count() else 0)
+        record.counts(3), record.text(), record.doubles(4), record.counts(4)  # the goal
+        poses = record.doubles(record.length(), 4)[:of_robot["travelled"]]
+        changed = record.length()
+        keys, states = record.keys(changed), record.counts(changed)
+        run["poses"].append((number, robot, poses))
+        run["changes"].append((number, robot, keys, states // 3, states % 3))
+        record.keys(record.length()), record.keys(record.length())  # still unknown; blocked
+        cells = record.length()
+        record.keys(cells), record.doubles(5, cells), record.counts(cells)  # the image
+        robots.append(of_robot)
+    for name in (*_ROBOT_COUNTS, "length"):
+        step[name] = np.array([of_robot[name] for of_robot in robots])
+    run["steps"].append(step)
+
+
+def _records(file, title):
+    """(tag, bytes) of each record; None at the end if one is unfinished."""
+    line = file.readline(len(title) + 20)
+    if not line.startswith(title) or not line.endswith(b"\n"):
+        raise ValueError("is no recording of frontlux")
+    if line[len(title):-1] != str(_FORMAT).encode():
+        raise ValueError(f"has format {line[len(title):-1].decode('ascii', 'replace')}, but this frontlux reads {_FORMAT}")
+    while header := file.read(16):
+        # What a file grew by before the machine lost its power may read as zeros.
+        if len(header) < 16 or not (header.strip(b"\0") or file.read().strip(b"\0")):
+            yield None
+            return
+        tag, packed, plain, header_checksum = struct.unpack("<4s3I", header)
+        if zlib.crc32(header[:12]) != header_checksum or plain > _MOST_BYTES:
+            raise ValueError(f"is damaged before byte {file.tell()}")
+        payload, checksum = file.read(packed), file.read(4)
+        if len(payload) < packed or len(checksum) < 4:
+            yield None
+            return
+        if zlib.crc32(payload) != struct.unpack("<I", checksum)[0]:
+            raise ValueError(f"is damaged before byte {file.tell()}")
+        data = zlib.decompressobj().decompress(payload, plain + 1)
+        if len(data) != plain:
+            raise ValueError(f"is damaged before byte {file.tell()}")
+        yield tag, data
+
+
+def _columns(rows, *shapes):
+    """Lists of (step, robot, array...) as one array each: step, robot, and the arrays behind each other."""
+    sizes = [len(row[2]) for row in rows]
+    columns = [np.repeat(np.array([row[i] for row in rows], np.int64), sizes) for i in (0, 1)]
+    for i, (shape, dtype) in enumerate(shapes, 2):
+        columns.append(np.concatenate([np.empty((0, *shape), dtype), *(row[i] for row in rows)]).astype(dtype))
+    return columns
+
+
+def read_recording(file):
+    """Reads a recording, such as run.frontlux in the folder that `frontlux explore` leaves; also of a run in progress.
+
+    file: str or os.PathLike. Returns a Recording. RuntimeError naming the file if it is damaged or none of ours, OSError
+    if it cannot be opened.
+    """
+    head, end, truncated = None, None, False
+    run = {"steps": [], "poses": [], "changes": []}
+    with open(file, "rb") as opened:
+        try:
+            for part in _records(opened, _TITLE):
+                if part is None:
+                    truncated = True
+                    break
+                tag, record = part[0], _Bytes(part[1])
+                if (head is None) != (tag == b"head"):
+                    raise ValueError("has no head, or two")
+                if tag == b"head":
+                    head = _read_head(record)
+                elif tag == b"step":
+                    _read_step(record, len(run["steps"]), run)
+                elif tag == b"end ":
+                    end = record.text()
+                if record.at != len(record.bytes):
+                    raise ValueError("has a record with bytes too many")
+            if head is None:
+                raise ValueError("has no head")
+        except (ValueError, IndexError, OverflowError, zlib.error) as error:
+            raise RuntimeError(f"{fspath(file)}: {error}") from error
+    robots = len(head["robots"])
+    names = {"time": ((), np.float64), "seconds": ((6,), np.float64), "length": ((robots,), np.float64),
+             **{name: ((), np.int64) for name in _STEP_COUNTS},
+             **{name: ((robots,), np.int64) for name in ("known", "known_in_bounds", *_ROBOT_COUNTS)}}
+    steps = {name: np.array([step[name] for step in run["steps"]], dtype).reshape(-1, *shape)
+             for name, (shape, dtype) in names.items()}
+    poses = dict(zip(("step", "robot", "pose"), _columns(run["poses"], ((4,), np.float64))))
+    changes = dict(zip(("step", "robot", "keys", "before", "after"),
+                       _columns(run["changes"], ((3,), np.uint16), ((), np.uint8), ((), np.uint8))))
+    return Recording(steps=steps, poses=poses, changes=changes, end=end, truncated=truncated, **head)

@@ -1,0 +1,109 @@
+"""Recordings as arrays, against what the same run wrote as tables and as a map; and damaged ones."""
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+import frontlux
+
+
+def explore(folder, *options):
+    subprocess.run([os.environ["FRONTLUX_COMMAND"], "explore", "room", "--seed", "1", *options, "-o", folder], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+class Recordings(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.run_folder = pathlib.Path(cls.folder.name) / "run"
+        explore(cls.run_folder, "--lockstep")
+        cls.recording = frontlux.read_recording(cls.run_folder / "run.frontlux")
+        with open(cls.run_folder / "steps.csv", encoding="utf-8") as table:
+            cls.rows = list(csv.DictReader(table))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def column(self, name, dtype=float):
+        """A column of the table, whose rows are steps and in them robots, of shape (steps, robots)."""
+        return np.array([row[name] for row in self.rows], dtype).reshape(-1, len(self.recording.robots))
+
+    def test_the_head(self):
+        self.assertEqual((self.recording.world, self.recording.robots), ("room", ["ugv", "uav"]))
+        self.assertEqual(self.recording.resolution, 0.3)
+        self.assertEqual(self.recording.options["seed"], 1)
+        self.assertEqual(self.recording.starts.shape, (2, 4))
+        self.assertEqual((self.recording.end, self.recording.truncated), ("nothing_to_do", False))
+
+    def test_steps_are_those_of_the_table(self):
+        steps = self.recording.steps
+        self.assertGreater(len(steps["number"]), 3)
+        for name in ("frontiers", "unassigned", "abandoned", "collisions", "rays"):
+            np.testing.assert_array_equal(steps[name], self.column(name, int)[:, 0], name)
+        for name in ("gain_tangent", "gain_predicted", "gained"):
+            np.testing.assert_array_equal(steps[name], self.column(name, int), name)
+        np.testing.assert_allclose(steps["time"], self.column("time_s")[:, 0])
+        np.testing.assert_allclose(steps["length"], self.column("length_m"), atol=1e-6)
+        np.testing.assert_allclose(steps["known"] / self.recording.observable, self.column("robot_observable"))
+        np.testing.assert_allclose(steps["seconds"][:, -1], self.column("moving_s")[:, 0])
+
+    def test_poses_begin_at_the_starts_and_end_as_often_as_robots_travelled(self):
+        poses = self.recording.poses
+        for robot, start in enumerate(self.recording.starts):
+            np.testing.assert_array_equal(poses["pose"][poses["robot"] == robot][0], start)
+        self.assertEqual(len(poses["step"]), self.recording.steps["travelled"].sum())
+
+    def test_changes_make_the_map(self):
+        self.assertEqual(self.recording.grid(), frontlux.VoxelGrid.read(self.run_folder / "map.bt"))
+        changes = self.recording.changes
+        first = changes["step"] == 0
+        _, places = np.unique(changes["keys"][first], axis=0, return_index=True)
+        self.assertEqual(sum(self.recording.grid(0).count()[1:]), len(places))
+        self.assertTrue((changes["before"] != changes["after"]).all())
+        for step in (-1, len(self.recording.steps["number"])):
+            with self.assertRaisesRegex(ValueError, f"step is {step}, but has to be 0 to"):
+                self.recording.grid(step)
+
+    def test_a_run_in_motion(self):
+        folder = pathlib.Path(self.folder.name) / "motion"
+        explore(folder)
+        recording = frontlux.read_recording(folder / "run.frontlux")
+        self.assertEqual(recording.grid(), frontlux.VoxelGrid.read(folder / "map.bt"))
+        self.assertTrue((np.diff(recording.steps["time"]) >= 0).all())
+
+    def test_damage_is_found_and_named(self):
+        whole = (self.run_folder / "run.frontlux").read_bytes()
+        file = pathlib.Path(self.folder.name) / "damaged.frontlux"
+        random = np.random.default_rng(1)
+        for place in random.integers(len(whole), size=200):
+            file.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << random.integers(8)]) + whole[place + 1:])
+            with self.assertRaisesRegex(RuntimeError, "damaged.frontlux"):
+                frontlux.read_recording(file)
+        file.write_bytes(b"frontlux recording, format 2\n")
+        with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3"):
+            frontlux.read_recording(file)
+
+    def test_a_recording_that_is_cut_off_is_read_up_to_there(self):
+        whole = (self.run_folder / "run.frontlux").read_bytes()
+        file = pathlib.Path(self.folder.name) / "cut.frontlux"
+        file.write_bytes(whole[:len(whole) * 3 // 4])
+        recording = frontlux.read_recording(file)
+        self.assertEqual((recording.end, recording.truncated), (None, True))
+        steps = len(recording.steps["number"])
+        self.assertGreater(steps, 0)
+        self.assertLess(steps, len(self.recording.steps["number"]))
+        self.assertEqual(recording.grid(), self.recording.grid(steps - 1))
+        file.write_bytes(whole + b"\0" * 5000)
+        self.assertTrue(frontlux.read_recording(file).truncated)
+        with self.assertRaises(FileNotFoundError):
+            frontlux.read_recording(self.run_folder / "none")
+
+
+if __name__ == "__main__":
+    unittest.main()
