@@ -102,10 +102,12 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
   }
 }
 
-// How far the run is, and what each robot does in this step.
+// How far the run is, what each robot does in this step, and what it is about.
 void show(const ExplorationStep& step, const RunSums& sums, const ExploreSetup& setup, double seconds) {
   const auto moves = [&](const planner::RobotStep& robot) -> std::string {
-    if (!setup.lockstep) return "moves " + fixed(robot.length, 1) + " m";
+    if (!setup.lockstep)
+      return "moves " + fixed(robot.length, 1) + " m" +
+             (robot.goal.reason.empty() ? "" : " (" + robot.goal.reason + ")");
     if (robot.goal.pose)
       return "travels " + fixed(robot.length, 1) + " m, expected gain " +
              std::to_string(robot.gain_predicted) + " of " + std::to_string(robot.goal.assigned);

@@ -196,7 +196,8 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     goal.gain = static_cast<double>(first.seen);
     goal.assigned = tours->frontiers_of(robot).size();
     goal.quality = std::exp(-options.team[robot].options.lambda * goal.distance) * goal.gain;
-    goal.reason = "first of " + std::to_string(tour.size()) + " stops";
+    goal.reason =
+        "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
   }
 }
 
@@ -230,8 +231,8 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
     const auto cell = lattice().key(place->position);
     if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
     if (lost && place->position == poses[robot].position) return {};
+    if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (!lost) {
-      if (std::ranges::find(tried, *cell) != tried.end()) continue;
       if (elsewhere && elsewhere->contains(*cell)) continue;
       if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
     }
@@ -241,11 +242,10 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
   return {};
 }
 
-// To each place once for each goal that the robot had, or it would go back and forth.
+// To each place once for each goal that the robot had, or it would go back and forth, or try for ever.
 std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
   std::vector<Pose> way = way_back(robot, goal, went_back_to[robot]);
-  if (goal.state != GoalState::kNoCorridor && !way.empty())
-    went_back_to[robot].push_back(lattice().key(way.back().position).value());
+  if (!way.empty()) went_back_to[robot].push_back(lattice().key(way.back().position).value());
   return way;
 }
 

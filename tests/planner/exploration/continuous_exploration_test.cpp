@@ -256,6 +256,22 @@ TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
     EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
 }
 
+// Whatever it tries, it is stopped where it is.
+TEST(ContinuousExploration, EndsWithARobotThatIsCutOff) {
+  TeamInMotion scene("room", {small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  double time = scene.time() + 0.05;
+  const Pose rests = exploration.at(0, time).pose;
+  ASSERT_NE(rests.position, scene.team().starts[0].pose.position) << "it has come from elsewhere";
+  for (int i = 0; i < 200 && !exploration.end(); ++i, time += 0.5) {
+    exploration.stopped(0, rests, time, {});
+    while (exploration.plan(time)) {
+    }
+  }
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kCutOff);
+}
+
 // A beam that ends in the middle of a voxel, or passes through it.
 Scan beam(const Lattice& lattice, const VoxelKey& from, const VoxelKey& to, bool hit) {
   const Eigen::Vector3f origin = lattice.exact_center(from).cast<float>(),

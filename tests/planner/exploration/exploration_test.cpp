@@ -242,6 +242,19 @@ TEST(Exploration, BacksOffFromWhatTurnsUpBesideIt) {
   EXPECT_TRUE(exploration.step(see_nothing).robots[0].goal.pose.has_value()) << "and from there it goes on";
 }
 
+// Beside what turned up the robot can do nothing but back off, and does not go.
+TEST(Exploration, EndsWithARobotThatIsCutOff) {
+  const Lone lone;
+  Exploration exploration = lone.begun(see_nothing);
+  exploration.step(see_nothing);
+  exploration.step([](std::size_t, const Pose& to) { return one_ray(to, 0.35F); });
+  ASSERT_FALSE(exploration.end().has_value());
+  const auto steps = lone.all_steps(exploration, do_not_go);
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kCutOff);
+  EXPECT_EQ(steps.back().robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_GT(steps.back().robots[0].planned.size(), 1U) << "there is a way back";
+}
+
 TEST(Exploration, BackingOffIsNoStepOfLowGain) {
   Lone lone;
   lone.options.epsilon = 1e9;
