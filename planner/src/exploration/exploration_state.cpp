@@ -171,13 +171,8 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   tours->note(changed);
   tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
   step.rays += counting.rays();
-  targets[robot] = wanted;
-  for (std::size_t other = 0; other < size(); ++other) {
-    if (other == robot) continue;
-    Keys rest;
-    std::ranges::set_difference(targets[robot], tours->frontiers_of(other), std::back_inserter(rest));
-    targets[robot] = std::move(rest);
-  }
+  targets[robot].clear();
+  std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
   Goal& goal = step.robots[robot].goal;
   goal = {};
   const auto tour = tours->tour(robot);
@@ -201,19 +196,29 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   }
 }
 
+// What the other robots are going to see.
+ExplorationState::Keys ExplorationState::frontiers_of_others(std::size_t robot) const {
+  Keys all;
+  for (std::size_t r = 0; r < size(); ++r) {
+    if (r == robot) continue;
+    const Keys keys = tours ? tours->frontiers_of(r) : targets[r];
+    all.insert(all.end(), keys.begin(), keys.end());
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
 // Whether a robot sees enough from somewhere that it can go to from a cell, to which its way has this length
 // [m]. What other robots see anyhow is worth less from afar, as eq. 1 has it.
 bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                       double length) const {
   elsewhere.update({mapping.grid()}, cell);
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
+  const Keys others = frontiers_of_others(robot);
+  const double from_afar = std::exp(-options.team[robot].options.lambda * length);
   double gain = 0.0;
-  for (const std::uint32_t i : find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers) {
-    bool others = false;
-    for (std::size_t r = 0; r < size(); ++r)
-      others = others || (r != robot && std::ranges::binary_search(targets[r], wanted[i]));
-    gain += others ? std::exp(-options.team[robot].options.lambda * length) : 1.0;
-  }
+  for (const std::uint32_t i : find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers)
+    gain += std::ranges::binary_search(others, wanted[i]) ? from_afar : 1.0;
   return gain > 0.0 && gain >= options.epsilon;
 }
 

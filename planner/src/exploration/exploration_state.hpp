@@ -88,6 +88,7 @@ struct ExplorationState {
 
  private:
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
+  [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                     double length) const;
   void remember(std::size_t robot, const RobotStep& step);

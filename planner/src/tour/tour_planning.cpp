@@ -152,29 +152,33 @@ void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
     return std::ranges::any_of(changes,
                                [&](const KeyBox& box) { return intersection(box, around).has_value(); });
   };
-  for (const FrontierCluster& cluster : clusters_.clusters()) {
-    Sight& sight = sights[cluster.id];
-    if (const auto before = member.sights.find(cluster.id); before != member.sights.end())
+  const auto clusters = clusters_.clusters();
+  std::vector<bool> searched(clusters.size());
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    Sight& sight = sights[clusters[c].id];
+    if (const auto before = member.sights.find(clusters[c].id); before != member.sights.end())
       sight = std::move(before->second);
-    const bool stands = sight.revision == cluster.revision &&
-                        std::ranges::all_of(sight.viewpoints, [&](const ClusterViewpoint& viewpoint) {
-                          return query.corridor.contains(viewpoint.cell);
-                        });
-    if (!stands || near(cluster)) search.emplace_back(&cluster, &sight);
+    searched[c] = sight.revision != clusters[c].revision || near(clusters[c]);
+    if (searched[c]) search.emplace_back(&clusters[c], &sight);
   }
   for_each_index(search.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = search[i];
     sight->revision = cluster->revision;
-    sight->viewpoints = find_viewpoints(view, *cluster);
-    std::erase_if(sight->viewpoints, [&](const ClusterViewpoint& viewpoint) {
-      return !query.corridor.contains(viewpoint.cell);
-    });
+    sight->found = find_viewpoints(view, *cluster);
   });
   member.sights = std::move(sights);
+  // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
   std::vector<const FrontierCluster*> hidden;
-  for (const auto& [cluster, sight] : search)
-    if (sight->viewpoints.empty()) hidden.push_back(cluster);
-  look_from_anywhere(query, view, hidden);
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    Sight& sight = member.sights[clusters[c].id];
+    const bool had_some = !sight.viewpoints.empty();
+    sight.viewpoints.clear();
+    std::ranges::copy_if(
+        sight.found, std::back_inserter(sight.viewpoints),
+        [&](const ClusterViewpoint& viewpoint) { return query.corridor.contains(viewpoint.cell); });
+    if (sight.viewpoints.empty() && (had_some || searched[c])) hidden.push_back(&clusters[c]);
+  }
+  if (query.corridor.state() == CorridorState::kReady) look_from_anywhere(query, view, hidden);
 }
 
 // Clusters that are seen from none of the usual places, but from some cell all the same (Alg. 2).
@@ -195,7 +199,9 @@ void TourPlanning::look_from_anywhere(const Query& query, const ViewpointQuery& 
         cells.push_back(seen.seen_from[i]);
     std::ranges::sort(cells);
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    member.sights[cluster->id].viewpoints = best_viewpoints(view, *cluster, cells);
+    Sight& sight = member.sights[cluster->id];
+    sight.viewpoints = best_viewpoints(view, *cluster, cells);
+    sight.found.insert(sight.found.end(), sight.viewpoints.begin(), sight.viewpoints.end());
   }
 }
 

@@ -73,7 +73,8 @@ class TourPlanning {
   // A cluster as a robot sees it.
   struct Sight {
     std::uint64_t revision = 0;
-    std::vector<ClusterViewpoint> viewpoints;
+    std::vector<ClusterViewpoint> found;       // wherever it fits
+    std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
   };
   struct Member {
     Robot robot;

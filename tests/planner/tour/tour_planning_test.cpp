@@ -1,0 +1,90 @@
+#include "tour/tour_planning.hpp"
+
+#include "support/views.hpp"
+#include "support/voxel_keys.hpp"
+
+#include <frontlux/frontier_set.hpp>
+
+namespace frontlux::planner::detail {
+namespace {
+
+using Keys = std::vector<VoxelKey>;
+
+constexpr double kResolution = 0.2;
+constexpr KeyBox kBounds{{32750, 32750, 32768}, {32800, 32800, 32779}};
+
+// A robot in a known part of a space without obstacles.
+struct OpenSpace {
+  VoxelGrid grid{kResolution};
+  Robot robot{"uav", {}, test::camera(5.0), {}};
+  VoxelKey at = make_key(32765, 32765, 32772);
+  Pose pose{grid.lattice().exact_center(at), 0.0};
+  std::unique_ptr<RayCaster> caster;
+  FrontierSet frontiers;
+  TourPlanning planning;
+
+  OpenSpace()
+      : caster((test::fill(grid, {kBounds.min, make_key(32785, 32785, kBounds.max.z)}, Occupancy::kFree),
+                make_grid_ray_caster(grid))),
+        frontiers(grid, kBounds),
+        planning({with_body()}, {&pose, 1}, grid.lattice(), kBounds, {}) {}
+
+  Robot& with_body() {
+    robot.travel.extents = {0.4, 0.4, 0.4};
+    robot.travel.min_height = -100.0;
+    return robot;
+  }
+  [[nodiscard]] TravelCorridor corridor(std::span<const VoxelKey> blocked = {}) const {
+    TravelCorridor corridor(robot.travel, grid.lattice(), kBounds);
+    corridor.block(blocked);
+    corridor.update({grid}, at);
+    return corridor;
+  }
+  void plan(const TravelCorridor& corridor) {
+    MotionState start;
+    start.pose = pose;
+    planning.update({0, *caster, grid, corridor, frontiers.keys(), {&start, 1}});
+  }
+  [[nodiscard]] std::set<std::uint32_t> clusters() const {
+    std::set<std::uint32_t> ids;
+    for (const TourStop& stop : planning.tour(0)) ids.insert(stop.clusters.begin(), stop.clusters.end());
+    return ids;
+  }
+};
+
+TEST(TourPlanning, LooksAtClustersFromWhereTheRobotCanGo) {
+  OpenSpace space;
+  const TravelCorridor corridor = space.corridor();
+  space.plan(corridor);
+  std::size_t clusters = 0;
+  for (const TourStop& stop : space.planning.tour(0)) {
+    EXPECT_TRUE(corridor.contains(stop.cell));
+    EXPECT_EQ(stop.pose.position, space.grid.lattice().exact_center(stop.cell));
+    EXPECT_GT(stop.seen, 0U);
+    clusters += stop.clusters.size();
+  }
+  EXPECT_EQ(space.clusters().size(), clusters) << "a cluster is in two stops";
+  EXPECT_GT(clusters, space.planning.tour(0).size()) << "some stops show several";
+  const Keys keys = space.planning.frontiers_of(0);
+  EXPECT_TRUE(std::ranges::includes(space.frontiers.keys(), keys));
+  const Keys& first = space.planning.first_view(0);
+  EXPECT_FALSE(first.empty());
+  EXPECT_TRUE(std::ranges::includes(keys, first));
+}
+
+// A robot beside which something turned up is in no corridor for a while. Nothing else has changed.
+TEST(TourPlanning, GoesOnAfterTheRobotWasLost) {
+  OpenSpace space;
+  space.plan(space.corridor());
+  const auto before = space.clusters();
+  ASSERT_GT(before.size(), 5U);
+  const TravelCorridor lost = space.corridor({&space.at, 1});
+  ASSERT_EQ(lost.state(), CorridorState::kBoxNotFree);
+  space.plan(lost);
+  EXPECT_TRUE(space.planning.tour(0).empty());
+  space.plan(space.corridor());
+  EXPECT_EQ(space.clusters(), before);
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail
