@@ -59,6 +59,8 @@ class ExploreMotion : public ExploreCommand {
     expect_same_runs(a, b);
     EXPECT_GT(content_of(path(a + "/motion.csv")).size(), 1000U);
     EXPECT_TRUE(content_of(path(a + "/motion.csv")) == content_of(path(b + "/motion.csv")));
+    EXPECT_GT(content_of(path(a + "/tours.csv")).size(), 100U);
+    EXPECT_TRUE(content_of(path(a + "/tours.csv")) == content_of(path(b + "/tours.csv")));
     EXPECT_EQ(Table(path(a + "/events.csv")).without("planning_s"),
               Table(path(b + "/events.csv")).without("planning_s"));
     const nlohmann::json x = json_in(a), y = json_in(b);

@@ -50,6 +50,25 @@ TEST_F(ExploreMotion, ItsFilesAgree) {
   }
   EXPECT_GT(in_time, static_cast<int>(events.size()) / 2) << "most plannings give a new trajectory";
 
+  // The tours: the first stop of each planning is the robot's goal.
+  const Table tours(path("run/tours.csv"));
+  std::size_t firsts = 0;
+  for (std::size_t i = 0; i < tours.size(); ++i) {
+    const auto number = static_cast<std::size_t>(tours.number(i, "stop"));
+    ASSERT_EQ(number, number == 1 ? 1U : static_cast<std::size_t>(tours.number(i - 1, "stop")) + 1);
+    EXPECT_GE(tours.number(i, "clusters"), 1.0);
+    if (number > 1) continue;
+    const planner::ExplorationStep& step =
+        recording.steps[static_cast<std::size_t>(tours.number(i, "step"))].step;
+    const auto robot = tours.text(i, "robot") == names[0] ? 0U : 1U;
+    ASSERT_TRUE(step.robots[robot].goal.pose.has_value());
+    EXPECT_EQ(tours.point(i, "", "_m"), step.robots[robot].goal.pose->position);
+    EXPECT_EQ(tours.number(i, "yaw_rad"), step.robots[robot].goal.pose->yaw);
+    EXPECT_EQ(tours.number(i, "frontiers"), step.robots[robot].goal.gain);
+    ++firsts;
+  }
+  EXPECT_GT(firsts, 5U);
+
   // A hundred rows a second for each robot: within its limits, and as fast as its places say.
   const Table motion(path("run/motion.csv"));
   ASSERT_GE(motion.size(), 2 * static_cast<std::size_t>(kSeconds * 100));

@@ -125,8 +125,9 @@ void add_explore_command(CLI::App& app) {
   frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run
   frontlux explore --task data/tasks/maze.json -o maze_run
   frontlux explore --resume station_run
-Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv and motion.csv (of robots in
-motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C ends a run after the current step.)");
+Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv, motion.csv and tours.csv (of
+robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C ends a run after the
+current step.)");
   command.run([given, team, lockstep, mode = mode, goal = goal] {
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);

@@ -112,18 +112,25 @@ void ContinuousLoop::note_motion(double until) {
     for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
       const planner::MotionState state = exploration_.at(r, time);
       const Eigen::Vector3d &p = state.pose.position, &v = state.velocity;
-      motion_ += csv_row(time, setup_.head.robots[r].robot.name, p.x(), p.y(), p.z(), state.pose.yaw, v.x(),
-                         v.y(), v.z(), state.yaw_rate);
+      rows_.motion += csv_row(time, setup_.head.robots[r].robot.name, p.x(), p.y(), p.z(), state.pose.yaw,
+                              v.x(), v.y(), v.z(), state.yaw_rate);
     }
   }
 }
 
 void ContinuousLoop::note_plan(const planner::PlannedMotion& planned, const ExplorationStep& measured) {
   const planner::RobotStep& robot = planned.step.robots[planned.robot];
-  events_ += csv_row(planned.step.time, planned.step.number, setup_.head.robots[planned.robot].robot.name,
-                     planner::name_of(planned.reason), planner::name_of(robot.goal.state),
-                     robot.gain_predicted, planned.trajectory.begin(), planned.trajectory.end(),
-                     planned.trajectory.length(), measured.planning_seconds());
+  const std::string& name = setup_.head.robots[planned.robot].robot.name;
+  rows_.events +=
+      csv_row(planned.step.time, planned.step.number, name, planner::name_of(planned.reason),
+              planner::name_of(robot.goal.state), robot.gain_predicted, planned.trajectory.begin(),
+              planned.trajectory.end(), planned.trajectory.length(), measured.planning_seconds());
+  for (std::size_t s = 0; s < planned.tour.size(); ++s) {
+    const planner::PlannedStop& stop = planned.tour[s];
+    const Eigen::Vector3d& p = stop.pose.position;
+    rows_.tours += csv_row(planned.step.time, planned.step.number, name, s + 1, p.x(), p.y(), p.z(),
+                           stop.pose.yaw, stop.clusters, stop.frontiers);
+  }
 }
 
 }  // namespace frontlux::app

@@ -20,8 +20,7 @@ class ContinuousLoop final : public RunLoop {
   std::optional<RunEnd> end() const override { return end_; }
   const planner::Mapping& mapping() const override { return exploration_.mapping(); }
   const RunNumbers& numbers() const override { return numbers_; }
-  std::string take_events() override { return std::exchange(events_, {}); }
-  std::string take_motion() override { return std::exchange(motion_, {}); }
+  MotionRows take_rows() override { return std::exchange(rows_, {}); }
 
  private:
   // The next step; `recorded` if it is taken again, with the times that it took then.
@@ -40,7 +39,7 @@ class ContinuousLoop final : public RunLoop {
   bool begun_ = false;
   double time_ = 0.0;          // [s] of the last scan
   std::uint64_t samples_ = 0;  // of the motion
-  std::string events_, motion_;
+  MotionRows rows_;
 };
 
 }  // namespace frontlux::app

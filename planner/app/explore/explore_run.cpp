@@ -33,8 +33,8 @@ using planner::ExplorationStep, planner::RecordedStep, planner::Recording;
 
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";
-constexpr std::array kFiles = {kRecording,   "run.json", "steps.csv", "paths.csv",  "events.csv",
-                               "motion.csv", "map.ot",   "map.bt",    "report.html"};
+constexpr std::array kFiles = {kRecording,   "run.json",  "steps.csv", "paths.csv", "events.csv",
+                               "motion.csv", "tours.csv", "map.ot",    "map.bt",    "report.html"};
 
 // Whether there is nothing to lose: at most what runs left that were killed before they began.
 bool is_unused(const fs::path& folder) {
@@ -132,7 +132,7 @@ class Run {
   void open_files(std::span<const RecordedStep> steps) {
     files_.emplace(folder_, setup_.head);
     for (const RecordedStep& step : steps) files_->add(step);
-    files_->add_motion(loop_->take_events(), loop_->take_motion());
+    files_->add(loop_->take_rows());
   }
 
   void step() {
@@ -140,7 +140,7 @@ class Run {
     last_ = with_known_voxels(loop_->step(), last_ ? &*last_ : nullptr, *setup_.truth);
     last_->collisions = loop_->numbers().contacts - before;
     files_->add(*last_);
-    files_->add_motion(loop_->take_events(), loop_->take_motion());
+    files_->add(loop_->take_rows());
   }
   /// @throws BadInput if the world is another one now
   void repeat(const RecordedStep& recorded) {

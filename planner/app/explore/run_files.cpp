@@ -33,6 +33,7 @@ constexpr const char* kSteps = "steps.csv";
 constexpr const char* kPaths = "paths.csv";
 constexpr const char* kEvents = "events.csv";
 constexpr const char* kMotion = "motion.csv";
+constexpr const char* kTours = "tours.csv";
 constexpr const char* kRunJson = "run.json";
 
 std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead& head) {
@@ -100,6 +101,7 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       paths_file_(folder / kPaths, std::ios::binary | std::ios::trunc),
       events_file_(folder / kEvents, std::ios::binary | std::ios::trunc),
       motion_file_(folder / kMotion, std::ios::binary | std::ios::trunc),
+      tours_file_(folder / kTours, std::ios::binary | std::ios::trunc),
       sums_{.seconds = std::vector<double>(planner::kPhases),
             .travelled = std::vector<double>(head.robots.size())} {
   std::string header =
@@ -118,11 +120,13 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
   write(events_file_, kEvents,
         "time_s,step,robot,reason,goal_state,gain_predicted,begin_s,end_s,length_m,planning_s\n");
   write(motion_file_, kMotion, "time_s,robot,x_m,y_m,z_m,yaw_rad,vx_m_s,vy_m_s,vz_m_s,yaw_rate_rad_s\n");
+  write(tours_file_, kTours, "time_s,step,robot,stop,x_m,y_m,z_m,yaw_rad,clusters,frontiers\n");
 }
 
-void RunFiles::add_motion(const std::string& events, const std::string& motion) {
-  write(events_file_, kEvents, events);
-  write(motion_file_, kMotion, motion);
+void RunFiles::add(const MotionRows& rows) {
+  write(events_file_, kEvents, rows.events);
+  write(motion_file_, kMotion, rows.motion);
+  write(tours_file_, kTours, rows.tours);
 }
 
 void RunFiles::write(std::ofstream& file, const char* name, const std::string& rows) {

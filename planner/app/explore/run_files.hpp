@@ -40,16 +40,15 @@ struct RunSums {
   [[nodiscard]] double planning_percentile(double part) const;  ///< [s] at a part of the sorted steps, 0 to 1
 };
 
-/// The tables of a run, steps.csv and paths.csv, which grow with every step, and its sums.
+/// The tables of a run, which grow with every step, and its sums.
 class RunFiles {
  public:
-  /// Begins both tables anew.
+  /// Begins the tables anew.
   /// @throws std::runtime_error naming the file, if it cannot be written; so does `add`
   RunFiles(const std::filesystem::path& folder, const planner::RecordingHead& head);
 
   void add(const planner::RecordedStep& step);
-  /// Rows of events.csv and motion.csv.
-  void add_motion(const std::string& events, const std::string& motion);
+  void add(const MotionRows& rows);
 
   [[nodiscard]] const RunSums& sums() const { return sums_; }
 
@@ -58,7 +57,7 @@ class RunFiles {
 
   std::filesystem::path folder_;
   const planner::RecordingHead& head_;
-  std::ofstream steps_file_, paths_file_, events_file_, motion_file_;
+  std::ofstream steps_file_, paths_file_, events_file_, motion_file_, tours_file_;
   RunSums sums_;
 };
 

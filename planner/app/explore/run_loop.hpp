@@ -41,6 +41,11 @@ struct RunNumbers {
   std::optional<double> clearance, separation;  ///< [m] if measured, and of more than one robot
 };
 
+/// Rows of the tables that only runs in motion have, named after their files.
+struct MotionRows {
+  std::string events, motion, tours;
+};
+
 /// A simulated team and the exploration that moves it, step by step.
 class RunLoop {
  public:
@@ -54,9 +59,8 @@ class RunLoop {
   [[nodiscard]] virtual std::optional<RunEnd> end() const = 0;
   [[nodiscard]] virtual const planner::Mapping& mapping() const = 0;
   [[nodiscard]] virtual const RunNumbers& numbers() const = 0;
-  /// The rows of events.csv and motion.csv since the last call; empty in lock-step.
-  [[nodiscard]] virtual std::string take_events() { return {}; }
-  [[nodiscard]] virtual std::string take_motion() { return {}; }
+  /// The rows since the last call; empty in lock-step.
+  [[nodiscard]] virtual MotionRows take_rows() { return {}; }
 };
 
 /// Whether the run has come to what its user wants it to end at.

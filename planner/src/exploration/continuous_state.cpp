@@ -291,7 +291,11 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.blocked = member.stopped = false;
   judge(member, step.robots[robot]);
   ++team.number;
-  return {robot, reason, std::move(trajectory), std::move(step)};
+  PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
+  if (team.tours)
+    for (const detail::TourStop& stop : team.tours->tour(robot))
+      planned.tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
+  return planned;
 }
 
 // Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
