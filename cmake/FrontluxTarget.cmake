@@ -9,7 +9,9 @@ function(frontlux_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED_BY" "PRECOMPILE")
   target_compile_features(${name} PUBLIC cxx_std_20)
   # Of a shared library only what FRONTLUX_EXPORT names is visible (<frontlux/export.hpp>).
-  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  # Without a macro of its own for that, the library is compiled with the precompiled header of another one.
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    DEFINE_SYMBOL "")
   # The ray contract is bit for bit: a fused multiply-add rounds once where castRay rounds twice
   # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do.
   target_compile_options(${name} PRIVATE -fPIC -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
