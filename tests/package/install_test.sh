@@ -37,16 +37,17 @@ files() {
 
 # older: the same packages with a lower version and one file that the new ones do not have.
 older() {
-  local file tree version
+  local name file tree version
   mkdir "$work/older"
-  for file in "$packages"/*.deb; do
+  for name in "${names[@]}"; do
+    file=$(ls "$packages/${name}_"*.deb)
     tree=$work/tree
     rm -rf "$tree"
     dpkg-deb --raw-extract "$file" "$tree"
     version=$(dpkg-deb --field "$file" Version)
     sed -i "s/^Version: .*/Version: $version~older/; s/(= $version)/(= $version~older)/g" "$tree/DEBIAN/control"
     sed -i "s/(>= ${version}[^)]*)/(>= 0)/g" "$tree/DEBIAN/control"
-    echo gone >"$tree/usr/share/doc/$(dpkg-deb --field "$file" Package)/only_in_older"
+    echo gone >"$tree/usr/share/doc/$name/only_in_older"
     dpkg-deb --root-owner-group --build "$tree" "$work/older/$(basename "$file")" >/dev/null
   done
 }
