@@ -49,7 +49,7 @@ struct BoxGroup {
 /// Boxes may overlap, and each lies inside its unit: a cube of BoxGroup::kUnitEdge voxels, or a whole storage
 /// node. So a change makes only the units at and beside it stale, and all other groups remain shared.
 struct Blockers {
-  std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes first, then cubes with boxes by corner
+  std::vector<std::shared_ptr<const BoxGroup>> groups;  ///< whole nodes, then cubes with boxes by corner
 
   [[nodiscard]] std::size_t box_count() const;
 };

@@ -1,6 +1,7 @@
 #include "tour/tour_planning.hpp"
 
 #include "tour/joined_stops.hpp"
+#include "tour/shortest_choice.hpp"
 
 #include <frontlux/parallel.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
@@ -39,34 +40,6 @@ double greatest_range(std::span<const Robot> robots) {
 double seconds(const Robot& robot, double distance, double turn) {
   const bool turns = robot.view.shape != FieldOfView::Shape::kSpinning;
   return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
-}
-
-// One place of each stage, so that the way from the first to the last of them costs least.
-template <class First, class Between>
-std::vector<std::size_t> shortest_choice(std::span<const std::vector<std::size_t>> stages, const First& first,
-                                         const Between& between) {
-  struct Way {
-    double cost = TourProblem::kNever;
-    std::size_t before = 0;
-  };
-  std::vector<std::vector<Way>> ways;
-  for (std::size_t s = 0; s < stages.size(); ++s) {
-    ways.emplace_back(stages[s].size());
-    for (std::size_t i = 0; i < stages[s].size(); ++i) {
-      Way& way = ways[s][i];
-      if (s == 0) way.cost = first(stages[s][i]);
-      for (std::size_t b = 0; s > 0 && b < stages[s - 1].size(); ++b) {
-        const double cost = ways[s - 1][b].cost + between(stages[s - 1][b], stages[s][i]);
-        if (cost < way.cost) way = {cost, b};
-      }
-    }
-  }
-  std::vector<std::size_t> choice(stages.size());
-  if (stages.empty()) return choice;
-  auto at =
-      static_cast<std::size_t>(std::ranges::min_element(ways.back(), {}, &Way::cost) - ways.back().begin());
-  for (std::size_t s = stages.size(); s-- > 0; at = ways[s][at].before) choice[s] = stages[s][at];
-  return choice;
 }
 
 double turn_between(double a, double b) { return std::abs(std::remainder(b - a, 2 * std::numbers::pi)); }
