@@ -310,7 +310,8 @@ void ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
     trajectory = member.motion.last();  // which keeps apart
     member.going = trajectory.end() > start;
     const bool went_back = std::exchange(member.goes_back, false);
-    if (member.going || !went_back || std::ranges::none_of(members, &Member::going)) return;
+    const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
+    if (member.going || !went_back || std::ranges::none_of(members, moves)) return;
     // Another one may make room: it tries the way back again.
     team.went_back_to[robot].pop_back();
     member.going = true;

@@ -256,20 +256,23 @@ TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
     EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
 }
 
-// Whatever it tries, it is stopped where it is.
-TEST(ContinuousExploration, EndsWithARobotThatIsCutOff) {
-  TeamInMotion scene("room", {small_uav()});
-  ContinuousExploration& exploration = scene.exploration();
-  begin_to_fly(scene);
-  double time = scene.time() + 0.05;
-  const Pose rests = exploration.at(0, time).pose;
-  ASSERT_NE(rests.position, scene.team().starts[0].pose.position) << "it has come from elsewhere";
-  for (int i = 0; i < 200 && !exploration.end(); ++i, time += 0.5) {
-    exploration.stopped(0, rests, time, {});
-    while (exploration.plan(time)) {
+// Whatever they try, they are stopped where they are.
+TEST(ContinuousExploration, EndsWithRobotsThatAreCutOff) {
+  for (const std::size_t robots : {1U, 2U}) {
+    TeamInMotion scene("room", std::vector(robots, small_uav()));
+    ContinuousExploration& exploration = scene.exploration();
+    begin_to_fly(scene);
+    double time = scene.time() + 0.05;
+    std::vector<Pose> rests;
+    for (std::size_t r = 0; r < robots; ++r) rests.push_back(exploration.at(r, time).pose);
+    ASSERT_NE(rests[0].position, scene.team().starts[0].pose.position) << "it has come from elsewhere";
+    for (int i = 0; i < 200 && !exploration.end(); ++i, time += 0.5) {
+      for (std::size_t r = 0; r < robots; ++r) exploration.stopped(r, rests[r], time, {});
+      while (exploration.plan(time)) {
+      }
     }
+    EXPECT_EQ(exploration.end(), ExplorationEnd::kCutOff) << robots;
   }
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kCutOff);
 }
 
 // A beam that ends in the middle of a voxel, or passes through it.

@@ -48,16 +48,23 @@ struct Room {
   }
 };
 
+// A room, a sensor in it, and from where that sees the cluster.
+struct Look {
+  Look(Random& random, const FieldOfView& of_sensor) : room(random), view(of_sensor) {}
+  Room room;
+  FieldOfView view;
+  ViewRegion region{view, kResolution};
+  std::unique_ptr<RayCaster> caster = make_grid_ray_caster(room.grid);
+  ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
+  std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster);
+};
+
 TEST(ClusterViewpoints, SeeWhatTheyCount) {
   Random random(61);
   std::size_t found = 0;
   for (int round = 0; round < 30; ++round) {
-    const Room room(random);
-    const FieldOfView view = round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0);
-    const ViewRegion region(view, kResolution);
-    const auto caster = make_grid_ray_caster(room.grid);
-    const ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
-    const auto viewpoints = find_viewpoints(query, room.cluster);
+    const Look look(random, round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0));
+    const auto& [room, view, region, caster, query, viewpoints] = look;
     found += viewpoints.size();
     for (std::size_t i = 0; i < viewpoints.size(); ++i) {
       const ClusterViewpoint& viewpoint = viewpoints[i];
@@ -82,12 +89,8 @@ TEST(ClusterViewpoints, SeePartsOfOtherClusters) {
   Random random(63);
   std::size_t partly = 0;
   for (int round = 0; round < 20; ++round) {
-    const Room room(random);
-    const FieldOfView view = round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0);
-    const ViewRegion region(view, kResolution);
-    const auto caster = make_grid_ray_caster(room.grid);
-    const ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
-    const auto viewpoints = find_viewpoints(query, room.cluster);
+    const Look look(random, round % 2 == 0 ? test::camera(5.0) : test::lidar(5.0));
+    const auto& [room, view, region, caster, query, viewpoints] = look;
     std::vector<FrontierCluster> clusters;
     for (std::size_t first = 0; first + 16 <= room.cluster.keys.size(); first += 16) {
       const auto begin = room.cluster.keys.begin() + static_cast<std::ptrdiff_t>(first);
