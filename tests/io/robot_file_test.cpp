@@ -42,7 +42,7 @@ TEST_F(RobotFile, ReadsAConeAndWhatIsLeftOut) {
           "sensor":{"kind":"spinning","vertical_deg":30,"range_m":4.5,"columns":8,"rows":2}})");
   EXPECT_EQ(nodes.robot.travel.extents, Eigen::Vector3d(0.5, 0.6, 0.7));
   EXPECT_EQ(nodes.robot.travel.node_edge, 1.2);
-  EXPECT_EQ(nodes.robot.travel.min_height, TravelOptions().min_height);
+  EXPECT_EQ(nodes.robot.travel.min_height, 0.35);
   EXPECT_EQ(nodes.robot.view.horizontal, 0.0);
 }
 

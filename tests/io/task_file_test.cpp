@@ -93,7 +93,7 @@ TEST_F(TaskFile, TakesRobotsFromFiles) {
   ASSERT_EQ(task.robots.size(), 2U);
   const planner::RobotDescription& robot = task.robots[0].description;
   EXPECT_EQ(robot.robot.travel.min_height, 0.35);
-  EXPECT_EQ(read_robot(path("r.json")).robot.travel.min_height, 1.2);
+  EXPECT_EQ(read_robot(path("r.json")).robot.travel.min_height, 0.35);
   EXPECT_EQ(robot.robot.travel.margin, 0.1);
   EXPECT_EQ(robot.robot.limits, (planner::MotionLimits{.speed = 3.0}));
   EXPECT_EQ(robot.rate, 10.0);
@@ -133,7 +133,9 @@ TEST_F(TaskFile, ThoseThatShipAreOfThePapersRobots) {
       EXPECT_EQ(a.rate, b.rate);
     };
     equal(task.robots[0].description, planner::ugv_description());
-    equal(task.robots[1].description, planner::uav_description());
+    planner::RobotDescription uav = planner::uav_description();
+    uav.robot.travel.min_height = 0.4;  // half its height: it keeps apart from the UGV in time
+    equal(task.robots[1].description, uav);
   }
 }
 

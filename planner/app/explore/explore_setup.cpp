@@ -32,6 +32,11 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   } catch (const BadInput& error) {
     throw BadInput(std::string("--team: ") + error.what());
   }
+  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground.
+  if (!options.lockstep && method == Method::kDefault)
+    for (RobotDescription& robot : robots)
+      if (robot.robot.travel.motion == Motion::kSpace)
+        robot.robot.travel.min_height = robot.robot.travel.extents.z() / 2;
   for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);
   for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
   if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");
@@ -97,7 +102,8 @@ Pose place_by_hand(Pose pose, const std::string& giver, double shift, const sim:
   return pose;
 }
 
-// Where the robots do start, and how high above which floor those in the air have to be.
+// Where the robots do start, and how high above which floor those in the air have to be: in lock-step above
+// that which they start on, in motion above the world's lowest one, so that they may go down stairs.
 void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, ExploreSetup& setup) {
   std::vector<RobotDescription>& robots = setup.head.robots;
   std::vector<planner::Robot> bodies;
@@ -118,7 +124,9 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
   }
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (robots[r].robot.travel.motion == Motion::kSpace)
-      robots[r].robot.travel.floor = ground.value_or(sim::ground_below(*setup.truth, around));
+      robots[r].robot.travel.floor =
+          setup.lockstep ? ground.value_or(sim::ground_below(*setup.truth, around))
+                         : sim::lower_face(setup.truth->lattice(), setup.truth->bounds().min.z);
     setup.head.starts.push_back({*starts[r], sim::start_bubble(*setup.truth, robots[r].robot, *starts[r])});
   }
 }
@@ -153,6 +161,12 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.seed = options.seed;
   // With nearest goals each gain is small, so that small gains do not end the exploration.
   if (options.goal == GoalSearch::kNearest) exploration.epsilon = 1.0;
+  // Ten frontiers of 0.1 m are no reason to go anywhere.
+  constexpr double kWorthAStop = 0.3;  // [m2] of frontiers
+  if (makes_tours(options))
+    exploration.epsilon =
+        std::max(exploration.epsilon,
+                 std::round(kWorthAStop / (options.source.resolution * options.source.resolution)));
   exploration.epsilon = options.epsilon.value_or(exploration.epsilon);
   for (const RobotDescription& robot : robots) {
     planner::GoalOptions goal = goal_options(options, robot.robot);

@@ -113,8 +113,7 @@ void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
   } else {
     members.not_here({"mount_height_m", "require_ground", "ground_m"},
                      "is for a robot with the motion \"plane\"");
-    const double lowest = form == RobotForm::kTask ? travel.extents.z() / 2 : travel.min_height;
-    travel.min_height = members.number("min_height_m", "m", kHeights, lowest);
+    travel.min_height = members.number("min_height_m", "m", kHeights, travel.extents.z() / 2);
     if (members.find("node_edge_m") != nullptr)
       travel.node_edge = members.number("node_edge_m", "m", {travel.extents.maxCoeff(), kLengths.high});
   }
@@ -144,17 +143,6 @@ RobotDescription read_robot_members(Members& members, RobotForm form) {
   if (const json* limits = members.find("limits"))
     read_limits(members.object("limits", *limits, kSeeRobots), robot.robot.limits);
   read_sensor(members.object("sensor", kSeeRobots), robot);
-  return robot;
-}
-
-RobotDescription read_robot_file(const std::filesystem::path& file, RobotForm default_height) {
-  const json object = read_json(file, {"a robot", "docs/robots.md", 2});
-  Members members(file, object);
-  RobotDescription robot = read_robot_members(members, RobotForm::kFile);
-  members.expect_no_more();
-  if (default_height == RobotForm::kTask && robot.robot.travel.motion == Motion::kSpace &&
-      !object.contains("min_height_m"))
-    robot.robot.travel.min_height = robot.robot.travel.extents.z() / 2;
   return robot;
 }
 

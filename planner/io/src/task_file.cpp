@@ -2,6 +2,7 @@
 #include "robot_members.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/io/robot_file.hpp>
 #include <frontlux/io/task_file.hpp>
 
 #include <nlohmann/json.hpp>
@@ -93,7 +94,7 @@ TaskRobot read_robot_of_task(const std::filesystem::path& file, const json& valu
     const std::string other = members.text("file", wanted);
     if (other.empty()) members.refuse("file", "is ''", "give " + wanted);
     try {
-      robot.description = read_robot_file(file.parent_path() / other, RobotForm::kTask);
+      robot.description = read_robot(file.parent_path() / other);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(file.string() + ": " + name + ".file: " + error.what());
     }
