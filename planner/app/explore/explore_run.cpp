@@ -12,6 +12,7 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
+#include <frontlux/sim/unseen.hpp>
 #include <frontlux/stopwatch.hpp>
 
 #include <tbb/task_arena.h>
@@ -209,16 +210,38 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
                  " is now; start a new run");
 }
 
-void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunSums& sums,
-                   const RunNumbers& numbers, const std::string& end, double seconds) {
+// Of a run that ended since there was nothing more to do.
+std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& loop) {
+  using planner::ExplorationEnd;
+  const auto ended_by = [&](ExplorationEnd end) {
+    return loop.end() && loop.end()->word == planner::name_of(end);
+  };
+  if (!ended_by(ExplorationEnd::kLowGain) && !ended_by(ExplorationEnd::kNothingToDo) &&
+      !ended_by(ExplorationEnd::kCutOff))
+    return std::nullopt;
+  std::vector<planner::Robot> robots;
+  std::vector<planner::Pose> starts;
+  for (const planner::RobotDescription& robot : setup.head.robots) robots.push_back(robot.robot);
+  for (const planner::ExplorationStart& start : setup.head.starts) starts.push_back(start.pose);
+  return sim::explain_unseen(*setup.truth, loop.mapping().grid(), robots, starts);
+}
+
+void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunResult& result,
+                   const std::optional<RunEnd>& why) {
+  const auto& [sums, numbers, end, warnings, unseen, seconds] = result;
   std::string times;
   for (const int part : {50, 90, 95, 99})
     if (const auto time = time_to(numbers, setup.head.observable, part / 100.0))
       times += fixed(*time, 1) + " s to " + std::to_string(part) + " %, ";
-  std::string out = row("run", run.folder.string()) + row("world", setup.head.world) + row("end", end) +
+  std::string out = row("run", run.folder.string()) + row("world", setup.head.world) +
+                    row("end", why ? end + ": " + why->text : end) +
                     row("steps", std::to_string(sums.steps)) +
                     row("mapped", percent(sums.observable) + " of the observable space, " +
                                       percent(sums.bounding) + " of the world's box") +
+                    (unseen ? row("unseen", percent(unseen->narrow) + " where only smaller robots see it, " +
+                                                percent(unseen->hidden) + " hidden from everywhere, " +
+                                                percent(unseen->in_view) + " that they could have seen")
+                            : "") +
                     row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
   for (std::size_t r = 0; r < setup.head.robots.size(); ++r) {
     const RobotNumbers& robot = numbers.robots[r];
@@ -295,8 +318,10 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       loop.mapping().write(run.folder / "map.ot");
       loop.mapping().write(run.folder / "map.bt");
       const RunSums& sums = exploring.files().sums();
+      const std::optional<sim::Unseen> unseen = unseen_of(setup, loop);
       const std::vector<std::string> warnings = run_warnings(setup, sums, reason);
-      write_run_json(run, options, setup, sums, loop.numbers(), end, warnings, watch.seconds());
+      const RunResult result{sums, loop.numbers(), end, warnings, unseen, watch.seconds()};
+      write_run_json(run, options, setup, result);
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{
@@ -304,8 +329,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
             read_run_json(run.folder)};
         report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
       }
-      print_summary(run, setup, sums, loop.numbers(), reason ? end + ": " + reason->text : end,
-                    watch.seconds());
+      print_summary(run, setup, result, reason);
       for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
     } catch (const BadInput&) {
       throw;

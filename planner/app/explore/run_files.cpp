@@ -214,8 +214,8 @@ double mean_coverage(const RunNumbers& numbers, std::uint64_t observable) {
 }
 
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const RunNumbers& numbers, const std::string& end,
-                    const std::vector<std::string>& warnings, double seconds) {
+                    const RunResult& result) {
+  const auto& [sums, numbers, end, warnings, unseen, seconds] = result;
   const planner::ExplorationOptions& exploration = setup.exploration;
   Json names = Json::array(), phases = Json::object(), lengths = Json::object(), robots = Json::object(),
        times = Json::object();
@@ -259,6 +259,9 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
       {"steps", sums.steps},
       {"coverage_observable", sums.observable},
       {"coverage_box", sums.bounding},
+      {"unseen",
+       unseen ? Json{{"in_view", unseen->in_view}, {"narrow", unseen->narrow}, {"hidden", unseen->hidden}}
+              : Json()},
       {"lockstep", setup.lockstep},
       {"time_s", times},
       {"auc", mean_coverage(numbers, setup.head.observable)},

@@ -4,16 +4,14 @@
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/unseen.hpp>
 
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
-
-namespace frontlux::sim {
-class GroundTruth;
-}
 
 namespace frontlux::app {
 
@@ -67,14 +65,20 @@ class RunFiles {
 /// The mapped part of the observable voxels, 0 to 1, on average over the run's time.
 [[nodiscard]] double mean_coverage(const RunNumbers& numbers, std::uint64_t observable);
 
+/// What came out of a run.
+struct RunResult {
+  const RunSums& sums;
+  const RunNumbers& numbers;
+  std::string end;                           ///< why it ended, in one word
+  const std::vector<std::string>& warnings;  ///< what its reader has to know, see `run_warnings`
+  const std::optional<sim::Unseen>& unseen;  ///< why, if it ended by itself
+  double seconds = 0.0;                      ///< that it took
+};
+
 /// Writes run.json: what was asked for and what came out.
-/// @param end       why the run ended, in one word
-/// @param warnings  what its reader has to know, see `run_warnings`
-/// @param seconds   that it took
 /// @throws std::runtime_error naming the file, if it cannot be written
 void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunSums& sums, const RunNumbers& numbers, const std::string& end,
-                    const std::vector<std::string>& warnings, double seconds);
+                    const RunResult& result);
 
 /// The text of a run's run.json, for its report; empty if it cannot be read.
 [[nodiscard]] std::string read_run_json(const std::filesystem::path& folder);

@@ -1,0 +1,139 @@
+#include <frontlux/key_box.hpp>
+#include <frontlux/planner/frontier_assignment.hpp>
+#include <frontlux/planner/travel_corridor.hpp>
+#include <frontlux/ray_caster.hpp>
+#include <frontlux/sim/unseen.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace frontlux::sim {
+namespace {
+
+using Keys = std::vector<VoxelKey>;
+
+constexpr std::uint64_t kSample = 4000;  // voxels
+constexpr double kSpacing = 0.3;         // [m] of the cells that robots look from
+
+// The whole world as a map. Of two free voxels with a wall between them the upper one counts as occupied, so
+// that nobody looks or goes through.
+VoxelGrid map_of(const GroundTruth& truth) {
+  VoxelGrid grid(truth.lattice().resolution());
+  const auto free = [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; };
+  for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+    bool open = free(key);
+    for (std::size_t axis = 0; axis < 3 && open; ++axis) {
+      const auto below = offset_key(key, axis == 0 ? -1 : 0, axis == 1 ? -1 : 0, axis == 2 ? -1 : 0);
+      open = !below || !free(*below) || truth.open(*below, axis);
+    }
+    grid.set(key, open ? Occupancy::kFree : Occupancy::kOccupied);
+  });
+  return grid;
+}
+
+// Some of the observable voxels that a map does not know, from all over the world.
+struct Sample {
+  std::map<VoxelKey, std::uint64_t> targets;  // to be seen, and how often each was drawn
+  double each = 0.0;                          // part of the observable voxels that one stands for
+};
+
+// A surface is seen when the free voxel before it is: between centres a flat floor hides itself.
+VoxelKey target_of(const GroundTruth& truth, const VoxelKey& key) {
+  if (truth.at(key) == Truth::kFree) return key;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int by : {-1, 1})
+      if (const auto next = offset_key(key, axis == 0 ? by : 0, axis == 1 ? by : 0, axis == 2 ? by : 0);
+          next && truth.at(*next) == Truth::kFree)
+        return *next;
+  return key;
+}
+
+Sample sample_of_unseen(const GroundTruth& truth, const VoxelGrid& map) {
+  const auto for_each_unseen = [&](const auto& visit) {
+    for_each_key(truth.bounds(), [&](const VoxelKey& key) {
+      if (map.at(key) == Occupancy::kUnknown && truth.contains(key)) visit(key);
+    });
+  };
+  std::uint64_t count = 0;
+  for_each_unseen([&](const VoxelKey&) { ++count; });
+  const std::uint64_t step = count / kSample + 1;
+  std::uint64_t number = 0, drawn = 0;
+  Sample sample;
+  for_each_unseen([&](const VoxelKey& key) {
+    if (number++ % step != step / 2) return;
+    ++sample.targets[target_of(truth, key)];
+    ++drawn;
+  });
+  if (drawn > 0)
+    sample.each = static_cast<double>(count) / static_cast<double>(drawn) /
+                  static_cast<double>(truth.observable_voxels());
+  return sample;
+}
+
+Keys one_of_each_cube(std::span<const VoxelKey> cells, int edge) {
+  std::vector<std::pair<VoxelKey, VoxelKey>> by_cube;
+  for (const VoxelKey& cell : cells)
+    by_cube.emplace_back(make_key(cell.x / edge, cell.y / edge, cell.z / edge), cell);
+  std::ranges::sort(by_cube);
+  Keys some;
+  for (std::size_t i = 0; i < by_cube.size(); ++i)
+    if (i == 0 || by_cube[i].first != by_cube[i - 1].first) some.push_back(by_cube[i].second);
+  return some;
+}
+
+// A robot as small as a voxel, which goes wherever its sensor has room.
+planner::Robot small(planner::Robot robot, double resolution) {
+  planner::TravelOptions& travel = robot.travel;
+  travel.motion = planner::Motion::kSpace;
+  travel.extents = Eigen::Vector3d::Constant(resolution / 2);
+  travel.margin = travel.node_edge = 0.0;
+  travel.min_height = -1e6;
+  return robot;
+}
+
+}  // namespace
+
+Unseen explain_unseen(const GroundTruth& truth, const VoxelGrid& map, std::span<const planner::Robot> robots,
+                      std::span<const planner::Pose> starts) {
+  const double resolution = truth.lattice().resolution();
+  if (map.resolution() != resolution)
+    throw std::invalid_argument("unseen voxels: the map has voxels of " + std::to_string(map.resolution()) +
+                                " m, the ground truth of " + std::to_string(resolution) + " m");
+  const VoxelGrid grid = map_of(truth);
+  Sample sample = sample_of_unseen(truth, map);
+  if (sample.targets.empty()) return {};
+  const auto caster = make_ray_caster(grid);
+  const int edge = std::max(1, static_cast<int>(std::lround(kSpacing / resolution)));
+  const auto left = [&] {
+    std::uint64_t all = 0;
+    for (const auto& [key, drawn] : sample.targets) all += drawn;
+    return static_cast<double>(all) * sample.each;
+  };
+  // Takes out what a robot sees.
+  const auto look = [&](const planner::Robot& robot, const planner::Pose& start) {
+    const auto here = truth.lattice().key(start.position);
+    if (!here) return;
+    planner::TravelCorridor corridor(robot.travel, truth.lattice(), truth.bounds());
+    corridor.update({grid, {}}, *here);
+    const Keys cells = one_of_each_cube(corridor.cells(), edge);
+    Keys targets;
+    for (const auto& [key, drawn] : sample.targets) targets.push_back(key);
+    for (const std::uint32_t i :
+         planner::find_visible_frontiers(*caster, grid, targets, {cells, robot.view}).frontiers)
+      sample.targets.erase(targets[i]);
+  };
+  const double all = left();
+  for (std::size_t r = 0; r < robots.size(); ++r) look(robots[r], starts[r]);
+  const double without_in_view = left();
+  for (std::size_t r = 0; r < robots.size(); ++r) look(small(robots[r], resolution), starts[r]);
+  const double hidden = left();
+  return {all - without_in_view, without_in_view - hidden, hidden};
+}
+
+}  // namespace frontlux::sim
