@@ -1,5 +1,6 @@
 #include "corridor/path_distances.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 
@@ -16,8 +17,20 @@ std::optional<std::array<int, 3>> CellFrame::place(const VoxelKey& key) const {
   return place;
 }
 
-PathDistances::PathDistances(const CellFrame& frame, PathMetric metric) : frame_(frame) {
-  constexpr std::array<Label, 4> kLengths = {0, kStraight, 1393, 1706};
+CellFrame CellFrame::around(const VoxelKey& middle, int cells) const {
+  CellFrame part = *this;
+  const std::array<int, 3> at = {middle.x - first.x, middle.y - first.y, middle.z - first.z};
+  std::array<int, 3> low{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    low[a] = std::clamp(at[a] / stride - cells, 0, size[a]);
+    part.size[a] = std::clamp(at[a] / stride + cells + 1, low[a], size[a]) - low[a];
+  }
+  part.first = key(low[0], low[1], low[2]);
+  return part;
+}
+
+std::vector<CellMove> cell_moves(const CellFrame& frame, PathMetric metric) {
+  std::vector<CellMove> moves;
   const int deepest = frame.size[2] > 1 ? 1 : 0;
   const auto axes = [](const std::array<int, 3>& step) {
     return static_cast<std::size_t>(std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]));
@@ -27,20 +40,21 @@ PathDistances::PathDistances(const CellFrame& frame, PathMetric metric) : frame_
       for (int z = -deepest; z <= deepest; ++z) {
         const std::array<int, 3> step = {x, y, z};
         if (axes(step) == 0 || (metric == PathMetric::kSteps && axes(step) > 1)) continue;
-        const auto offset = static_cast<std::ptrdiff_t>(number(x, y, z) - number(0, 0, 0));
-        moves_.push_back({offset, step, kLengths[axes(step)], 0});
+        const auto offset = static_cast<std::ptrdiff_t>(frame.number(x, y, z) - frame.number(0, 0, 0));
+        moves.push_back({offset, step, kMoveLengths[axes(step)], 0});
       }
-  for (Move& move : moves_)
-    for (std::size_t i = 0; i < moves_.size(); ++i) {
-      const auto& part = moves_[i].step;
+  for (CellMove& move : moves)
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const auto& part = moves[i].step;
       bool is_part = part != move.step;
       for (std::size_t a = 0; a < 3; ++a) is_part = is_part && (part[a] == 0 || part[a] == move.step[a]);
       if (is_part) move.corners |= std::uint32_t{1} << i;
     }
-  labels_.assign(static_cast<std::size_t>(frame.size[0] + 2) * static_cast<std::size_t>(frame.size[1] + 2) *
-                     static_cast<std::size_t>(frame.size[2] + 2),
-                 kClosed);
+  return moves;
 }
+
+PathDistances::PathDistances(const CellFrame& frame, PathMetric metric)
+    : frame_(frame), moves_(cell_moves(frame, metric)) {}
 
 std::uint32_t PathDistances::closed_around(std::size_t cell) const {
   std::uint32_t closed = 0;
@@ -70,7 +84,7 @@ void PathDistances::spread(const VoxelKey& from) {
   }
   const auto place = frame_.place(from);
   if (!place) return;
-  const std::size_t start = number((*place)[0], (*place)[1], (*place)[2]);
+  const std::size_t start = frame_.number((*place)[0], (*place)[1], (*place)[2]);
   if (labels_[start] == kClosed) return;
   labels_[start] = kStart;
   buckets[0].push_back({static_cast<std::uint32_t>(start), kStart});
@@ -90,7 +104,7 @@ void PathDistances::spread(const VoxelKey& from) {
         better |= static_cast<std::uint32_t>(entry.label + lengths[i] < label) << i;
       }
       for (; better != 0; better &= better - 1) {
-        const Move& move = moves_[static_cast<std::size_t>(std::countr_zero(better))];
+        const CellMove& move = moves_[static_cast<std::size_t>(std::countr_zero(better))];
         if ((closed & move.corners) != 0) continue;
         const std::size_t cell = entry.cell + static_cast<std::size_t>(move.offset);
         const Label reached = entry.label + move.length;
@@ -105,7 +119,7 @@ void PathDistances::spread(const VoxelKey& from) {
 
 PathDistances::Label PathDistances::label(const VoxelKey& key) const {
   const auto place = frame_.place(key);
-  return place ? labels_[number((*place)[0], (*place)[1], (*place)[2])] : kClosed;
+  return place && !labels_.empty() ? labels_[frame_.number((*place)[0], (*place)[1], (*place)[2])] : kClosed;
 }
 
 bool PathDistances::open(const VoxelKey& key) const { return label(key) != kClosed; }
@@ -120,11 +134,11 @@ std::vector<VoxelKey> PathDistances::path_to(const VoxelKey& key) const {
   std::vector<VoxelKey> path;
   if (!distance(key)) return path;
   auto place = *frame_.place(key);
-  std::size_t cell = number(place[0], place[1], place[2]);
+  std::size_t cell = frame_.number(place[0], place[1], place[2]);
   path.push_back(key);
   while (labels_[cell] != kStart) {
     const std::uint32_t closed = closed_around(cell);
-    for (const Move& move : moves_) {
+    for (const CellMove& move : moves_) {
       const std::size_t before = cell + static_cast<std::size_t>(move.offset);
       if (labels_[before] == kClosed || labels_[before] == kUnreached || (closed & move.corners) != 0 ||
           labels_[before] + move.length != labels_[cell])
@@ -141,7 +155,7 @@ std::vector<VoxelKey> PathDistances::path_to(const VoxelKey& key) const {
 void PathDistances::reached(std::vector<VoxelKey>& cells) const {
   for (int x = 0; x < frame_.size[0]; ++x)
     for (int y = 0; y < frame_.size[1]; ++y) {
-      const Label* label = &labels_[number(x, y, 0)];
+      const Label* label = &labels_[frame_.number(x, y, 0)];
       for (int z = 0; z < frame_.size[2]; ++z)
         if (label[z] != kClosed && label[z] != kUnreached) cells.push_back(frame_.key(x, y, z));
     }

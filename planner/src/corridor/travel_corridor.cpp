@@ -1,7 +1,7 @@
 #include "corridor/erosion.hpp"
 #include "corridor/ground.hpp"
 #include "corridor/path_distances.hpp"
-#include "mapping/box_array.hpp"
+#include "corridor/path_search.hpp"
 
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -19,6 +19,7 @@ namespace {
 constexpr double kSlack = 1e-9;  // of a voxel: 0.9 m are three voxels of 0.3 m, whatever the division says
 constexpr int kMaxWindow = 1024;
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kNearby = 40;  // [cells] along each axis
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
@@ -197,7 +198,10 @@ struct TravelCorridor::State {
   detail::CellFrame frame;
   std::optional<detail::Erosion> erosion;
   std::optional<detail::Ground> ground;
-  std::optional<detail::PathDistances> distances;
+  std::optional<detail::PathDistances> distances;  // of all cells, or of those near by
+  std::optional<VoxelKey> start;                   // the robot's cell
+  std::vector<VoxelKey> way;                       // that was searched
+  CorridorExtent extent = CorridorExtent::kAllCells;
   std::vector<VoxelKey> cells;
   std::vector<VoxelKey> blocked;  // sorted
   std::vector<KeyBox> kept_out;   // of other robots
@@ -243,7 +247,7 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   frame.size = {count(middles.min.x, middles.max.x), count(middles.min.y, middles.max.y),
                 count(lowest, middles.max.z)};
   erosion.emplace(box, window);
-  distances.emplace(frame, options.metric);
+  distances.reset();
   if (options.motion == Motion::kPlane && options.require_ground) {
     const double resolution = lattice.resolution();
     const int floor = robot.z + window.low[2] - 1;
@@ -266,7 +270,6 @@ void TravelCorridor::State::read(const MapChange& change, const VoxelKey& robot)
     erosion->read(grid, changed);
     if (ground) ground->read(grid, changed);
   }
-  distances->reset([this](const VoxelKey& cell) { return passable(cell); });
 }
 
 CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {
@@ -292,7 +295,7 @@ TravelCorridor::~TravelCorridor() = default;
 TravelCorridor::TravelCorridor(TravelCorridor&&) noexcept = default;
 TravelCorridor& TravelCorridor::operator=(TravelCorridor&&) noexcept = default;
 
-void TravelCorridor::update(const MapChange& change, const VoxelKey& robot) {
+void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, CorridorExtent extent) {
   const VoxelGrid& grid = change.grid;
   if (grid.resolution() != state_->lattice.resolution())
     refuse("the grid has a resolution of " + std::to_string(grid.resolution()) + " m, the corridor " +
@@ -300,10 +303,29 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot) {
   std::erase_if(state_->kept_out, [&](const KeyBox& box) { return box.contains(state_->cell_of(robot)); });
   state_->read(change, robot);
   state_->state = state_->find_state(grid, robot);
+  const bool all = extent == CorridorExtent::kAllCells;
+  const bool all_before = std::exchange(state_->extent, extent) == CorridorExtent::kAllCells;
+  state_->start = state_->cell_of(robot);
   state_->cells.clear();
+  state_->way.clear();
+  if (!all || !all_before || !state_->distances)
+    state_->distances.emplace(all ? state_->frame : state_->frame.around(*state_->start, kNearby),
+                              state_->options.metric);
+  state_->distances->reset([this](const VoxelKey& cell) { return state_->passable(cell); });
   if (state_->state != CorridorState::kReady) return;
-  state_->distances->spread(state_->cell_of(robot));
-  state_->distances->reached(state_->cells);
+  state_->distances->spread(*state_->start);
+  if (all) state_->distances->reached(state_->cells);
+}
+
+bool TravelCorridor::find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through) {
+  State& state = *state_;
+  state.way.clear();
+  if (state.state != CorridorState::kReady) return false;
+  if (!state.distances->distance(cell))
+    state.way =
+        detail::shortest_path(state.frame, state.options.metric, *state.start, cell,
+                              [&](const VoxelKey& key) { return state.passable(key) && through(key); });
+  return state.distances->distance(cell) || !state.way.empty();
 }
 
 void TravelCorridor::block(std::span<const VoxelKey> cells) {
@@ -315,6 +337,7 @@ void TravelCorridor::block(std::span<const VoxelKey> cells) {
 void TravelCorridor::keep_out_of(std::vector<KeyBox> boxes) { state_->kept_out = std::move(boxes); }
 
 CorridorState TravelCorridor::state() const { return state_->state; }
+CorridorExtent TravelCorridor::extent() const { return state_->extent; }
 std::span<const VoxelKey> TravelCorridor::cells() const { return state_->cells; }
 
 std::optional<double> TravelCorridor::distance(const VoxelKey& key) const {
@@ -325,11 +348,14 @@ std::optional<double> TravelCorridor::distance(const VoxelKey& key) const {
 }
 
 std::vector<VoxelKey> TravelCorridor::path_to(const VoxelKey& key) const {
+  if (!state_->way.empty() && state_->way.back() == key) return state_->way;
   return state_->distances ? state_->distances->path_to(key) : std::vector<VoxelKey>{};
 }
 
 bool TravelCorridor::passable(const VoxelKey& key) const {
-  return state_->distances && state_->distances->open(key);
+  if (!state_->distances) return false;
+  if (state_->extent == CorridorExtent::kAllCells) return state_->distances->open(key);
+  return state_->frame.place(key) && state_->passable(key);
 }
 
 bool TravelCorridor::fits(const VoxelKey& key) const {

@@ -108,6 +108,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     robot.gained = static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& v) {
       return v.before == Occupancy::kUnknown && team.frontiers.contains(v.key);
     }));
+    members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
     team.trails[r].insert(team.trails[r].end(), robot.planned.begin() + (team.number == 0 ? 0 : 1),
                           robot.planned.end());
@@ -274,9 +275,15 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
   note_look(robot, step);
-  const bool keeps = !team.tours && reason == PlanReason::kPeriod && member.going && member.goal.pose &&
+  // Along a tour a robot that has learnt next to nothing has no reason to change its mind: it would turn back
+  // and forth between stops that are about as good.
+  const bool as_before = !team.tours || static_cast<double>(member.gained) < team.options.epsilon;
+  const bool keeps = as_before && reason == PlanReason::kPeriod && member.going && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
-  if (keeps)
+  member.gained = 0;
+  if (keeps && team.tours)
+    team.keep_stop(robot, step);
+  else if (keeps)
     team.keep_goal(robot, step);
   else if (team.tours)
     team.plan_tours(robot, starts, step);

@@ -22,6 +22,7 @@ struct ContinuousExploration::State {
     detail::Follower motion;
     std::optional<double> planned = {};  // [s] when it planned last
     double chosen = 0.0;                 // [s] when it chose its goal
+    std::uint64_t gained = 0;            // frontiers that it has mapped since it planned last
     bool stopped = false, blocked = false;
     bool goes_back = false;         // on the way on which it came
     bool going = false;             // it has a goal, or goes back

@@ -153,24 +153,49 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   }
 }
 
-void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step) {
+void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent) {
   const PhaseClock clock(step, Phase::kGoals);
   // A robot that does not move measures the same again and again; if beams that graze the floor had freed it
   // before the robot, it would never go on.
-  selection->keep_goal({tours ? *solid : mapping.grid(), changed}, robot, poses[robot]);
+  selection->keep_goal({tours ? *solid : mapping.grid(), changed}, robot, poses[robot], extent);
   step.frontiers = frontiers.size();
+}
+
+// What robots need to know of their corridors as long as they have somewhere to go.
+CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
+  const TravelOptions& travel = options.team[robot].robot.travel;
+  return travel.motion == Motion::kSpace && travel.node_edge == 0.0 ? CorridorExtent::kNearby
+                                                                    : CorridorExtent::kAllCells;
+}
+
+void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
+  keep_goal(robot, step, extent_of_tours(robot));
+  const PhaseClock clock(step, Phase::kPaths);
+  const VoxelKey& cell = step.robots[robot].goal.cell;
+  if (selection->find_way(robot, cell, tours->first_way(robot))) return;
+  selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
 }
 
 void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
                                   ExplorationStep& step) {
-  keep_goal(robot, step);
-  const PhaseClock clock(step, Phase::kGoals);
   const CountingRayCaster counting(*caster, lattice());
   wanted = abandoned.without_abandoned(frontiers.keys());
   step.abandoned = frontiers.size() - wanted.size();
+  const auto update = [&](CorridorExtent extent) {
+    keep_goal(robot, step, extent);
+    const PhaseClock clock(step, Phase::kGoals);
+    tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
+  };
+  const auto has_way = [&] {
+    const PhaseClock clock(step, Phase::kPaths);
+    const auto tour = tours->tour(robot);
+    return tour.empty() || selection->find_way(robot, tour.front().cell, tours->first_way(robot));
+  };
   tours->note(changed);
-  tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
+  update(extent_of_tours(robot));
+  if (extent_of_tours(robot) == CorridorExtent::kNearby && !has_way()) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();
+  const PhaseClock clock(step, Phase::kGoals);
   targets[robot].clear();
   std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
   Goal& goal = step.robots[robot].goal;
@@ -187,7 +212,7 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     goal.state = GoalState::kAssigned;
     goal.pose = first.pose;
     goal.cell = first.cell;
-    goal.distance = path_corridor(robot).distance(first.cell).value_or(0.0);
+    goal.distance = tours->first_distance(robot);
     goal.gain = static_cast<double>(first.seen);
     goal.assigned = tours->frontiers_of(robot).size();
     goal.quality = std::exp(-options.team[robot].options.lambda * goal.distance) * goal.gain;
@@ -234,7 +259,10 @@ std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal
   std::optional<TravelCorridor> elsewhere;
   for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
     const auto cell = lattice().key(place->position);
-    if (!cell || !corridor.passable(*cell) || corridor.contains(*cell)) continue;
+    if (!cell || !corridor.passable(*cell)) continue;
+    if (corridor.extent() == CorridorExtent::kAllCells ? corridor.contains(*cell)
+                                                       : tours->gets_to(robot, *cell))
+      continue;
     if (lost && place->position == poses[robot].position) return {};
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (!lost) {

@@ -58,7 +58,9 @@ struct ExplorationState {
   /// @param choosing  if given: the robot that chooses; the others keep their goals
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
   /// Brings a robot's corridor up to date; all robots keep their goals.
-  void keep_goal(std::size_t robot, ExplorationStep& step);
+  void keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent = CorridorExtent::kAllCells);
+  /// Leaves a robot the stop of its tour that it has for a goal.
+  void keep_stop(std::size_t robot, ExplorationStep& step);
   /// Shares the frontiers out in tours, and gives a robot the first stop of its tour for a goal.
   /// @param starts  of all robots, when the robot's trajectory begins
   void plan_tours(std::size_t robot, std::span<const MotionState> starts, ExplorationStep& step);
@@ -87,6 +89,7 @@ struct ExplorationState {
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
  private:
+  [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,

@@ -97,9 +97,15 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
   return result;
 }
 
-void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose) {
+void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
+                              CorridorExtent extent) {
   state_->note(change);
-  state_->update_corridor(robot, change.grid, pose);
+  state_->update_corridor(robot, change.grid, pose, extent);
+}
+
+bool GoalSelection::find_way(std::size_t robot, const VoxelKey& cell,
+                             const std::function<bool(const VoxelKey&)>& through) {
+  return state_->members[robot].corridor.find_way(cell, through);
 }
 
 void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {

@@ -51,7 +51,8 @@ void GoalSelection::State::note(const MapChange& change) {
   }
 }
 
-void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose) {
+void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose,
+                                           CorridorExtent extent) {
   Member& member = members[robot];
   member.position = pose.position;
   const Keys missed = std::exchange(member.missed, {});
@@ -61,9 +62,12 @@ void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& g
     return;
   }
   member.cell = *cell;
-  member.corridor.update({grid, missed}, member.cell);
-  member.unseen.update({grid, missed}, member.corridor.cells(),
-                       ViewRegion(team[robot].robot.view, lattice.resolution()));
+  member.corridor.update({grid, missed}, member.cell, extent);
+  if (extent == CorridorExtent::kNearby)
+    member.unseen.forget();
+  else
+    member.unseen.update({grid, missed}, member.corridor.cells(),
+                         ViewRegion(team[robot].robot.view, lattice.resolution()));
 }
 
 void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {

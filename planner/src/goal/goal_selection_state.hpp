@@ -52,7 +52,8 @@ struct GoalSelection::State {
   std::vector<Member> members = {};
 
   void note(const MapChange& change);
-  void update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose);
+  void update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose,
+                       CorridorExtent extent = CorridorExtent::kAllCells);
   void begin_step(std::optional<std::size_t> choosing);
   void assign(Step& step, const Keys& frontiers);
   void decide(Step& step);

@@ -65,10 +65,12 @@ std::uint64_t seed_of(const PathKey& key) {
 }
 
 // Along the paths from the robot's cell: from the start back to where those to both part, and on to the goal.
+// None if there are no such paths.
 std::vector<VoxelKey> cells_between(const TravelCorridor& corridor, const VoxelKey& start,
                                     const VoxelKey& goal) {
   std::vector<VoxelKey> back = corridor.path_to(start);
   const std::vector<VoxelKey> on = corridor.path_to(goal);
+  if (back.empty() || on.empty()) return {};
   std::size_t common = 0;
   while (common < back.size() && common < on.size() && back[common] == on[common]) ++common;
   std::reverse(back.begin(), back.end());
@@ -90,6 +92,7 @@ Eigen::Vector3d nearest_fit(const TravelCorridor& corridor, const Lattice& latti
 Polyline corridor_path(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& start,
                        const Eigen::Vector3d& goal) {
   const auto cells = cells_between(corridor, *lattice.key(start), *lattice.key(goal));
+  if (cells.empty()) return {};
   Polyline path = {start};
   const auto add = [&](const Eigen::Vector3d& point) {
     if (point != path.back()) path.push_back(point);
@@ -142,8 +145,9 @@ std::optional<PathOutcome> reason_for_none(const TravelCorridor& corridor, const
   // A robot may turn in place, whether it fits or not.
   if (start.position != goal.position && !segment_is_free(corridor, lattice, goal.position, goal.position))
     return PathOutcome::kGoalNotFree;
-  if (corridor.cells().empty()) return PathOutcome::kNoCorridor;
-  if (!corridor.contains(*from) || !corridor.contains(*to)) return PathOutcome::kOutOfReach;
+  if (corridor.extent() == CorridorExtent::kAllCells &&
+      (!corridor.contains(*from) || !corridor.contains(*to)))
+    return PathOutcome::kOutOfReach;
   return std::nullopt;
 }
 
@@ -212,7 +216,7 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
   query.goal = goal.position;
   query.reach = corridor.reach();
   query.cells = corridor.cells();
-  query.plane = on_one_layer(query.cells);
+  query.plane = !query.cells.empty() && on_one_layer(query.cells);
   query.seed = seed_of(key);
   if (query.plane) query.goal.z() = query.start.z();
   const auto is_free = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -230,6 +234,10 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
     if (path.empty()) plan.outcome = PathOutcome::kFellBack;
   }
   if (path.empty()) path = corridor_path(corridor, lattice, query.start, query.goal);
+  if (path.empty()) {
+    plan.outcome = PathOutcome::kOutOfReach;
+    return plan;
+  }
   path.front() = query.start;
   path.back() = query.goal;
   if (path.size() == 2 && path.front() == path.back()) path.pop_back();

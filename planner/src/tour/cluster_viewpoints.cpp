@@ -85,12 +85,16 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
   return viewpoints;
 }
 
+void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints) {
+  std::ranges::stable_sort(viewpoints, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+}
+
 }  // namespace
 
 std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
-                                              std::span<const VoxelKey> cells) {
-  std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, kSample));
-  std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+                                              std::span<const VoxelKey> cells, std::size_t sample) {
+  std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, sample));
+  sort_by_seen(all);
   std::vector<VoxelKey> kept;
   const int apart = static_cast<int>(kApart * query.view.max_range / query.lattice.resolution());
   for (const ClusterViewpoint& viewpoint : all) {
@@ -105,7 +109,7 @@ std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const
   std::erase_if(best, [&](const ClusterViewpoint& viewpoint) {
     return static_cast<double>(viewpoint.seen) < query.least_gain;
   });
-  std::ranges::stable_sort(best, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+  sort_by_seen(best);
   return best;
 }
 
@@ -152,8 +156,15 @@ std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const 
   return seen;
 }
 
-std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster) {
-  return best_viewpoints(query, cluster, cells_around(query, cluster));
+std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                              std::span<const ClusterViewpoint> before) {
+  std::vector<ClusterViewpoint> found =
+      best_viewpoints(query, cluster, cells_around(query, cluster), kSample);
+  if (!found.empty()) return found;
+  std::vector<VoxelKey> cells;
+  for (const ClusterViewpoint& viewpoint : before)
+    if (query.graph.node(viewpoint.cell)) cells.push_back(viewpoint.cell);
+  return best_viewpoints(query, cluster, cells, kSample);
 }
 
 }  // namespace frontlux::planner::detail

@@ -32,14 +32,18 @@ struct ViewpointQuery {
 };
 
 /// Some places from which a robot sees about as much of a cluster as from any, apart from each other; the
-/// best first. They lie on circles around the cluster's middle. None if it sees nothing from any of them.
+/// best first. They lie on circles around the cluster's middle or, if it sees nothing from there, where they
+/// were before. None if it sees nothing from there either.
 [[nodiscard]] std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query,
-                                                            const FrontierCluster& cluster);
+                                                            const FrontierCluster& cluster,
+                                                            std::span<const ClusterViewpoint> before);
 
 /// The same of some cells.
+/// @param sample  of the cluster's frontiers, so many are what cells are compared by
 [[nodiscard]] std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query,
                                                             const FrontierCluster& cluster,
-                                                            std::span<const VoxelKey> cells);
+                                                            std::span<const VoxelKey> cells,
+                                                            std::size_t sample);
 
 /// The part of each cluster that a robot sees from each viewpoint, at its yaw; by a sample of the frontiers.
 /// Viewpoints are rows, clusters are columns.

@@ -4,7 +4,6 @@
 #include "tour/shortest_choice.hpp"
 
 #include <frontlux/parallel.hpp>
-#include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -57,7 +56,8 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
   const int graph_edge = voxels(options.graph_edge * greatest_range(robots), lattice);
   for (std::size_t r = 0; r < robots.size(); ++r) {
     Robot& robot = robots[r];
-    TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge);
+    TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge,
+                      voxels(options.spacing * robot.view.max_range, lattice));
     ViewRegion region(robot.view, lattice.resolution());
     members_.push_back({std::move(robot), std::move(region), std::move(graph)});
   }
@@ -80,6 +80,23 @@ Keys TourPlanning::frontiers_of(std::size_t robot) const {
     }
   std::ranges::sort(all);
   return all;
+}
+
+double TourPlanning::first_distance(std::size_t robot) const {
+  const Member& member = members_[robot];
+  const double distance = member.tour.empty() ? 0.0 : distance_to(member, member.tour.front().cell);
+  return distance == TourProblem::kNever ? 0.0 : distance;
+}
+
+std::function<bool(const VoxelKey&)> TourPlanning::first_way(std::size_t robot) const {
+  const Member& member = members_[robot];
+  const auto to = member.tour.empty() ? std::nullopt : member.graph.node(member.tour.front().cell);
+  if (!to || !member.here) return [](const VoxelKey&) { return false; };
+  return [&member, nodes = member.graph.around_way(member.distances.at(*member.graph.node(*member.here)),
+                                                   *to)](const VoxelKey& cell) {
+    const auto node = member.graph.node(cell);
+    return node && std::ranges::binary_search(nodes, *node);
+  };
 }
 
 // Boxes that hold all voxels that have changed since the robot's last planning.
@@ -107,6 +124,40 @@ void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> chan
   }
   member.graph.update(query.corridor, cells);
   member.distances.clear();
+}
+
+// Finds the ways from where a robot is.
+void TourPlanning::find_here(std::size_t robot, const MotionState& start) {
+  Member& member = members_[robot];
+  member.here = lattice_.key(start.pose.position);
+  if (member.here && !member.graph.node(*member.here)) member.here.reset();
+  if (member.here) measure_from(member, {*member.here});
+}
+
+// [m] from where it is; `kNever` if there is no way.
+double TourPlanning::distance_to(const Member& member, const VoxelKey& cell) const {
+  return member.here ? distance_between(member, *member.here, cell) : TourProblem::kNever;
+}
+
+// Of the robot that plans: exact near by.
+double TourPlanning::own_distance_to(const Query& query, const VoxelKey& cell) const {
+  if (const auto distance = query.corridor.distance(cell)) return *distance;
+  return query.corridor.extent() == CorridorExtent::kAllCells ? TourProblem::kNever
+                                                              : distance_to(members_[query.robot], cell);
+}
+
+// Other robots may be in the way only if the corridor knows its cells.
+bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
+  return query.corridor.extent() == CorridorExtent::kAllCells
+             ? query.corridor.contains(cell)
+             : query.corridor.passable(cell) && gets_to(query.robot, cell);
+}
+
+bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
+  const Member& member = members_[robot];
+  const auto node = member.graph.node(cell);
+  return node && member.here &&
+         member.distances.at(*member.graph.node(*member.here))[*node] != TravelGraph::kFar;
 }
 
 ViewpointQuery TourPlanning::sight_of(const Query& query) const {
@@ -137,7 +188,7 @@ void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
   for_each_index(search.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = search[i];
     sight->revision = cluster->revision;
-    sight->found = find_viewpoints(view, *cluster);
+    sight->found = find_viewpoints(view, *cluster, sight->found);
   });
   member.sights = std::move(sights);
   // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
@@ -146,36 +197,44 @@ void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
     Sight& sight = member.sights[clusters[c].id];
     const bool had_some = !sight.viewpoints.empty();
     sight.viewpoints.clear();
-    std::ranges::copy_if(
-        sight.found, std::back_inserter(sight.viewpoints),
-        [&](const ClusterViewpoint& viewpoint) { return query.corridor.contains(viewpoint.cell); });
-    if (sight.viewpoints.empty() && (had_some || searched[c])) hidden.push_back(&clusters[c]);
+    std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
+                         [&](const ClusterViewpoint& viewpoint) { return reaches(query, viewpoint.cell); });
+    if (!sight.viewpoints.empty()) {
+      sight.stale = false;
+      sight.in_vain = sight.pause = 0;
+      continue;
+    }
+    sight.stale = sight.stale || had_some || searched[c];
+    sight.pause = std::max(0, sight.pause - 1);
+    if (sight.stale) hidden.push_back(&clusters[c]);
   }
-  if (query.corridor.state() == CorridorState::kReady) look_from_anywhere(query, view, hidden);
+  if (query.corridor.state() != CorridorState::kReady) return;
+  std::vector<const FrontierCluster*> now;
+  std::ranges::copy_if(hidden, std::back_inserter(now),
+                       [&](const FrontierCluster* cluster) { return member.sights[cluster->id].pause == 0; });
+  look_from_anywhere(query, view, now);
+  // Before the robot has nothing to do it looks for all of them.
+  const auto is_seen = [](const auto& sight) { return !sight.second.viewpoints.empty(); };
+  if (std::ranges::none_of(member.sights, is_seen)) look_from_anywhere(query, view, hidden);
 }
 
-// Clusters that are seen from none of the usual places, but from some cell all the same (Alg. 2).
+// Clusters that are seen from none of the usual places: from cells all over the corridor.
 void TourPlanning::look_from_anywhere(const Query& query, const ViewpointQuery& view,
                                       std::span<const FrontierCluster* const> hidden) {
+  if (hidden.empty()) return;
   Member& member = members_[query.robot];
-  Keys frontiers;
-  for (const FrontierCluster* cluster : hidden)
-    frontiers.insert(frontiers.end(), cluster->keys.begin(), cluster->keys.end());
-  if (frontiers.empty()) return;
-  std::ranges::sort(frontiers);
-  const AssignedFrontiers seen = find_visible_frontiers(query.caster, query.grid, frontiers,
-                                                        {query.corridor.cells(), member.robot.view});
-  for (const FrontierCluster* cluster : hidden) {
-    Keys cells;
-    for (std::size_t i = 0; i < seen.frontiers.size(); ++i)
-      if (std::ranges::binary_search(cluster->keys, frontiers[seen.frontiers[i]]))
-        cells.push_back(seen.seen_from[i]);
-    std::ranges::sort(cells);
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    Sight& sight = member.sights[cluster->id];
-    sight.viewpoints = best_viewpoints(view, *cluster, cells);
+  std::vector<Sight*> sights;
+  for (const FrontierCluster* cluster : hidden) sights.push_back(&member.sights[cluster->id]);
+  for_each_index(hidden.size(), [&](std::size_t i) {
+    Keys cells = member.graph.spread_cells(grown(hidden[i]->box, member.region.reach()));
+    std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(query, cell); });
+    Sight& sight = *sights[i];
+    sight.viewpoints = best_viewpoints(view, *hidden[i], cells, options_.spread_sample);
     sight.found.insert(sight.found.end(), sight.viewpoints.begin(), sight.viewpoints.end());
-  }
+    sight.stale = false;
+    sight.in_vain = sight.viewpoints.empty() ? std::min(sight.in_vain + 1, 30) : 0;
+    sight.pause = sight.in_vain == 0 ? 0 : std::min(1 << sight.in_vain, options_.longest_pause);
+  });
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] by its way.
@@ -274,20 +333,18 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), NumberTable(count, count)};
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
-  const auto here = lattice_.key(start.pose.position);
-  if (!here || !member.graph.node(*here)) return robot;
+  if (!member.here) return robot;
 
   std::vector<const ClusterViewpoint*> at(count);
-  std::vector<VoxelKey> cells{*here};
+  std::vector<VoxelKey> cells;
   for (std::size_t i = 0; i < count; ++i)
     if ((at[i] = best_viewpoint(member, stops[i].front())) != nullptr) cells.push_back(at[i]->cell);
   measure_from(member, std::move(cells));
   std::vector<double> within(count);  // [s] from cluster to cluster of a stop
   for (std::size_t i = 0; i < count; ++i) {
     if (at[i] == nullptr) continue;
-    const double distance = r == query.robot
-                                ? query.corridor.distance(at[i]->cell).value_or(TourProblem::kNever)
-                                : distance_between(member, *here, at[i]->cell);
+    const double distance =
+        r == query.robot ? own_distance_to(query, at[i]->cell) : distance_to(member, at[i]->cell);
     if (distance == TourProblem::kNever) {
       at[i] = nullptr;
       continue;
@@ -335,9 +392,9 @@ void TourPlanning::join_next_stops(const Query& query) {
     clusters.push_back(&cluster(member.tour[c].clusters.front()));
     views.sizes.push_back(static_cast<double>(clusters.back()->keys.size()));
     for (const ClusterViewpoint& viewpoint : member.sights[clusters.back()->id].viewpoints)
-      if (const auto distance = query.corridor.distance(viewpoint.cell)) {
+      if (const double distance = own_distance_to(query, viewpoint.cell); distance != TourProblem::kNever) {
         viewpoints.push_back(viewpoint);
-        distances.push_back(*distance);
+        distances.push_back(distance);
         views.found_for.push_back(c);
       }
   }
@@ -395,8 +452,11 @@ void TourPlanning::join_next_stops(const Query& query) {
 }
 
 void TourPlanning::update(const Query& query) {
-  const std::vector<KeyBox> changes = take_changes(members_[query.robot]);
+  std::vector<KeyBox> changes = take_changes(members_[query.robot]);
+  if (!std::exchange(members_[query.robot].planned, true))
+    if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
   update_graph(query, changes);
+  for (std::size_t r = 0; r < members_.size(); ++r) find_here(r, query.starts[r]);
   clusters_.update(query.frontiers);
   look(query, changes);
   const auto clusters = clusters_.clusters();

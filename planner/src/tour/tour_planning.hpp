@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -31,12 +32,15 @@ class TourPlanning {
  public:
   struct Options {
     // Of the greatest range of a robot's sensor: edges of the cubes in which
-    double cluster_edge = 0.4;  ///< frontiers make a cluster,
-    double zone_edge = 0.8;     ///< clusters that are far from all robots make one stop,
-    double graph_edge = 0.2;    ///< a robot's cells make a node
-    double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
-    double least_area = 1.5;    ///< [m2] of a cluster worth a stop
-    double least_gain = 10.0;   ///< [frontiers] that a stop shows
+    double cluster_edge = 0.4;       ///< frontiers make a cluster,
+    double zone_edge = 0.8;          ///< clusters that are far from all robots make one stop,
+    double graph_edge = 0.2;         ///< a robot's cells make a node
+    double spacing = 0.05;           ///< cells are tried for clusters that the usual places do not show,
+    double near = 2.0;               ///< of a robot's range: clusters up to here are stops of their own
+    double least_area = 1.5;         ///< [m2] of a cluster worth a stop
+    double least_gain = 10.0;        ///< [frontiers] that a stop shows
+    std::size_t spread_sample = 16;  ///< with so many of the cluster's frontiers
+    int longest_pause = 8;    ///< [plannings] between such trials, which double from one in vain to the next
     std::size_t joined = 40;  ///< clusters that come next, which are looked at from as few places as see them
     std::size_t refined = 5;  ///< stops whose viewpoints are chosen together
   };
@@ -66,6 +70,12 @@ class TourPlanning {
   [[nodiscard]] const std::vector<VoxelKey>& first_view(std::size_t robot) const {
     return members_[robot].first_view;
   }
+  /// Whether the robot can get to a cell, wherever other robots are; as of its last update.
+  [[nodiscard]] bool gets_to(std::size_t robot, const VoxelKey& cell) const;
+  /// [m] from where the robot will be to the first stop of its tour, about; 0 if there is none.
+  [[nodiscard]] double first_distance(std::size_t robot) const;
+  /// Whether the robot's way to the first stop of its tour may lead through a cell.
+  [[nodiscard]] std::function<bool(const VoxelKey&)> first_way(std::size_t robot) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
 
@@ -75,18 +85,27 @@ class TourPlanning {
     std::uint64_t revision = 0;
     std::vector<ClusterViewpoint> found;       // wherever it fits
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
+    bool stale = false;                        // since it was looked for from anywhere
+    int in_vain = 0;                           // that often, in a row
+    int pause = 0;                             // plannings until the next time
   };
   struct Member {
     Robot robot;
     ViewRegion region;
     TravelGraph graph;
+    bool planned = false;                                         // before
     std::vector<VoxelKey> changed = {};                           // since its graph was updated
     std::map<std::uint32_t, std::vector<double>> distances = {};  // [m] by node, in this graph
+    std::optional<VoxelKey> here = {};                            // where it fits when its trajectory begins
     std::map<std::uint32_t, Sight> sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
   };
 
+  void find_here(std::size_t robot, const MotionState& start);
+  [[nodiscard]] double distance_to(const Member& member, const VoxelKey& cell) const;
+  [[nodiscard]] double own_distance_to(const Query& query, const VoxelKey& cell) const;
+  [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   void update_graph(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] ViewpointQuery sight_of(const Query& query) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <queue>
 #include <utility>
 
@@ -16,8 +17,8 @@ constexpr std::array<std::array<int, 3>, 6> kFaces = {
 
 }  // namespace
 
-TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge)
-    : lattice_(lattice), edge_(std::clamp(edge, 1, 40)), part_(bounds) {
+TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge, int spacing)
+    : lattice_(lattice), edge_(std::clamp(edge, 1, 40)), spacing_(std::clamp(spacing, 1, 40)), part_(bounds) {
   const auto cubes = [this](int low, int high) { return static_cast<std::size_t>((high - low) / edge_ + 1); };
   count_ = {cubes(bounds.min.x, bounds.max.x), cubes(bounds.min.y, bounds.max.y),
             cubes(bounds.min.z, bounds.max.z)};
@@ -37,6 +38,20 @@ std::size_t TravelGraph::cube_of(const VoxelKey& cell) const {
   const VoxelKey& low = part_.box().min;
   const auto place = [this](int key, int min) { return static_cast<std::size_t>((key - min) / edge_); };
   return (place(cell.x, low.x) * count_[1] + place(cell.y, low.y)) * count_[2] + place(cell.z, low.z);
+}
+
+// Calls `visit(number)` for the cubes that meet a box.
+template <class Visit>
+void TravelGraph::for_each_cube(const KeyBox& box, const Visit& visit) const {
+  const auto part = intersection(box, part_.box());
+  if (!part) return;
+  const auto place = [this](int key, int min) { return (key - min) / edge_; };
+  const VoxelKey& low = part_.box().min;
+  for (int x = place(part->min.x, low.x); x <= place(part->max.x, low.x); ++x)
+    for (int y = place(part->min.y, low.y); y <= place(part->max.y, low.y); ++y)
+      for (int z = place(part->min.z, low.z); z <= place(part->max.z, low.z); ++z)
+        visit((static_cast<std::size_t>(x) * count_[1] + static_cast<std::size_t>(y)) * count_[2] +
+              static_cast<std::size_t>(z));
 }
 
 // Finds the parts of a cube.
@@ -63,6 +78,33 @@ void TravelGraph::read(Cube& cube, const TravelCorridor& corridor) {
     }
     cube.centers.push_back(sum / static_cast<double>(part.size()));
   });
+  spread(cube);
+}
+
+void TravelGraph::spread(Cube& cube) const {
+  cube.spread.clear();
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> taken;  // smaller cube and part
+  for_each_key(cube.cells, [&](const VoxelKey& key) {
+    if (part_[key] == 0) return;
+    const VoxelKey& low = cube.cells.min;
+    const auto place = [this](int at, int from) {
+      return static_cast<std::uint32_t>((at - from) / spacing_);
+    };
+    const std::pair here{(place(key.x, low.x) * 64 + place(key.y, low.y)) * 64 + place(key.z, low.z),
+                         part_[key]};
+    if (std::ranges::find(taken, here) != taken.end()) return;
+    taken.push_back(here);
+    cube.spread.push_back(key);
+  });
+}
+
+std::vector<VoxelKey> TravelGraph::spread_cells(const KeyBox& box) const {
+  std::vector<VoxelKey> cells;
+  for_each_cube(box, [&](std::size_t cube) {
+    std::ranges::copy_if(cubes_[cube].spread, std::back_inserter(cells),
+                         [&](const VoxelKey& cell) { return box.contains(cell); });
+  });
+  return cells;
 }
 
 // Finds which parts of a cube touch parts of the cubes after it, along each axis.
@@ -122,18 +164,8 @@ void TravelGraph::connect() {
 }
 
 void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
-  std::vector<std::uint8_t> reads(cubes_.size(), read_ ? 0 : 1);
-  for (const KeyBox& box : changed) {
-    const auto part = intersection(box, part_.box());
-    if (!part) continue;
-    const auto place = [this](int key, int min) { return (key - min) / edge_; };
-    const VoxelKey& low = part_.box().min;
-    for (int x = place(part->min.x, low.x); x <= place(part->max.x, low.x); ++x)
-      for (int y = place(part->min.y, low.y); y <= place(part->max.y, low.y); ++y)
-        for (int z = place(part->min.z, low.z); z <= place(part->max.z, low.z); ++z)
-          reads[(static_cast<std::size_t>(x) * count_[1] + static_cast<std::size_t>(y)) * count_[2] +
-                static_cast<std::size_t>(z)] = 1;
-  }
+  std::vector<std::uint8_t> reads(cubes_.size());
+  for (const KeyBox& box : changed) for_each_cube(box, [&](std::size_t cube) { reads[cube] = 1; });
   std::vector<std::size_t> read_cubes;
   std::vector<std::uint8_t> links(cubes_.size(), 0);
   const std::array<std::size_t, 3> step = {count_[1] * count_[2], count_[2], 1};
@@ -145,7 +177,6 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
       if (i >= back) links[i - back] = 1;
   }
   if (read_cubes.empty()) return;
-  read_ = true;
   for_each_index(read_cubes.size(), [&](std::size_t i) { read(cubes_[read_cubes[i]], corridor); });
   for_each_index(cubes_.size(), [&](std::size_t i) {
     if (links[i] != 0) link(i);
@@ -176,6 +207,26 @@ std::vector<double> TravelGraph::distances(std::uint32_t from) const {
     }
   }
   return length;
+}
+
+std::vector<std::uint32_t> TravelGraph::around_way(const std::vector<double>& lengths,
+                                                   std::uint32_t to) const {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t node = to;;) {
+    nodes.push_back(node);
+    std::uint32_t before = node;
+    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) {
+      nodes.push_back(edges_[e].to);
+      if (lengths[edges_[e].to] + static_cast<double>(edges_[e].length) == lengths[node] &&
+          lengths[edges_[e].to] < lengths[node])
+        before = edges_[e].to;
+    }
+    if (before == node) break;
+    node = before;
+  }
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
 }
 
 }  // namespace frontlux::planner::detail

@@ -26,11 +26,12 @@ class TravelGraph {
 
   /// @param bounds  of the cells
   /// @param edge    [voxels] of a cube, at most 40
-  TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge);
+  /// @param spacing [voxels] of the cells that `spread_cells` returns
+  TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge, int spacing);
 
   /// @param corridor  of the map as it is now; where other robots are does not matter
-  /// @param changed   boxes of cells outside of which nothing has changed since the last update; the first
-  ///                  update reads all
+  /// @param changed   boxes of cells outside of which nothing has changed since the last update; at first,
+  ///                  outside of which the robot does not fit
   void update(const TravelCorridor& corridor, std::span<const KeyBox> changed);
 
   /// The node that holds a cell; nothing if the robot does not fit there.
@@ -38,29 +39,38 @@ class TravelGraph {
   /// The lowest and the highest cell in which the robot fits; none if it fits nowhere.
   [[nodiscard]] std::optional<KeyBox> extent() const { return extent_; }
   [[nodiscard]] std::size_t size() const { return centers_.size(); }
+  /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
+  [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
   /// [m] from a node to all others, from middle to middle; `kFar` where there is no way.
   [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
+  /// The nodes of a shortest way to a node and those next to them, sorted: their cells connect.
+  /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
+  [[nodiscard]] std::vector<std::uint32_t> around_way(const std::vector<double>& lengths,
+                                                      std::uint32_t to) const;
 
  private:
   struct Cube {
     KeyBox cells;
     std::vector<Eigen::Vector3d> centers;                        // of its parts
     std::uint32_t first = 0;                                     // node of its first part
+    std::vector<VoxelKey> spread;                                // some of its cells
     std::vector<std::pair<std::uint32_t, std::uint64_t>> links;  // from a part to a part of a later cube
   };
 
   [[nodiscard]] std::size_t cube_of(const VoxelKey& cell) const;
+  template <class Visit>
+  void for_each_cube(const KeyBox& box, const Visit& visit) const;
   void read(Cube& cube, const TravelCorridor& corridor);
+  void spread(Cube& cube) const;
   void link(std::size_t index);
   void connect();
 
   Lattice lattice_;
-  int edge_;
+  int edge_, spacing_;
   std::array<std::size_t, 3> count_{};  // of cubes
   std::vector<Cube> cubes_;
   BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
-  bool read_ = false;
   std::optional<KeyBox> extent_;
   std::vector<Eigen::Vector3d> centers_;  // of the nodes
   std::vector<std::size_t> begin_;        // of each node's neighbours

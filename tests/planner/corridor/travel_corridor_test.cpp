@@ -198,6 +198,36 @@ TEST(TravelCorridor, EqualsANewCorridorAfterEveryChange) {
   }
 }
 
+// Near by the same as with all cells, as far as the ways do not lead away and back; far away by a search.
+TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
+  std::size_t near = 0, none = 0;
+  for (const Robot& robot : robots()) {
+    Random random(9);
+    VoxelGrid grid = random_map(4, robot.resolution, 60);
+    TravelCorridor all(robot.options, grid.lattice(), kBounds), some(robot.options, grid.lattice(), kBounds);
+    clear_around(grid, robot, all);
+    all.update({grid}, robot.at);
+    some.update({grid}, robot.at, CorridorExtent::kNearby);
+    EXPECT_EQ(some.extent(), CorridorExtent::kNearby);
+    EXPECT_EQ(some.state(), all.state());
+    EXPECT_TRUE(some.cells().empty());
+    for_each_key(kBounds, [&](const VoxelKey& key) {
+      ASSERT_EQ(some.passable(key), all.passable(key));
+      ASSERT_EQ(some.distance(key), all.distance(key)) << "all are near";
+    });
+    const auto anywhere = [](const VoxelKey&) { return true; };
+    for (int i = 0; i < 40; ++i) {
+      const VoxelKey goal = random.key_in(kBounds);
+      EXPECT_EQ(some.find_way(goal, anywhere), all.contains(goal));
+      EXPECT_EQ(some.path_to(goal).size(), all.path_to(goal).size());
+      near += all.contains(goal) ? 1 : 0;
+      none += all.contains(goal) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(near, 80U);
+  EXPECT_GT(none, 80U);
+}
+
 // The boxes of the last call, but for those that hold the robot's own cell.
 TEST(TravelCorridor, KeepsOutOfBoxes) {
   std::size_t cells = 0;

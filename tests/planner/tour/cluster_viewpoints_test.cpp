@@ -21,7 +21,7 @@ struct Room {
 
   // Free but for some pillars; unknown beyond a plane, on which the cluster lies.
   explicit Room(Random& random)
-      : corridor(options(), Lattice(kResolution), kBounds), graph(Lattice(kResolution), kBounds, 5) {
+      : corridor(options(), Lattice(kResolution), kBounds), graph(Lattice(kResolution), kBounds, 5, 2) {
     KeyBox known = kBounds;
     known.max.x = 32785;
     test::fill(grid, known, Occupancy::kFree);
@@ -33,7 +33,7 @@ struct Room {
     const VoxelKey robot = make_key(32755, 32755, 32772);
     test::fill(grid, grown({robot, robot}, 1), Occupancy::kFree);
     corridor.update({grid}, robot);
-    graph.update(corridor, {});
+    graph.update(corridor, {{kBounds}});
     const int y = 32755 + random.below(35);
     for_each_key({make_key(32786, y, 32770), make_key(32786, y + 8, 32777)},
                  [&](const VoxelKey& key) { cluster.keys.push_back(key); });
@@ -56,7 +56,7 @@ struct Look {
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster = make_grid_ray_caster(room.grid);
   ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
-  std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster);
+  std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster, {});
 };
 
 TEST(ClusterViewpoints, SeeWhatTheyCount) {
@@ -122,7 +122,8 @@ TEST(ClusterViewpoints, AreNoneWhereNothingIsVisible) {
   wall.min.x = wall.max.x = 32785;
   test::fill(walled, wall, Occupancy::kOccupied);
   const auto caster = make_grid_ray_caster(walled);
-  EXPECT_TRUE(find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster).empty());
+  EXPECT_TRUE(
+      find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster, {}).empty());
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ VoxelGrid random_rooms(Random& random) {
 void expect_same(const TravelGraph& a, const TravelGraph& b) {
   ASSERT_EQ(a.size(), b.size());
   for_each_key(kBounds, [&](const VoxelKey& key) { EXPECT_EQ(a.node(key), b.node(key)); });
+  EXPECT_EQ(a.spread_cells(kBounds), b.spread_cells(kBounds));
   if (a.size() > 0) {
     EXPECT_EQ(a.distances(0), b.distances(0));
   }
@@ -55,8 +56,8 @@ TEST(TravelGraph, ConnectsWhatTheCorridorConnects) {
     VoxelKey robot = random.key_in(kBounds);
     while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
     corridor.update({grid}, robot);
-    TravelGraph graph(grid.lattice(), kBounds, 1 + random.below(9));
-    graph.update(corridor, {});
+    TravelGraph graph(grid.lattice(), kBounds, 1 + random.below(9), 3);
+    graph.update(corridor, {{kBounds}});
     const auto from = graph.node(robot);
     ASSERT_TRUE(from);
     const std::vector<double> distances = graph.distances(*from);
@@ -78,8 +79,8 @@ TEST(TravelGraph, KnowsAboutHowFarItIs) {
     while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
     corridor.update({grid}, robot);
     constexpr int kEdge = 4;
-    TravelGraph graph(grid.lattice(), kBounds, kEdge);
-    graph.update(corridor, {});
+    TravelGraph graph(grid.lattice(), kBounds, kEdge, 2);
+    graph.update(corridor, {{kBounds}});
     const std::vector<double> distances = graph.distances(graph.node(robot).value());
     constexpr double kCube = kEdge * kResolution * 1.7321;  // [m] its diagonal
     for (const VoxelKey& cell : corridor.cells()) {
@@ -100,8 +101,8 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
   grid.set(robot, Occupancy::kFree);
   TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
   corridor.update({grid}, robot);
-  TravelGraph kept(grid.lattice(), kBounds, 5);
-  kept.update(corridor, {});
+  TravelGraph kept(grid.lattice(), kBounds, 5, 2);
+  kept.update(corridor, {{kBounds}});
   for (int round = 0; round < 40; ++round) {
     Keys changed;
     std::vector<KeyBox> boxes;
@@ -117,11 +118,59 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
     boxes.push_back({robot, robot});
     corridor.update({grid, changed}, robot);
     kept.update(corridor, boxes);
-    TravelGraph anew(grid.lattice(), kBounds, 5);
-    anew.update(corridor, {});
+    TravelGraph anew(grid.lattice(), kBounds, 5, 2);
+    anew.update(corridor, {{kBounds}});
     expect_same(kept, anew);
     if (testing::Test::HasFailure()) return;
   }
+}
+
+TEST(TravelGraph, SpreadsCellsOverAllParts) {
+  Random random(54);
+  for (int round = 0; round < 20; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    corridor.update({grid}, random.key_in(kBounds));
+    const int edge = 2 + random.below(7), spacing = 1 + random.below(4);
+    TravelGraph graph(grid.lattice(), kBounds, edge, spacing);
+    graph.update(corridor, {{kBounds}});
+    const KeyBox box = hull(cube(random.key_in(kBounds), 1), cube(random.key_in(kBounds), 1));
+    const Keys cells = graph.spread_cells(box);
+    EXPECT_TRUE(
+        std::ranges::all_of(cells, [&](const VoxelKey& c) { return box.contains(c) && graph.node(c); }));
+    // Each place in the box is near a cell of its part, unless that lies outside of the box.
+    const Keys all = graph.spread_cells(kBounds);
+    EXPECT_LE(cells.size(), all.size());
+    for_each_key(kBounds, [&](const VoxelKey& key) {
+      const auto node = graph.node(key);
+      if (!node) return;
+      const KeyBox near = grown({key, key}, spacing - 1);
+      EXPECT_TRUE(std::ranges::any_of(
+          all, [&](const VoxelKey& cell) { return near.contains(cell) && graph.node(cell) == node; }));
+    });
+  }
+}
+
+TEST(TravelGraph, FindsTheCellsAroundAWay) {
+  Random random(55);
+  std::size_t fewer = 0;
+  for (int round = 0; round < 30; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    VoxelKey robot = random.key_in(kBounds);
+    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    corridor.update({grid}, robot);
+    TravelGraph graph(grid.lattice(), kBounds, 4, 2);
+    graph.update(corridor, {{kBounds}});
+    const VoxelKey goal = random.pick(corridor.cells());
+    const std::vector<double> lengths = graph.distances(graph.node(robot).value());
+    const auto nodes = graph.around_way(lengths, graph.node(goal).value());
+    fewer += nodes.size() < graph.size() ? 1 : 0;
+    EXPECT_TRUE(corridor.find_way(goal, [&](const VoxelKey& cell) {
+      return std::ranges::binary_search(nodes, graph.node(cell).value());
+    }));
+  }
+  EXPECT_GT(fewer, 15U);
 }
 
 // Where another robot is does not matter: it will go on.
@@ -134,8 +183,8 @@ TEST(TravelGraph, DoesNotCareForOtherRobots) {
   wall.min.x = wall.max.x = 32775;
   corridor.keep_out_of({wall});
   corridor.update({grid}, robot);
-  TravelGraph graph(grid.lattice(), kBounds, 5);
-  graph.update(corridor, {});
+  TravelGraph graph(grid.lattice(), kBounds, 5, 2);
+  graph.update(corridor, {{kBounds}});
   EXPECT_FALSE(corridor.contains(kBounds.max));
   EXPECT_LT(graph.distances(graph.node(robot).value())[graph.node(kBounds.max).value()], 20.0);
 }

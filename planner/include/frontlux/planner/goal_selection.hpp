@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -171,7 +172,11 @@ class FRONTLUX_EXPORT GoalSelection {
 
   /// In the place of a step: takes the change, and brings up to date no more than one robot's corridor. All
   /// robots keep their goals. @pre robot < team().size()
-  void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose);
+  void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
+                 CorridorExtent extent = CorridorExtent::kAllCells);
+
+  /// See `TravelCorridor::find_way`. @pre robot < team().size()
+  bool find_way(std::size_t robot, const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
 
   /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()

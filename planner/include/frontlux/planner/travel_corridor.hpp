@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -105,6 +106,14 @@ enum class CorridorState : std::uint8_t {
 /// In words, as the end of a sentence about the robot.
 [[nodiscard]] FRONTLUX_EXPORT std::string_view describe(CorridorState state);
 
+/// What an update of a corridor finds out.
+enum class CorridorExtent : std::uint8_t {
+  kAllCells,  ///< all cells and their distances, in time that grows with their number
+  kNearby,    ///< distances up to some 40 cells away, in time that grows with what has changed: `cells` is
+              ///< empty, `distance` and `contains` know cells near by only, `path_to` those and that of
+              ///< `find_way`
+};
+
 /// The cells that a robot can reach through what is known to be free, and how far they are.
 ///
 /// A cell is passable if its whole collision box is known to be free. The corridor is all cells that passable
@@ -126,7 +135,13 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// @param change  since the last update
   /// @param robot   the voxel of its sensor
   /// @throws std::invalid_argument if the grid has another resolution
-  void update(const MapChange& change, const VoxelKey& robot);
+  void update(const MapChange& change, const VoxelKey& robot,
+              CorridorExtent extent = CorridorExtent::kAllCells);
+
+  /// Searches a way to one cell, wherever it is. Until the next update `path_to` returns it.
+  /// @param through  cells that it may lead through, as far as they are passable
+  /// @return whether there is one
+  bool find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
 
   /// Makes these cells impassable from the next update on, whatever the map says: there is something that no
   /// sensor has seen.
@@ -138,6 +153,8 @@ class FRONTLUX_EXPORT TravelCorridor {
 
   /// If it is not `kReady`, there are no cells.
   [[nodiscard]] CorridorState state() const;
+  /// Of the last update.
+  [[nodiscard]] CorridorExtent extent() const;
 
   /// All cells, sorted. Valid until the next update.
   [[nodiscard]] std::span<const VoxelKey> cells() const;
