@@ -92,8 +92,8 @@ async function layersWork(page) {
   };
   await page.evaluate(() => (document.querySelector("#view canvas").style.outline = "none")); // the focus is no layer
   await page.evaluate(() => window.frontlux.page.timeline.seek(2));
-  const names = await page.evaluate(() => Object.keys(window.frontlux.page.scene.layers));
-  assert.equal(names.length, 8);
+  const names = await page.evaluate(() => [...document.querySelectorAll(".layers input")].map((box) => box.id.replace("layer-", "")));
+  assert.equal(names.length, 8, "without tours there is no layer for them");
   const all = await look();
   for (const [i, name] of names.entries()) {
     await page.locator(`#layer-${name}`).uncheck();
@@ -208,6 +208,69 @@ async function picksAreRight(page) {
   await page.click("#view-home");
 }
 
+/** The planned tours at each step are those of tours.csv, and are drawn from where the robot is. */
+async function toursAreRight(browser) {
+  const { page, trouble } = await open(browser, explored), rows = await readTable(`${explored}/tours.csv`), steps = await readTable(`${explored}/steps.csv`);
+  const robots = [...new Set(steps.map((row) => row.robot))], last = steps.at(-1).step;
+  const planned = (step, robot) => {
+    if (steps.find((row) => row.step === step && row.robot === robot).goal_x_m === "") return [];
+    const made = rows.findLast((row) => row.step <= step && row.robot === robot)?.step;
+    return rows.filter((row) => row.step === made && row.robot === robot);
+  };
+  const seen = await page.evaluate(() => {
+    const { run } = window.frontlux.page;
+    return run.tours.map((tour) => tour && { poses: Array.from(run.poses.subarray(tour.begin, tour.begin + 4 * tour.count)), clusters: tour.clusters, frontiers: tour.frontiers });
+  });
+  let longest = 0, best = 0;
+  for (let step = 0; step <= last; ++step)
+    robots.forEach((robot, r) => {
+      const want = planned(step, robot), tour = seen[step * robots.length + r];
+      assert.equal(tour?.clusters.length ?? 0, want.length, `stops of ${robot} at step ${step}`);
+      if (want.length === 0) return;
+      assert.deepEqual([tour.clusters, tour.frontiers], ["clusters", "frontiers"].map((name) => want.map((row) => row[name])));
+      want.flatMap((row) => [row.x_m, row.y_m, row.z_m, row.yaw_rad]).forEach((value, i) => assert.ok(Math.abs(tour.poses[i] - value) < 1e-5));
+      if (want.length > longest) [longest, best] = [want.length, step];
+    });
+  assert.ok(longest > 1, "the run has no tour of several stops");
+  const shown = await page.evaluate((step) => {
+    const { timeline, scene } = window.frontlux.page;
+    timeline.seek(step);
+    return scene.tours.map(({ group, marks, line, r }) => ({ visible: group.visible, marks: marks.filter((mark) => mark.visible).map((mark) => mark.position.toArray()), stops: line.geometry.instanceCount,
+      begin: Array.from(line.geometry.attributes.instanceStart.data.array.subarray(0, 3)), robot: Array.from(scene.robots[r].pose.subarray(0, 3)) }));
+  }, best);
+  robots.forEach((robot, r) => {
+    const want = planned(best, robot), { visible, marks, stops, begin, robot: where } = shown[r];
+    assert.equal(visible, want.length > 0);
+    if (!visible) return;
+    assert.deepEqual([marks.length, stops], [want.length, want.length]);
+    begin.forEach((value, k) => near(value, Math.fround(where[k]), "where the line begins"));
+  });
+  const look = async () => {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    return createHash("sha256").update(await page.locator("#view canvas").screenshot()).digest("hex");
+  };
+  await page.screenshot({ path: `${shots}/tours.png` });
+  const before = await look();
+  await page.keyboard.press("9");
+  assert.equal(await page.isChecked("#layer-tours"), false);
+  assert.notEqual(await look(), before, "tours off looks the same");
+  await page.keyboard.press("9");
+  assert.equal(await look(), before);
+  // A click on a stop tells which one it is.
+  for (const name of ["voxels", "frontiers", "planned"]) await page.locator(`#layer-${name}`).uncheck();
+  const r = robots.findIndex((robot) => planned(best, robot).length === longest);
+  const said = await page.evaluate((tour) => {
+    const { page: report } = window.frontlux, { scene } = report, { clientWidth: width, clientHeight: height } = scene.host;
+    const p = scene.tours[tour].marks[1].position.clone().project(scene.camera);
+    return report.pickAt(((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height);
+  }, r);
+  assert.equal(said.kind, "stop");
+  assert.match(await page.textContent("#picked"), new RegExp(`Stop of the tour[12] of ${longest}, ${robots[r]}To look at\\d+ frontiers in \\d+ cluster`));
+  assert.match(await page.textContent(".key"), /planned tour/);
+  assert.deepEqual(trouble, []);
+  await page.close();
+}
+
 /** Every control has a name for screen readers. */
 async function controlsHaveNames(page) {
   const nameless = await page.evaluate(() => [...document.querySelectorAll("button, input, select, canvas[tabindex], [role=img]")].filter((control) => !(control.getAttribute("aria-label") || control.textContent.trim() || [...(control.labels ?? [])].some((label) => label.textContent.trim()))).map((control) => control.outerHTML));
@@ -265,6 +328,8 @@ async function withGraphics() {
         assert.deepEqual(shown.trouble, []);
         await shown.page.close();
       }
+    await toursAreRight(browser);
+    await besideWorks(browser);
     await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
@@ -310,14 +375,16 @@ async function commandIsRight(browser) {
     const cells = await page.locator(`.comparison tbody tr:nth-child(${i + 1}) > *`).allTextContents();
     assert.deepEqual(cells.slice(-2), [String(json.contacts), `${json.held_back} times`]);
     assert.equal(cells.at(-5), `${Object.values(json.by_robot).reduce((sum, robot) => sum + robot.idle_s, 0).toFixed(1)} s`);
-    assert.equal(cells[2], json.lockstep ? "lock-step" : "in motion");
-    assert.ok(cells[4].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[4]);
+    assert.equal(cells[5], json.lockstep ? "lock-step" : "in motion");
+    assert.deepEqual(cells.slice(1, 4), ["room", "1", "0.3 m"]);
+    assert.equal(cells[6], json.end.replaceAll("_", " "));
+    assert.ok(cells[8].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[8]);
     const first = rows.filter((row) => row.robot === rows[0].robot);
     [0.5, 0.9, 0.95, 0.99].forEach((part, k) => {
       const row = first.find(({ coverage_observable: coverage }) => coverage >= part);
       const begin = runs[0].rows.find(({ coverage_observable: coverage }) => coverage >= part);
       const change = row && begin && i > 0 ? Math.round(100 * (row.time_s / begin.time_s - 1)) : null;
-      assert.equal(cells[5 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
+      assert.equal(cells[9 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
     });
     // The legend's value of the other run is that at the same time.
     const { rows: theirs } = runs[1 - i], other = theirs.filter((row) => row.robot === theirs[0].robot);
@@ -326,6 +393,38 @@ async function commandIsRight(browser) {
     const shown = (await page.locator("#chart-coverage-time .legend .value").allTextContents()).at(-1);
     assert.equal(shown, await page.evaluate((value) => window.frontlux.percent(value), other.findLast((row) => row.time_s <= now).coverage_observable));
   }
+  assert.match(await page.textContent(".comparison"), /Compare with care: some runs are in motion and others in lock-step/);
+  assert.deepEqual(trouble, []);
+  await page.close();
+}
+
+/** A second replay shows another run at the same time and, of the same world, from the same place. */
+async function besideWorks(browser) {
+  const { page, trouble } = await open(browser, both);
+  await page.selectOption("#beside", "1");
+  for (const step of [3, 20, 7]) {
+    const [time, theirs, ends] = await page.evaluate((s) => {
+      const { page: report } = window.frontlux;
+      report.timeline.seek(s);
+      return [report.timeline.time, report.second.position, Array.from(report.runs[1].numbers.time)];
+    }, step);
+    assert.ok(theirs.step === ends.length - 1 || (ends[theirs.step] >= time && (ends[theirs.step - 1] ?? 0) <= time), `step ${theirs.step} at ${time} s`);
+  }
+  const apart = () => page.evaluate(async () => {
+    const { scene, second } = window.frontlux.page;
+    await new Promise((done) => setTimeout(done, 300));
+    return [scene.camera.position.distanceTo(second.camera.position), second.layers.voxels, second.drawn];
+  });
+  await page.evaluate(() => window.frontlux.page.scene.orbit(0.5, 0.1));
+  await page.locator("#layer-voxels").uncheck();
+  const [distance, voxels, drawn] = await apart();
+  assert.ok(distance < 0.01, `the cameras are ${distance} m apart`);
+  assert.equal(voxels, false);
+  assert.equal((await apart())[2], drawn, "it draws although nothing changes");
+  await page.locator("#layer-voxels").check();
+  await page.screenshot({ path: `${shots}/beside.png` });
+  await page.selectOption("#beside", "-1");
+  assert.equal(await page.isVisible("#beside-view"), false);
   assert.deepEqual(trouble, []);
   await page.close();
 }

@@ -1,6 +1,8 @@
 import uPlot from "uplot";
 import { el, swatch } from "./dom.js";
-import { DASHES, PHASES, SCENE, robotColor } from "./palette.js";
+import { bandOf, seedGroups } from "./comparison.js";
+import { groupName } from "./comparison_view.js";
+import { DASHES, SCENE, otherColor, phaseColor, robotColor, runColor } from "./palette.js";
 import { cubicMetres, lastUpTo, percent, seconds, whole } from "./run_numbers.js";
 
 const HEIGHT = 170;
@@ -36,17 +38,24 @@ export class Charts {
 
   specifications() {
     const { numbers, facts } = this.runs[this.shown], { theme } = this, ink = SCENE[theme].ink;
-    const others = this.runs.map((run, i) => ({ ...run, dash: DASHES[i % DASHES.length] })).filter((_, i) => i !== this.shown);
-    const robots = facts.robots.map((robot, r) => ({ name: robot.name, color: robotColor(r, theme), r }));
+    const groups = seedGroups(this.runs), grouped = new Set(groups.flat());
+    const others = this.runs.map((run, i) => ({ ...run, dash: DASHES[i % DASHES.length] })).filter((_, i) => i !== this.shown && !grouped.has(i));
+    const robots = facts.robots.map((robot, r) => ({ name: robot.name, color: robotColor(robot, theme), r }));
     const team = robots.length > 1;
-    const muted = theme === "light" ? "#6b7684" : "#93a0af";
+    const muted = otherColor(theme);
     const clock = numbers.clock ? { name: "time", label: "time, s", xs: numbers.time } : { name: "time", label: "step", xs: numbers.time };
     const length = { name: "teamTravelled", label: team ? "path length of all robots, m" : "path length, m", xs: numbers.teamTravelled };
+    // Runs that differ in their seeds only are drawn as their mean, with a band of the deviation.
+    const bands = (x, all) => groups.filter((group) => group.every((i) => this.runs[i].numbers.clock === numbers.clock)).flatMap((group, k) => {
+      const { xs, mean, low, high } = bandOf(group.map((i) => this.runs[i]), x.name, all), color = runColor(k, theme), edge = { xs, color, other: true, edge: true };
+      return [{ ...edge, ys: high, name: "" }, { ...edge, ys: low, name: "" }, { name: `${groupName(this.runs, group)}: mean ± deviation`, xs, ys: mean, color, width: 2.2, other: true, band: true }];
+    });
     // How much the team knows, what each robot has seen first, and how much the teams of the other runs know.
     const known = (x, all, parts) => [
       { name: team ? "team" : robots[0].name, xs: x.xs, ys: numbers[all], color: team ? ink : robots[0].color, width: 2.5 },
       ...(team ? robots.map(({ name, color, r }) => ({ name, xs: x.xs, ys: numbers[parts][r], color })) : []),
       ...others.filter((run) => x !== clock || run.numbers.clock === numbers.clock).map((run) => ({ name: run.name, xs: run.numbers[x.name], ys: run.numbers[all], color: muted, dash: run.dash.length ? run.dash : [6, 4], other: true })),
+      ...bands(x, all),
     ];
     const over = numbers.clock ? "over time" : "by step";
     const coverage = { note: "fraction of the observable space", unit: percent, fraction: true }, volume = { note: "free and occupied", unit: cubicMetres };
@@ -76,13 +85,13 @@ export class Charts {
     const note = `stacked, ${numbers.motion ? "one robot's planning" : "whole team"}${each > 1 ? `, mean of ${each} ${numbers.motion ? "plannings" : "steps"}` : ""}`;
     return {
       id: "planning", title: "Planning time by phase", note, unit: seconds, x, stacked: true, ends,
-      series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: x.xs, ys, color: PHASES[this.theme][p] })),
+      series: numbers.phases.slice(0, -1).map((ys, p) => ({ name: facts.phases[p], xs: x.xs, ys, color: phaseColor(facts.phases[p], this.theme) })),
     };
   }
 
   make(spec) {
     const values = spec.series.map(() => el("span", { class: "value" }));
-    const legend = el("ul", { class: "legend" }, ...spec.series.map((series, i) => el("li", {}, swatch(series.color, series.dash ? "dashed" : "line"), el("span", { text: series.name }), values[i])));
+    const legend = el("ul", { class: "legend" }, ...spec.series.map((series, i) => (series.edge ? null : el("li", {}, swatch(series.color, series.band ? "band" : series.dash ? "dashed" : "line"), el("span", { text: series.name }), values[i]))));
     const mark = el("div", { class: "chart-mark", "aria-hidden": "true" });
     const figure = el("figure", { class: "chart", id: `chart-${spec.id}` }, el("figcaption", {}, el("strong", { text: spec.title }), el("span", { class: "note", text: spec.note })), legend);
     this.host.append(figure);
@@ -111,8 +120,10 @@ export class Charts {
         { ...axis, size: 22, label: spec.x.label, labelSize: 16, labelGap: -2, gap: 2, values: integers, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] },
         { ...axis, size: 56, values: (_, ticks) => ticks.map((tick) => (spec.unit === percent ? percent(tick, 0) : spec.unit === seconds ? (tick === 0 ? "0" : seconds(tick)) : tick < 10 && !Number.isInteger(tick) ? String(tick) : whole(tick))) },
       ],
+      bands: spec.series.flatMap((series, i) => (series.edge && spec.series[i + 1].edge ? [{ series: [i + 1, i + 2], fill: `${series.color}38` }] : [])),
       series: [{}, ...spec.series.map((series) => ({
         label: series.name, stroke: series.color, width: series.width ?? 1.75, dash: series.dash, spanGaps: true, points: { show: false },
+        ...(series.edge ? { width: 0, stroke: "transparent" } : {}),
         ...(spec.stacked ? { paths: bars, fill: series.color, width: 0 } : {}),
       }))].map((series, i, all) => (spec.stacked && i > 0 ? { ...all[all.length - i] } : series)),
     };

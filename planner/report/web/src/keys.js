@@ -26,7 +26,7 @@ function actions({ timeline, scene, toolbar }) {
   };
   return {
     ...always,
-    ...Object.fromEntries(Array.from({ length: 8 }, (_, i) => [String(i + 1), () => toolbar.toggleLayer(i)])),
+    ...Object.fromEntries(Array.from({ length: 9 }, (_, i) => [String(i + 1), () => toolbar.toggleLayer(i)])),
     h: look(() => scene.home()), t: look(() => scene.top()), f: () => toolbar.nextFollow(),
     w: () => scene.pan(0, MOVE), s: () => scene.pan(0, -MOVE), a: () => scene.pan(-MOVE, 0), d: () => scene.pan(MOVE, 0),
     q: () => scene.orbit(-TURN, 0), e: () => scene.orbit(TURN, 0), r: () => scene.orbit(0, -TURN), v: () => scene.orbit(0, TURN),

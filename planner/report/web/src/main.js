@@ -1,7 +1,9 @@
 import { RunError } from "./byte_reader.js";
 import { Charts } from "./charts.js";
 import { el } from "./dom.js";
-import { comparison, details, glossary, header, stepTable, teamName } from "./facts_view.js";
+import { positionAt, sameWorld } from "./comparison.js";
+import { comparison } from "./comparison_view.js";
+import { details, glossary, header, stepTable, teamName } from "./facts_view.js";
 import { addKeys } from "./keys.js";
 import { describePick, pick } from "./picking.js";
 import { readRun } from "./run_data.js";
@@ -39,17 +41,21 @@ class Page {
   build() {
     const { runs } = this, written = runs[0].facts.written_by;
     this.view = el("div", { class: "view", id: "view" });
+    this.beside = el("div", { class: "view", id: "beside-view" });
     this.picked = el("div", { class: "picked", id: "picked", role: "status", hidden: true });
     this.controls = makeTimeControls(this.timeline, () => this.run);
     this.chartHost = el("div", { class: "charts", id: "charts" });
     this.details = el("section", { class: "details", "aria-label": "Facts" });
-    this.stage = el("section", { class: "stage", "aria-label": "Replay" }, this.view, this.controls.bar);
+    this.views = el("div", { class: "views" }, this.view, this.beside);
+    this.stage = el("section", { class: "stage", "aria-label": "Replay" }, this.views, this.controls.bar);
     this.makeScene();
     const choose = runs.length > 1 ? el("label", { class: "field" }, el("span", { text: "Replay" }), el("select", { id: "run", on: { change: (event) => this.select(Number(event.target.value)) } }, ...runs.map((run, i) => el("option", { value: i, text: run.name })))) : null;
+    const choices = [el("option", { value: -1, text: "none" }), ...runs.map((run, i) => el("option", { value: i, text: run.name }))];
+    const chooseBeside = runs.length > 1 && this.scene ? el("label", { class: "field", title: "another run at the same time of its clock" }, el("span", { text: "Beside" }), el("select", { id: "beside", on: { change: (event) => this.showBeside(Number(event.target.value)) } }, ...choices)) : null;
     this.themeButton = el("button", { type: "button", id: "theme", on: { click: () => this.switchTheme() } });
     this.steps = el("details", { class: "fold", on: { toggle: () => this.fillSteps() } }, el("summary", { text: "Table of steps" }), el("div", { class: "body" }));
     document.getElementById("app").replaceChildren(
-      el("header", {}, el("div", { class: "corner" }, choose, this.themeButton), ...header(runs)),
+      el("header", {}, el("div", { class: "corner" }, choose, chooseBeside, this.themeButton), ...header(runs)),
       runs.length > 1 ? el("section", { class: "comparison", "aria-label": "Comparison" }, ...comparison(runs)) : null,
       el("div", { class: "main" }, this.stage, el("section", { "aria-label": "Charts" }, this.chartHost)),
       this.details, this.steps,
@@ -110,11 +116,48 @@ class Page {
     this.charts.load(this.runs, i, theme);
     this.timeline.reset(run.numbers.time);
     this.controls.chooseSpeed();
+    this.nameViews();
     this.setTheme();
+  }
+
+  /** Replays another run in a second view, at the same time; -1: none. */
+  showBeside(i) {
+    this.views.classList.toggle("two", i >= 0);
+    this.besideRun = i >= 0 ? this.runs[i] : null;
+    this.scene.resize();
+    if (i < 0) return;
+    if (!this.second) {
+      this.second = new ReplayScene(this.beside);
+      this.second.canvas.setAttribute("aria-label", "3-D map of the run beside. It follows the first map.");
+      this.beside.append((this.besideName = el("div", { class: "view-name" })));
+      this.view.append((this.viewName = el("div", { class: "view-name" })));
+      const together = () => this.besideRun && sameWorld(this.run, this.besideRun);
+      this.scene.onDraw = () => {
+        if (this.besideRun) this.second.mirror(this.scene);
+        if (together()) this.second.lookAs(this.scene);
+      };
+      this.second.onDraw = () => together() && this.scene.lookAs(this.second);
+    }
+    this.second.load(this.besideRun);
+    this.second.mirrored = null;
+    this.nameViews();
+    this.showSecond();
+    this.scene.draw();
+  }
+
+  nameViews() {
+    if (!this.second || !this.besideRun) return;
+    this.viewName.textContent = this.run.name;
+    this.besideName.textContent = this.besideRun.name;
+  }
+
+  showSecond() {
+    if (this.besideRun) this.second.show(positionAt(this.besideRun.numbers.time, this.timeline.time));
   }
 
   show(position) {
     this.scene?.show(position);
+    this.showSecond();
     this.charts.mark(position.step);
     if (this.describedStep !== position.step) this.describe(null);
     this.describedStep = position.step;
@@ -155,7 +198,7 @@ class Page {
 
 function keyTable() {
   const keys = [
-    ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 8", "layers on and off"],
+    ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 9", "layers on and off"],
     ["H T", "show the whole map, view from above"], ["F", "camera: next robot or none"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "zoom in, out"],
     ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click for details of a voxel, viewpoint or cell"],
   ];

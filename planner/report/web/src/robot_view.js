@@ -156,10 +156,10 @@ export class RobotView {
     const path = run.paths[Math.max(step, 0) * run.robots + r];
     const before = step > 0 ? this.trailEnd[step - 1] : 0, here = Math.max(0, path.travelled - 1);
     this.trail.geometry.instanceCount = before + Math.floor(Math.min(along, 1) * here);
+    this.showGoal(run.facts.steps[run.motion && along < 1 ? step - 1 : step]?.robots[r].goal, floor);
     if (this.shown === step) return;
     this.shown = step;
     this.showPlan(path);
-    this.showGoal(run.facts.steps[step]?.robots[r].goal, floor);
   }
 
   showPlan(path) {

@@ -5,11 +5,12 @@ import { SCENE, scaleGradient, qualityStops, robotColor } from "./palette.js";
 const NAMES = {
   voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
   views: "Fields of view", travelled: "Travelled paths", planned: "Planned paths", goals: "Goals",
+  tours: "Tours",
 };
 
 /** Controls for layers, colours and the camera. */
 export function makeToolbar(scene, { facts, motion }) {
-  const boxes = {};
+  const boxes = {}, names = LAYERS.filter((name) => name !== "tours" || scene.tours.length > 0);
   const layer = (name, i) => {
     boxes[name] = el("input", { type: "checkbox", id: `layer-${name}`, on: { change: (event) => scene.setLayer(name, event.target.checked) } });
     boxes[name].checked = scene.layers[name];
@@ -35,15 +36,17 @@ export function makeToolbar(scene, { facts, motion }) {
       strip.style.background = scaleGradient(colors);
       return el("div", {}, el("span", { text: name }), el("span", { class: "note from", text: from }), strip, el("span", { class: "note", text: to }));
     };
-    const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text);
+    const dot = (color, text, kind) => el("span", {}, swatch(color, kind), text), { ink } = SCENE[theme];
     key.replaceChildren(
       ...(scene.byOwner ? [] : [bar(SCENE[theme].heights, `${((low - 32768) * size).toFixed(1)} m`, `${((high + 1 - 32768) * size).toFixed(1)} m`, "height")]),
       ...(scene.images.length > 0 ? [bar(qualityStops(), "low", "high", "view quality")] : []),
-      el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot, r) => dot(robotColor(r, theme), robot.name))));
+      el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot) => dot(robotColor(robot, theme), robot.name))),
+      el("div", { class: "names" }, dot(ink, "travelled", "line"), dot(ink, motion ? "scan" : "planned", "thin"),
+        scene.tours.length > 0 ? dot(ink, "planned tour", "dashed") : null, dot(ink, "goal", "diamond")));
   };
   drawKey();
   const bar = el("div", { class: "toolbar" },
-    el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...LAYERS.map(layer)),
+    el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...names.map(layer)),
     el("fieldset", {}, el("legend", { text: "View" }),
       view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), follow, colors,
       el("label", { class: "field", title: "hide the voxels above" }, el("span", { text: "Cut above" }), cut),
@@ -52,7 +55,8 @@ export function makeToolbar(scene, { facts, motion }) {
   return {
     bar, key, drawKey,
     toggleLayer(i) {
-      const name = LAYERS[i];
+      const name = names[i];
+      if (!name) return;
       boxes[name].checked = !boxes[name].checked;
       scene.setLayer(name, boxes[name].checked);
     },
