@@ -103,6 +103,7 @@ void add_world_options(Command& command, WorldSource& source, const char* ground
   command.add("--resolution", source.resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
   command.add("--start", source.start, "X,Y,Z",
               "Free point near which robots start, before the --ground shift");
+  command.group("World", Command::Shown::kInHelpAll);
   command.add("--ground", source.ground, "auto|off|Z",
               ("Shift the floor to just below a voxel boundary; auto: the floor below the start [" +
                std::string(ground_default) + "]")
