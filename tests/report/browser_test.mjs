@@ -8,7 +8,7 @@
 //   LONG     the same as REPORTS, of a run of thousands of steps
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { mkdir, readFile, stat } from "node:fs/promises";
+import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -20,19 +20,19 @@ const kWithGraphics = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshade
 const kWithout = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"];
 
 /** Opens a report; whatever it asks of the network or complains about is an error. */
-async function open(browser, folder, options = {}) {
+async function open(browser, folder, options = {}, hash = "") {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
   const trouble = [], file = pathToFileURL(`${folder}/report.html`).href;
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text()) && trouble.push(message.text()));
   page.on("pageerror", (error) => trouble.push(error.stack));
   page.on("dialog", (dialog) => trouble.push(`dialog: ${dialog.message()}`));
   await page.route("**", (route) => {
-    if (route.request().url() === file) return route.continue();
+    if (route.request().url().split("#")[0] === file) return route.continue();
     trouble.push(`request: ${route.request().url()}`);
     return route.abort();
   });
   const began = Date.now();
-  await page.goto(file);
+  await page.goto(file + hash);
   await page.waitForFunction(() => window.frontlux.ready || window.frontlux.error);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   assert.equal(await page.evaluate(() => window.frontlux.error), undefined);
@@ -72,12 +72,12 @@ async function timeLineWorks(page, rows) {
   const paused = await label();
   await page.waitForTimeout(600);
   assert.equal(await label(), paused, "it goes on although it was paused");
-  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage-time .chart-mark").style.transform);
+  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage .chart-mark").style.transform);
   const before = await mark();
   await page.keyboard.press("Home");
   assert.notEqual(await mark(), before, "the charts' line stays behind");
   // A click in a chart goes to the step that is nearest.
-  const box = await page.locator("#chart-coverage-time .u-over").boundingBox();
+  const box = await page.locator("#chart-coverage .u-over").boundingBox();
   await page.mouse.click(box.x + box.width * 0.5, box.y + box.height / 2);
   const middle = await page.evaluate(() => window.frontlux.page.timeline.step);
   const away = (step) => Math.abs(times[step] - times[last] / 2);
@@ -250,6 +250,11 @@ async function toursAreRight(browser) {
     return createHash("sha256").update(await page.locator("#view canvas").screenshot()).digest("hex");
   };
   await page.screenshot({ path: `${shots}/tours.png` });
+  await trailsWork(page);
+  await page.evaluate((step) => window.frontlux.page.timeline.seek(step), best);
+  await pointerIsRight(page, steps);
+  await savedFilesAreRight(page, steps);
+  await page.evaluate((step) => window.frontlux.page.timeline.seek(step), best);
   const before = await look();
   await page.keyboard.press("9");
   assert.equal(await page.isChecked("#layer-tours"), false);
@@ -330,6 +335,7 @@ async function withGraphics() {
       }
     await toursAreRight(browser);
     await besideWorks(browser);
+    await addressIsRight(browser);
     await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
@@ -390,12 +396,111 @@ async function commandIsRight(browser) {
     const { rows: theirs } = runs[1 - i], other = theirs.filter((row) => row.robot === theirs[0].robot);
     const step = Math.floor(first.length / 2), now = first[step].time_s;
     await page.evaluate((s) => window.frontlux.page.timeline.seek(s), step);
-    const shown = (await page.locator("#chart-coverage-time .legend .value").allTextContents()).at(-1);
+    const shown = (await page.locator("#chart-coverage .legend .value").allTextContents()).at(-1);
     assert.equal(shown, await page.evaluate((value) => window.frontlux.percent(value), other.findLast((row) => row.time_s <= now).coverage_observable));
   }
   assert.match(await page.textContent(".comparison"), /Compare with care: some runs are in motion and others in lock-step/);
   assert.deepEqual(trouble, []);
   await page.close();
+}
+
+/** The values at the pointer are in the legends of all charts at once. */
+async function pointerIsRight(page, rows) {
+  const first = rows.filter((row) => row.robot === rows[0].robot), last = first.length - 1;
+  await page.evaluate(() => window.frontlux.page.timeline.seek(0));
+  const legend = (id) => page.locator(`#chart-${id} .legend .value`).allTextContents(), before = await legend("frontiers");
+  const box = await page.locator("#chart-volume .u-over").boundingBox();
+  await page.mouse.move(box.x + box.width - 2, box.y + box.height / 2);
+  assert.deepEqual((await legend("frontiers")).map((text) => Number(text.replaceAll(",", "")))[0], first[last].frontiers);
+  assert.equal((await legend("coverage"))[0], await page.evaluate((value) => window.frontlux.percent(value), first[last].coverage_observable));
+  assert.equal(await page.isVisible("#chart-gain .pointed"), true);
+  await page.mouse.move(2, 2);
+  assert.deepEqual(await legend("frontiers"), before, "the time line's values are not back");
+  assert.equal(await page.isVisible("#chart-gain .pointed"), false);
+}
+
+/** What is saved holds what is shown. */
+async function savedFilesAreRight(page, rows) {
+  const saved = async (act) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), act()]);
+    return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+  };
+  const button = (id, kind) => () => page.locator(`#chart-${id} .save button`, { hasText: kind }).click();
+  const first = rows.filter((row) => row.robot === rows[0].robot), robots = [...new Set(rows.map((row) => row.robot))];
+  const table = await saved(button("coverage", "CSV"));
+  assert.match(table.name, /_coverage_time\.csv$/);
+  const lines = table.bytes.toString().trim().split("\n").map((line) => line.split(","));
+  assert.equal(table.bytes.toString().split("\n")[0], `"time, s",team,${robots.join(",")}`);
+  assert.equal(lines.length, 1 + first.length);
+  first.forEach((row, s) => {
+    near(Number(lines[1 + s][0]), row.time_s, "time in the table");
+    near(Number(lines[1 + s][1]), row.coverage_observable, "coverage in the table");
+  });
+  for (const id of ["coverage", "planning"]) {
+    const picture = await saved(button(id, "SVG"));
+    const curves = await page.evaluate((text) => {
+      const svg = new DOMParser().parseFromString(text, "image/svg+xml");
+      return svg.querySelector("parsererror") ? -1 : svg.querySelectorAll(".curve").length;
+    }, picture.bytes.toString());
+    assert.equal(curves, await page.locator(`#chart-${id} .legend li`).count(), `curves in the picture of ${id}`);
+    await writeFile(`${shots}/chart_${id}.svg`, picture.bytes);
+  }
+  const view = await saved(() => page.click("#save-view"));
+  assert.match(view.name, /^[\w.+-]+\.png$/);
+  assert.equal(view.bytes.subarray(1, 4).toString(), "PNG");
+  const size = await page.evaluate(() => [window.frontlux.page.scene.canvas.width, window.frontlux.page.scene.canvas.height]);
+  assert.equal(view.bytes.readUInt32BE(16), size[0]);
+  assert.ok(view.bytes.readUInt32BE(20) > size[1] && view.bytes.length > 5000, `${view.bytes.length} bytes`);
+  await writeFile(`${shots}/view.png`, view.bytes);
+}
+
+/** The address names the moment and the camera, and a report that is opened with it shows them. */
+async function addressIsRight(browser) {
+  const { page, trouble } = await open(browser, explored);
+  assert.equal(await page.evaluate(() => location.hash), "", "nothing was moved");
+  await page.evaluate(() => {
+    window.frontlux.page.timeline.seek(7);
+    window.frontlux.page.scene.orbit(0.7, 0.2);
+  });
+  await page.waitForFunction(() => location.hash !== "");
+  const [hash, time, place] = await page.evaluate(() => [location.hash, window.frontlux.page.timeline.time, window.frontlux.page.scene.place]);
+  assert.match(hash, /^#t=[\d.]+&camera=[-\d.,]+$/);
+  const shown = (where) => where.evaluate(() => [window.frontlux.page.timeline.time, window.frontlux.page.scene.place, window.frontlux.page.shown]);
+  const other = await open(browser, explored, {}, hash);
+  const [theirTime, theirPlace] = await shown(other.page);
+  assert.ok(Math.abs(theirTime - time) < 0.001, `${theirTime} s instead of ${time} s`);
+  theirPlace.forEach((value, i) => assert.ok(Math.abs(value - place[i]) < 0.01, `camera ${theirPlace} instead of ${place}`));
+  await other.page.evaluate(() => (location.hash = "#t=3"));
+  await other.page.waitForFunction(() => Math.abs(window.frontlux.page.timeline.time - 3) < 1e-9);
+  for (const wild of ["#t=x&camera=1,2", "#t=&run=9", "#camera=1,2,3,4,5,Infinity", "#%zz", "#t=1e9"]) {
+    const odd = await open(browser, both, {}, wild);
+    const [t] = await shown(odd.page);
+    assert.ok(Number.isFinite(t));
+    assert.deepEqual(odd.trouble, [], wild);
+    await odd.page.close();
+  }
+  const second = await open(browser, both, {}, "#run=1&t=20");
+  assert.deepEqual((await shown(second.page)).filter((_, i) => i !== 1), [20, 1]);
+  assert.equal(await second.page.inputValue("#run"), "1");
+  assert.deepEqual([...trouble, ...other.trouble, ...second.trouble], []);
+  for (const opened of [page, other.page, second.page]) await opened.close();
+}
+
+/** Only the last part of the travelled paths stands out, if that is wanted. */
+async function trailsWork(page) {
+  await page.evaluate(() => window.frontlux.page.timeline.seek(30));
+  const counts = () => page.evaluate(() => window.frontlux.page.scene.robots.map(({ trail, recent, materials }) => [trail.geometry.instanceCount, recent.geometry.instanceCount, materials.trail.opacity]));
+  const whole = await counts();
+  assert.ok(whole.every(([all, recent, opacity]) => all > 0 && recent === 0 && opacity === 1));
+  const { run, time } = await page.evaluate(() => ({ run: { steps: window.frontlux.page.run.steps }, time: Array.from(window.frontlux.page.run.numbers.time) }));
+  assert.ok(run.steps > 30 && time[30] > 3);
+  await page.evaluate(() => window.frontlux.page.scene.setTrail(3));
+  const recent = await counts(), after = time.findIndex((end) => end > time[30] - 3);
+  const ends = await page.evaluate((s) => window.frontlux.page.scene.robots.map((robot) => robot.trailEnd[s - 1]), after);
+  recent.forEach(([all, last], r) => assert.deepEqual([all, last], [whole[r][0], whole[r][0] - ends[r]]));
+  await page.selectOption("#trail", "10");
+  await page.selectOption("#trail", "Infinity");
+  assert.deepEqual(await counts(), whole);
 }
 
 /** A second replay shows another run at the same time and, of the same world, from the same place. */

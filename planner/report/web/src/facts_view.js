@@ -46,6 +46,7 @@ export function warnings({ facts, numbers }) {
   if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
   if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
   if (planningUsual > latency) list.push(`planning was too slow for this run's clock: 99 % of the plannings took up to ${seconds(planningUsual)}, and ${seconds(latency)} are charged for each. On that machine robots would get their trajectories later than shown here; explore with a greater --latency`);
+  if (facts.end === null) list.push("the recording has no end: the run was killed, or it goes on");
   if (facts.truncated) list.push("the last step of the recording is incomplete and is not shown");
   return list;
 }

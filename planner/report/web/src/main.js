@@ -6,8 +6,11 @@ import { comparison } from "./comparison_view.js";
 import { details, glossary, header, stepTable, teamName } from "./facts_view.js";
 import { addKeys } from "./keys.js";
 import { describePick, pick } from "./picking.js";
+import { robotColor } from "./palette.js";
+import { placeText, readPlace } from "./place.js";
 import { readRun } from "./run_data.js";
-import { numbersOf, percent, seconds } from "./run_numbers.js";
+import { clockTime, numbersOf, percent, seconds } from "./run_numbers.js";
+import { save, viewPicture } from "./save.js";
 import { NoWebGL, ReplayScene } from "./scene.js";
 import { makeTimeControls } from "./time_controls.js";
 import { Timeline } from "./timeline.js";
@@ -32,6 +35,9 @@ class Page {
     addKeys(this);
     this.select(0);
     addEventListener("resize", () => this.fit());
+    this.goTo(location.hash);
+    addEventListener("hashchange", () => location.hash !== this.hash && this.goTo(location.hash));
+    this.noted = this.place();
   }
 
   get run() {
@@ -92,6 +98,7 @@ class Page {
       const [x, y] = this.pressed ?? [0, 0];
       if (Math.hypot(event.clientX - x, event.clientY - y) < 4) this.pickAt(event.offsetX, event.offsetY);
     });
+    this.scene.controls.addEventListener("change", () => this.notePlace());
     this.view.append(this.picked);
   }
 
@@ -105,7 +112,7 @@ class Page {
     if (this.scene) {
       this.scene.theme = theme;
       this.scene.load(run);
-      this.toolbar = makeToolbar(this.scene, run);
+      this.toolbar = makeToolbar(this.scene, run, () => this.savePicture());
       this.stage.prepend(this.toolbar.bar);
       this.view.append(this.toolbar.key);
     }
@@ -118,6 +125,42 @@ class Page {
     this.controls.chooseSpeed();
     this.nameViews();
     this.setTheme();
+  }
+
+  place() {
+    return placeText({ time: this.timeline.time, run: this.shown, camera: this.scene?.place });
+  }
+
+  /** Shows the run, the moment and the place that an address names. */
+  goTo(hash) {
+    const { time, run, camera } = readPlace(hash);
+    if (run !== null && run !== this.shown && this.runs[run]) {
+      this.select(run);
+      document.getElementById("run").value = String(run);
+    }
+    if (time !== null) this.timeline.seekTime(time);
+    if (camera && this.scene) this.scene.place = camera;
+  }
+
+  /** Once nothing changes for a moment, the address says what is shown. */
+  notePlace() {
+    clearTimeout(this.noting);
+    this.noting = setTimeout(() => {
+      const place = this.place();
+      if (this.timeline.playing || place === this.noted) return;
+      this.noted = this.hash = place;
+      history.replaceState(null, "", place);
+    }, 300);
+  }
+
+  /** The view as a PNG file. */
+  async savePicture() {
+    if (!this.scene) return;
+    const { run, timeline } = this, { facts } = run, number = facts.steps[timeline.step].number;
+    const moment = run.numbers.clock ? clockTime(timeline.time) : `step ${number}`;
+    const robots = facts.robots.map((robot) => ({ name: robot.name, color: robotColor(robot, this.scene.theme) }));
+    const blob = await viewPicture(this.scene, `${facts.world}, ${moment}, ${percent(run.numbers.coverage[timeline.step])} mapped`, robots);
+    save(`${run.name}_${moment}.png`, blob);
   }
 
   /** Replays another run in a second view, at the same time; -1: none. */
@@ -159,6 +202,7 @@ class Page {
     this.scene?.show(position);
     this.showSecond();
     this.charts.mark(position.step);
+    this.notePlace();
     if (this.describedStep !== position.step) this.describe(null);
     this.describedStep = position.step;
   }
@@ -199,7 +243,7 @@ class Page {
 function keyTable() {
   const keys = [
     ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 9", "layers on and off"],
-    ["H T", "show the whole map, view from above"], ["F", "camera: next robot or none"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "zoom in, out"],
+    ["H T", "show the whole map, view from above"], ["F", "camera: next robot or none"], ["P", "save the view as a picture"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "zoom in, out"],
     ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click for details of a voxel, viewpoint or cell"],
   ];
   return el("dl", { class: "words" }, ...keys.flatMap(([key, meaning]) => [el("dt", { text: key }), el("dd", { text: meaning })]));

@@ -63,7 +63,7 @@ export class ReplayScene {
     this.tours = run.tours.some(Boolean) ? run.facts.robots.map((_, r) => new TourView(run, r, dash)) : [];
     this.images = run.facts.robots.map((_, r) => new ImageView(run, r)).filter((image) => image.box);
     this.scene.add(this.voxels.voxels, this.voxels.frontiers);
-    for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.plan, robot.goal);
+    for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.recent, robot.plan, robot.goal);
     for (const tour of this.tours) this.scene.add(tour.group);
     for (const image of this.images) this.scene.add(image.mesh);
     this.labels = run.facts.robots.map((robot) => el("div", { class: "robot-label", "aria-hidden": "true", text: robot.name }));
@@ -125,6 +125,7 @@ export class ReplayScene {
       robot.body.visible = layers.robots;
       robot.view.visible = layers.views;
       robot.trail.visible = layers.travelled && robot.trail.geometry.instanceCount > 0;
+      robot.recent.visible = layers.travelled && robot.recent.geometry.instanceCount > 0;
       robot.plan.visible = layers.planned;
       robot.goal.visible = layers.goals && robot.goal.userData.there;
     }
@@ -164,6 +165,12 @@ export class ReplayScene {
 
   layerCount() {
     return this.store.high[2] - this.store.low[2] + 1;
+  }
+
+  /** How much of the travelled paths stands out [s], in steps without a clock. */
+  setTrail(last) {
+    for (const robot of this.robots) robot.last = last;
+    this.show(this.position);
   }
 
   setClosed(closed) {
@@ -266,6 +273,20 @@ export class ReplayScene {
     this.draw();
   }
 
+  /** Where the camera is and looks: six numbers [m]. */
+  get place() {
+    return [...this.camera.position.toArray(), ...this.controls.target.toArray()];
+  }
+
+  set place(numbers) {
+    this.standing = null;
+    this.follow = -1;
+    this.camera.position.fromArray(numbers);
+    this.controls.target.fromArray(numbers, 3);
+    this.controls.update();
+    this.draw();
+  }
+
   /** Once, at the next frame. */
   draw() {
     if (this.waiting || !this.run) return;
@@ -283,7 +304,7 @@ export class ReplayScene {
   /** Shows what another scene shows of its run: layers, colours and cut. */
   mirror(other) {
     const { cut, closed } = other.voxels.mesher;
-    const asOther = JSON.stringify([other.layers, other.byOwner, other.theme, other.asPlanned, cut, closed]);
+    const asOther = JSON.stringify([other.layers, other.byOwner, other.theme, other.asPlanned, cut, closed, other.robots[0].last]);
     if (this.mirrored === asOther) return;
     this.mirrored = asOther;
     Object.assign(this.layers, other.layers);
@@ -291,6 +312,7 @@ export class ReplayScene {
     this.voxels.setCut(cut);
     this.voxels.setClosed(closed);
     this.asPlanned = other.asPlanned;
+    for (const robot of this.robots) robot.last = other.robots[0].last;
     this.setTheme(other.theme);
     this.show(this.position);
   }
