@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints a line for each step of a run: read_recording.py DIR/run.frontlux. The format: planner/src/recording/."""
+"""Prints a line for each step of a run: read_recording.py DIR/run.frontlux. The format: docs/recording.md."""
 import struct
 import sys
 import zlib
