@@ -103,6 +103,13 @@ async function layersWork(page) {
     assert.equal(await page.isChecked(`#layer-${name}`), true, `key ${i + 1} is not for ${name}`);
     assert.equal(await look(), all, `${name} on again looks different`);
   }
+  await page.selectOption("#sensor", "1");
+  assert.notEqual(await look(), all, "the camera's view is not shown");
+  assert.match(await page.textContent(".sensor-view"), /: ahead, 10 m/);
+  await page.selectOption("#sensor", "0");
+  assert.match(await page.textContent(".sensor-view"), /: all around, ahead in the middle, 6 m/);
+  await page.selectOption("#sensor", "-1");
+  assert.equal(await look(), all, "the sensor's view stays");
   await page.selectOption("#colors", "owner");
   assert.notEqual(await look(), all, "colours by robot look like heights");
   await page.selectOption("#colors", "height");
@@ -336,6 +343,7 @@ async function withGraphics() {
     await toursAreRight(browser);
     await besideWorks(browser);
     await addressIsRight(browser);
+    await printsWhole(browser);
     await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
@@ -501,6 +509,32 @@ async function trailsWork(page) {
   await page.selectOption("#trail", "10");
   await page.selectOption("#trail", "Infinity");
   assert.deepEqual(await counts(), whole);
+}
+
+/** On paper nothing is cropped, and the views are there in light colours. */
+async function printsWhole(browser) {
+  for (const folder of [explored, both]) {
+    const { page, trouble } = await open(browser, folder, { colorScheme: "dark", viewport: { width: 718, height: 1000 } });
+    await page.emulateMedia({ media: "print", colorScheme: "dark" });
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await page.waitForFunction(() => document.querySelector(".print-view").complete);
+    const found = await page.evaluate(() => ({
+      wide: [...document.querySelectorAll("body *")].filter((one) => one.getClientRects().length > 0 && one.getBoundingClientRect().right > innerWidth + 1).map((one) => `${one.tagName}.${one.className}`),
+      cropped: [...document.querySelectorAll(".table-scroll")].filter((one) => one.scrollWidth > one.clientWidth + 1 || one.scrollHeight > one.clientHeight + 1).length,
+      paper: getComputedStyle(document.body).backgroundColor, swatches: getComputedStyle(document.querySelector(".swatch")).printColorAdjust,
+      picture: document.querySelector(".print-view").naturalWidth,
+    }));
+    assert.deepEqual(found.wide, [], "wider than the page");
+    assert.equal(found.cropped, 0);
+    assert.deepEqual([found.paper, found.swatches], ["rgb(255, 255, 255)", "exact"]);
+    assert.ok(found.picture > 100);
+    await page.screenshot({ path: `${shots}/print_${folder === both ? "both" : "one"}.png`, fullPage: true });
+    await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+    assert.equal(await page.locator(".print-view").count(), 0);
+    assert.ok((await page.pdf({ format: "A4" })).length > 20000);
+    assert.deepEqual(trouble, []);
+    await page.close();
+  }
 }
 
 /** A second replay shows another run at the same time and, of the same world, from the same place. */

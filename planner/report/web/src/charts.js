@@ -7,6 +7,7 @@ import { chartSvg, chartTable, save } from "./save.js";
 import { cubicMetres, lastUpTo, percent, seconds, whole } from "./run_numbers.js";
 
 const HEIGHT = 170;
+const PRINTED = 330; // [px] width on paper
 const MOST_BARS = 120;
 
 /**
@@ -31,9 +32,20 @@ export class Charts {
     this.build(theme);
   }
 
-  build(theme) {
+  /** In light colours, narrow enough for two columns of a page. */
+  print() {
+    this.printed = true;
+    this.build("light", PRINTED);
+  }
+
+  endPrint(theme) {
+    this.printed = false;
+    this.build(theme);
+  }
+
+  build(theme, width = Math.max(240, this.host.clientWidth)) {
     this.host.replaceChildren();
-    this.width = Math.max(240, this.host.clientWidth);
+    this.width = width;
     this.theme = theme;
     this.host.append(this.chooser());
     this.charts = this.specifications(theme).map((spec) => this.make(spec));
@@ -205,7 +217,7 @@ export class Charts {
 
   resize() {
     const width = Math.max(240, this.host.clientWidth);
-    if (!this.runs || Math.abs(width - this.width) < 2) return;
+    if (!this.runs || this.printed || Math.abs(width - this.width) < 2) return;
     this.width = width;
     for (const { plot } of this.charts) plot.setSize({ width, height: HEIGHT });
     this.mark(this.timeline.position.step);

@@ -35,6 +35,8 @@ class Page {
     addKeys(this);
     this.select(0);
     addEventListener("resize", () => this.fit());
+    addEventListener("beforeprint", () => this.preparePrint());
+    addEventListener("afterprint", () => this.endPrint());
     this.goTo(location.hash);
     addEventListener("hashchange", () => location.hash !== this.hash && this.goTo(location.hash));
     this.noted = this.place();
@@ -151,6 +153,23 @@ class Page {
       this.noted = this.hash = place;
       history.replaceState(null, "", place);
     }, 300);
+  }
+
+  /** A canvas keeps no picture for the printer, and a dark one wastes its ink: charts and views are drawn in light colours, views as pictures. */
+  preparePrint() {
+    this.charts.print();
+    for (const scene of [this.scene, this.besideRun && this.second].filter(Boolean)) {
+      const { theme } = scene;
+      scene.setTheme("light");
+      scene.render();
+      scene.canvas.after(el("img", { class: "print-view", alt: "The map as it is shown on the screen", src: scene.canvas.toDataURL("image/png") }));
+      scene.setTheme(theme);
+    }
+  }
+
+  endPrint() {
+    for (const picture of document.querySelectorAll(".print-view")) picture.remove();
+    this.charts.endPrint(themeNow());
   }
 
   /** The view as a PNG file. */

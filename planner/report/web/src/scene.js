@@ -2,6 +2,7 @@ import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, Vector
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ImageView } from "./image_view.js";
 import { RobotView } from "./robot_view.js";
+import { SensorView } from "./sensor_view.js";
 import { TourView } from "./tour_view.js";
 import { VoxelStore } from "./voxel_store.js";
 import { VoxelView } from "./voxel_view.js";
@@ -50,6 +51,8 @@ export class ReplayScene {
     this.position = { step: 0, along: 1 };
     this.frame = () => this.render();
     host.prepend(this.canvas);
+    this.sensorView = new SensorView(host);
+    this.sensor = -1; // robot whose sensor's view is shown
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
@@ -68,6 +71,7 @@ export class ReplayScene {
     for (const image of this.images) this.scene.add(image.mesh);
     this.labels = run.facts.robots.map((robot) => el("div", { class: "robot-label", "aria-hidden": "true", text: robot.name }));
     this.host.append(...this.labels);
+    this.sensor = -1;
     this.setTheme(this.theme);
     this.resize();
     this.home();
@@ -297,8 +301,21 @@ export class ReplayScene {
     this.waiting = 0;
     ++this.drawn;
     this.renderer.render(this.scene, this.camera);
+    this.drawSensorView();
     this.placeLabels();
     this.onDraw?.();
+  }
+
+  drawSensorView() {
+    const robot = this.robots[this.sensor];
+    if (!robot) return this.sensorView.hide();
+    const hidden = [this.voxels.frontiers, robot.body, ...this.robots.flatMap(({ view, trail, recent, plan, goal }) => [view, trail, recent, plan, goal]), ...this.tours.map((tour) => tour.group), ...this.images.map((image) => image.mesh)];
+    this.sensorView.draw(this.renderer, this.scene, hidden, robot.robot, robot.pose, this.host.clientWidth, this.host.clientHeight);
+  }
+
+  setSensor(r) {
+    this.sensor = r;
+    this.draw();
   }
 
   /** Shows what another scene shows of its run: layers, colours and cut. */

@@ -26,6 +26,7 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
   const unit = numbers.clock ? "s" : "steps";
   const trail = select("trail", "Trail", [["Infinity", "whole"], ["30", `last 30 ${unit}`], ["10", `last 10 ${unit}`]], (value) => scene.setTrail(Number(value)));
   const follow = select("follow", "Follow", [["-1", "none"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setFollow(Number(value)));
+  const sensor = select("sensor", "Sensor's view", [["-1", "none"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setSensor(Number(value)));
   const layers = scene.layerCount();
   const cut = el("input", { type: "range", id: "cut", min: 1, max: layers, step: 1, on: { input: () => scene.setCut(Number(cut.value)) } });
   cut.value = layers;
@@ -50,7 +51,7 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
   const bar = el("div", { class: "toolbar" },
     el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...names.map(layer)),
     el("fieldset", {}, el("legend", { text: "View" }),
-      view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), el("button", { type: "button", id: "save-view", title: "save what the view shows as a PNG picture (P)", text: "Save PNG", on: { click: savePicture } }), follow, trail, colors,
+      view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), el("button", { type: "button", id: "save-view", title: "save what the view shows as a PNG picture (P)", text: "Save PNG", on: { click: savePicture } }), follow, sensor, trail, colors,
       el("label", { class: "field", title: "hide the voxels above" }, el("span", { text: "Cut above" }), cut),
       check("closed", "Back faces", "also show the faces next to unknown space", (on) => scene.setClosed(on)),
       check("as-planned", "Before the step", "show the map on which the step was planned, instead of the map after it", (on) => scene.setAsPlanned(on))));
