@@ -344,6 +344,7 @@ async function withGraphics() {
     await besideWorks(browser);
     await addressIsRight(browser);
     await printsWhole(browser);
+    await isAccessible(browser);
     await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
@@ -509,6 +510,23 @@ async function trailsWork(page) {
   await page.selectOption("#trail", "10");
   await page.selectOption("#trail", "Infinity");
   assert.deepEqual(await counts(), whole);
+}
+
+/** WCAG 2.1 AA as far as axe-core can tell: contrast, names, keyboard access; in both colour schemes and widths. */
+async function isAccessible(browser) {
+  const source = await readFile(`${web}/node_modules/axe-core/axe.min.js`, "utf8");
+  for (const folder of [explored, both])
+    for (const colorScheme of ["light", "dark"])
+      for (const [width, height] of [[1440, 900], [390, 844]]) {
+        const { page, trouble } = await open(browser, folder, { colorScheme, viewport: { width, height } });
+        await page.evaluate(() => document.querySelectorAll("details").forEach((part) => (part.open = true)));
+        await page.waitForSelector("details tbody tr");
+        await page.evaluate(source);
+        const violations = await page.evaluate(async () => (await window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] })).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 200)}`));
+        assert.deepEqual(violations, [], `${folder}, ${colorScheme}, ${width}`);
+        assert.deepEqual(trouble, []);
+        await page.close();
+      }
 }
 
 /** On paper nothing is cropped, and the views are there in light colours. */
