@@ -10,8 +10,9 @@ const NAMES = {
 
 /** Controls for layers, colours and the camera. */
 export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
-  const boxes = {}, names = LAYERS.filter((name) => name !== "tours" || scene.tours.length > 0);
+  const boxes = {}, absent = { tours: scene.tours.length === 0, quality: scene.images.length === 0 };
   const layer = (name, i) => {
+    if (absent[name]) return null; // the keys of the others stay
     boxes[name] = el("input", { type: "checkbox", id: `layer-${name}`, on: { change: (event) => scene.setLayer(name, event.target.checked) } });
     boxes[name].checked = scene.layers[name];
     const [text, title] = motion && name === "planned" ? ["Scans", "where robots took scans since the planning before, "] : [NAMES[name], ""];
@@ -49,7 +50,7 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
   };
   drawKey();
   const bar = el("div", { class: "toolbar" },
-    el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...names.map(layer)),
+    el("fieldset", { class: "layers" }, el("legend", { text: "Layers" }), ...LAYERS.map(layer)),
     el("fieldset", {}, el("legend", { text: "View" }),
       view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), el("button", { type: "button", id: "save-view", title: "save what the view shows as a PNG picture (P)", text: "Save PNG", on: { click: savePicture } }), follow, sensor, trail, colors,
       el("label", { class: "field", title: "hide the voxels above" }, el("span", { text: "Cut above" }), cut),
@@ -58,8 +59,8 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
   return {
     bar, key, drawKey,
     toggleLayer(i) {
-      const name = names[i];
-      if (!name) return;
+      const name = LAYERS[i];
+      if (!boxes[name]) return;
       boxes[name].checked = !boxes[name].checked;
       scene.setLayer(name, boxes[name].checked);
     },
