@@ -107,6 +107,7 @@ async function layersWork(page) {
   assert.notEqual(await look(), all, "the camera's view is not shown");
   assert.match(await page.textContent(".sensor-view"), /: ahead, 10 m/);
   await page.selectOption("#sensor", "0");
+  await look();
   assert.match(await page.textContent(".sensor-view"), /: all around, ahead in the middle, 6 m/);
   await page.selectOption("#sensor", "-1");
   assert.equal(await look(), all, "the sensor's view stays");
