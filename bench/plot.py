@@ -9,6 +9,7 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
+from palette import colours
 from svg_chart import MARGIN, WIDTH, Drawing, save, svg
 
 BASELINE = "octomap"
@@ -22,14 +23,7 @@ WHAT_IT_ASKS = {
     "cast_single": "one castRay at a time",
 }
 
-# Okabe and Ito's colours, for any colour vision; (light, dark) background.
-COLOURS = {
-    "octomap": ("#6e7781", "#9aa4af"),
-    "fast": ("#0072b2", "#56b4e9"),
-    "embree": ("#cc79a7", "#cc79a7"),
-    "grid": ("#e69f00", "#e69f00"),
-    "nanovdb": ("#009e73", "#2cc29a"),
-}
+COLOURS = colours("casters")
 NAMES = {"fast": "fast (make_ray_caster)", "embree": "embree (BVH alone)", "grid": "grid (voxel by voxel)"}
 OTHER = ("#56b4e9", "#0072b2")
 

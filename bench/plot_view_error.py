@@ -8,16 +8,11 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from palette import colours
 from plot_scaling import PANEL_HEIGHT, PANEL_WIDTH, Scale, panel_corner, tick_text
 from svg_chart import MARGIN, Drawing, save, svg
 
-# Okabe and Ito's colours, (light, dark) background.
-COLOURS = {
-    "feasible": ("#0072b2", "#56b4e9"),
-    "buckets": ("#e69f00", "#e69f00"),
-    "paper": ("#009e73", "#2cc29a"),
-    "exact": ("#b3427f", "#cc79a7"),
-}
+COLOURS = colours("view_quality")
 SAMPLINGS = {
     "feasible": "drawn from frontiers in reach",
     "buckets": "drawn from buckets",

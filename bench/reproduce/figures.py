@@ -6,23 +6,12 @@ from pathlib import Path
 
 sys.path.insert(1, str(Path(__file__).resolve().parent.parent))  # of all plots
 
+from palette import TEAM, UAV, UGV, colours
 from recorded import PHASES
 from runs import VARIANTS, WORLDS
 from svg_chart import MARGIN, WIDTH, Drawing, svg
 
-# Okabe and Ito's colours, for any colour vision; (light, dark) background.
-COLOURS = {
-    "team": ("#0072b2", "#56b4e9"),
-    "uav": ("#d55e00", "#f0813c"),
-    "ugv": ("#009e73", "#2cc29a"),
-    "cluster": ("#d55e00", "#f0813c"),
-    "nearest": ("#009e73", "#2cc29a"),
-    "frontiers": ("#6e7781", "#9aa4af"),
-    "caster": ("#0072b2", "#3d9bd8"),
-    "goals": ("#e69f00", "#e69f00"),
-    "paths": ("#009e73", "#2cc29a"),
-    "optimization": ("#cc79a7", "#cc79a7"),
-}
+COLOURS = {"team": TEAM, "uav": UAV, "ugv": UGV, **colours("goals"), **colours("phases")}
 DASHES = {"team": "", "uav": "7 3", "ugv": "2 3", "cluster": "7 3", "nearest": "2 3"}
 TITLES = {"uav": "UAV", "ugv": "UGV"}
 

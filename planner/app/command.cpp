@@ -1,5 +1,7 @@
 #include "command.hpp"
 
+#include "help.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -21,6 +23,12 @@ bool Option::given() const { return option_->count() > 0; }
 Command::Command(CLI::App& app, const char* name, const char* summary)
     : app_(app.add_subcommand(name, summary)) {}
 
+namespace {
+
+std::string see_help(const CLI::App& app) { return "; see frontlux " + app.get_name() + " --help"; }
+
+}  // namespace
+
 constexpr int kMostWords = 1 << 20;  // of a positional argument that may be repeated
 
 Option Command::add_words(const char* name, const char* type, const char* what,
@@ -28,16 +36,17 @@ Option Command::add_words(const char* name, const char* type, const char* what,
   const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
   CLI::Option* option = app_->add_option(
       name,
-      [label, read_word = std::move(read_word)](const CLI::results_t& words) {
+      [label, help = see_help(*app_), read_word = std::move(read_word)](const CLI::results_t& words) {
         for (const std::string& word : words) try {
             read_word(word);
           } catch (const BadInput& error) {
-            throw BadInput(label + ": " + error.what());
+            throw BadInput(label + ": " + error.what() + help);
           }
         return true;
       },
       what);
-  option->type_name(type)->default_str(default_text)->group(group_);
+  option->type_name(type)->default_str(default_text);
+  show(*option);
   if (repeatable && option->get_positional())
     option->expected(1, kMostWords)->allow_extra_args();
   else if (repeatable)
@@ -46,14 +55,21 @@ Option Command::add_words(const char* name, const char* type, const char* what,
 }
 
 Option Command::add_flag(const char* name, bool& value, const char* what) {
-  return Option(app_->add_flag(name, value, what)->group(group_));
+  CLI::Option* option = app_->add_flag(name, value, what);
+  show(*option);
+  return Option(option);
+}
+
+void Command::show(CLI::Option& option) const {
+  option.group(group_);
+  if (shown_ == Shown::kInHelpAll) dynamic_cast<HelpFormatter&>(*app_->get_formatter()).hide(&option);
 }
 
 void Command::require_one(Option& one, Option& other) {
   one.excludes(other);
-  checks_.push_back([one = one.option_, other = other.option_] {
+  checks_.push_back([one = one.option_, other = other.option_, help = see_help(*app_)] {
     if (one->count() + other->count() == 0)
-      throw BadInput("give " + one->get_name() + " or " + other->get_name());
+      throw BadInput("give " + one->get_name() + " or " + other->get_name() + help);
   });
 }
 
@@ -61,6 +77,7 @@ void Command::allow_only(Option& option, std::initializer_list<std::string_view>
   const std::vector<std::string_view> allowed(others);
   for (CLI::Option* other : app_->get_options([&](CLI::Option* candidate) {
          return candidate != option.option_ && candidate != app_->get_help_ptr() &&
+                candidate != app_->get_help_all_ptr() &&
                 std::find(allowed.begin(), allowed.end(), candidate->get_name()) == allowed.end();
        }))
     option.option_->excludes(other);

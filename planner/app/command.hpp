@@ -32,8 +32,8 @@ class Option {
 };
 
 /// A subcommand of `frontlux`: CLI11's, with values that are typed and checked when they are read (see
-/// `read`; CLI11's own conversions let nan, inf and hexadecimal numbers through). CLI11 itself is seen by one
-/// source file only, since it takes long to compile.
+/// `read`; CLI11's own conversions let nan, inf and hexadecimal numbers through). CLI11 itself is seen by few
+/// source files, since it takes long to compile.
 class Command {
  public:
   using ReadWord = std::function<void(std::string_view word)>;
@@ -41,8 +41,12 @@ class Command {
   /// @param summary  what it does, in an imperative sentence without a full stop
   Command(CLI::App& app, const char* name, const char* summary);
 
-  /// The heading in --help of the options that are added from now on.
-  void group(const char* heading) { group_ = heading; }
+  enum class Shown { kAlways, kInHelpAll };
+  /// The heading in --help of the options that are added from now on, and whether only --help-all shows them.
+  void group(const char* heading, Shown shown = Shown::kAlways) {
+    group_ = heading;
+    shown_ = shown;
+  }
 
   /// Adds an option, or a positional argument if the name does not begin with a dash. What `value` holds now
   /// is the default, and shown in --help.
@@ -113,8 +117,11 @@ class Command {
     return names;
   }
 
+  void show(CLI::Option& option) const;
+
   CLI::App* app_;
   std::string group_ = "Options";
+  Shown shown_ = Shown::kAlways;
   std::vector<std::function<void()>> checks_;
 };
 

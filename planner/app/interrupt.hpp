@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <exception>
 #include <string>
 #include <utility>
@@ -16,7 +17,7 @@ class Interrupted : public std::exception {
   std::string what_;
 };
 
-/// While it lives, Ctrl-C is noted instead of ending the program. One at a time.
+/// While it lives, Ctrl-C and SIGTERM are noted instead of ending the program. One at a time.
 class InterruptNote {
  public:
   InterruptNote();
@@ -27,7 +28,8 @@ class InterruptNote {
   [[nodiscard]] static bool taken();
 
  private:
-  void (*before_)(int);
+  using Action = void (*)(int);
+  std::array<Action, 2> before_;  // by `kSignals`
 };
 
 }  // namespace frontlux::app

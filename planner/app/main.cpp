@@ -1,49 +1,52 @@
 #include "bad_input.hpp"
 #include "commands/commands.hpp"
+#include "help.hpp"
 #include "interrupt.hpp"
+#include "spelling.hpp"
+#include "terminal.hpp"
 
 #include <frontlux/machine.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <fcntl.h>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace {
 
 constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
 
-// "--range METRES   Longest distance to a voxel's centre [10]", or "(required)".
-class HelpFormatter : public CLI::Formatter {
- public:
-  std::string make_option_opts(const CLI::Option* option) const override {
-    if (option->get_type_size() == 0 || option->get_type_name().empty()) return "";
-    return " " + option->get_type_name();
-  }
-  std::string make_option_desc(const CLI::Option* option) const override {
-    if (option->get_required()) return option->get_description() + " (required)";
-    const std::string value = option->get_default_str();
-    return option->get_description() + (value.empty() ? "" : " [" + value + "]");
-  }
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
-    for (std::size_t gap; (gap = help.find("\n\n\n")) != std::string::npos;) help.erase(gap, 1);
-    return help;
-  }
-};
-
 int complain(const std::string& message, int code) {
-  std::cerr << "frontlux: " << message << '\n';
+  std::cerr << frontlux::app::in_red("frontlux: " + message, STDERR_FILENO) << '\n';
   return code;
+}
+
+// " (did you mean --seed?)", if that can be told.
+std::string suggestion(const std::string& misspelt, const std::vector<std::string>& words) {
+  const auto meant = frontlux::app::meant_by(misspelt, words);
+  return meant ? " (did you mean " + *meant + "?)" : "";
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names{"help"};
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::string unknown_command(const std::string& name, const CLI::App& app) {
+  return "unknown command '" + name + "'" + suggestion(name, command_names(app));
 }
 
 // What is wrong with the words. CLI11 would rather name the option that a misspelt one leaves missing.
@@ -56,10 +59,12 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app) {
     return error.what() + std::string(both ? "; give only one of them" : "");
   }
   const std::string& stray = strays.front();
-  const char* kind = stray.starts_with("-") ? "unknown option '"
-                     : commands.empty()     ? "unknown command '"
-                                            : "unexpected argument '";
-  return kind + stray + "'";
+  if (stray.starts_with("-")) {
+    const std::string name = stray.substr(0, stray.find('='));
+    return "unknown option '" + stray + "'" +
+           suggestion(name, frontlux::app::option_names(commands.empty() ? app : *commands.front()));
+  }
+  return commands.empty() ? unknown_command(stray, app) : "unexpected argument '" + stray + "'";
 }
 
 // What a wrong FRONTLUX_ISA makes of every command.
@@ -83,12 +88,21 @@ int run(int argc, const char* const* argv) {
       std::string("frontlux ").append(FRONTLUX_VERSION) + ", vector instructions: " + instructions();
   CLI::App app("Cast rays in OctoMap maps, make such maps, and let simulated robots explore.");
   app.name("frontlux");
-  const auto formatter = std::make_shared<HelpFormatter>();
+  const auto formatter = std::make_shared<frontlux::app::HelpFormatter>();
   formatter->label("SUBCOMMAND", "COMMAND");
   formatter->label("Positionals", "Arguments");
   app.formatter(formatter);
-  app.set_version_flag("--version", version, "Print the version, and the vector instructions in use");
+  app.set_version_flag("-V,--version", version, "Print the version, and the vector instructions in use");
   app.set_help_flag("-h,--help", "Print this help");
+  app.set_help_all_flag("--help-all", "Print help with the rare options too");
+  formatter->hide(app.add_option(
+                         "--manual",
+                         [&app](const CLI::results_t& words) -> bool {
+                           frontlux::app::write_manual(app, words.front());
+                           throw CLI::Success();
+                         },
+                         "Write man pages and a completion of commands for bash into this folder")
+                      ->type_name("DIR"));
   app.require_subcommand(1);
   app.footer(R"(Examples:
   frontlux info building.bt
@@ -96,15 +110,30 @@ int run(int argc, const char* const* argv) {
   frontlux world station --seed 3 -o station.ply
   frontlux scan station --seed 3 -o station.bt
   frontlux explore station --seed 3 -o station_run
-Run frontlux COMMAND --help for the options of a command. Lengths are in metres, angles in radians.
-Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C, 1 any other failure.)");
+frontlux help COMMAND, or frontlux COMMAND --help, prints the options of a command; --help-all adds the rare ones.
+Lengths are in metres, angles in radians.
+Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C or SIGTERM, 1 any other failure. An exploration that
+ended by itself has success even if it ended badly: see "warnings" in its run.json.)");
   using namespace frontlux::app;
   for (const auto add :
        {add_info_command, add_cast_command, add_world_command, add_scan_command, add_map_command,
         add_plan_command, add_render_command, add_explore_command, add_report_command})
     add(app);
+  // CLI11 takes the last word first.
+  std::vector<std::string> words(std::reverse_iterator(argv + argc),
+                                 std::reverse_iterator(argv + std::min(argc, 1)));
+  if (!words.empty() && words.back() == "help") {
+    words.back() = "--help";
+    if (words.size() > 1) {
+      const std::string& command = words[words.size() - 2];
+      const auto names = command_names(app);
+      if (std::find(names.begin(), names.end(), command) == names.end())
+        return complain(unknown_command(command, app) + "; see frontlux --help", kBadInput);
+      std::swap(words[words.size() - 1], words[words.size() - 2]);
+    }
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::Success& wish) {  // --help, --version
     app.exit(wish);
   } catch (const CLI::ParseError& error) {

@@ -2,6 +2,7 @@
 
 #include "bad_input.hpp"
 #include "map_file.hpp"
+#include "spelling.hpp"
 #include "text.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -12,6 +13,8 @@
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace frontlux::app {
 namespace {
@@ -23,10 +26,15 @@ WorldKind kind_of(const std::string& name) {
   const auto ending = std::filesystem::path(name).extension();
   if (ending == ".bt" || ending == ".ot") return WorldKind::kMap;
   if (ending.empty() && !std::filesystem::exists(name)) {
+    std::vector<std::string> words;
     std::string names;
-    for (const auto& world : sim::built_in_worlds())
+    for (const auto& world : sim::built_in_worlds()) {
+      words.emplace_back(world.name);
       names.append(names.empty() ? "" : ", ").append(world.name);
-    throw BadInput(quote(name) + " is neither a file nor a built-in world; built-in worlds: " + names);
+    }
+    const auto meant = meant_by(name, words);
+    throw BadInput(quote(name) + " is neither a file nor a built-in world" +
+                   (meant ? " (did you mean " + *meant + "?)" : "") + "; built-in worlds: " + names);
   }
   return WorldKind::kMesh;
 }
@@ -103,6 +111,7 @@ void add_world_options(Command& command, WorldSource& source, const char* ground
   command.add("--resolution", source.resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
   command.add("--start", source.start, "X,Y,Z",
               "Free point near which robots start, before the --ground shift");
+  command.group("World", Command::Shown::kInHelpAll);
   command.add("--ground", source.ground, "auto|off|Z",
               ("Shift the floor to just below a voxel boundary; auto: the floor below the start [" +
                std::string(ground_default) + "]")

@@ -142,9 +142,10 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
     return test::joined({"room", "-o", output}, words);
   };
   expect_refused({"castle", "-o", output}, {"castle"});
+  expect_refused({"sttaion", "-o", output},
+                 {"'sttaion' is neither", "(did you mean station?); built-in worlds: "});
   expect_refused({path("none.ply"), "-o", output}, {"none.ply"});
   expect_refused({"-o", output}, {"WORLD"});
-  expect_refused({"room"}, {"--output"});
   for (const char* team : {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv"})
     expect_refused(with({"--team", team}), {"--team"});
   expect_refused(with({"--robot", path("none.json")}), {"none.json"});

@@ -259,8 +259,13 @@ TEST_F(InfoCastCommand, RefusesWrongWords) {
   expect_refused({"--fast"}, {"unknown option '--fast'; see frontlux --help"});
   expect_refused({"info"}, {"MAP", "see frontlux info --help"});
   expect_refused({"info", path("map.bt"), "more"}, {"unexpected argument 'more'; see frontlux info --help"});
-  expect_refused(cast({"--jsn"}), {"unknown option '--jsn'; see frontlux cast --help"});
-  expect_refused(cast({"--form", "1,2,3"}), {"unknown option '--form'"});
+  expect_refused(cast({"--jsn"}),
+                 {"unknown option '--jsn' (did you mean --json?); see frontlux cast --help"});
+  expect_refused(cast({"--form", "1,2,3"}), {"unknown option '--form' (did you mean --from?)"});
+  expect_refused(cast({"--dir=1,0,0"}), {"unknown option '--dir=1,0,0' (did you mean --direction?)"});
+  expect_refused(cast({"--to-and-fro", "1,0,0"}), {"unknown option '--to-and-fro'; see"});
+  expect_refused({"exlpore", "room"},
+                 {"unknown command 'exlpore' (did you mean explore?); see frontlux --help"});
   expect_refused(cast({"--direction", "1,0,0"}), {"--from is required"});
   expect_refused(cast({"--from", "0,0,0"}), {"give --to or --direction"});
   expect_refused(cast({"--from", "0,0,0", "--to", "1,0,0", "--direction", "1,0,0"}),
@@ -268,7 +273,7 @@ TEST_F(InfoCastCommand, RefusesWrongWords) {
   expect_refused(cast({"--from", "0,0,0", "--from", "0,0,0", "--to", "1,0,0"}), {"--from"});
   expect_refused(cast({"--from", "0,0,0", "--to"}), {"--to"});
   expect_refused(cast({"--from", "0,0,0", "--to", "1,0,0", "--caster", "magic"}),
-                 {"--caster: 'magic' is none of ", "embree, grid, octomap"});
+                 {"--caster: 'magic' is none of ", "embree, grid, octomap; see frontlux cast --help"});
   expect_refused(cast({"--from", "0,0,0", "--to", "1,0,0", "--unknown", "maybe"}),
                  {"--unknown: 'maybe' is none of block, pass"});
 }
@@ -320,7 +325,74 @@ TEST_F(InfoCastCommand, HelpTeaches) {
   expect_answer({"cast", "--help"}, {"Example", "frontlux cast building.bt --from", "--unknown block|pass",
                                      "[block]", "(required)"});
   expect_answer({"explore", "--help"}, {"Stopping:", "Random seed (layout, planner, noise) [1]"});
-  expect_answer({"--version"}, {"frontlux "});
+  EXPECT_EQ(expect_answer({"-V"}), expect_answer({"--version"}, {"frontlux "}));
+}
+
+TEST_F(InfoCastCommand, HelpIsACommandToo) {
+  EXPECT_EQ(expect_answer({"help"}), expect_answer({"--help"}, {"help COMMAND"}));
+  EXPECT_EQ(expect_answer({"help", "cast"}), expect_answer({"cast", "--help"}));
+  expect_refused({"help", "cats"}, {"unknown command 'cats' (did you mean cast?); see frontlux --help"});
+}
+
+TEST_F(InfoCastCommand, RareOptionsAreInHelpAll) {
+  const std::string help = expect_answer({"explore", "--help"}, {"--help-all", "--team"});
+  const std::string all =
+      expect_answer({"explore", "--help-all"}, {"--team", "--epsilon", "--lambda", "--up"});
+  for (const char* rare : {"--epsilon", "--lambda", "--up"})
+    EXPECT_EQ(help.find(rare), std::string::npos) << rare;
+  EXPECT_LT(std::ranges::count(help, '\n'), 60);
+  expect_answer({"--help-all"}, {"--lambda", "--direction"});
+}
+
+// What --help-all lists is in the man page and is completed.
+TEST_F(InfoCastCommand, TheManualIsThatOfTheOptions) {
+  ASSERT_EQ(expect_answer({"--manual", path("manual")}), "");
+  std::istringstream lines(expect_answer({"explore", "--help-all"}));
+  const std::string page = frontlux::test::content_of(path("manual/man1/frontlux-explore.1"));
+  const std::string completion = frontlux::test::content_of(path("manual/completions/frontlux"));
+  int options = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find("--");
+    if (!line.starts_with("  -") || at == std::string::npos) continue;
+    const std::string name = line.substr(at, line.find(' ', at) - at);
+    std::string escaped;
+    for (const char c : name) escaped += c == '-' ? std::string("\\-") : std::string(1, c);
+    EXPECT_NE(page.find("\\fB" + escaped + "\\fR"), std::string::npos) << name;
+    EXPECT_NE(completion.find(name), std::string::npos) << name;
+    ++options;
+  }
+  EXPECT_GT(options, 30);
+  EXPECT_TRUE(page.starts_with(".TH frontlux\\-explore 1 "));
+  for (const char* command : {"info", "cast", "world", "scan", "map", "plan", "render", "report"})
+    EXPECT_GT(std::filesystem::file_size(path(std::string("manual/man1/frontlux-") + command + ".1")), 500U);
+  EXPECT_NE(frontlux::test::content_of(path("manual/man1/frontlux.1")).find("frontlux\\-explore (1)"),
+            std::string::npos);
+  expect_refused({"--manual", write("file", "")}, {"--manual: "});
+}
+
+TEST_F(InfoCastCommand, BashCompletesCommandsOptionsAndValues) {
+  expect_answer({"--manual", path("manual")});
+  const auto completed = [&](const std::string& words) {
+    const std::string script = "source '" + path("manual/completions/frontlux") + "'; COMP_WORDS=(" + words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _frontlux; echo ${COMPREPLY[@]}";
+    EXPECT_EQ(
+        std::system(("cd '" + folder_.string() + "' && bash -c " + frontlux::test::quoted(script) + " >said")
+                        .c_str()),
+        0);
+    const std::string said = frontlux::test::content_of(path("said"));
+    return said.substr(0, said.find('\n'));
+  };
+  EXPECT_EQ(completed("frontlux ex"), "explore");
+  EXPECT_EQ(completed("frontlux help re"), "render report");
+  EXPECT_EQ(completed("frontlux --ver"), "--version");
+  EXPECT_EQ(completed("frontlux explore --stop-"), "--stop-coverage --stop-time");
+  EXPECT_EQ(completed("frontlux explore room --goal n"), "nearest");
+  EXPECT_EQ(completed("frontlux explore --seed ''"), "");
+  EXPECT_EQ(completed("frontlux explore --ground ''"), "auto off");
+  EXPECT_EQ(completed("frontlux explore st"), "station storage");
+  EXPECT_EQ(completed("frontlux explore --resume man"), "manual");
+  write("mine.bt", "");
+  EXPECT_EQ(completed("frontlux info mi"), "mine.bt");
 }
 
 }  // namespace

@@ -83,7 +83,10 @@ frontlux explore room --lockstep --seed 1 -o run >"$work/explore.log" 2>&1 || {
 }
 tail -n 1 "$work/explore.log"
 [[ -s run/report.html && -s run/map.bt ]] || fail "the exploration left no report or no map"
-[[ -s /usr/share/man/man1/frontlux.1.gz ]] || fail "there is no manual page"
+for page in frontlux frontlux-explore; do
+  [[ -s /usr/share/man/man1/$page.1.gz ]] || fail "there is no manual page of $page"
+done
+[[ -s /usr/share/bash-completion/completions/frontlux ]] || fail "bash cannot complete commands"
 
 say "libfrontlux-dev: consumers by CMake and by pkg-config"
 for consumer in find_package planner; do

@@ -76,6 +76,14 @@ class Recordings(unittest.TestCase):
         recording = frontlux.read_recording(folder / "run.frontlux")
         self.assertEqual(recording.grid(), frontlux.VoxelGrid.read(folder / "map.bt"))
         self.assertTrue((np.diff(recording.steps["time"]) >= 0).all())
+        with open(folder / "tours.csv", encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        tours = recording.tours
+        np.testing.assert_array_equal(tours["step"], [int(row["step"]) for row in rows])
+        self.assertEqual([recording.robots[robot] for robot in tours["robot"]], [row["robot"] for row in rows])
+        np.testing.assert_allclose(tours["pose"], [[float(row[name]) for name in ("x_m", "y_m", "z_m", "yaw_rad")] for row in rows])
+        for name in ("clusters", "frontiers"):
+            np.testing.assert_array_equal(tours[name], [int(row[name]) for row in rows])
 
     def test_damage_is_found_and_named(self):
         whole = (self.run_folder / "run.frontlux").read_bytes()
@@ -86,7 +94,7 @@ class Recordings(unittest.TestCase):
             with self.assertRaisesRegex(RuntimeError, "damaged.frontlux"):
                 frontlux.read_recording(file)
         file.write_bytes(b"frontlux recording, format 2\n")
-        with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3"):
+        with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3 and 4"):
             frontlux.read_recording(file)
 
     def test_a_recording_that_is_cut_off_is_read_up_to_there(self):

@@ -8,7 +8,7 @@
 //   LONG     the same as REPORTS, of a run of thousands of steps
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { mkdir, readFile, stat } from "node:fs/promises";
+import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -20,19 +20,19 @@ const kWithGraphics = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshade
 const kWithout = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"];
 
 /** Opens a report; whatever it asks of the network or complains about is an error. */
-async function open(browser, folder, options = {}) {
+async function open(browser, folder, options = {}, hash = "") {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
   const trouble = [], file = pathToFileURL(`${folder}/report.html`).href;
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text()) && trouble.push(message.text()));
   page.on("pageerror", (error) => trouble.push(error.stack));
   page.on("dialog", (dialog) => trouble.push(`dialog: ${dialog.message()}`));
   await page.route("**", (route) => {
-    if (route.request().url() === file) return route.continue();
+    if (route.request().url().split("#")[0] === file) return route.continue();
     trouble.push(`request: ${route.request().url()}`);
     return route.abort();
   });
   const began = Date.now();
-  await page.goto(file);
+  await page.goto(file + hash);
   await page.waitForFunction(() => window.frontlux.ready || window.frontlux.error);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   assert.equal(await page.evaluate(() => window.frontlux.error), undefined);
@@ -72,12 +72,12 @@ async function timeLineWorks(page, rows) {
   const paused = await label();
   await page.waitForTimeout(600);
   assert.equal(await label(), paused, "it goes on although it was paused");
-  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage-time .chart-mark").style.transform);
+  const mark = () => page.evaluate(() => document.querySelector("#chart-coverage .chart-mark").style.transform);
   const before = await mark();
   await page.keyboard.press("Home");
   assert.notEqual(await mark(), before, "the charts' line stays behind");
   // A click in a chart goes to the step that is nearest.
-  const box = await page.locator("#chart-coverage-time .u-over").boundingBox();
+  const box = await page.locator("#chart-coverage .u-over").boundingBox();
   await page.mouse.click(box.x + box.width * 0.5, box.y + box.height / 2);
   const middle = await page.evaluate(() => window.frontlux.page.timeline.step);
   const away = (step) => Math.abs(times[step] - times[last] / 2);
@@ -92,8 +92,8 @@ async function layersWork(page) {
   };
   await page.evaluate(() => (document.querySelector("#view canvas").style.outline = "none")); // the focus is no layer
   await page.evaluate(() => window.frontlux.page.timeline.seek(2));
-  const names = await page.evaluate(() => Object.keys(window.frontlux.page.scene.layers));
-  assert.equal(names.length, 8);
+  const names = await page.evaluate(() => [...document.querySelectorAll(".layers input")].map((box) => box.id.replace("layer-", "")));
+  assert.equal(names.length, 8, "without tours there is no layer for them");
   const all = await look();
   for (const [i, name] of names.entries()) {
     await page.locator(`#layer-${name}`).uncheck();
@@ -103,6 +103,14 @@ async function layersWork(page) {
     assert.equal(await page.isChecked(`#layer-${name}`), true, `key ${i + 1} is not for ${name}`);
     assert.equal(await look(), all, `${name} on again looks different`);
   }
+  await page.selectOption("#sensor", "1");
+  assert.notEqual(await look(), all, "the camera's view is not shown");
+  assert.match(await page.textContent(".sensor-view"), /: ahead, 10 m/);
+  await page.selectOption("#sensor", "0");
+  await look();
+  assert.match(await page.textContent(".sensor-view"), /: all around, ahead in the middle, 6 m/);
+  await page.selectOption("#sensor", "-1");
+  assert.equal(await look(), all, "the sensor's view stays");
   await page.selectOption("#colors", "owner");
   assert.notEqual(await look(), all, "colours by robot look like heights");
   await page.selectOption("#colors", "height");
@@ -208,6 +216,74 @@ async function picksAreRight(page) {
   await page.click("#view-home");
 }
 
+/** The planned tours at each step are those of tours.csv, and are drawn from where the robot is. */
+async function toursAreRight(browser) {
+  const { page, trouble } = await open(browser, explored), rows = await readTable(`${explored}/tours.csv`), steps = await readTable(`${explored}/steps.csv`);
+  const robots = [...new Set(steps.map((row) => row.robot))], last = steps.at(-1).step;
+  const planned = (step, robot) => {
+    if (steps.find((row) => row.step === step && row.robot === robot).goal_x_m === "") return [];
+    const made = rows.findLast((row) => row.step <= step && row.robot === robot)?.step;
+    return rows.filter((row) => row.step === made && row.robot === robot);
+  };
+  const seen = await page.evaluate(() => {
+    const { run } = window.frontlux.page;
+    return run.tours.map((tour) => tour && { poses: Array.from(run.poses.subarray(tour.begin, tour.begin + 4 * tour.count)), clusters: tour.clusters, frontiers: tour.frontiers });
+  });
+  let longest = 0, best = 0;
+  for (let step = 0; step <= last; ++step)
+    robots.forEach((robot, r) => {
+      const want = planned(step, robot), tour = seen[step * robots.length + r];
+      assert.equal(tour?.clusters.length ?? 0, want.length, `stops of ${robot} at step ${step}`);
+      if (want.length === 0) return;
+      assert.deepEqual([tour.clusters, tour.frontiers], ["clusters", "frontiers"].map((name) => want.map((row) => row[name])));
+      want.flatMap((row) => [row.x_m, row.y_m, row.z_m, row.yaw_rad]).forEach((value, i) => assert.ok(Math.abs(tour.poses[i] - value) < 1e-5));
+      if (want.length > longest) [longest, best] = [want.length, step];
+    });
+  assert.ok(longest > 1, "the run has no tour of several stops");
+  const shown = await page.evaluate((step) => {
+    const { timeline, scene } = window.frontlux.page;
+    timeline.seek(step);
+    return scene.tours.map(({ group, marks, line, r }) => ({ visible: group.visible, marks: marks.filter((mark) => mark.visible).map((mark) => mark.position.toArray()), stops: line.geometry.instanceCount,
+      begin: Array.from(line.geometry.attributes.instanceStart.data.array.subarray(0, 3)), robot: Array.from(scene.robots[r].pose.subarray(0, 3)) }));
+  }, best);
+  robots.forEach((robot, r) => {
+    const want = planned(best, robot), { visible, marks, stops, begin, robot: where } = shown[r];
+    assert.equal(visible, want.length > 0);
+    if (!visible) return;
+    assert.deepEqual([marks.length, stops], [want.length, want.length]);
+    begin.forEach((value, k) => near(value, Math.fround(where[k]), "where the line begins"));
+  });
+  const look = async () => {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    return createHash("sha256").update(await page.locator("#view canvas").screenshot()).digest("hex");
+  };
+  await page.screenshot({ path: `${shots}/tours.png` });
+  await trailsWork(page);
+  await page.evaluate((step) => window.frontlux.page.timeline.seek(step), best);
+  await pointerIsRight(page, steps);
+  await savedFilesAreRight(page, steps);
+  await page.evaluate((step) => window.frontlux.page.timeline.seek(step), best);
+  const before = await look();
+  await page.keyboard.press("9");
+  assert.equal(await page.isChecked("#layer-tours"), false);
+  assert.notEqual(await look(), before, "tours off looks the same");
+  await page.keyboard.press("9");
+  assert.equal(await look(), before);
+  // A click on a stop tells which one it is.
+  for (const name of ["voxels", "frontiers", "planned"]) await page.locator(`#layer-${name}`).uncheck();
+  const r = robots.findIndex((robot) => planned(best, robot).length === longest);
+  const said = await page.evaluate((tour) => {
+    const { page: report } = window.frontlux, { scene } = report, { clientWidth: width, clientHeight: height } = scene.host;
+    const p = scene.tours[tour].marks[1].position.clone().project(scene.camera);
+    return report.pickAt(((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height);
+  }, r);
+  assert.equal(said.kind, "stop");
+  assert.match(await page.textContent("#picked"), new RegExp(`Stop of the tour[12] of ${longest}, ${robots[r]}To look at\\d+ frontiers in \\d+ cluster`));
+  assert.match(await page.textContent(".key"), /planned tour/);
+  assert.deepEqual(trouble, []);
+  await page.close();
+}
+
 /** Every control has a name for screen readers. */
 async function controlsHaveNames(page) {
   const nameless = await page.evaluate(() => [...document.querySelectorAll("button, input, select, canvas[tabindex], [role=img]")].filter((control) => !(control.getAttribute("aria-label") || control.textContent.trim() || [...(control.labels ?? [])].some((label) => label.textContent.trim()))).map((control) => control.outerHTML));
@@ -265,6 +341,11 @@ async function withGraphics() {
         assert.deepEqual(shown.trouble, []);
         await shown.page.close();
       }
+    await toursAreRight(browser);
+    await besideWorks(browser);
+    await addressIsRight(browser);
+    await printsWhole(browser);
+    await isAccessible(browser);
     await longRunIsQuick(browser);
     console.log(`loaded in ${seconds} s, ${speed.toFixed(1)} frames a second`);
   } finally {
@@ -310,22 +391,198 @@ async function commandIsRight(browser) {
     const cells = await page.locator(`.comparison tbody tr:nth-child(${i + 1}) > *`).allTextContents();
     assert.deepEqual(cells.slice(-2), [String(json.contacts), `${json.held_back} times`]);
     assert.equal(cells.at(-5), `${Object.values(json.by_robot).reduce((sum, robot) => sum + robot.idle_s, 0).toFixed(1)} s`);
-    assert.equal(cells[2], json.lockstep ? "lock-step" : "in motion");
-    assert.ok(cells[4].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[4]);
+    assert.equal(cells[5], json.lockstep ? "lock-step" : "in motion");
+    assert.deepEqual(cells.slice(1, 4), ["room", "1", "0.3 m"]);
+    assert.equal(cells[6], json.end.replaceAll("_", " "));
+    assert.ok(cells[8].startsWith(`${json.time_s.end.toFixed(1)} s`), cells[8]);
     const first = rows.filter((row) => row.robot === rows[0].robot);
     [0.5, 0.9, 0.95, 0.99].forEach((part, k) => {
       const row = first.find(({ coverage_observable: coverage }) => coverage >= part);
       const begin = runs[0].rows.find(({ coverage_observable: coverage }) => coverage >= part);
       const change = row && begin && i > 0 ? Math.round(100 * (row.time_s / begin.time_s - 1)) : null;
-      assert.equal(cells[5 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
+      assert.equal(cells[9 + k], row ? `${row.time_s.toFixed(1)} s${change === null ? "" : ` (${change >= 0 ? "+" : "−"}${Math.abs(change)} %)`}` : "never");
     });
     // The legend's value of the other run is that at the same time.
     const { rows: theirs } = runs[1 - i], other = theirs.filter((row) => row.robot === theirs[0].robot);
     const step = Math.floor(first.length / 2), now = first[step].time_s;
     await page.evaluate((s) => window.frontlux.page.timeline.seek(s), step);
-    const shown = (await page.locator("#chart-coverage-time .legend .value").allTextContents()).at(-1);
+    const shown = (await page.locator("#chart-coverage .legend .value").allTextContents()).at(-1);
     assert.equal(shown, await page.evaluate((value) => window.frontlux.percent(value), other.findLast((row) => row.time_s <= now).coverage_observable));
   }
+  assert.match(await page.textContent(".comparison"), /Compare with care: some runs are in motion and others in lock-step/);
+  assert.deepEqual(trouble, []);
+  await page.close();
+}
+
+/** The values at the pointer are in the legends of all charts at once. */
+async function pointerIsRight(page, rows) {
+  const first = rows.filter((row) => row.robot === rows[0].robot), last = first.length - 1;
+  await page.evaluate(() => window.frontlux.page.timeline.seek(0));
+  const legend = (id) => page.locator(`#chart-${id} .legend .value`).allTextContents(), before = await legend("frontiers");
+  const box = await page.locator("#chart-volume .u-over").boundingBox();
+  await page.mouse.move(box.x + box.width - 2, box.y + box.height / 2);
+  assert.deepEqual((await legend("frontiers")).map((text) => Number(text.replaceAll(",", "")))[0], first[last].frontiers);
+  assert.equal((await legend("coverage"))[0], await page.evaluate((value) => window.frontlux.percent(value), first[last].coverage_observable));
+  assert.equal(await page.isVisible("#chart-gain .pointed"), true);
+  await page.mouse.move(2, 2);
+  assert.deepEqual(await legend("frontiers"), before, "the time line's values are not back");
+  assert.equal(await page.isVisible("#chart-gain .pointed"), false);
+}
+
+/** What is saved holds what is shown. */
+async function savedFilesAreRight(page, rows) {
+  const saved = async (act) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), act()]);
+    return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+  };
+  const button = (id, kind) => () => page.locator(`#chart-${id} .save button`, { hasText: kind }).click();
+  const first = rows.filter((row) => row.robot === rows[0].robot), robots = [...new Set(rows.map((row) => row.robot))];
+  const table = await saved(button("coverage", "CSV"));
+  assert.match(table.name, /_coverage_time\.csv$/);
+  const lines = table.bytes.toString().trim().split("\n").map((line) => line.split(","));
+  assert.equal(table.bytes.toString().split("\n")[0], `"time, s",team,${robots.join(",")}`);
+  assert.equal(lines.length, 1 + first.length);
+  first.forEach((row, s) => {
+    near(Number(lines[1 + s][0]), row.time_s, "time in the table");
+    near(Number(lines[1 + s][1]), row.coverage_observable, "coverage in the table");
+  });
+  for (const id of ["coverage", "planning"]) {
+    const picture = await saved(button(id, "SVG"));
+    const curves = await page.evaluate((text) => {
+      const svg = new DOMParser().parseFromString(text, "image/svg+xml");
+      return svg.querySelector("parsererror") ? -1 : svg.querySelectorAll(".curve").length;
+    }, picture.bytes.toString());
+    assert.equal(curves, await page.locator(`#chart-${id} .legend li`).count(), `curves in the picture of ${id}`);
+    await writeFile(`${shots}/chart_${id}.svg`, picture.bytes);
+  }
+  const view = await saved(() => page.click("#save-view"));
+  assert.match(view.name, /^[\w.+-]+\.png$/);
+  assert.equal(view.bytes.subarray(1, 4).toString(), "PNG");
+  const size = await page.evaluate(() => [window.frontlux.page.scene.canvas.width, window.frontlux.page.scene.canvas.height]);
+  assert.equal(view.bytes.readUInt32BE(16), size[0]);
+  assert.ok(view.bytes.readUInt32BE(20) > size[1] && view.bytes.length > 5000, `${view.bytes.length} bytes`);
+  await writeFile(`${shots}/view.png`, view.bytes);
+}
+
+/** The address names the moment and the camera, and a report that is opened with it shows them. */
+async function addressIsRight(browser) {
+  const { page, trouble } = await open(browser, explored);
+  assert.equal(await page.evaluate(() => location.hash), "", "nothing was moved");
+  await page.evaluate(() => {
+    window.frontlux.page.timeline.seek(7);
+    window.frontlux.page.scene.orbit(0.7, 0.2);
+  });
+  await page.waitForFunction(() => location.hash !== "");
+  const [hash, time, place] = await page.evaluate(() => [location.hash, window.frontlux.page.timeline.time, window.frontlux.page.scene.place]);
+  assert.match(hash, /^#t=[\d.]+&camera=[-\d.,]+$/);
+  const shown = (where) => where.evaluate(() => [window.frontlux.page.timeline.time, window.frontlux.page.scene.place, window.frontlux.page.shown]);
+  const other = await open(browser, explored, {}, hash);
+  const [theirTime, theirPlace] = await shown(other.page);
+  assert.ok(Math.abs(theirTime - time) < 0.001, `${theirTime} s instead of ${time} s`);
+  theirPlace.forEach((value, i) => assert.ok(Math.abs(value - place[i]) < 0.01, `camera ${theirPlace} instead of ${place}`));
+  await other.page.evaluate(() => (location.hash = "#t=3"));
+  await other.page.waitForFunction(() => Math.abs(window.frontlux.page.timeline.time - 3) < 1e-9);
+  for (const wild of ["#t=x&camera=1,2", "#t=&run=9", "#camera=1,2,3,4,5,Infinity", "#%zz", "#t=1e9"]) {
+    const odd = await open(browser, both, {}, wild);
+    const [t] = await shown(odd.page);
+    assert.ok(Number.isFinite(t));
+    assert.deepEqual(odd.trouble, [], wild);
+    await odd.page.close();
+  }
+  const second = await open(browser, both, {}, "#run=1&t=20");
+  assert.deepEqual((await shown(second.page)).filter((_, i) => i !== 1), [20, 1]);
+  assert.equal(await second.page.inputValue("#run"), "1");
+  assert.deepEqual([...trouble, ...other.trouble, ...second.trouble], []);
+  for (const opened of [page, other.page, second.page]) await opened.close();
+}
+
+/** Only the last part of the travelled paths stands out, if that is wanted. */
+async function trailsWork(page) {
+  await page.evaluate(() => window.frontlux.page.timeline.seek(30));
+  const counts = () => page.evaluate(() => window.frontlux.page.scene.robots.map(({ trail, recent, materials }) => [trail.geometry.instanceCount, recent.geometry.instanceCount, materials.trail.opacity]));
+  const whole = await counts();
+  assert.ok(whole.every(([all, recent, opacity]) => all > 0 && recent === 0 && opacity === 1));
+  const { run, time } = await page.evaluate(() => ({ run: { steps: window.frontlux.page.run.steps }, time: Array.from(window.frontlux.page.run.numbers.time) }));
+  assert.ok(run.steps > 30 && time[30] > 3);
+  await page.evaluate(() => window.frontlux.page.scene.setTrail(3));
+  const recent = await counts(), after = time.findIndex((end) => end > time[30] - 3);
+  const ends = await page.evaluate((s) => window.frontlux.page.scene.robots.map((robot) => robot.trailEnd[s - 1]), after);
+  recent.forEach(([all, last], r) => assert.deepEqual([all, last], [whole[r][0], whole[r][0] - ends[r]]));
+  await page.selectOption("#trail", "10");
+  await page.selectOption("#trail", "Infinity");
+  assert.deepEqual(await counts(), whole);
+}
+
+/** WCAG 2.1 AA as far as axe-core can tell: contrast, names, keyboard access; in both colour schemes and widths. */
+async function isAccessible(browser) {
+  const source = await readFile(`${web}/node_modules/axe-core/axe.min.js`, "utf8");
+  for (const folder of [explored, both])
+    for (const colorScheme of ["light", "dark"])
+      for (const [width, height] of [[1440, 900], [390, 844]]) {
+        const { page, trouble } = await open(browser, folder, { colorScheme, viewport: { width, height } });
+        await page.evaluate(() => document.querySelectorAll("details").forEach((part) => (part.open = true)));
+        await page.waitForSelector("details tbody tr");
+        await page.evaluate(source);
+        const violations = await page.evaluate(async () => (await window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] })).violations.map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 200)}`));
+        assert.deepEqual(violations, [], `${folder}, ${colorScheme}, ${width}`);
+        assert.deepEqual(trouble, []);
+        await page.close();
+      }
+}
+
+/** On paper nothing is cropped, and the views are there in light colours. */
+async function printsWhole(browser) {
+  for (const folder of [explored, both]) {
+    const { page, trouble } = await open(browser, folder, { colorScheme: "dark", viewport: { width: 718, height: 1000 } });
+    await page.emulateMedia({ media: "print", colorScheme: "dark" });
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await page.waitForFunction(() => document.querySelector(".print-view").complete);
+    const found = await page.evaluate(() => ({
+      wide: [...document.querySelectorAll("body *")].filter((one) => one.getClientRects().length > 0 && one.getBoundingClientRect().right > innerWidth + 1).map((one) => `${one.tagName}.${one.className}`),
+      cropped: [...document.querySelectorAll(".table-scroll")].filter((one) => one.scrollWidth > one.clientWidth + 1 || one.scrollHeight > one.clientHeight + 1).length,
+      paper: getComputedStyle(document.body).backgroundColor, swatches: getComputedStyle(document.querySelector(".swatch")).printColorAdjust,
+      picture: document.querySelector(".print-view").naturalWidth,
+    }));
+    assert.deepEqual(found.wide, [], "wider than the page");
+    assert.equal(found.cropped, 0);
+    assert.deepEqual([found.paper, found.swatches], ["rgb(255, 255, 255)", "exact"]);
+    assert.ok(found.picture > 100);
+    await page.screenshot({ path: `${shots}/print_${folder === both ? "both" : "one"}.png`, fullPage: true });
+    await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+    assert.equal(await page.locator(".print-view").count(), 0);
+    assert.ok((await page.pdf({ format: "A4" })).length > 20000);
+    assert.deepEqual(trouble, []);
+    await page.close();
+  }
+}
+
+/** A second replay shows another run at the same time and, of the same world, from the same place. */
+async function besideWorks(browser) {
+  const { page, trouble } = await open(browser, both);
+  await page.selectOption("#beside", "1");
+  for (const step of [3, 20, 7]) {
+    const [time, theirs, ends] = await page.evaluate((s) => {
+      const { page: report } = window.frontlux;
+      report.timeline.seek(s);
+      return [report.timeline.time, report.second.position, Array.from(report.runs[1].numbers.time)];
+    }, step);
+    assert.ok(theirs.step === ends.length - 1 || (ends[theirs.step] >= time && (ends[theirs.step - 1] ?? 0) <= time), `step ${theirs.step} at ${time} s`);
+  }
+  const apart = () => page.evaluate(async () => {
+    const { scene, second } = window.frontlux.page;
+    await new Promise((done) => setTimeout(done, 300));
+    return [scene.camera.position.distanceTo(second.camera.position), second.layers.voxels, second.drawn];
+  });
+  await page.evaluate(() => window.frontlux.page.scene.orbit(0.5, 0.1));
+  await page.locator("#layer-voxels").uncheck();
+  const [distance, voxels, drawn] = await apart();
+  assert.ok(distance < 0.01, `the cameras are ${distance} m apart`);
+  assert.equal(voxels, false);
+  assert.equal((await apart())[2], drawn, "it draws although nothing changes");
+  await page.locator("#layer-voxels").check();
+  await page.screenshot({ path: `${shots}/beside.png` });
+  await page.selectOption("#beside", "-1");
+  assert.equal(await page.isVisible("#beside-view"), false);
   assert.deepEqual(trouble, []);
   await page.close();
 }

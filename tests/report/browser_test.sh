@@ -4,7 +4,7 @@
 set -euo pipefail
 web=$1 make_report=$2 frontlux=$3 folder=$4
 chromium=${FRONTLUX_CHROMIUM:-$(command -v chromium || true)}
-if ! command -v node >/dev/null || [[ -z $chromium || ! -d $web/node_modules/playwright-core ]]; then
+if ! command -v node >/dev/null || [[ -z $chromium || ! -d $web/node_modules/playwright-core || ! -d $web/node_modules/axe-core ]]; then
   echo "skipped: it needs Node.js, Chromium and what npm installs; run ./dev test-report"
   exit 77
 fi

@@ -14,6 +14,16 @@ export function near(actual, expected, what) {
 
 /** The charts hold what the table of steps holds. */
 export async function chartsAreRight(page, rows) {
+  const choices = await page.locator("#over option").allTextContents();
+  assert.deepEqual(choices, ["time", "path length", "steps"]);
+  for (let over = choices.length - 1; over >= 0; --over) {
+    await page.selectOption("#over", String(over));
+    await chartsOverAreRight(page, rows, over);
+  }
+  await page.evaluate(() => document.activeElement.blur());
+}
+
+async function chartsOverAreRight(page, rows, over) {
   const { charts, facts, motion } = await page.evaluate(() => ({
     charts: Object.fromEntries(window.frontlux.page.charts.charts.map(({ spec, plot }) => [spec.id, plot.data.map((list) => Array.from(list))])),
     facts: { ...window.frontlux.page.run.facts, steps: null }, motion: window.frontlux.page.run.motion,
@@ -41,18 +51,19 @@ export async function chartsAreRight(page, rows) {
   };
   const cube = facts.resolution ** 3, volumes = (name) => (list) => list.map((row) => row[name] * facts.bounding * cube);
   const fractions = (name) => (list) => column(list, name);
-  for (const [id, x] of [["time", times], ["length", together]])
-    for (const [kind, all, part] of [["coverage", fractions("coverage_observable"), fractions("robot_observable")], ["volume", volumes("coverage_box"), volumes("robot_box")]]) {
-      const data = charts[`${kind}-${id}`];
-      curve(data, 0, x, all(first), `${kind} over ${id}`);
-      if (robots.length > 1) robots.forEach((robot, r) => curve(data, 1 + r, x, part(of(robot)), `${robot}'s ${kind} over ${id}`));
-    }
+  const xs = [times, together, column(first, "step")][over];
+  for (const [kind, all, part] of [["coverage", fractions("coverage_observable"), fractions("robot_observable")], ["volume", volumes("coverage_box"), volumes("robot_box")]]) {
+    const data = charts[kind];
+    curve(data, 0, xs, all(first), `${kind} over ${over}`);
+    if (robots.length > 1) robots.forEach((robot, r) => curve(data, 1 + r, xs, part(of(robot)), `${robot}'s ${kind} over ${over}`));
+  }
   // In motion, a run that a limit ends has a last step without a planning: what was counted before still holds.
   const phases = ["frontiers_s", "caster_s", "goals_s", "paths_s", "optimization_s"];
   const planned = first.map((row) => !motion || phases.slice(1).some((phase) => row[phase] > 0));
   const counted = (name) => column(first, name).reduce((list, value, s) => [...list, planned[s] ? value : (list.at(-1) ?? 0)], []);
-  equal(charts.frontiers[0], times, "times of frontiers");
+  equal(charts.frontiers[0], xs, "x of frontiers");
   ["frontiers", "unassigned", "abandoned"].forEach((name, i) => equal(charts.frontiers[1 + i], counted(name), name));
+  if (over > 0) return;
   // A bar is the mean of the steps since the bar before.
   const { planning } = charts, ends = planning[0], bar = (name) => ends.map((end, k) => {
     const steps = first.filter((row) => row.time_s <= end && (k === 0 || row.time_s > ends[k - 1]));

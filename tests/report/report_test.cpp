@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/recorded_map.hpp>
 #include <frontlux/report/report.hpp>
+#include <frontlux/report/robot_colors.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -187,6 +188,7 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
           EXPECT_EQ(run.data.f32(), static_cast<float>(coordinate));
         EXPECT_EQ(run.data.f32(), static_cast<float>(pose.yaw));
       }
+      EXPECT_EQ(run.data.count(), 0U) << "in lock-step there are no tours";
     }
     std::array<std::uint64_t, 3> counted{};
     for (const auto& [key, state] : shown) {
@@ -199,6 +201,32 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   EXPECT_EQ(run.data.at, run.data.bytes.size());
   EXPECT_GT(images, 2U);
   EXPECT_GT(shown.size(), 10'000U);
+}
+
+TEST_F(ReportTest, ToursAreThoseOfTheRecording) {
+  Recording recording = room();
+  recording.steps.resize(1);
+  for (planner::RobotStep& robot : recording.steps[0].step.robots) {
+    robot.changed.clear();
+    robot.image.clear();
+    robot.planned.clear();
+    robot.travelled = 0;
+  }
+  recording.steps[0].step.robots[1].tour = {{{{1.5, -2.0, 3.25}, 0.5}, 3, 400},
+                                            {{{0.1, 0.2, 0.3}, -4.0}, 1, 10}};
+  Reader data = decode(packed_runs(page_of({{"room", &recording}})).at(0)).data;
+  for (const planner::RobotStep& robot : recording.steps[0].step.robots) {
+    for (int nothing = 0; nothing < 4; ++nothing) ASSERT_EQ(data.count(), 0U);
+    ASSERT_EQ(data.count(), robot.tour.size());
+    for (const planner::PlannedStop& stop : robot.tour) {
+      for (const double coordinate : stop.pose.position)
+        EXPECT_EQ(data.f32(), static_cast<float>(coordinate));
+      EXPECT_EQ(data.f32(), static_cast<float>(stop.pose.yaw));
+      EXPECT_EQ(data.count(), stop.clusters);
+      EXPECT_EQ(data.count(), stop.frontiers);
+    }
+  }
+  EXPECT_EQ(data.at, data.bytes.size());
 }
 
 TEST_F(ReportTest, OfManyImagesSomeAreShown) {
@@ -221,12 +249,44 @@ TEST_F(ReportTest, OfManyImagesSomeAreShown) {
       const std::uint64_t poses = run.data.count();
       run.data.count();  // of them, those that it reached
       run.data.at += 16 * poses;
+      EXPECT_EQ(run.data.count(), 0U);
     }
   EXPECT_EQ(run.data.at, run.data.bytes.size());
   // Of a thousand, every third one.
   ASSERT_EQ(shown[0].size(), 334U);
   for (std::size_t i = 0; i < shown[0].size(); ++i) EXPECT_EQ(shown[0][i], 1 + 3 * i);
   EXPECT_EQ(shown[1], std::vector<std::size_t>{7});
+}
+
+// A robot has one colour, alone and in any team, and no two of a team have the same as long as there are
+// enough.
+TEST(RobotColors, GoByIdentity) {
+  const auto named = [](planner::RobotDescription description, const std::string& name) {
+    description.robot.name = name;
+    return description;
+  };
+  const planner::RobotDescription ground = planner::ugv_description(), air = planner::uav_description();
+  const auto colors_of = [](const std::vector<planner::RobotDescription>& team) {
+    std::vector<std::string> colors;
+    for (const RobotColor& color : robot_colors(team)) {
+      EXPECT_NE(color.light, color.dark);
+      colors.emplace_back(color.light);
+    }
+    return colors;
+  };
+  const std::string uav = colors_of({air})[0], ugv = colors_of({ground})[0];
+  EXPECT_NE(uav, ugv);
+  EXPECT_EQ(colors_of({ground, air}), (std::vector{ugv, uav}));
+  const auto three = colors_of({named(air, "uav1"), ground, named(air, "uav2")});
+  EXPECT_EQ(three[0], uav);
+  EXPECT_EQ(three[1], ugv);
+  EXPECT_EQ(colors_of({named(air, "uav2")})[0], three[2]);
+  EXPECT_EQ(colors_of({named(air, "uav2"), named(air, "uav1")}), (std::vector{three[2], uav}));
+  const auto named_alike = colors_of({named(air, "heron"), named(air, "kite"), named(air, "uav2")});
+  EXPECT_EQ(std::set(named_alike.begin(), named_alike.end()).size(), 3U);
+  EXPECT_EQ(named_alike[0], uav);
+  EXPECT_EQ(colors_of(std::vector(40, air)).size(), 40U);
+  EXPECT_EQ(colors_of({named(air, "uav99999999999999999999"), named(air, ""), named(air, "0")}).size(), 3U);
 }
 
 TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
@@ -243,6 +303,7 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
   EXPECT_EQ(facts["robots"][0]["plane"], true);
   EXPECT_EQ(facts["robots"][0]["shape"], "spinning");
   EXPECT_EQ(facts["robots"][1]["shape"], "pyramid");
+  EXPECT_EQ(facts["robots"][1]["colors"][0], robot_colors(room().head.robots)[1].light);
   EXPECT_EQ(facts["robots"][1]["columns"], 160);
   EXPECT_EQ(facts["phases"],
             nlohmann::json({"frontiers", "caster", "goals", "paths", "optimization", "moving"}));

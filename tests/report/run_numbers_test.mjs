@@ -69,7 +69,8 @@ const RUN = [
     return warnings({ facts, numbers: numbersOf(facts) }).length;
   };
   for (const end of ["low_gain", "nothing_to_do"]) assert.deepEqual([said(end, 5), said(end, 6), said(end, 7)], [1, 0, 0], end);
-  for (const end of ["time_limit", "coverage", "step_limit", "stopped", null]) assert.deepEqual([said(end, 5), said(end, 7)], [0, 0], end);
+  for (const end of ["time_limit", "coverage", "step_limit", "stopped"]) assert.deepEqual([said(end, 5), said(end, 7)], [0, 0], end);
+  assert.deepEqual([said(null, 5), said(null, 7)], [1, 1], "a run that was killed");
   assert.deepEqual([said("cut_off", 5), said("cut_off", 7), said("time_limit", 7, true)], [1, 1, 1]);
 }
 { // Plannings that take longer than the clock charges; in lock-step nobody moves meanwhile.

@@ -53,7 +53,7 @@ function factsOf(steps, robots) {
     name: "run", written_by: "0.1.0", world: "room", resolution: 0.5, bounds: [[32700, 32700, 32700], [32900, 32900, 32800]],
     observable: 1000, bounding: 2000, options: '{"lockstep": false, "robots": {"a": [1, 2]}}', end: "low_gain", truncated: false,
     phases: ["frontiers", "goals", "moving"],
-    robots: list(robots, (r) => ({ name: `robot ${r}`, plane: r === 0, extents: [1, 1, 0.5], sensor_height: 0.7, shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 16, rows: 8, start: [0, 0, 1, 0] })),
+    robots: list(robots, (r) => ({ name: `robot ${r}`, plane: r === 0, extents: [1, 1, 0.5], sensor_height: 0.7, shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 16, rows: 8, colors: ["#0072b2", "#56b4e9"], start: [0, 0, 1, 0] })),
     steps: list(steps, (s) => ({ number: s, time: s / 2, frontiers: 5, unassigned: 1, abandoned: 0, rays: 9, collisions: 0, seconds: [0.1, 0.2, 3], known: list(robots, () => [s, 2 * s]), robots: list(robots, robotStep) })),
   };
 }
@@ -76,6 +76,9 @@ function dataOf(steps, robots, roll) {
     }
     bytes.push(...counts(poses, roll(poses + 1)));
     for (let i = 0; i < poses; ++i) bytes.push(...f32(i, roll(9), 1, i / 2));
+    const stops = roll(3);
+    bytes.push(...counts(stops));
+    for (let i = 0; i < stops; ++i) bytes.push(...f32(i, roll(9), 2, i / 3), ...counts(1 + roll(3), roll(300)));
   }
   return bytes;
 }
@@ -163,11 +166,12 @@ async function refused(text, message) {
 {
   const roll = dice(1), run = await readRun(textOf(factsOf(2, 1), [
     ...counts(1, 1024, 1023, 7, 2, 4 * 33 + 1, 4 * 2 + 2), ...counts(1), ...f32(8, 4), ...counts(65536, 65534, 0), 9, 255, ...counts(2, 1), ...f32(1, 2, 3, 4, 5, 6, 7, 8),
-    ...counts(0, 0, 0, 0)]));
+    ...counts(1), ...f32(9, 10, 11, 12), ...counts(2, 300), ...counts(0, 0, 0, 0, 0)]));
   assert.deepEqual([[...run.locals], [...run.states], [...run.begins], [...run.blocks]], [[33, 35], [1, 2], [0, 2], [0, 1, 1]]);
   assert.deepEqual([...run.chunks.corners.items.subarray(0, 3)], [32768, 32736, 224]);
   assert.deepEqual([run.images[0].x[0], run.images[0].y[0], run.images[0].z[0], run.images[0].gain[0], run.images[0].quality[0]], [32768, 32767, 0, 9, 255]);
-  assert.deepEqual([...run.poses], [1, 2, 3, 4, 5, 6, 7, 8]);
+  assert.deepEqual([...run.poses], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+  assert.deepEqual(run.tours, Array(2).fill({ begin: 8, count: 1, clusters: [2], frontiers: [300] }), "a tour holds until the next planning");
   for (let i = 0; i < 20; ++i) use(await readRun(textOf(factsOf(3, 2), dataOf(3, 2, roll))));
 }
 
@@ -180,7 +184,7 @@ await refused(BASE64(deflateSync(Buffer.alloc(0))), /too early/);
 await refused(BASE64(deflateSync(Buffer.from([255, 255, 255, 255, 1]))), /too early/);
 for (const facts of ["", "null", "[]", "{", "[".repeat(1e6)]) await refused(textOf(facts, []), /facts/);
 for (const [name, value] of [["robots", { length: 1e9 }], ["steps", null], ["robots", []], ["resolution", 0], ["options", {}], ["phases", ["a"]], ["bounds", [[1, 2, 3]]]])
-  await refused(textOf({ ...one, [name]: value }, counts(0, 0, 0, 0)), /robots|steps|resolution|options|phases|bounds|seconds/);
+  await refused(textOf({ ...one, [name]: value }, counts(0, 0, 0, 0, 0)), /robots|steps|resolution|options|phases|bounds|seconds/);
 await refused(textOf(one, []), /too early/);
 await refused(textOf(one, counts(huge)), /too early/);
 await refused(textOf(one, counts(1, 2048, 0, 0, 0)), /place of a chunk is 2048/);
@@ -190,12 +194,13 @@ await refused(textOf(one, counts(0, huge)), /too early/); // an image of so many
 await refused(textOf(one, [...counts(0, 1), ...f32(1, 1), ...counts(2 * 65536, 0, 0, 0, 0, 0, 0)]), /key of a cell/);
 await refused(textOf(one, counts(0, 0, huge, 0)), /too early/); // a path of so many poses
 await refused(textOf(one, counts(0, 0, 0, 1)), /travelled/);
-await refused(textOf(one, counts(0, 0, 0, 0, 0)), /after the last step/);
+await refused(textOf(one, counts(0, 0, 0, 0, huge)), /too early/); // a tour of so many stops
+await refused(textOf(one, counts(0, 0, 0, 0, 0, 0)), /after the last step/);
 await refused(textOf(one, [0, ...Array(3000).fill(255)]), /too early/);
 { // Few bytes that become many: data, facts, cubes. Each was more than a gigabyte, or near it.
   await refused(textOf(one, new Uint8Array(80e6)), /more than \d+ bytes/);
   await refused(textOf(`[${"{},".repeat(5e6)}0]`, []), /facts/);
-  const spread = (groups) => [...counts(groups), ...Array.from({ length: groups }, (_, i) => counts(2 * (i & 1023), (i >> 10) * 2, 7, 1, 1)).flat(), 0, 0, 0];
+  const spread = (groups) => [...counts(groups), ...Array.from({ length: groups }, (_, i) => counts(2 * (i & 1023), (i >> 10) * 2, 7, 1, 1)).flat(), 0, 0, 0, 0];
   await refused(textOf(one, spread(40000)), /more than 32768 cubes/);
   await read(textOf(one, spread(11000)), "cubes apart"); // 100 kB of them
 }

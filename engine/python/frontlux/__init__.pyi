@@ -148,6 +148,7 @@ class Recording:
     steps: Arrays
     poses: Arrays
     changes: Arrays
+    tours: Arrays
     end: Optional[str]
     truncated: bool
     def grid(self, step: Optional[int] = None) -> VoxelGrid: ...

@@ -11,7 +11,7 @@ import numpy as np
 from ._engine import VoxelGrid
 
 _TITLE = b"frontlux recording, format "
-_FORMAT = 3
+_FORMATS = (3, 4)  # 3 has no tours
 _MOST_BYTES = 1 << 30  # of a record
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "collisions")
@@ -38,6 +38,9 @@ class Recording:
     poses         dict of arrays, one row a viewpoint or, in motion, a scan: step, robot (p,) int64, pose (p, 4) float64
     changes       dict of arrays, one row for each voxel that a robot changed in a step: step, robot (c,) int64; keys
                   (c, 3) uint16; before, after (c,) uint8, as in Occupancy
+    tours         dict of arrays, one row for each stop of the tour of a robot that planned in a step, in the tour's order:
+                  step, robot (t,) int64; pose (t, 4) float64; clusters, frontiers (t,) int64, seen from there. Empty
+                  without tours and in recordings of format 3
     end           str, why the run ended; None if it was cut off
     truncated     bool, an unfinished step at the end of the file was left out
     """
@@ -51,6 +54,7 @@ class Recording:
     steps: Dict[str, np.ndarray]
     poses: Dict[str, np.ndarray]
     changes: Dict[str, np.ndarray]
+    tours: Dict[str, np.ndarray]
     end: Optional[str]
     truncated: bool
 
@@ -158,7 +162,7 @@ def _read_head(record):
     return head
 
 
-def _read_step(record, number, run):
+def _read_step(record, number, run, version):
     step = dict(zip(_STEP_COUNTS, record.counts(len(_STEP_COUNTS))))
     if step["number"] != number:
         raise ValueError(f"step {number} has another number")
@@ -181,6 +185,9 @@ def _read_step(record, number, run):
         record.keys(record.length()), record.keys(record.length())  # still unknown; blocked
         cells = record.length()
         record.keys(cells), record.doubles(5, cells), record.counts(cells)  # the image
+        stops = [(record.doubles(4), record.counts(2)) for _ in range(record.length())] if version > 3 else []
+        run["tours"].append((number, robot, np.array([pose for pose, _ in stops]).reshape(-1, 4),
+                             *np.array([seen for _, seen in stops], np.int64).reshape(-1, 2).T))
         robots.append(of_robot)
     for name in (*_ROBOT_COUNTS, "length"):
         step[name] = np.array([of_robot[name] for of_robot in robots])
@@ -188,12 +195,14 @@ def _read_step(record, number, run):
 
 
 def _records(file, title):
-    """(tag, bytes) of each record; None at the end if one is unfinished."""
+    """The format, then (tag, bytes) of each record; None at the end if one is unfinished."""
     line = file.readline(len(title) + 20)
     if not line.startswith(title) or not line.endswith(b"\n"):
         raise ValueError("is no recording of frontlux")
-    if line[len(title):-1] != str(_FORMAT).encode():
-        raise ValueError(f"has format {line[len(title):-1].decode('ascii', 'replace')}, but this frontlux reads {_FORMAT}")
+    version = line[len(title):-1].decode("ascii", "replace")
+    if version not in map(str, _FORMATS):
+        raise ValueError(f"has format {version}, but this frontlux reads {' and '.join(map(str, _FORMATS))}")
+    yield int(version)
     while header := file.read(16):
         # What a file grew by before the machine lost its power may read as zeros.
         if len(header) < 16 or not (header.strip(b"\0") or file.read().strip(b"\0")):
@@ -230,10 +239,12 @@ def read_recording(file):
     if it cannot be opened.
     """
     head, end, truncated = None, None, False
-    run = {"steps": [], "poses": [], "changes": []}
+    run = {"steps": [], "poses": [], "changes": [], "tours": []}
     with open(file, "rb") as opened:
         try:
-            for part in _records(opened, _TITLE):
+            parts = _records(opened, _TITLE)
+            version = next(parts)
+            for part in parts:
                 if part is None:
                     truncated = True
                     break
@@ -243,7 +254,7 @@ def read_recording(file):
                 if tag == b"head":
                     head = _read_head(record)
                 elif tag == b"step":
-                    _read_step(record, len(run["steps"]), run)
+                    _read_step(record, len(run["steps"]), run, version)
                 elif tag == b"end ":
                     end = record.text()
                 if record.at != len(record.bytes):
@@ -261,4 +272,6 @@ def read_recording(file):
     poses = dict(zip(("step", "robot", "pose"), _columns(run["poses"], ((4,), np.float64))))
     changes = dict(zip(("step", "robot", "keys", "before", "after"),
                        _columns(run["changes"], ((3,), np.uint16), ((), np.uint8), ((), np.uint8))))
-    return Recording(steps=steps, poses=poses, changes=changes, end=end, truncated=truncated, **head)
+    tours = dict(zip(("step", "robot", "pose", "clusters", "frontiers"),
+                     _columns(run["tours"], ((4,), np.float64), ((), np.int64), ((), np.int64))))
+    return Recording(steps=steps, poses=poses, changes=changes, tours=tours, end=end, truncated=truncated, **head)

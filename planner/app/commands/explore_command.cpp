@@ -5,7 +5,9 @@
 #include "explore/explore_run.hpp"
 #include "explore/explore_task.hpp"
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,7 +17,8 @@ namespace {
 struct Options {
   ExploreOptions options;
   ExploreRun run;
-  std::string output, resume;
+  std::optional<std::string> output;
+  std::string resume;
 };
 
 void check(const Options& given) {
@@ -25,8 +28,16 @@ void check(const Options& given) {
   if (given.options.source.world.empty())
     throw BadInput(
         "WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map; or a "
-        "--task");
-  if (given.output.empty()) throw BadInput("--output: give a folder for the files of the run");
+        "--task; see frontlux explore --help");
+  if (given.output && given.output->empty())
+    throw BadInput("--output: name a folder for the files of the run");
+}
+
+// runs/WORLD-SEED, without the folder and the ending of a world that is a file.
+std::string default_folder(const ExploreOptions& options) {
+  const std::filesystem::path world = options.source.world;
+  const std::string name = is_built_in_world(world) ? world.string() : world.stem().string();
+  return "runs/" + name + "-" + std::to_string(options.seed);
 }
 
 // Of what a task gives, an option replaces all that it stands for.
@@ -38,7 +49,10 @@ void replace_in_task(ExploreOptions& options, bool team, bool mode, bool lockste
 void run(Options given) {
   check(given);
   given.run.resume = !given.resume.empty();
-  given.run.folder = given.run.resume ? given.resume : given.output;
+  given.run.make_parents = !given.run.resume && !given.output;
+  given.run.folder = given.run.resume ? given.resume
+                     : !given.output  ? default_folder(given.options)
+                                      : *given.output;
   if (given.run.max_steps) given.options.max_steps = given.run.max_steps;
   explore(std::move(given.options), given.run);
 }
@@ -51,6 +65,7 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
       command.add("--goal", options.goal,
                   "Tours for the whole team, or one goal after the other: by view quality, clusters of\n"
                   "frontiers, or distance [tour; --lockstep: render; --mode paper: its own]");
+  command.group("Method", Command::Shown::kInHelpAll);
   command.add("--planner", options.search, "Path search; corridor: shortest paths [by mode]");
   command.add("--renderer", options.renderer,
               "View quality of all frontiers, or by rays to drawn ones [by mode]");
@@ -80,17 +95,23 @@ void add_explore_command(CLI::App& app) {
                        read_task(std::string(file), read_option, options);
                      });
   command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
-  command.add("-o,--output", given->output, "DIR", "Folder for the files of the run; created if missing");
+  command.add("-o,--output", given->output, "DIR",
+              "Folder for the files of the run; created if missing [runs/WORLD-SEED]");
   command.add_flag("--force", given->run.force, "Replace the run in the folder");
   Option resume =
       command.add("--resume", given->resume, "DIR", "Continue the run in this folder, with its options");
-  command.add("--world", given->run.world, "FILE", "With --resume: where the world's file is now");
   command.add("--threads", given->run.threads, "N",
               "Number of threads, which does not change the result; 0: all cores", Range<int>{0, 1024});
   command.add("--report", given->run.report, "Write report.html");
   command.add("--seed", options.seed, "N", "Random seed (layout, planner, noise)", kSeeds);
+  command.group("Run", Command::Shown::kInHelpAll);
   command.add("--world-seed", options.source.seed, "N", "Random seed of a built-in world's layout [--seed]",
               kSeeds);
+  command.add("--world", given->run.world, "FILE", "With --resume: where the world's file is now");
+  command.group("Output");
+  command.add_flag("-q,--quiet", given->run.quiet, "Print nothing but warnings and errors");
+  command.add_flag("--json", given->run.json,
+                   "Print the result as one JSON object: run.json, folder, report");
   command.group("Clock");
   Option lockstep =
       command.add_flag("--lockstep", options.lockstep,
@@ -103,6 +124,7 @@ void add_explore_command(CLI::App& app) {
   command.add("--stop-time", options.stop_time, "SECONDS", "Stop after this time on the clock", kFromZero);
   command.add("--max-steps", given->run.max_steps, "N",
               "Stop after this many steps [1000],\nin motion plannings [no limit]", Range<int>{0});
+  command.group("Stopping", Command::Shown::kInHelpAll);
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps,\n"
               "in motion for 3 plannings of each robot;\n"
@@ -112,6 +134,7 @@ void add_explore_command(CLI::App& app) {
   Option team = command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
   command.add("--robot", options.robot_files, "FILE.json", "Add a robot described in this file; repeatable");
   command.add("--pose", options.poses, "NAME=X,Y,Z,YAW", "Start pose of a robot's sensor; repeatable");
+  command.group("Robots", Command::Shown::kInHelpAll);
   command.add("--bumper", options.bumper,
               "A robot that would touch a surface stops; off: contacts are counted");
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
@@ -119,15 +142,15 @@ void add_explore_command(CLI::App& app) {
               kProbability);
   const auto [mode, goal] = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
-  command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report"});
+  command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report", "--quiet", "--json"});
   command.examples(R"(Examples:
-  frontlux explore station --seed 3 -o station_run
+  frontlux explore station --seed 3
   frontlux explore house.ply --start 1,2,0.5 --team 2uav+ugv -o house_run
   frontlux explore --task data/tasks/maze.json -o maze_run
-  frontlux explore --resume station_run
+  frontlux explore --resume runs/station-3
 Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv, motion.csv and tours.csv (of
-robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C ends a run after the
-current step.)");
+robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C or SIGTERM ends a run
+after the current step. --help-all has more options.)");
   command.run([given, team, lockstep, mode = mode, goal = goal] {
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);

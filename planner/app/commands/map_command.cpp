@@ -1,7 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "progress_line.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 
 #include <frontlux/io/point_cloud.hpp>

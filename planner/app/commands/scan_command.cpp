@@ -2,7 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "interrupt.hpp"
-#include "progress_line.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 #include "world_source.hpp"
 

@@ -1,8 +1,11 @@
 #include "draw/colors.hpp"
 
+#include <frontlux/report/robot_colors.hpp>
+
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace frontlux::app {
@@ -36,9 +39,16 @@ Color color_of(double fraction) {
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
 }
 
-Color robot_color(std::size_t robot) {
-  constexpr std::array<Color, 4> kColors = {{{213, 94, 0}, {0, 114, 178}, {0, 158, 115}, {170, 68, 153}}};
-  return kColors.at(robot % kColors.size());
+std::vector<Color> robot_colors(const std::vector<planner::RobotDescription>& team) {
+  std::vector<Color> colors;
+  for (const report::RobotColor& color : report::robot_colors(team)) {
+    constexpr int kHexadecimal = 16;
+    unsigned rgb = 0;
+    std::from_chars(color.light.data() + 1, color.light.data() + color.light.size(), rgb, kHexadecimal);
+    colors.push_back({static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U),
+                      static_cast<std::uint8_t>(rgb)});
+  }
+  return colors;
 }
 
 }  // namespace frontlux::app

@@ -2,7 +2,9 @@
 
 #include "draw/canvas.hpp"
 
-#include <cstddef>
+#include <frontlux/planner/robot.hpp>
+
+#include <vector>
 
 namespace frontlux::app {
 
@@ -11,8 +13,7 @@ namespace frontlux::app {
 /// outside are clamped; NaN is 0.
 [[nodiscard]] Color color_of(double fraction);
 
-/// The colour of a team's robots, by number, in pictures and in the report: hues of Okabe and Ito, which the
-/// colour-blind tell apart.
-[[nodiscard]] Color robot_color(std::size_t robot);
+/// The colours of a team's robots, as in its report: see `report::robot_colors`.
+[[nodiscard]] std::vector<Color> robot_colors(const std::vector<planner::RobotDescription>& team);
 
 }  // namespace frontlux::app

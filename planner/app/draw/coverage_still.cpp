@@ -34,8 +34,9 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
     for (const planner::KnownVoxels& known : recording.steps.back().known) total += count(known);
   total = std::max(total, 1.0);
   std::vector<Curve> curves = {{"team", kInk, 3.5, {}}};
+  const std::vector<Color> colors = robot_colors(head.robots);
   for (std::size_t r = 0; r < head.robots.size(); ++r)
-    curves.push_back({head.robots[r].robot.name, robot_color(r), 2.5, {}});
+    curves.push_back({head.robots[r].robot.name, colors[r], 2.5, {}});
   for (const planner::RecordedStep& step : recording.steps) {
     double sum = 0.0;
     for (std::size_t r = 0; r < head.robots.size(); ++r) {

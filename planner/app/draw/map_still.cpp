@@ -204,12 +204,13 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
     return projection.nearness(a.middle) < projection.nearness(b.middle);
   });
   for (const Face& face : faces) fill_face(canvas, projection, face, face_color(face, low, high));
-  for (std::size_t r = 0; r < paths.size(); ++r) draw_path(canvas, projection, paths[r], robot_color(r));
+  const std::vector<Color> colors = robot_colors(recording.head.robots);
+  for (std::size_t r = 0; r < paths.size(); ++r) draw_path(canvas, projection, paths[r], colors[r]);
 
   canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kInk);
   for (std::size_t r = 0; r < paths.size(); ++r) {
     const int y = kMargin + kLine * (1 + static_cast<int>(r));
-    canvas.fill(kMargin, y + 4, 26, 6, robot_color(r));
+    canvas.fill(kMargin, y + 4, 26, 6, colors[r]);
     double length = 0.0;
     for (const planner::RecordedStep& step : recording.steps) length += step.step.robots[r].length;
     canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + "  " + fixed(length, 0) + " m", kInk);

@@ -125,8 +125,8 @@ void ContinuousLoop::note_plan(const planner::PlannedMotion& planned, const Expl
       csv_row(planned.step.time, planned.step.number, name, planner::name_of(planned.reason),
               planner::name_of(robot.goal.state), robot.gain_predicted, planned.trajectory.begin(),
               planned.trajectory.end(), planned.trajectory.length(), measured.planning_seconds());
-  for (std::size_t s = 0; s < planned.tour.size(); ++s) {
-    const planner::PlannedStop& stop = planned.tour[s];
+  for (std::size_t s = 0; s < robot.tour.size(); ++s) {
+    const planner::PlannedStop& stop = robot.tour[s];
     const Eigen::Vector3d& p = stop.pose.position;
     rows_.tours += csv_row(planned.step.time, planned.step.number, name, s + 1, p.x(), p.y(), p.z(),
                            stop.pose.yaw, stop.clusters, stop.frontiers);

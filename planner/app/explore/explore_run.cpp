@@ -2,11 +2,11 @@
 
 #include "bad_input.hpp"
 #include "explore/explore_setup.hpp"
+#include "explore/run_display.hpp"
 #include "explore/run_files.hpp"
 #include "explore/run_loop.hpp"
 #include "explore/run_warnings.hpp"
 #include "interrupt.hpp"
-#include "text.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/planner/exploration.hpp>
@@ -18,7 +18,6 @@
 #include <tbb/task_arena.h>
 
 #include <array>
-#include <iostream>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -30,7 +29,7 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using planner::ExplorationStep, planner::RecordedStep, planner::Recording;
+using planner::RecordedStep, planner::Recording;
 
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";
@@ -66,6 +65,7 @@ void prepare_folder(const ExploreRun& run) {
   };
   if (fs::exists(run.folder, error) && !fs::is_directory(run.folder, error))
     refuse("is a file; name a folder");
+  if (run.make_parents) fs::create_directories(run.folder.parent_path(), error);
   if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))
     refuse("cannot be created: " + (error ? error.message() : "its parent folder does not exist") +
            "; name a folder in one that exists and may be written to");
@@ -101,26 +101,6 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
   } catch (const std::runtime_error&) {
     return "; no step of the run is left there";
   }
-}
-
-// How far the run is, what each robot does in this step, and what it is about.
-void show(const ExplorationStep& step, const RunSums& sums, const ExploreSetup& setup, double seconds) {
-  const auto moves = [&](const planner::RobotStep& robot) -> std::string {
-    if (!setup.lockstep)
-      return "moves " + fixed(robot.length, 1) + " m" +
-             (robot.goal.reason.empty() ? "" : " (" + robot.goal.reason + ")");
-    if (robot.goal.pose)
-      return "travels " + fixed(robot.length, 1) + " m, expected gain " +
-             std::to_string(robot.gain_predicted) + " of " + std::to_string(robot.goal.assigned);
-    return step.number == 0 ? "looks around" : robot.length > 0.0 ? "backs off" : "waits";
-  };
-  std::string line = "step " + std::to_string(step.number) + ": mapped " + percent(sums.observable);
-  line += setup.lockstep ? " after " + fixed(seconds, 1) + " s" : " at " + fixed(step.time, 1) + " s";
-  line += ", " + std::to_string(step.frontiers) + " frontiers";
-  for (std::size_t r = 0; r < step.robots.size(); ++r)
-    line += "; " + setup.head.robots[r].robot.name + " " + moves(step.robots[r]);
-  if (step.number > 0) line += "; planned in " + fixed(step.planning_seconds(), 3) + " s";
-  std::cout << line << std::endl;
 }
 
 // A run in progress: the loop, and the files that record it.
@@ -226,41 +206,6 @@ std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& l
   return sim::explain_unseen(*setup.truth, loop.mapping().grid(), robots, starts);
 }
 
-void print_summary(const ExploreRun& run, const ExploreSetup& setup, const RunResult& result,
-                   const std::optional<RunEnd>& why) {
-  const auto& [sums, numbers, end, warnings, unseen, seconds] = result;
-  std::string times;
-  for (const int part : {50, 90, 95, 99})
-    if (const auto time = time_to(numbers, setup.head.observable, part / 100.0))
-      times += fixed(*time, 1) + " s to " + std::to_string(part) + " %, ";
-  std::string out = row("run", run.folder.string()) + row("world", setup.head.world) +
-                    row("end", why ? end + ": " + why->text : end) +
-                    row("steps", std::to_string(sums.steps)) +
-                    row("mapped", percent(sums.observable) + " of the observable space, " +
-                                      percent(sums.bounding) + " of the world's box") +
-                    (unseen ? row("unseen", percent(unseen->narrow) + " where only smaller robots see it, " +
-                                                percent(unseen->hidden) + " hidden from everywhere, " +
-                                                percent(unseen->in_view) + " that they could have seen")
-                            : "") +
-                    row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
-  for (std::size_t r = 0; r < setup.head.robots.size(); ++r) {
-    const RobotNumbers& robot = numbers.robots[r];
-    out += row(setup.head.robots[r].robot.name, "travelled " + fixed(robot.length, 1) + " m, idle " +
-                                                    fixed(robot.idle, 1) + " s, held back " +
-                                                    std::to_string(robot.held_back) + " times");
-  }
-  out += row("contacts",
-             std::to_string(numbers.contacts) +
-                 (numbers.clearance ? ", least clearance " + fixed(*numbers.clearance, 2) + " m" : "") +
-                 (numbers.separation ? ", between robots " + fixed(*numbers.separation, 2) + " m" : "")) +
-         row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, 99 % below " +
-                             fixed(sums.planning_percentile(0.99), 3) + " s, max " +
-                             fixed(sums.planning_percentile(1.0), 3) + " s; the clock charges " +
-                             fixed(setup.exploration.latency, 3) + " s") +
-         row("wall time", fixed(seconds, 1) + " s");
-  std::cout << out;
-}
-
 }  // namespace
 
 void explore(ExploreOptions options, const ExploreRun& run) {
@@ -289,9 +234,15 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     std::optional<std::size_t> recorded;  // steps, once they are this process's to lose
     try {
       Run exploring(setup, run);
+      RunDisplay display(run, setup);
       std::span<const RecordedStep> before;
       if (recording) before = recording->steps;
-      for (const RecordedStep& step : before) exploring.repeat(step);  // before any file is touched
+      for (const RecordedStep& step : before) {  // before any file is touched
+        exploring.repeat(step);
+        display.repeated(step.step.number + 1, before.size(), watch.seconds());
+        if (InterruptNote::taken())
+          throw Interrupted("stopped while recorded steps were repeated; the run is as it was");
+      }
       if (!recording) prepare_folder(run);
       // The recording comes first and is locked: another process may still be writing this run.
       const fs::path file = run.folder / kRecording;
@@ -301,10 +252,11 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       if (!recording) remove_old_files(run.folder);
       remove_unfinished_files(run.folder);
       exploring.open_files(before);
+      display.begin();
       const auto record = [&] {
         writer.write(exploring.last());
         ++*recorded;
-        show(exploring.last().step, exploring.files().sums(), setup, watch.seconds());
+        display.step(exploring.last().step, exploring.files().sums(), watch.seconds());
       };
       const RunLoop& loop = exploring.loop();
       while (!loop.end() && !InterruptNote::taken()) {
@@ -321,16 +273,15 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       const std::optional<sim::Unseen> unseen = unseen_of(setup, loop);
       const std::vector<std::string> warnings = run_warnings(setup, sums, reason);
       const RunResult result{sums, loop.numbers(), end, warnings, unseen, watch.seconds()};
-      write_run_json(run, options, setup, result);
+      const std::string json = write_run_json(run, options, setup, result);
       if (run.report) {
         const Recording whole = planner::read_recording(file);
         const report::ReportedRun reported{
             fs::absolute(file).lexically_normal().parent_path().filename().string(), &whole,
             read_run_json(run.folder)};
-        report::write_report(run.folder / "report.html", {&reported, 1}, FRONTLUX_VERSION);
+        report::write_report(report_of(run), {&reported, 1}, FRONTLUX_VERSION);
       }
-      print_summary(run, setup, result, reason);
-      for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+      display.result(result, reason, json);
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {

@@ -15,11 +15,14 @@ struct ExploreRun {
   bool force = false;                               ///< else the folder has to be new or empty
   int threads = 0;                                  ///< 0: all cores
   bool report = true;                               ///< write report.html
+  bool quiet = false;                               ///< print neither progress nor result
+  bool json = false;                                ///< print the result as a JSON object
+  bool make_parents = false;                        ///< of the folder
   std::optional<int> max_steps;                     ///< of a resumed run: another limit
   std::optional<std::string> world = std::nullopt;  ///< of a resumed run: where its world's file is now
 };
 
-/// Explores, and writes the files of the run into its folder. Prints a line for each step, and a summary.
+/// Explores, and writes the files of the run into its folder. Prints its progress and its result.
 /// @throws BadInput, Interrupted
 void explore(ExploreOptions options, const ExploreRun& run);
 

@@ -213,8 +213,8 @@ double mean_coverage(const RunNumbers& numbers, std::uint64_t observable) {
   return area / end;
 }
 
-void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunResult& result) {
+std::string write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
+                           const RunResult& result) {
   const auto& [sums, numbers, end, warnings, unseen, seconds] = result;
   const planner::ExplorationOptions& exploration = setup.exploration;
   Json names = Json::array(), phases = Json::object(), lengths = Json::object(), robots = Json::object(),
@@ -286,7 +286,17 @@ void write_run_json(const ExploreRun& run, const ExploreOptions& options, const 
   };
   // File names are bytes, JSON is Unicode.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-  write_file(run.folder / kRunJson, [&](std::ostream& out) { out << text; });
+  write_file(run.folder / kRunJson, text);
+  return text;
+}
+
+std::filesystem::path report_of(const ExploreRun& run) { return run.folder / "report.html"; }
+
+std::string result_line(const std::string& run_json, const ExploreRun& run) {
+  Json result = {{"folder", run.folder.string()}, {"report", nullptr}};
+  if (run.report) result["report"] = report_of(run).string();
+  result.update(Json::parse(run_json));
+  return result.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string read_run_json(const std::filesystem::path& folder) {

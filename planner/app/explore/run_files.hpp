@@ -76,9 +76,16 @@ struct RunResult {
 };
 
 /// Writes run.json: what was asked for and what came out.
+/// @return its bytes
 /// @throws std::runtime_error naming the file, if it cannot be written
-void write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
-                    const RunResult& result);
+std::string write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
+                           const RunResult& result);
+
+/// Where a run's report is.
+[[nodiscard]] std::filesystem::path report_of(const ExploreRun& run);
+
+/// What run.json holds as one line, with the run's `folder` and its `report`, which is null if there is none.
+[[nodiscard]] std::string result_line(const std::string& run_json, const ExploreRun& run);
 
 /// The text of a run's run.json, for its report; empty if it cannot be read.
 [[nodiscard]] std::string read_run_json(const std::filesystem::path& folder);

@@ -22,16 +22,19 @@ std::string late_planning(double planning, double latency) {
 
 }  // namespace
 
+bool ends_badly(const RunSums& sums, const RunEnd& end) {
+  const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };
+  return is(planner::ExplorationEnd::kCutOff) ||
+         (sums.observable < kDone &&
+          (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)));
+}
+
 std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
                                       const std::optional<RunEnd>& end) {
   std::vector<std::string> warnings;
-  const auto is = [&](planner::ExplorationEnd reason) {
-    return end && end->word == planner::name_of(reason);
-  };
-  if (is(planner::ExplorationEnd::kCutOff))
+  if (end && end->word == planner::name_of(planner::ExplorationEnd::kCutOff))
     warnings.push_back(end->text);
-  else if (sums.observable < kDone &&
-           (is(planner::ExplorationEnd::kLowGain) || is(planner::ExplorationEnd::kNothingToDo)))
+  else if (end && ends_badly(sums, *end))
     warnings.push_back("the run has ended with " + percent(sums.observable) +
                        " of the observable space mapped; the robots found no way to see the rest");
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;

@@ -10,6 +10,9 @@
 
 namespace frontlux::app {
 
+/// Whether a robot was cut off, or the run ended by itself far from done.
+[[nodiscard]] bool ends_badly(const RunSums& sums, const RunEnd& end);
+
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
 /// far from done, or that plannings took longer than the clock charges robots in motion for them.
 /// @param end  none: its user has stopped it

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <frontlux/report/report.hpp>
+#include <frontlux/report/robot_colors.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -20,9 +22,13 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 /// each step. Numbers that are not finite become null, bytes that are not UTF-8 the replacement character.
 [[nodiscard]] std::string run_facts(const ReportedRun& run, const std::string& version);
 
-/// Changed voxels, images and paths of a run, as bytes that web/src/run_data.js reads. Of a robot with more
-/// than 400 images, only every second one is in it, or every third one, and so on. For each step and each
-/// robot:
+/// The robots' colours of data/palette.json.
+[[nodiscard]] std::span<const RobotColor> aerial_colors();
+[[nodiscard]] std::span<const RobotColor> ground_colors();
+
+/// Changed voxels, images, paths and tours of a run, as bytes that web/src/run_data.js reads. Of a robot with
+/// more than 400 images, only every second one is in it, or every third one, and so on. For each step and
+/// each robot:
 ///
 ///     count of chunks (cubes of 32^3 voxels that hold a change), sorted by x, then y, then z; for each:
 ///       x, y, z of the chunk (key / 32) as counts; count of voxels; for each, sorted by
@@ -32,6 +38,7 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 ///       first 0), those of y, those of z; of each cell gain / greatest as a byte; of each cell
 ///       sqrt(quality / greatest) as a byte
 ///     count of planned viewpoints, those travelled, and of each x, y, z, yaw as f32
+///     count of stops of the planned tour, and of each x, y, z, yaw as f32, clusters and frontiers in view
 ///
 /// A count takes seven bits a byte, the lowest first; the top bit says that another byte follows. A
 /// difference d is written as the count 2 d, or -2 d - 1 if negative. f32 is a float, lowest byte first.

@@ -119,6 +119,16 @@ void write_path(ByteWriter& out, const planner::RobotStep& robot) {
   }
 }
 
+void write_tour(ByteWriter& out, std::span<const planner::PlannedStop> tour) {
+  out.count(tour.size());
+  for (const planner::PlannedStop& stop : tour) {
+    for (const double coordinate : stop.pose.position) out.f32(coordinate);
+    out.f32(stop.pose.yaw);
+    out.count(stop.clusters);
+    out.count(stop.frontiers);
+  }
+}
+
 // Of each robot, every how many-th image goes into the report.
 std::vector<std::size_t> image_strides(const planner::Recording& recording) {
   std::vector<std::size_t> strides(recording.head.robots.size());
@@ -142,6 +152,7 @@ std::string run_data(const planner::Recording& recording) {
       write_changes(out, robot.changed);
       write_image(out, shown ? robot.image : std::vector<planner::RenderedCell>());
       write_path(out, robot);
+      write_tour(out, robot.tour);
     }
   return out.bytes();
 }

@@ -1,8 +1,12 @@
 #include "parts.hpp"
 
+#include <frontlux/report/robot_colors.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <string>
+#include <vector>
 
 namespace frontlux::report::detail {
 namespace {
@@ -118,8 +122,10 @@ std::string run_facts(const ReportedRun& run, const std::string& version) {
   if (recording.end) facts["end"] = *recording.end;
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
     facts["phases"].push_back(name_of(static_cast<planner::Phase>(phase)));
+  const std::vector<RobotColor> colors = robot_colors(head.robots);
   for (std::size_t i = 0; i < head.robots.size(); ++i) {
     facts["robots"].push_back(facts_of(head.robots[i]));
+    facts["robots"][i]["colors"] = {std::string(colors[i].light), std::string(colors[i].dark)};
     if (i < head.starts.size()) facts["robots"][i]["start"] = numbers_of(head.starts[i].pose);
   }
   for (const planner::RecordedStep& step : recording.steps) facts["steps"].push_back(facts_of(step));

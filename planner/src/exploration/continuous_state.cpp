@@ -301,7 +301,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))
-      planned.tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
+      planned.step.robots[robot].tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
   return planned;
 }
 

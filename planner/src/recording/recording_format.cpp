@@ -13,6 +13,7 @@ namespace frontlux::planner::detail {
 namespace {
 
 constexpr std::size_t kKeyBytes = 3;  // at least
+constexpr int kFormatWithTours = 4;
 
 void code_finite(RecordBytes& bytes, double& value, const char* what) {
   bytes.number(value);
@@ -180,7 +181,16 @@ void code_goal(RecordBytes& bytes, Goal& goal) {
     bytes.whole(*count);
 }
 
-void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds) {
+void code_tour(RecordBytes& bytes, std::vector<PlannedStop>& tour) {
+  bytes.length(tour, 4 * sizeof(double) + 2);
+  for (PlannedStop& stop : tour) {
+    code_pose(bytes, stop.pose);
+    bytes.whole(stop.clusters);
+    bytes.whole(stop.frontiers);
+  }
+}
+
+void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds, int format) {
   bytes.whole(robot.gain_tangent);
   bytes.whole(robot.gain_predicted);
   bytes.whole(robot.gain_sum);
@@ -196,6 +206,7 @@ void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds) {
   code_sorted_keys(bytes, robot.still_unknown, "the voxels still unknown are not sorted, each once");
   code_sorted_keys(bytes, robot.blocked, "the blocked cells are not sorted, each once");
   code_image(bytes, robot.image);
+  if (format >= kFormatWithTours) code_tour(bytes, robot.tour);
 }
 
 void code_known(RecordBytes& bytes, std::vector<KnownVoxels>& known, const RecordingHead& head) {
@@ -214,7 +225,8 @@ void code_known(RecordBytes& bytes, std::vector<KnownVoxels>& known, const Recor
   }
 }
 
-void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& head, std::uint64_t number) {
+void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& head, std::uint64_t number,
+               int format) {
   constexpr std::size_t kRobotBytes = 60;  // at least
   const std::string name = "step " + std::to_string(number);
   ExplorationStep& step = recorded.step;
@@ -237,7 +249,7 @@ void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& 
   bytes.require(step.robots.size() == head.robots.size(), "has not as many robots as the team");
   for (std::size_t i = 0; i < step.robots.size(); ++i) {
     bytes.part(name + ", robot " + std::to_string(i));
-    code_robot(bytes, step.robots[i], head.bounds);
+    code_robot(bytes, step.robots[i], head.bounds, format);
   }
 }
 
@@ -266,8 +278,10 @@ Value read_with(std::string_view from, const Code& code) {
   return value;
 }
 
-auto code_step_of(const RecordingHead& head, std::uint64_t number) {
-  return [&head, number](RecordBytes& bytes, RecordedStep& step) { code_step(bytes, step, head, number); };
+auto code_step_of(const RecordingHead& head, std::uint64_t number, int format) {
+  return [&head, number, format](RecordBytes& bytes, RecordedStep& step) {
+    code_step(bytes, step, head, number, format);
+  };
 }
 
 }  // namespace
@@ -275,11 +289,12 @@ auto code_step_of(const RecordingHead& head, std::uint64_t number) {
 std::string head_bytes(const RecordingHead& head) { return write_with(head, code_head); }
 RecordingHead head_from(std::string_view bytes) { return read_with<RecordingHead>(bytes, code_head); }
 
-std::string step_bytes(const RecordedStep& step, const RecordingHead& head, std::uint64_t number) {
-  return write_with(step, code_step_of(head, number));
+std::string step_bytes(const RecordedStep& step, const RecordingHead& head, std::uint64_t number,
+                       int format) {
+  return write_with(step, code_step_of(head, number, format));
 }
-RecordedStep step_from(std::string_view bytes, const RecordingHead& head, std::uint64_t number) {
-  return read_with<RecordedStep>(bytes, code_step_of(head, number));
+RecordedStep step_from(std::string_view bytes, const RecordingHead& head, std::uint64_t number, int format) {
+  return read_with<RecordedStep>(bytes, code_step_of(head, number, format));
 }
 
 std::string end_bytes(const std::string& reason) { return write_with(reason, code_end); }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace frontlux::planner {
 namespace {
@@ -18,8 +19,8 @@ using detail::kRecordingTitle;
   throw UnbegunRecording(file.string() + ": ends " + where + "; explore anew");
 }
 
-// Where the records begin.
-std::size_t check_title(const std::filesystem::path& file, std::string_view bytes) {
+// The file's format, and where the records begin.
+std::pair<int, std::size_t> read_title(const std::filesystem::path& file, std::string_view bytes) {
   constexpr std::size_t kMostDigits = 9;
   const auto foreign = [&] {
     fail(file, "is not a recording of frontlux",
@@ -32,18 +33,19 @@ std::size_t check_title(const std::filesystem::path& file, std::string_view byte
   const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
   if (digits == rest.size() && digits <= kMostDigits) too_short();
   if (digits == 0 || digits > kMostDigits || rest[digits] != '\n') foreign();
-  if (const auto format = std::string(rest.substr(0, digits));
-      format != std::to_string(detail::kRecordingFormat))
+  const int format = std::stoi(std::string(rest.substr(0, digits)));
+  if (format < detail::kOldestRecordingFormat || format > kRecordingFormat)
     fail(file,
-         "is a recording of format " + format + ", and this program reads format " +
-             std::to_string(detail::kRecordingFormat),
+         "is a recording of format " + std::to_string(format) + ", and this program reads formats " +
+             std::to_string(detail::kOldestRecordingFormat) + " to " + std::to_string(kRecordingFormat),
          "read it with the frontlux that wrote it, or explore anew");
-  return kRecordingTitle.size() + digits + 1;
+  return {format, kRecordingTitle.size() + digits + 1};
 }
 
 // Reads the records one after the other. `at`: where the next one begins
-Recording read_records(std::string_view bytes, std::size_t& at) {
+Recording read_records(std::string_view bytes, int format, std::size_t& at) {
   Recording recording;
+  recording.format = format;
   bool has_head = false;
   while (at < bytes.size()) {
     if (recording.end) throw detail::BadRecord("goes on after its end");
@@ -54,7 +56,8 @@ Recording read_records(std::string_view bytes, std::size_t& at) {
     if (record->tag == detail::kHeadTag)
       recording.head = detail::head_from(record->bytes);
     else if (record->tag == detail::kStepTag)
-      recording.steps.push_back(detail::step_from(record->bytes, recording.head, recording.steps.size()));
+      recording.steps.push_back(
+          detail::step_from(record->bytes, recording.head, recording.steps.size(), format));
     else
       recording.end = detail::end_from(record->bytes);
     has_head = true;
@@ -69,9 +72,9 @@ Recording read_records(std::string_view bytes, std::size_t& at) {
 
 Recording read_recording(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
-  std::size_t at = check_title(file, bytes);
+  auto [format, at] = read_title(file, bytes);
   try {
-    Recording recording = read_records(bytes, at);
+    Recording recording = read_records(bytes, format, at);
     if (recording.bytes == 0) fail_unbegun(file, "before the run began");
     return recording;
   } catch (const detail::BadRecord& error) {

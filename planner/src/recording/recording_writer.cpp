@@ -98,26 +98,27 @@ class RecordFile {
 }  // namespace
 
 struct RecordingWriter::State {
-  State(const std::filesystem::path& path, int flags, RecordingHead run, std::uint64_t number)
-      : file(path, flags), head(std::move(run)), next(number) {}
+  State(const std::filesystem::path& path, int flags, RecordingHead run, int in_format, std::uint64_t number)
+      : file(path, flags), head(std::move(run)), format(in_format), next(number) {}
   RecordFile file;
   RecordingHead head;
+  int format;
   std::uint64_t next;
   bool ended = false;
 };
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const RecordingHead& head) {
-  const std::string begin = std::string(detail::kRecordingTitle) + std::to_string(detail::kRecordingFormat) +
-                            "\n" + detail::packed_record(detail::kHeadTag, detail::head_bytes(head));
+  const std::string begin = std::string(detail::kRecordingTitle) + std::to_string(kRecordingFormat) + "\n" +
+                            detail::packed_record(detail::kHeadTag, detail::head_bytes(head));
   std::error_code ignored;
-  state_ = std::make_unique<State>(file, O_CREAT, head, 0);
+  state_ = std::make_unique<State>(file, O_CREAT, head, kRecordingFormat, 0);
   // Only now, since the file may be another process's, which has it locked.
   if (std::filesystem::is_regular_file(file, ignored)) state_->file.cut(0);
   state_->file.append(begin);
 }
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Recording& recording) {
-  state_ = std::make_unique<State>(file, 0, recording.head, recording.steps.size());
+  state_ = std::make_unique<State>(file, 0, recording.head, recording.format, recording.steps.size());
   // Now that it is locked: until then its owner may have gone on.
   if (read_recording(file).bytes != recording.bytes)
     fail(file, "was written to by another process since it was read", "read it again");
@@ -130,8 +131,8 @@ RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = defaul
 
 void RecordingWriter::write(const RecordedStep& step) {
   if (state_->ended) throw std::invalid_argument("recording: a step after its end");
-  state_->file.append(
-      detail::packed_record(detail::kStepTag, detail::step_bytes(step, state_->head, state_->next)));
+  state_->file.append(detail::packed_record(
+      detail::kStepTag, detail::step_bytes(step, state_->head, state_->next, state_->format)));
   ++state_->next;
 }
 

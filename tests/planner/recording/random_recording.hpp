@@ -106,6 +106,8 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
         robot.image.push_back({random.key_in(kAllVoxels), random.uniform(0, 9), random.uniform(0, 9),
                                random.uniform(0, 9), random.uniform(0, 9), random.uniform(-4, 4),
                                static_cast<std::uint32_t>(random.bits())});
+      for (int i = random.below(5); i > 0; --i)
+        robot.tour.push_back({random_pose(random), random.bits() % 9, random.bits() % 1000});
     }
     step.robots.push_back(robot);
   }
@@ -175,6 +177,10 @@ class Listing {
       for (const auto& c : r.image) {
         add(c.cell);
         line("image", c.distance, c.gain, c.standard_error, c.quality, c.yaw, c.hits);
+      }
+      for (const auto& stop : r.tour) {
+        add(stop.pose);
+        line("stop", stop.clusters, stop.frontiers);
       }
     }
   }

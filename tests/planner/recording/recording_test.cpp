@@ -89,7 +89,32 @@ TEST_F(RecordingTest, AnyNumberOfRobots) {
 
 TEST_F(RecordingTest, FirstLineSaysWhatItIs) {
   record(0, 0, false);
-  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 3\n"));
+  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 4\n"));
+}
+
+// format_3.frontlux: frontlux explore room --seed 1 --max-steps 6 --resolution 1, before there were tours.
+TEST_F(RecordingTest, ReadsAndGoesOnWithTheFormatBefore) {
+  save(test::content_of(FRONTLUX_DATA_DIR "/../tests/planner/recording/format_3.frontlux"));
+  const Recording old = read_recording(file_);
+  EXPECT_EQ(old.format, 3);
+  EXPECT_EQ(old.head.world, "room");
+  EXPECT_EQ(old.end, "step_limit");
+  ASSERT_EQ(old.steps.size(), 7U);
+  EXPECT_EQ(old.steps.back().step.time, 2.0);
+  EXPECT_EQ(old.steps.back().step.robots[1].goal.reason, "stop 1 of 2, 10 frontiers in view");
+  for (const RecordedStep& step : old.steps)
+    for (const RobotStep& robot : step.step.robots) EXPECT_TRUE(robot.tour.empty());
+
+  RecordedStep next = old.steps.back();
+  next.step.number = 7;
+  next.step.robots[1].tour.push_back({{{1.0, 2.0, 3.0}, 0.5}, 1, 10});
+  RecordingWriter(file_, old).write(next);
+  const Recording longer = read_recording(file_);
+  EXPECT_EQ(longer.format, 3);
+  EXPECT_EQ(longer.end, std::nullopt);
+  next.step.robots[1].tour.clear();
+  ASSERT_EQ(longer.steps.size(), 8U);
+  EXPECT_EQ(listed(longer.steps.back()), listed(next)) << "the format has no place for tours";
 }
 
 TEST_F(RecordingTest, EveryTruncationIsAPrefix) {
@@ -122,7 +147,7 @@ TEST_F(RecordingTest, EveryFlippedByteIsFound) {
       flipped[at] = static_cast<char>(flipped[at] ^ mask);
       const std::string said = complaint(flipped);
       ASSERT_NE(said, "") << "byte " << at << ", mask " << mask;
-      const bool in_title = at < std::string("frontlux recording, format 3\n").size();
+      const bool in_title = at < std::string("frontlux recording, format 4\n").size();
       ASSERT_EQ(said.find("damaged at byte ") == std::string::npos, in_title) << said;
     }
 }
@@ -341,12 +366,12 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
 TEST_F(RecordingTest, ForeignFiles) {
   expect_refused("", "ends in its first line");
   expect_refused("frontl", "ends in its first line");
-  expect_refused("frontlux recording, format 3", "ends in its first line");
-  expect_refused("frontlux recording, format 3\n", "ends before the run began");
+  expect_refused("frontlux recording, format 4", "ends in its first line");
+  expect_refused("frontlux recording, format 4\n", "ends before the run began");
   expect_refused("frontlux recording, format 1\nanything",
-                 "is a recording of format 1, and this program reads format 3");
+                 "is a recording of format 1, and this program reads formats 3 to 4");
   expect_refused("frontlux recording, format 12\n",
-                 "reads format 3; read it with the frontlux that wrote it");
+                 "reads formats 3 to 4; read it with the frontlux that wrote it");
   expect_refused("frontlux recording, format x\n", "is not a recording");
   expect_refused("frontlux recording, format 99999999999999999999\n", "is not a recording");
   expect_refused("# Octomap OcTree file\nid OcTree\n", "is not a recording");
@@ -393,7 +418,7 @@ TEST_F(RecordingTest, PythonExampleReadsIt) {
       std::snprintf(length, sizeof length, "%.2f", step.robots[i].length);
       expected << "; robot " << i << ": " << length << " m, " << step.robots[i].planned.size()
                << " viewpoints, " << after[1] << " voxels free, " << after[2] << " occupied, knows "
-               << recorded.known[i].observable;
+               << recorded.known[i].observable << ", tour of " << step.robots[i].tour.size() << " stops";
     }
     expected << "\n";
   }

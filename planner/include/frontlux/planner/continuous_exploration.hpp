@@ -25,13 +25,6 @@ enum class PlanReason : std::uint8_t {
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PlanReason reason);
 
-/// A place to which a robot's tour leads.
-struct PlannedStop {
-  Pose pose;                  ///< of its sensor
-  std::size_t clusters = 0;   ///< of frontiers that it looks at from there
-  std::size_t frontiers = 0;  ///< of them in view, about
-};
-
 /// One robot's planning, and what all robots have done since the planning before.
 struct PlannedMotion {
   /// Who planned: a number in the team.
@@ -40,10 +33,8 @@ struct PlannedMotion {
   PlanReason reason = PlanReason::kStart;
   Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
   /// `RobotStep::planned` holds the poses at which each robot took a scan, after the last of the planning
-  /// before; goal, path, image and gains are those of the robot that planned.
+  /// before; goal, tour, path, image and gains are those of the robot that planned.
   ExplorationStep step;
-  /// Where the robot means to look from, in order; the first one is its goal. Empty without tours.
-  std::vector<PlannedStop> tour = {};
 };
 
 /// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.

@@ -77,6 +77,13 @@ struct VoxelChange {
   friend constexpr auto operator<=>(const VoxelChange&, const VoxelChange&) = default;
 };
 
+/// A place to which a robot's tour leads.
+struct PlannedStop {
+  Pose pose;                  ///< of its sensor
+  std::size_t clusters = 0;   ///< of frontiers that it looks at from there
+  std::size_t frontiers = 0;  ///< of them in view, about
+};
+
 /// What one robot planned, did and mapped in one step.
 struct RobotStep {
   Goal goal;                        ///< or why there is none
@@ -93,6 +100,9 @@ struct RobotStep {
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
   std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
   std::vector<VoxelKey> still_unknown;  ///< frontiers in view of its viewpoints that stayed unknown; sorted
+  /// Where it means to look from, in order, if it planned in this step; the first one is its goal. Empty
+  /// without tours.
+  std::vector<PlannedStop> tour;
 };
 
 /// What a step spends its time on. All but the last are planning.

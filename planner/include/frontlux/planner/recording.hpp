@@ -15,6 +15,9 @@
 
 namespace frontlux::planner {
 
+/// The format that recordings are written in; docs/recording.md describes it.
+inline constexpr int kRecordingFormat = 4;
+
 /// The head of a recording: what holds for the whole run.
 struct RecordingHead {
   std::string world;                     ///< for people
@@ -49,6 +52,7 @@ struct Recording {
   std::vector<RecordedStep> steps;  ///< from step 0
   std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
   bool truncated = false;           ///< an unfinished step at the end of the file was left out
+  int format = kRecordingFormat;    ///< of the file; the steps of format 3 have no tours
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 
@@ -59,7 +63,8 @@ class FRONTLUX_EXPORT RecordingWriter {
   /// @throws std::runtime_error naming the file, if it cannot be written; so do the others, also if it is not
   ///         as this writer left it any more
   RecordingWriter(const std::filesystem::path& file, const RecordingHead& head);
-  /// Goes on with a recording: cuts the file after its last finished step, and removes its end.
+  /// Goes on with a recording, in its format: cuts the file after its last finished step, and removes its
+  /// end.
   RecordingWriter(const std::filesystem::path& file, const Recording& recording);
   ~RecordingWriter();
   RecordingWriter(RecordingWriter&&) noexcept;

@@ -22,7 +22,7 @@ export function swatch(color, kind = "") {
 
 /** A table with a caption, a row of heads, and rows whose first cell is a head. */
 export function table(caption, heads, rows) {
-  return el("div", { class: "table-scroll" }, el("table", {},
+  return el("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption }, el("table", {},
     el("caption", { text: caption }),
     heads.length > 0 ? el("thead", {}, el("tr", {}, ...heads.map((text) => el("th", { scope: "col", text })))) : null,
     el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((cell, i) => el(i === 0 ? "th" : "td", { scope: i === 0 ? "row" : undefined, text: String(cell) })))))));

@@ -1,3 +1,4 @@
+import { MILESTONES, NORMAL_ENDS } from "./comparison.js";
 import { el, table } from "./dom.js";
 import { NOT_SET, centimetres, clockTime, cubicMetres, inMotion, metres, optionsOf, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
 
@@ -9,7 +10,7 @@ const PAPER = {
   station: { coverage: "96.0 %", steps: "137", uav: "10.4 min (4.55 s)", ugv: "18.6 s (136 ms)", fraction: "66 / 81 %", path: "713 / 316 m" },
 };
 
-const ENDS = {
+export const ENDS = {
   low_gain: "the expected gain stayed too low for several steps",
   low_gain_in_motion: "the expected gain stayed too low for several plannings of each robot",
   nothing_to_do: "no robot had a goal left",
@@ -20,10 +21,7 @@ const ENDS = {
   stopped: "it was stopped",
 };
 
-// The planner chose these ends; the others are limits, or come from outside.
-const NORMAL_ENDS = ["low_gain", "nothing_to_do"];
 const ENOUGH = 0.95; // of the observable space, at a normal end
-const MILESTONES = [0.5, 0.9, 0.95, 0.99];
 const MOST_ROWS = 500; // in the table of steps
 
 /** Why a run ended, as the end of a sentence. */
@@ -48,6 +46,7 @@ export function warnings({ facts, numbers }) {
   if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
   if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
   if (planningUsual > latency) list.push(`planning was too slow for this run's clock: 99 % of the plannings took up to ${seconds(planningUsual)}, and ${seconds(latency)} are charged for each. On that machine robots would get their trajectories later than shown here; explore with a greater --latency`);
+  if (facts.end === null) list.push("the recording has no end: the run was killed, or it goes on");
   if (facts.truncated) list.push("the last step of the recording is incomplete and is not shown");
   return list;
 }
@@ -96,40 +95,8 @@ function bumpers({ bumpers, heldBack }) {
   return Number.isFinite(times) ? `robots held back ${times === 1 ? "once" : `${whole(times)} times`}` : "";
 }
 
-/** Two tables with one row per run; changes in percent compare it with the first. */
-export function comparison(runs) {
-  const first = runs[0].numbers;
-  // Only between runs that have mapped the same can less time or path be better.
-  const to = (numbers, list, part, format) => reached(numbers, part, (s) => {
-    const reference = first[list][stepOfCoverage(first, part)];
-    return `${format(numbers[list][s])}${numbers === first || !(reference > 0) ? "" : ` (${signed(numbers[list][s], reference)})`}`;
-  });
-  const timeTo = (numbers, part) => (numbers.clock && first.clock ? to(numbers, "time", part, clockTime) : numbers.clock ? reached(numbers, part, (s) => clockTime(numbers.time[s])) : "not recorded");
-  const heads = ["run", "team", "moves", "coverage", "time", ...MILESTONES.map((part, i) => `${i === 0 ? "time " : ""}to ${percent(part, 0)}`), "volume", "path", "path to 90 %", "planning"];
-  return [table("Comparison", heads, runs.map(({ name, facts, numbers }) => [
-    name, teamName(facts), numbers.motion ? "in motion" : "lock-step", percent(numbers.result.coverage),
-    numbers.clock ? clockTime(numbers.result.time) : "not recorded",
-    ...MILESTONES.map((part) => timeTo(numbers, part)), cubicMetres(numbers.result.volume),
-    metres(numbers.result.length), to(numbers, "teamTravelled", 0.9, metres),
-    seconds(numbers.result.planningMean),
-  ])), planningAndSafety(runs)];
-}
-
 /** Greater ones are not told apart by the simulator. */
-const clearanceOf = (length) => (length < 1 ? centimetres(length) : "1 m or more");
-
-function planningAndSafety(runs) {
-  const sum = (list) => list.reduce((a, b) => a + b, 0), known = (number, text) => (Number.isFinite(number) ? text(number) : "–");
-  return table("Planning and safety", ["run", "planning, 99 % within", "max", "latency charged", "idle", "clearance", "between robots", "contacts", "held back"], runs.map(({ name, numbers: { result } }) => [
-    name, seconds(result.planningUsual), seconds(result.planningMost), known(result.latency, seconds), known(sum(result.idle), clockTime), known(result.clearance, clearanceOf),
-    known(result.separation, centimetres), whole(result.contacts), result.bumpers ? known(sum(result.heldBack), (times) => `${whole(times)} times`) : "no bumpers",
-  ]));
-}
-
-function signed(value, reference) {
-  const change = (100 * (value - reference)) / reference;
-  return `${change >= 0 ? "+" : "−"}${Math.abs(change).toFixed(0)} %`;
-}
+export const clearanceOf = (length) => (length < 1 ? centimetres(length) : "1 m or more");
 
 /** Everything else about a run: team, options, the paper's numbers. */
 export function details(run, written) {
@@ -227,6 +194,7 @@ const WORDS = [
   ["Step", "In lock-step: all robots plan, then move; the map grows at every viewpoint of their paths; step 0 is a scan at the start. In motion: one robot plans; its path and its scans since the planning before, and those of the others, belong to the step."],
   ["Idle", "How long a robot rested without turning, in seconds of the run's clock."],
   ["Contacts", "How often a body touched a surface. A robot with a bumper is held back before it touches one; that is counted as held back."],
+  ["Tour", "In motion: the places from which a robot means to look next, in order. It is dashed from the robot to its stops, the first nine with numbers. Each planning makes the tours of all robots anew."],
   ["Gain", "How many frontiers a path is expected to have in view (expected), and how many the scans of the robot made known (gained)."],
   ["Unassigned", "Frontiers that are assigned to no robot in this step."],
   ["Abandoned", "Frontiers that stayed unknown although a robot looked at them. No robot is sent to them any more."],

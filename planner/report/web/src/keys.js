@@ -14,7 +14,8 @@ export function addKeys(page) {
   });
 }
 
-function actions({ timeline, scene, toolbar }) {
+function actions(page) {
+  const { timeline, scene, toolbar } = page;
   const always = {
     " ": () => timeline.toggle(), ArrowLeft: () => timeline.move(-1), ArrowRight: () => timeline.move(1),
     Home: () => timeline.move(-timeline.step), End: () => timeline.move(timeline.steps),
@@ -26,8 +27,8 @@ function actions({ timeline, scene, toolbar }) {
   };
   return {
     ...always,
-    ...Object.fromEntries(Array.from({ length: 8 }, (_, i) => [String(i + 1), () => toolbar.toggleLayer(i)])),
-    h: look(() => scene.home()), t: look(() => scene.top()), f: () => toolbar.nextFollow(),
+    ...Object.fromEntries(Array.from({ length: 9 }, (_, i) => [String(i + 1), () => toolbar.toggleLayer(i)])),
+    h: look(() => scene.home()), t: look(() => scene.top()), f: () => toolbar.nextFollow(), p: () => page.savePicture(),
     w: () => scene.pan(0, MOVE), s: () => scene.pan(0, -MOVE), a: () => scene.pan(-MOVE, 0), d: () => scene.pan(MOVE, 0),
     q: () => scene.orbit(-TURN, 0), e: () => scene.orbit(TURN, 0), r: () => scene.orbit(0, -TURN), v: () => scene.orbit(0, TURN),
     "+": () => scene.zoom(1 / ZOOM), "=": () => scene.zoom(1 / ZOOM), "-": () => scene.zoom(ZOOM),

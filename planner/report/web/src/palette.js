@@ -1,23 +1,24 @@
-/** Colours for any colour vision: hues of Okabe and Ito, and scales of evenly rising lightness. */
+import palette from "../../../../data/palette.json";
 
-const ROBOTS = {
-  light: ["#d55e00", "#0072b2", "#009e73", "#aa4499", "#8a6d00", "#3d5a80", "#7a3b00", "#005f5f"],
-  dark: ["#ff9340", "#56b4e9", "#2fd0a0", "#e08fd0", "#e8d44d", "#9fb8e0", "#d9a679", "#7fd6d6"],
-};
+/** Of a pair of data/palette.json. */
+const on = (theme, [light, dark]) => (theme === "dark" ? dark : light);
+
 export const DASHES = [[], [9, 4], [3, 3], [9, 3, 2, 3], [14, 5], [2, 5]];
 
-export function robotColor(r, theme) {
-  return ROBOTS[theme][r % ROBOTS[theme].length];
-}
+/** A robot has its colour by identity, in all runs: src/robot_colors.cpp chooses it. */
+export const robotColor = (robot, theme) => on(theme, robot.colors);
 
-export const PHASES = {
-  light: ["#4477aa", "#88ccee", "#117733", "#ddaa33", "#aa3377", "#bbbbbb"],
-  dark: ["#6699cc", "#99ddff", "#44aa77", "#eecc66", "#dd77aa", "#888888"],
-};
+export const phaseColor = (phase, theme) => on(theme, palette.phases[phase] ?? palette.other);
 
+/** Of the i-th run of a comparison. */
+export const runColor = (i, theme) => on(theme, palette.runs[i % palette.runs.length]);
+
+export const otherColor = (theme) => on(theme, palette.other);
+
+const scene = (theme, more) => ({ ink: on(theme, palette.team), frontier: on(theme, palette.frontier), ...more });
 export const SCENE = {
-  light: { background: "#eef1f5", frontier: "#c2187a", shade: 1.0, ink: "#1c2530", wall: "#e4e8ee", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] },
-  dark: { background: "#10141a", frontier: "#ff6fb5", shade: 0.92, ink: "#e8edf3", wall: "#4a5563", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] },
+  light: scene("light", { background: "#eef1f5", shade: 1.0, wall: "#e4e8ee", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] }),
+  dark: scene("dark", { background: "#10141a", shade: 0.92, wall: "#4a5563", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] }),
 };
 
 /** From dark violet (0) over teal to light yellow (1), as `frontlux render` draws view quality: [r, g, b], 0 to 255. */

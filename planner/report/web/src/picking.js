@@ -13,6 +13,7 @@ export function pick(scene, x, y) {
   const { ray } = raycaster, found = [];
   if (scene.layers.voxels || scene.layers.frontiers) found.push(pickVoxel(scene, ray));
   if (scene.layers.planned) found.push(...scene.robots.map((robot) => pickViewpoint(scene, robot, ray)));
+  if (scene.layers.tours) found.push(...scene.tours.map((tour) => pickStop(tour, ray)));
   if (scene.layers.quality) found.push(...scene.images.map((image) => pickCell(image, ray)));
   return found.filter(Boolean).sort((a, b) => a.distance - b.distance)[0] ?? null;
 }
@@ -58,6 +59,11 @@ function pickViewpoint(scene, robot, ray) {
   return hit && { kind: "viewpoint", robot: robot.r, i: hit.i, distance: hit.distance - 0.3 };
 }
 
+function pickStop(tour, ray) {
+  const hit = tour.pick(ray, 0.4);
+  return hit && { kind: "stop", robot: tour.r, i: hit.i, tour: tour.shown, distance: hit.distance - 0.4 };
+}
+
 function pickCell(image, ray) {
   if (!image.mesh?.visible) return null;
   const z = image.mesh.position.z, size = image.run.facts.resolution;
@@ -88,12 +94,19 @@ export function describePick(scene, hit) {
       ["Expected gain", `${((image.gain[hit.i] / 255) * image.gainMost).toFixed(0)} frontiers`],
     ];
   }
+  if (hit.kind === "stop") {
+    const { tour, i } = hit, [x, y, z, yaw] = run.poses.subarray(tour.begin + 4 * i, tour.begin + 4 * i + 4);
+    return [
+      ["Stop of the tour", `${i + 1} of ${tour.count}, ${name}`],
+      ["To look at", `${tour.frontiers[i]} frontiers in ${tour.clusters[i]} ${tour.clusters[i] === 1 ? "cluster" : "clusters"}`],
+      ...placeOf(x, y, z, yaw),
+    ];
+  }
   const path = run.paths[step * run.robots + hit.robot], at = path.begin + 4 * hit.i, [x, y, z, yaw] = run.poses.subarray(at, at + 4);
   const planned = facts.steps[step].robots[hit.robot];
   const place = [
     [run.motion ? "Scan" : "Viewpoint", `${hit.i + 1} of ${path.count}, ${name}, step ${facts.steps[step].number}`],
-    ["Position", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`],
-    ["Yaw", `${((yaw * 180) / Math.PI).toFixed(1)}°`],
+    ...placeOf(x, y, z, yaw),
   ];
   if (run.motion) return place;
   return [
@@ -102,3 +115,5 @@ export function describePick(scene, hit) {
     ["Reached", hit.i < path.travelled ? "yes" : "no"],
   ];
 }
+
+const placeOf = (x, y, z, yaw) => [["Position", `${x.toFixed(2)}, ${y.toFixed(2)}, ${z.toFixed(2)} m`], ["Yaw", `${((yaw * 180) / Math.PI).toFixed(1)}°`]];

@@ -18,13 +18,17 @@ export class RobotView {
       edge: new LineBasicMaterial(),
       view: new LineBasicMaterial({ transparent: true, opacity: 0.75 }),
       beam: new MeshBasicMaterial({ transparent: true, opacity: 0.1, side: DoubleSide, depthWrite: false }),
-      trail: new LineMaterial({ linewidth: 3 }),
+      trail: new LineMaterial({ linewidth: 3, transparent: true }),
+      recent: new LineMaterial({ linewidth: 3 }),
       plan: new LineMaterial({ linewidth: 1.6, transparent: true, opacity: 0.85 }),
-      stem: new LineBasicMaterial({ transparent: true, opacity: 0.7 }),
+      stem: new LineBasicMaterial({ transparent: true, opacity: 0.7, depthTest: false }),
+      goal: new MeshLambertMaterial({ transparent: true, depthTest: false }),
     };
     this.body = this.makeBody();
     this.view = this.makeView();
     this.trail = this.makeTrail();
+    this.recent = this.makeLines(new Float32Array(this.trailPoints.length), this.materials.recent);
+    this.last = Infinity; // [s], in steps without a clock, of the trail that stands out
     this.plan = this.makePlan();
     this.goal = this.makeGoal();
     this.shown = undefined;
@@ -109,6 +113,7 @@ export class RobotView {
       this.trailEnd.push(points.length / 6);
     }
     if (points.length === 0) points.push(0, 0, 0, 0, 0, 0);
+    this.trailPoints = Float32Array.from(points);
     return this.makeLines(points, this.materials.trail);
   }
 
@@ -133,8 +138,10 @@ export class RobotView {
   makeGoal() {
     const stem = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array([0, 0, 0, 0, 0, -1]), 3));
     this.stem = new LineSegments(stem, this.materials.stem);
-    this.gem = new Mesh(new OctahedronGeometry(0.5), this.materials.body);
-    return new Group().add(this.gem, this.stem);
+    this.gem = new Mesh(new OctahedronGeometry(0.5), this.materials.goal);
+    const goal = new Group().add(this.stem, this.gem);
+    for (const part of goal.children) part.renderOrder = 900; // over everything
+    return goal;
   }
 
   setColor(css, ink) {
@@ -155,11 +162,24 @@ export class RobotView {
     this.view.rotation.z = yaw;
     const path = run.paths[Math.max(step, 0) * run.robots + r];
     const before = step > 0 ? this.trailEnd[step - 1] : 0, here = Math.max(0, path.travelled - 1);
-    this.trail.geometry.instanceCount = before + Math.floor(Math.min(along, 1) * here);
+    this.showTrail(before + Math.floor(Math.min(along, 1) * here), step, along);
+    this.showGoal(run.facts.steps[run.motion && along < 1 ? step - 1 : step]?.robots[r].goal, floor);
     if (this.shown === step) return;
     this.shown = step;
     this.showPlan(path);
-    this.showGoal(run.facts.steps[step]?.robots[r].goal, floor);
+  }
+
+  /** So many segments; those of the last seconds stand out. */
+  showTrail(end, step, along) {
+    const { time } = this.run.numbers, now = (time[step - 1] ?? 0) + along * ((time[step] ?? 0) - (time[step - 1] ?? 0));
+    const old = Number.isFinite(this.last) ? time.findIndex((ended) => ended > now - this.last) : 0;
+    const begin = Math.min(end, old > 0 ? this.trailEnd[old - 1] : 0), { data } = this.recent.geometry.attributes.instanceStart;
+    this.trail.geometry.instanceCount = end;
+    this.materials.trail.opacity = begin > 0 ? 0.25 : 1;
+    this.recent.geometry.instanceCount = begin > 0 ? end - begin : 0;
+    if (begin === 0) return;
+    data.array.set(this.trailPoints.subarray(6 * begin, 6 * end));
+    data.needsUpdate = true;
   }
 
   showPlan(path) {
@@ -201,7 +221,7 @@ export class RobotView {
   }
 
   dispose() {
-    for (const part of [this.body, this.view, this.trail, this.plan, this.goal]) part.traverse((object) => object.geometry?.dispose());
+    for (const part of [this.body, this.view, this.trail, this.recent, this.plan, this.goal]) part.traverse((object) => object.geometry?.dispose());
     for (const material of Object.values(this.materials)) material.dispose();
   }
 }

@@ -99,7 +99,7 @@ export async function readRun(text) {
   const groups = new Pool(Int32Array), begins = new Pool(Int32Array), blocks = new Pool(Int32Array);
   const locals = new Pool(Uint16Array), states = new Pool(Uint8Array);
   const poses = new Pool(Float32Array);
-  const images = [], paths = [];
+  const images = [], paths = [], tours = [];
   for (let block = 0; block < steps * robots; ++block) {
     blocks.push(groups.length);
     for (let left = reader.count(); left > 0; --left) {
@@ -121,25 +121,40 @@ export async function readRun(text) {
     reader.need(count, 16);
     paths.push({ begin: poses.length, count, travelled });
     for (let i = 0; i < 4 * count; ++i) poses.push(reader.f32());
+    tours.push(readTour(reader, poses));
   }
   if (reader.at !== reader.bytes.length) throw damaged("there is something after the last step");
   blocks.push(groups.length);
   begins.push(locals.length);
   const motion = inMotion(facts);
-  if (motion) holdImages(facts, images);
+  if (motion) for (const list of [images, tours]) hold(facts, list);
   return {
-    facts, motion, steps, robots, chunks, images, paths,
+    facts, motion, steps, robots, chunks, images, paths, tours,
     groups: groups.done(), begins: begins.done(), blocks: blocks.done(),
     locals: locals.done(), states: states.done(), poses: poses.done(),
     size: reader.bytes.length,
   };
 }
 
-/** Robots in motion choose goals one at a time: the image for a robot's goal is shown for as long as it has a goal. */
-function holdImages(facts, images) {
+/** Robots in motion plan one at a time: the image or tour of a robot's planning holds for as long as it has a goal. */
+function hold(facts, list) {
   const robots = facts.robots.length;
-  for (let i = robots; i < images.length; ++i)
-    if (facts.steps[Math.floor(i / robots)].robots[i % robots].goal) images[i] ??= images[i - robots];
+  for (let i = robots; i < list.length; ++i)
+    if (facts.steps[Math.floor(i / robots)].robots[i % robots].goal) list[i] ??= list[i - robots];
+}
+
+/** The stops of a planned tour; null if there are none. */
+function readTour(reader, poses) {
+  const count = reader.count();
+  if (count === 0) return null;
+  reader.need(count, 18);
+  const tour = { begin: poses.length, count, clusters: [], frontiers: [] };
+  for (let i = 0; i < count; ++i) {
+    for (let k = 0; k < 4; ++k) poses.push(reader.f32());
+    tour.clusters.push(reader.count());
+    tour.frontiers.push(reader.count());
+  }
+  return tour;
 }
 
 function readImage(reader) {

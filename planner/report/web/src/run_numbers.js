@@ -129,7 +129,7 @@ export function optionsOf(facts) {
 }
 
 /** The options as an object; null if the text is not that of a JSON object. */
-function recordedOptions(facts) {
+export function recordedOptions(facts) {
   try {
     const options = JSON.parse(facts.options);
     return typeof options === "object" && !Array.isArray(options) ? options : null;

@@ -2,6 +2,8 @@ import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, Vector
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ImageView } from "./image_view.js";
 import { RobotView } from "./robot_view.js";
+import { SensorView } from "./sensor_view.js";
+import { TourView } from "./tour_view.js";
 import { VoxelStore } from "./voxel_store.js";
 import { VoxelView } from "./voxel_view.js";
 import { SCENE, robotColor } from "./palette.js";
@@ -10,7 +12,7 @@ import { el } from "./dom.js";
 const ORIGIN = 32768;
 const SLOPE = Math.tan((40 / 2 / 180) * Math.PI);
 
-export const LAYERS = ["voxels", "frontiers", "quality", "robots", "views", "travelled", "planned", "goals"];
+export const LAYERS = ["voxels", "frontiers", "quality", "robots", "views", "travelled", "planned", "goals", "tours"];
 
 /** Thrown where the browser cannot draw in three dimensions. */
 export class NoWebGL extends Error {}
@@ -49,6 +51,8 @@ export class ReplayScene {
     this.position = { step: 0, along: 1 };
     this.frame = () => this.render();
     host.prepend(this.canvas);
+    this.sensorView = new SensorView(host);
+    this.sensor = -1; // robot whose sensor's view is shown
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
@@ -58,12 +62,16 @@ export class ReplayScene {
     this.store = new VoxelStore(run);
     this.voxels = new VoxelView(this.store, run.facts);
     this.robots = run.facts.robots.map((_, r) => new RobotView(run, r));
+    const { half } = this.extent(), dash = Math.hypot(...half) / 35;
+    this.tours = run.tours.some(Boolean) ? run.facts.robots.map((_, r) => new TourView(run, r, dash)) : [];
     this.images = run.facts.robots.map((_, r) => new ImageView(run, r)).filter((image) => image.box);
     this.scene.add(this.voxels.voxels, this.voxels.frontiers);
-    for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.plan, robot.goal);
+    for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.recent, robot.plan, robot.goal);
+    for (const tour of this.tours) this.scene.add(tour.group);
     for (const image of this.images) this.scene.add(image.mesh);
     this.labels = run.facts.robots.map((robot) => el("div", { class: "robot-label", "aria-hidden": "true", text: robot.name }));
     this.host.append(...this.labels);
+    this.sensor = -1;
     this.setTheme(this.theme);
     this.resize();
     this.home();
@@ -72,7 +80,7 @@ export class ReplayScene {
   unload() {
     if (!this.run) return;
     this.voxels.dispose();
-    for (const part of [...this.robots, ...this.images]) part.dispose();
+    for (const part of [...this.robots, ...this.images, ...this.tours]) part.dispose();
     for (const label of this.labels) label.remove();
     this.scene.clear();
     this.scene.add(new AmbientLight(0xffffff, 1.9), makeSun());
@@ -86,6 +94,8 @@ export class ReplayScene {
     this.voxels.update();
     const old = this.follow >= 0 ? this.robots[this.follow].pose.slice() : null;
     for (const robot of this.robots) robot.show(step, along, (this.store.heights[0] + 1 - ORIGIN) * this.run.facts.resolution);
+    // A robot in motion plans at the end of a step.
+    for (const tour of this.tours) tour.show(along < 1 ? step - 1 : step, this.robots[tour.r].pose);
     for (const image of this.images) image.show(step);
     if (old) this.moveBy(this.robots[this.follow].pose, old);
     this.applyLayers();
@@ -119,9 +129,11 @@ export class ReplayScene {
       robot.body.visible = layers.robots;
       robot.view.visible = layers.views;
       robot.trail.visible = layers.travelled && robot.trail.geometry.instanceCount > 0;
+      robot.recent.visible = layers.travelled && robot.recent.geometry.instanceCount > 0;
       robot.plan.visible = layers.planned;
       robot.goal.visible = layers.goals && robot.goal.userData.there;
     }
+    for (const tour of this.tours) tour.group.visible = layers.tours && tour.there;
     for (const image of this.images)
       image.mesh.visible = layers.quality && this.run.images[this.position.step * this.run.robots + image.robot] !== null;
     this.labels.forEach((label) => (label.hidden = !layers.robots));
@@ -138,8 +150,9 @@ export class ReplayScene {
     this.scene.background = new Color(SCENE[theme].background);
     if (!this.run) return;
     this.voxels.setColors(theme, this.byOwner);
-    this.robots.forEach((robot, r) => robot.setColor(robotColor(r, theme), SCENE[theme].ink));
-    this.labels.forEach((label, r) => (label.style.borderColor = robotColor(r, theme)));
+    for (const robot of this.robots) robot.setColor(robotColor(robot.robot, theme), SCENE[theme].ink);
+    for (const tour of this.tours) tour.setColor(robotColor(this.run.facts.robots[tour.r], theme), SCENE[theme].background);
+    this.labels.forEach((label, r) => (label.style.borderColor = robotColor(this.run.facts.robots[r], theme)));
     this.draw();
   }
 
@@ -156,6 +169,12 @@ export class ReplayScene {
 
   layerCount() {
     return this.store.high[2] - this.store.low[2] + 1;
+  }
+
+  /** How much of the travelled paths stands out [s], in steps without a clock. */
+  setTrail(last) {
+    for (const robot of this.robots) robot.last = last;
+    this.show(this.position);
   }
 
   setClosed(closed) {
@@ -252,8 +271,23 @@ export class ReplayScene {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    for (const tour of this.tours ?? []) tour.setScale((2 * SLOPE) / height);
     this.voxels?.setPointScale(height * this.renderer.getPixelRatio(), SLOPE);
     if (this.standing) this.look(this.standing);
+    this.draw();
+  }
+
+  /** Where the camera is and looks: six numbers [m]. */
+  get place() {
+    return [...this.camera.position.toArray(), ...this.controls.target.toArray()];
+  }
+
+  set place(numbers) {
+    this.standing = null;
+    this.follow = -1;
+    this.camera.position.fromArray(numbers);
+    this.controls.target.fromArray(numbers, 3);
+    this.controls.update();
     this.draw();
   }
 
@@ -267,7 +301,52 @@ export class ReplayScene {
     this.waiting = 0;
     ++this.drawn;
     this.renderer.render(this.scene, this.camera);
+    this.drawSensorView();
     this.placeLabels();
+    this.onDraw?.();
+  }
+
+  drawSensorView() {
+    const robot = this.robots[this.sensor];
+    if (!robot) return this.sensorView.hide();
+    const hidden = [this.voxels.frontiers, robot.body, ...this.robots.flatMap(({ view, trail, recent, plan, goal }) => [view, trail, recent, plan, goal]), ...this.tours.map((tour) => tour.group), ...this.images.map((image) => image.mesh)];
+    this.sensorView.draw(this.renderer, this.scene, hidden, robot.robot, robot.pose, this.host.clientWidth, this.host.clientHeight);
+  }
+
+  setSensor(r) {
+    this.sensor = r;
+    this.draw();
+  }
+
+  /** Shows what another scene shows of its run: layers, colours and cut. */
+  mirror(other) {
+    const { cut, closed } = other.voxels.mesher;
+    const asOther = JSON.stringify([other.layers, other.byOwner, other.theme, other.asPlanned, cut, closed, other.robots[0].last]);
+    if (this.mirrored === asOther) return;
+    this.mirrored = asOther;
+    Object.assign(this.layers, other.layers);
+    this.byOwner = other.byOwner;
+    this.voxels.setCut(cut);
+    this.voxels.setClosed(closed);
+    this.asPlanned = other.asPlanned;
+    for (const robot of this.robots) robot.last = other.robots[0].last;
+    this.setTheme(other.theme);
+    this.show(this.position);
+  }
+
+  /** Looks from where another scene does. */
+  lookAs(other) {
+    const close = 1e-4; // [m]
+    if (this.camera.position.distanceTo(other.camera.position) < close && this.controls.target.distanceTo(other.controls.target) < close) return;
+    this.standing = null;
+    this.camera.near = other.camera.near;
+    this.camera.far = other.camera.far;
+    this.controls.maxDistance = other.controls.maxDistance;
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
   }
 
   placeLabels() {

@@ -1,3 +1,5 @@
+import { positionAt } from "./comparison.js";
+
 /**
  * The step that is shown. Sends { step, along } to its listeners: along is the fraction of the paths that the robots have travelled.
  * It plays by the run's clock: `times` holds the time at the end of each step and never falls.
@@ -36,6 +38,13 @@ export class Timeline extends EventTarget {
   seek(step) {
     this.step = Math.min(Math.max(step, 0), Math.max(0, this.steps - 1));
     this.along = 1;
+    this.notify();
+  }
+
+  /** Shows a moment of the clock. */
+  seekTime(time) {
+    this.pause();
+    Object.assign(this, positionAt(this.times, time));
     this.notify();
   }
 

@@ -10,6 +10,7 @@ const ORIGIN = 32768; // key of the voxel whose lower corner lies at 0
 export class VoxelView {
   constructor(store, facts) {
     this.store = store;
+    this.robotFacts = facts.robots;
     this.resolution = facts.resolution;
     this.mesher = new VoxelMesher(store, facts.bounds);
     this.voxels = new Group();
@@ -112,8 +113,9 @@ export class VoxelView {
     scene.heights.forEach((color, i) => setVector(uniforms.heights.value[i], color));
     // Paler than the robots themselves, so that their paths stand out.
     setVector(wall, scene.wall);
+    const robots = this.robotFacts;
     for (let i = 1; i < 16; ++i) {
-      setVector(uniforms.owners.value[i], robotColor(i - 1, theme));
+      setVector(uniforms.owners.value[i], robotColor(robots[(i - 1) % robots.length], theme));
       uniforms.owners.value[i].lerp(wall, 0.5);
     }
     uniforms.shade.value = scene.shade;

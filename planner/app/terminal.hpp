@@ -1,25 +1,28 @@
 #pragma once
 
-#include <iostream>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 
 namespace frontlux::app {
+
+/// A text that a terminal shows in red; as it is if the stream is no terminal, or the environment has
+/// NO_COLOR.
+/// @param stream  STDOUT_FILENO or STDERR_FILENO
+[[nodiscard]] std::string in_red(const std::string& text, int stream);
 
 /// A line on standard error that replaces itself, if there is a terminal to see it; gone in the end.
 class ProgressLine {
  public:
   ProgressLine() = default;
-  ~ProgressLine() {
-    if (visible_) std::cerr << "\r\033[K" << std::flush;
-  }
+  ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   [[nodiscard]] bool visible() const { return visible_; }
-  void show(const std::string& text) const {
-    if (visible_) std::cerr << '\r' << text << "\033[K" << std::flush;
-  }
+  /// What does not fit into the terminal's line is left out.
+  void show(std::string_view text) const;
+  void clear() const;
 
  private:
   bool visible_ = ::isatty(STDERR_FILENO) != 0;

@@ -1,0 +1,34 @@
+#include "terminal.hpp"
+
+#include <sys/ioctl.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <iostream>
+
+namespace frontlux::app {
+namespace {
+
+std::size_t columns() {
+  constexpr std::size_t kUnknown = 80;
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUnknown;
+}
+
+}  // namespace
+
+std::string in_red(const std::string& text, int stream) {
+  const char* const no_color = std::getenv("NO_COLOR");
+  if (::isatty(stream) == 0 || (no_color != nullptr && *no_color != '\0')) return text;
+  return "\033[31m" + text + "\033[0m";
+}
+
+void ProgressLine::show(std::string_view text) const {
+  if (visible_) std::cerr << '\r' << text.substr(0, columns() - 1) << "\033[K" << std::flush;
+}
+
+void ProgressLine::clear() const {
+  if (visible_) std::cerr << "\r\033[K" << std::flush;
+}
+
+}  // namespace frontlux::app

@@ -1,0 +1,17 @@
+/**
+ * The moment and the camera that the address names, "#t=12.5&camera=x,y,z,to x,y,z&run=1": seconds on the run's clock (without
+ * a clock, the step), and where the camera is and looks [m]. What is missing or no number is left as it is.
+ */
+export function readPlace(hash) {
+  const words = new URLSearchParams(hash.replace(/^#/, "")), number = (name) => {
+    const text = words.get(name), value = Number(text);
+    return text !== null && text.trim() !== "" && Number.isFinite(value) ? value : null;
+  };
+  const camera = (words.get("camera") ?? "").split(",").map(Number);
+  return { time: number("t"), run: number("run"), camera: camera.length === 6 && camera.every(Number.isFinite) ? camera : null };
+}
+
+export function placeText({ time, run, camera }) {
+  const short = (value) => String(Number(value.toFixed(3)));
+  return [`#t=${short(time)}`, ...(run > 0 ? [`run=${run}`] : []), ...(camera ? [`camera=${camera.map(short).join(",")}`] : [])].join("&");
+}
