@@ -139,6 +139,17 @@ TEST_F(TaskFile, ThoseThatShipAreOfThePapersRobots) {
   }
 }
 
+// Planned with as the boxes around them.
+TEST_F(TaskFile, TakesRoundBodies) {
+  const auto extents = [&](const std::string& body) {
+    write("t.json", test::replaced(kGood, R"({"kind": "box", "size_m": [0.4, 0.4, 0.3]})", body));
+    return read_task(path("t.json")).robots.at(0).description.robot.travel.extents;
+  };
+  EXPECT_EQ(extents(R"({"kind": "cylinder", "diameter_m": 0.5, "height_m": 0.3})"),
+            Eigen::Vector3d(0.5, 0.5, 0.3));
+  EXPECT_EQ(extents(R"({"kind": "sphere", "diameter_m": 0.6})"), Eigen::Vector3d(0.6, 0.6, 0.6));
+}
+
 TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
   const auto with = [](const std::string& from, const std::string& to) {
     return test::replaced(kGood, from, to);
@@ -187,10 +198,19 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {robots("[" + kUav + ", 3]"), "robots[1] is 3; give an object"},
       {robots(R"([{"file": "none.json"}])"), "robots[0].file: "},
       {robots(R"([{"file": ""}])"), "robots[0].file is ''; give the name of a robot's file"},
-      {robots(R"([{"file": "t.json"}])"), "t.json: 'robots' is nested too deeply"},
+      {robots(R"([{"file": "t.json"}])"), "t.json: name is missing"},
       {with(R"("robots":)", R"("team": "uav", "robots":)"), "team is for a task without robots; leave one"},
-      {with(R"("kind": "box")", R"("kind": "sphere")"),
-       R"(robots[0].body.kind is 'sphere'; give "box", the one that is known)"},
+      {with(R"("kind": "box")", R"("kind": "cone")"),
+       R"(robots[0].body.kind is 'cone'; give "box", "cylinder" or "sphere")"},
+      {with(R"("kind": "box")", R"("kind": "sphere")"), "robots[0].body.diameter_m is missing"},
+      {with(R"("kind": "box", "size_m": [0.4, 0.4, 0.3])", R"("kind": "cylinder", "diameter_m": 0.5)"),
+       "robots[0].body.height_m is missing"},
+      {with(R"("kind": "box", "size_m": [0.4, 0.4, 0.3])",
+            R"("kind": "cylinder", "diameter_m": -0.5, "height_m": 0.3)"),
+       "robots[0].body.diameter_m is -0.5; give a number from 0.01"},
+      {with(R"("kind": "box", "size_m": [0.4, 0.4, 0.3])",
+            R"("kind": "sphere", "diameter_m": 0.5, "height_m": 0.3)"),
+       "height_m"},
       {with(R"("kind": "box", )", ""), "robots[0].body.kind is missing"},
       {with(R"("kind": "box",)", R"("kind": "box", "mass": 1,)"),
        "the member 'robots[0].body.mass' is not known"},

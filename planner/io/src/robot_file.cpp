@@ -8,7 +8,7 @@
 namespace frontlux::io {
 
 planner::RobotDescription read_robot(const std::filesystem::path& file) {
-  const nlohmann::json object = read_json(file, {"a robot", "docs/robots.md", 2});
+  const nlohmann::json object = read_json(file, {"a robot", "docs/robots.md", 3});
   Members members(file, object);
   planner::RobotDescription robot = read_robot_members(members, RobotForm::kFile);
   members.expect_no_more();

@@ -82,13 +82,25 @@ Eigen::Vector3d read_edges(Members& members, const std::string& name) {
   return {edges[0], edges[1], edges[2]};
 }
 
+// The box around it.
 Eigen::Vector3d read_body(Members& members, RobotForm form) {
-  if (form == RobotForm::kFile) return read_edges(members, "box_m");
-  members.not_here({"box_m"}, R"(is for a robot file; in a task the body is {"kind": "box", "size_m": ...})");
+  if (form == RobotForm::kFile && members.find("body") == nullptr) return read_edges(members, "box_m");
+  members.not_here({"box_m"},
+                   form == RobotForm::kFile
+                       ? "is given beside body"
+                       : R"(is for a robot file; in a task the body is {"kind": "box", "size_m": ...})");
   Members body = members.object("body", R"({"kind": "box", "size_m": [x, y, z]})");
-  const std::string kind = body.text("kind", "\"box\"");
-  if (kind != "box") body.refuse("kind", "is " + quote(kind), "give \"box\", the one that is known");
-  const Eigen::Vector3d size = read_edges(body, "size_m");
+  const std::string kinds = R"("box", "cylinder" or "sphere")";
+  const std::string kind = body.text("kind", kinds);
+  Eigen::Vector3d size;
+  if (kind == "box") {
+    size = read_edges(body, "size_m");
+  } else if (kind == "cylinder" || kind == "sphere") {
+    const double diameter = body.number("diameter_m", "m", kLengths);
+    size = {diameter, diameter, kind == "sphere" ? diameter : body.number("height_m", "m", kLengths)};
+  } else {
+    body.refuse("kind", "is " + quote(kind), "give " + kinds);
+  }
   body.expect_no_more();
   return size;
 }

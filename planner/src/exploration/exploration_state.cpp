@@ -161,11 +161,14 @@ void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, Corri
   step.frontiers = frontiers.size();
 }
 
-// What robots need to know of their corridors as long as they have somewhere to go.
+// What a robot needs to know of its corridor as long as it has somewhere to go: all distances where finding
+// them takes a few milliseconds, since they are exact.
 CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
+  constexpr std::uint64_t kFew = 1'000'000;  // cells
   const TravelOptions& travel = options.team[robot].robot.travel;
-  return travel.motion == Motion::kSpace && travel.node_edge == 0.0 ? CorridorExtent::kNearby
-                                                                    : CorridorExtent::kAllCells;
+  const bool all =
+      travel.motion == Motion::kPlane || travel.node_edge > 0.0 || size_of(mapping.bounds()) <= kFew;
+  return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
 }
 
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {

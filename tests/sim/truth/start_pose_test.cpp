@@ -42,6 +42,23 @@ TEST(StartPose, LiftsAStartOnTheFloorIntoTheRoom) {
     }
 }
 
+// Half a voxel above the floor its box of voxels would reach into it.
+TEST(StartPose, LeavesRoomForTheMargin) {
+  planner::Robot small = planner::uav();
+  small.travel.extents = {0.5, 0.5, 0.3};
+  small.travel.min_height = 0.15;
+  for (const double margin : {0.0, 0.05}) {
+    small.travel.margin = margin;
+    const GroundTruth truth(room(), 0.3, {3.15, 3.15, 0.15});
+    const auto starts = find_starts(truth, {3.15, 3.15, 0.15}, {{small}});
+    ASSERT_TRUE(starts[0]);
+    const VoxelKey key = truth.lattice().key(starts[0]->position).value();
+    EXPECT_TRUE(all_of(voxels_of_cell(small.travel, truth.lattice(), key),
+                       [&](const VoxelKey& voxel) { return truth.at(voxel) == Truth::kFree; }));
+    EXPECT_NEAR(starts[0]->position.z(), margin > 0.0 ? 0.45 : 0.15, 1e-9);
+  }
+}
+
 TEST(StartPose, RefusesStartsThatAreNone) {
   World world = room();
   const auto refuses = [&](bool faces_away, const std::string& part) {

@@ -104,9 +104,27 @@ std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const 
   return pose;
 }
 
+// Whether there is room for all that planning keeps free around a robot, its margin too.
+bool has_room(const GroundTruth& truth, const Robot& robot, const Pose& pose) {
+  const KeyBox box =
+      voxels_of_cell(robot.travel, truth.lattice(), truth.lattice().key(pose.position).value());
+  return all_free(truth, box) && no_wall_in(truth, box);
+}
+
+// The nearest pose that is good and has room or, if there is none, that is good.
+template <class Good>
+std::optional<Pose> find_with_room(const GroundTruth& truth, const Eigen::Vector3d& around,
+                                   const Robot& robot, const Good& good) {
+  const auto with_room = find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
+    const std::optional<Pose> pose = good(key);
+    return pose && has_room(truth, robot, *pose) ? pose : std::nullopt;
+  });
+  return with_room ? with_room : find(truth, around, good);
+}
+
 std::optional<Pose> find_on_floor(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
                                   std::span<const KeyBox> taken) {
-  return find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
+  return find_with_room(truth, around, robot, [&](const VoxelKey& key) -> std::optional<Pose> {
     if (!has_floor(truth, key)) return std::nullopt;
     Pose pose{truth.lattice().exact_center(key)};
     pose.position.z() = lower_face(truth.lattice(), key.z) + robot.travel.sensor_height;
@@ -130,9 +148,9 @@ std::optional<Pose> find_in_space(const GroundTruth& truth, const Eigen::Vector3
       if (lower_face(lattice, key.z) < ground + robot.travel.min_height - kRounding) return std::nullopt;
       return good(key);
     });
-    if (in_node) return in_node;
+    return in_node ? in_node : find(truth, around, good);
   }
-  return find(truth, around, good);
+  return find_with_room(truth, around, robot, good);
 }
 
 }  // namespace

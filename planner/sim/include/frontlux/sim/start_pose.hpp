@@ -37,8 +37,8 @@ namespace frontlux::sim {
 [[nodiscard]] Eigen::Vector3d free_start(const World& world, double resolution, bool faces_away);
 
 /// Where robots start: their sensors' poses, yaw 0. Robots on a plane are placed first, then the others, in
-/// their order; each at the free position nearest to a point, at the lower key if several are as near. Their
-/// bodies have no voxel in common. A robot on a plane stands on its ground, the first layer boundary at or
+/// their order; each at the free position nearest to a point, at the lower key if several are as near, with
+/// its margin free too if that is possible. Their bodies have no voxel in common. A robot on a plane stands on its ground, the first layer boundary at or
 /// above the floor. A robot in space keeps its `min_height` above the highest of these grounds; if there are
 /// none, above the floor below `around` or the lower end of the bounds. A robot that moves through nodes
 /// starts in the middle of a node that is completely free, if there is one.
