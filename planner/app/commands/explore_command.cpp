@@ -128,7 +128,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps,\n"
               "in motion for 3 plannings of each robot;\n"
-              "goals of at least this gain come first [10; --goal nearest: 1]",
+              "goals of at least this gain come first [10; --goal nearest: 1;\n"
+              "tours: 0.3 m2 if that is more]",
               kFromZero);
   command.group("Robots");
   Option team = command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");

@@ -190,12 +190,14 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
                  " is now; start a new run");
 }
 
-// Of a run that ended since there was nothing more to do.
+// Of a run that ended since there was nothing more to do, in a world that is not too large for that.
 std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& loop) {
   using planner::ExplorationEnd;
+  constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 28;  // of a world, some gigabytes
   const auto ended_by = [&](ExplorationEnd end) {
     return loop.end() && loop.end()->word == planner::name_of(end);
   };
+  if (setup.head.bounding > kMostVoxels) return std::nullopt;
   if (!ended_by(ExplorationEnd::kLowGain) && !ended_by(ExplorationEnd::kNothingToDo) &&
       !ended_by(ExplorationEnd::kCutOff))
     return std::nullopt;
@@ -271,7 +273,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       loop.mapping().write(run.folder / "map.bt");
       const RunSums& sums = exploring.files().sums();
       const std::optional<sim::Unseen> unseen = unseen_of(setup, loop);
-      const std::vector<std::string> warnings = run_warnings(setup, sums, reason);
+      const std::vector<std::string> warnings = run_warnings(setup, sums, reason, unseen);
       const RunResult result{sums, loop.numbers(), end, warnings, unseen, watch.seconds()};
       const std::string json = write_run_json(run, options, setup, result);
       if (run.report) {

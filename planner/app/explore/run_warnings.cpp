@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kDone = 0.95;  // of the observable space, at an end that its user has not asked for
 
+constexpr double kWorthAHint = 0.01;  // of the observable space
+
 std::string late_planning(double planning, double latency) {
   constexpr double kUnit = 0.05;  // [s] of the latency that is advised
   return "99 % of the plannings took up to " + fixed(planning, 3) + " s, and the clock charges " +
@@ -18,6 +20,11 @@ std::string late_planning(double planning, double latency) {
          " s for each: on this machine robots would get their trajectories later than in this run; explore "
          "with --latency " +
          fixed(std::ceil(planning / kUnit) * kUnit, 2) + " or more";
+}
+
+std::string too_narrow(const sim::Unseen& unseen, const ExploreSetup& setup) {
+  return ": " + percent(unseen.narrow) + " are where only smaller robots see them; with voxels finer than " +
+         rounded(setup.head.resolution) + " m (--resolution) robots fit through narrower doors";
 }
 
 }  // namespace
@@ -30,13 +37,15 @@ bool ends_badly(const RunSums& sums, const RunEnd& end) {
 }
 
 std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
-                                      const std::optional<RunEnd>& end) {
+                                      const std::optional<RunEnd>& end,
+                                      const std::optional<sim::Unseen>& unseen) {
   std::vector<std::string> warnings;
   if (end && end->word == planner::name_of(planner::ExplorationEnd::kCutOff))
     warnings.push_back(end->text);
   else if (end && ends_badly(sums, *end))
     warnings.push_back("the run has ended with " + percent(sums.observable) +
-                       " of the observable space mapped; the robots found no way to see the rest");
+                       " of the observable space mapped; the robots found no way to see the rest" +
+                       (unseen && unseen->narrow >= kWorthAHint ? too_narrow(*unseen, setup) : ""));
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
   if (!setup.lockstep && planning > latency) warnings.push_back(late_planning(planning, latency));
   return warnings;

@@ -15,8 +15,10 @@ namespace frontlux::app {
 
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
 /// far from done, or that plannings took longer than the clock charges robots in motion for them.
-/// @param end  none: its user has stopped it
+/// @param end     none: its user has stopped it
+/// @param unseen  why the rest was not seen, if that is known
 [[nodiscard]] std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
-                                                    const std::optional<RunEnd>& end);
+                                                    const std::optional<RunEnd>& end,
+                                                    const std::optional<sim::Unseen>& unseen);
 
 }  // namespace frontlux::app

@@ -321,11 +321,12 @@ bool TravelCorridor::find_way(const VoxelKey& cell, const std::function<bool(con
   State& state = *state_;
   state.way.clear();
   if (state.state != CorridorState::kReady) return false;
-  if (!state.distances->distance(cell))
+  if (state.distances->distance(cell)) return true;
+  if (state.extent == CorridorExtent::kNearby)
     state.way =
         detail::shortest_path(state.frame, state.options.metric, *state.start, cell,
                               [&](const VoxelKey& key) { return state.passable(key) && through(key); });
-  return state.distances->distance(cell) || !state.way.empty();
+  return !state.way.empty();
 }
 
 void TravelCorridor::block(std::span<const VoxelKey> cells) {

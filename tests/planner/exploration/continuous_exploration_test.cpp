@@ -12,6 +12,7 @@
 namespace frontlux::planner {
 namespace {
 
+using test::GoalChoice;
 using test::small_uav;
 using test::TeamInMotion;
 using test::TeamInWorld;
@@ -62,10 +63,15 @@ double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
   return sim::measure(team.truth, grid).of_observable();
 }
 
-// With one goal after the other, and with tours.
-class ContinuousExplorationBy : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Each, ContinuousExplorationBy, testing::Bool(),
-                         [](const auto& now) { return now.param ? "Tours" : "Goals"; });
+class ContinuousExplorationBy : public testing::TestWithParam<GoalChoice> {};
+std::string name_of_choice(const testing::TestParamInfo<GoalChoice>& now) {
+  if (now.param == GoalChoice::kGoals) return "Goals";
+  return now.param == GoalChoice::kTours ? "Tours" : "ToursInALargeMap";
+}
+INSTANTIATE_TEST_SUITE_P(Each, ContinuousExplorationBy,
+                         testing::Values(GoalChoice::kGoals, GoalChoice::kTours,
+                                         GoalChoice::kToursInALargeMap),
+                         name_of_choice);
 
 TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits) {
   TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GetParam());
@@ -172,8 +178,9 @@ TEST_P(ContinuousExplorationBy, IsTheSameOnOneAndTwoThreads) {
   EXPECT_TRUE(one == told(2));
 }
 
-void expect_apart(std::size_t count, double seconds, bool tours) {
-  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()), sim::AtContact::kGoOn, tours);
+void expect_apart(std::size_t count, double seconds, GoalChoice choice) {
+  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()), sim::AtContact::kGoOn,
+                     choice);
   const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
   double least = std::numeric_limits<double>::infinity();
   const auto look = [&](double from, double to) {

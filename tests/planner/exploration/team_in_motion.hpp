@@ -18,6 +18,10 @@ inline planner::RobotDescription small_uav() {
   return robot;
 }
 
+/// How goals are chosen: one after the other; by tours; by tours, in a map that may grow so large that robots
+/// know distances near by only.
+enum class GoalChoice { kGoals, kTours, kToursInALargeMap };
+
 /// A team that explores a built-in world in motion.
 class TeamInMotion {
  public:
@@ -27,10 +31,10 @@ class TeamInMotion {
   using Moves = std::function<void(double from, double to)>;
 
   TeamInMotion(std::string_view world, std::vector<planner::RobotDescription> robots,
-               sim::AtContact at_contact = sim::AtContact::kGoOn, bool tours = false)
+               sim::AtContact at_contact = sim::AtContact::kGoOn, GoalChoice choice = GoalChoice::kGoals)
       : team_(world, 1, std::move(robots)),
         robots_(team_.world, team_.truth, team_.robots, poses_of(team_), {}, 1, at_contact),
-        exploration_(options(team_, tours), team_.empty_map()) {
+        exploration_(options(team_, choice), empty_map(team_, choice)) {
     steps.push_back(exploration_.begin(team_.starts, 0.0));
   }
 
@@ -55,9 +59,10 @@ class TeamInMotion {
     }
   }
 
-  static planner::ExplorationOptions options(const TeamInWorld& team, bool tours = false) {
+  static planner::ExplorationOptions options(const TeamInWorld& team,
+                                             GoalChoice choice = GoalChoice::kGoals) {
     planner::ExplorationOptions options = team.options();
-    options.tours = tours;
+    options.tours = choice != GoalChoice::kGoals;
     for (planner::TeamMember& member : options.team) member.options.advance = 2.0;
     return options;
   }
@@ -71,6 +76,11 @@ class TeamInMotion {
   std::vector<ExplorationStep> steps;
 
  private:
+  static planner::Mapping empty_map(const TeamInWorld& team, GoalChoice choice) {
+    KeyBox bounds = team.truth.bounds();
+    if (choice == GoalChoice::kToursInALargeMap) bounds = grown(bounds, 45);
+    return planner::Mapping({.resolution = 0.3, .bounds = bounds});
+  }
   static std::vector<Pose> poses_of(const TeamInWorld& team) {
     std::vector<Pose> poses;
     for (const auto& start : team.starts) poses.push_back(start.pose);

@@ -143,12 +143,13 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// @return whether there is one
   bool find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
 
-  /// Makes these cells impassable from the next update on, whatever the map says: there is something that no
-  /// sensor has seen.
+  /// Makes these cells impassable from the next update on at the latest, whatever the map says: there is
+  /// something that no sensor has seen.
   void block(std::span<const VoxelKey> cells);
 
-  /// Makes the cells in these boxes impassable from the next update on, in the place of those of the call
-  /// before: other robots are there, or on their way. A box that holds the robot's own cell is ignored.
+  /// Makes the cells in these boxes impassable from the next update on at the latest, in the place of those
+  /// of the call before: other robots are there, or on their way. A box that holds the robot's own cell is
+  /// ignored.
   void keep_out_of(std::vector<KeyBox> boxes);
 
   /// If it is not `kReady`, there are no cells.
