@@ -165,78 +165,6 @@ ViewpointQuery TourPlanning::sight_of(const Query& query) const {
   return {query.caster, lattice_, member.graph, member.robot.view, member.region, options_.least_gain};
 }
 
-// What the robot sees of each cluster, from where.
-void TourPlanning::look(const Query& query, std::span<const KeyBox> changes) {
-  Member& member = members_[query.robot];
-  const ViewpointQuery view = sight_of(query);
-  std::map<std::uint32_t, Sight> sights;
-  std::vector<std::pair<const FrontierCluster*, Sight*>> search;
-  const auto near = [&](const FrontierCluster& cluster) {
-    const KeyBox around = grown(cluster.box, member.region.reach());
-    return std::ranges::any_of(changes,
-                               [&](const KeyBox& box) { return intersection(box, around).has_value(); });
-  };
-  const auto clusters = clusters_.clusters();
-  std::vector<bool> searched(clusters.size());
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    Sight& sight = sights[clusters[c].id];
-    if (const auto before = member.sights.find(clusters[c].id); before != member.sights.end())
-      sight = std::move(before->second);
-    searched[c] = sight.revision != clusters[c].revision || near(clusters[c]);
-    if (searched[c]) search.emplace_back(&clusters[c], &sight);
-  }
-  for_each_index(search.size(), [&](std::size_t i) {
-    const auto& [cluster, sight] = search[i];
-    sight->revision = cluster->revision;
-    sight->found = find_viewpoints(view, *cluster, sight->found);
-  });
-  member.sights = std::move(sights);
-  // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
-  std::vector<const FrontierCluster*> hidden;
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    Sight& sight = member.sights[clusters[c].id];
-    const bool had_some = !sight.viewpoints.empty();
-    sight.viewpoints.clear();
-    std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
-                         [&](const ClusterViewpoint& viewpoint) { return reaches(query, viewpoint.cell); });
-    if (!sight.viewpoints.empty()) {
-      sight.stale = false;
-      sight.in_vain = sight.pause = 0;
-      continue;
-    }
-    sight.stale = sight.stale || had_some || searched[c];
-    sight.pause = std::max(0, sight.pause - 1);
-    if (sight.stale) hidden.push_back(&clusters[c]);
-  }
-  if (query.corridor.state() != CorridorState::kReady) return;
-  std::vector<const FrontierCluster*> now;
-  std::ranges::copy_if(hidden, std::back_inserter(now),
-                       [&](const FrontierCluster* cluster) { return member.sights[cluster->id].pause == 0; });
-  look_from_anywhere(query, view, now);
-  // Before the robot has nothing to do it looks for all of them.
-  const auto is_seen = [](const auto& sight) { return !sight.second.viewpoints.empty(); };
-  if (std::ranges::none_of(member.sights, is_seen)) look_from_anywhere(query, view, hidden);
-}
-
-// Clusters that are seen from none of the usual places: from cells all over the corridor.
-void TourPlanning::look_from_anywhere(const Query& query, const ViewpointQuery& view,
-                                      std::span<const FrontierCluster* const> hidden) {
-  if (hidden.empty()) return;
-  Member& member = members_[query.robot];
-  std::vector<Sight*> sights;
-  for (const FrontierCluster* cluster : hidden) sights.push_back(&member.sights[cluster->id]);
-  for_each_index(hidden.size(), [&](std::size_t i) {
-    Keys cells = member.graph.spread_cells(grown(hidden[i]->box, member.region.reach()));
-    std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(query, cell); });
-    Sight& sight = *sights[i];
-    sight.viewpoints = best_viewpoints(view, *hidden[i], cells, options_.spread_sample);
-    sight.found.insert(sight.found.end(), sight.viewpoints.begin(), sight.viewpoints.end());
-    sight.stale = false;
-    sight.in_vain = sight.viewpoints.empty() ? std::min(sight.in_vain + 1, 30) : 0;
-    sight.pause = sight.in_vain == 0 ? 0 : std::min(1 << sight.in_vain, options_.longest_pause);
-  });
-}
-
 // Of a robot in motion, to a viewpoint at a distance [m] by its way.
 double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
                                 const ClusterViewpoint& viewpoint, double distance) const {
@@ -277,9 +205,8 @@ double TourPlanning::distance_between(const Member& member, const VoxelKey& a, c
 }
 
 const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::uint32_t cluster) const {
-  const auto sight = member.sights.find(clusters_.clusters()[cluster].id);
-  if (sight == member.sights.end() || sight->second.viewpoints.empty()) return nullptr;
-  return &sight->second.viewpoints.front();
+  const auto viewpoints = member.sights.viewpoints(clusters_.clusters()[cluster].id);
+  return viewpoints.empty() ? nullptr : &viewpoints.front();
 }
 
 // Clusters near a robot one by one; of the others those together that lie in one zone and that the same
@@ -391,7 +318,7 @@ void TourPlanning::join_next_stops(const Query& query) {
   for (std::size_t c = 0; c < count; ++c) {
     clusters.push_back(&cluster(member.tour[c].clusters.front()));
     views.sizes.push_back(static_cast<double>(clusters.back()->keys.size()));
-    for (const ClusterViewpoint& viewpoint : member.sights[clusters.back()->id].viewpoints)
+    for (const ClusterViewpoint& viewpoint : member.sights.viewpoints(clusters.back()->id))
       if (const double distance = own_distance_to(query, viewpoint.cell); distance != TourProblem::kNever) {
         viewpoints.push_back(viewpoint);
         distances.push_back(distance);
@@ -458,7 +385,12 @@ void TourPlanning::update(const Query& query) {
   update_graph(query, changes);
   for (std::size_t r = 0; r < members_.size(); ++r) find_here(r, query.starts[r]);
   clusters_.update(query.frontiers);
-  look(query, changes);
+  const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
+    return reaches(query, cell);
+  };
+  const ViewpointQuery view = sight_of(query);
+  members_[query.robot].sights.update(
+      {view, clusters_.clusters(), changes, can_go, query.corridor.state() == CorridorState::kReady});
   const auto clusters = clusters_.clusters();
   const std::vector<Stop> places = stops(query.starts);
   TourProblem all = problem(query, places);

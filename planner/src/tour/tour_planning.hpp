@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tour/cluster_sights.hpp"
 #include "tour/cluster_viewpoints.hpp"
 #include "tour/frontier_clusters.hpp"
 #include "tour/tour_search.hpp"
@@ -32,15 +33,13 @@ class TourPlanning {
  public:
   struct Options {
     // Of the greatest range of a robot's sensor: edges of the cubes in which
-    double cluster_edge = 0.4;       ///< frontiers make a cluster,
-    double zone_edge = 0.8;          ///< clusters that are far from all robots make one stop,
-    double graph_edge = 0.2;         ///< a robot's cells make a node
-    double spacing = 0.05;           ///< cells are tried for clusters that the usual places do not show,
-    double near = 2.0;               ///< of a robot's range: clusters up to here are stops of their own
-    double least_area = 1.5;         ///< [m2] of a cluster worth a stop
-    double least_gain = 10.0;        ///< [frontiers] that a stop shows
-    std::size_t spread_sample = 16;  ///< with so many of the cluster's frontiers
-    int longest_pause = 8;    ///< [plannings] between such trials, which double from one in vain to the next
+    double cluster_edge = 0.4;  ///< frontiers make a cluster,
+    double zone_edge = 0.8;     ///< clusters that are far from all robots make one stop,
+    double graph_edge = 0.2;    ///< a robot's cells make a node
+    double spacing = 0.05;      ///< cells are tried for clusters that the usual places do not show,
+    double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
+    double least_area = 1.5;    ///< [m2] of a cluster worth a stop
+    double least_gain = 10.0;   ///< [frontiers] that a stop shows
     std::size_t joined = 40;  ///< clusters that come next, which are looked at from as few places as see them
     std::size_t refined = 5;  ///< stops whose viewpoints are chosen together
   };
@@ -80,15 +79,6 @@ class TourPlanning {
   [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
 
  private:
-  // A cluster as a robot sees it.
-  struct Sight {
-    std::uint64_t revision = 0;
-    std::vector<ClusterViewpoint> found;       // wherever it fits
-    std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
-    bool stale = false;                        // since it was looked for from anywhere
-    int in_vain = 0;                           // that often, in a row
-    int pause = 0;                             // plannings until the next time
-  };
   struct Member {
     Robot robot;
     ViewRegion region;
@@ -97,7 +87,7 @@ class TourPlanning {
     std::vector<VoxelKey> changed = {};                           // since its graph was updated
     std::map<std::uint32_t, std::vector<double>> distances = {};  // [m] by node, in this graph
     std::optional<VoxelKey> here = {};                            // where it fits when its trajectory begins
-    std::map<std::uint32_t, Sight> sights = {};
+    ClusterSights sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
   };
@@ -109,9 +99,6 @@ class TourPlanning {
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   void update_graph(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] ViewpointQuery sight_of(const Query& query) const;
-  void look(const Query& query, std::span<const KeyBox> changes);
-  void look_from_anywhere(const Query& query, const ViewpointQuery& view,
-                          std::span<const FrontierCluster* const> hidden);
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;
   [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "tour/cluster_viewpoints.hpp"
+#include "tour/frontier_clusters.hpp"
+
+#include <frontlux/key_box.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// From where one robot sees each cluster of frontiers, kept up with the map.
+class ClusterSights {
+ public:
+  struct Query {
+    const ViewpointQuery& view;
+    std::span<const FrontierCluster> clusters;  ///< all that there are now
+    std::span<const KeyBox> changes;            ///< boxes that hold all voxels changed since the last update
+    const std::function<bool(const VoxelKey&)>& reaches;  ///< whether the robot can get to a cell
+    bool can_move = true;                                 ///< whether it can get anywhere
+  };
+  /// Looks for the viewpoints of clusters that have changed, or near which something has. Where none of the
+  /// usual places sees a cluster, cells all over the graph are tried, after each trial in vain with a pause
+  /// twice as long; all of them once more before the robot sees no cluster at all.
+  void update(const Query& query);
+
+  /// Those of a cluster that the robot can get to, the best first.
+  [[nodiscard]] std::span<const ClusterViewpoint> viewpoints(std::uint32_t cluster) const;
+
+ private:
+  struct Sight {
+    std::uint64_t revision = 0;
+    std::vector<ClusterViewpoint> found;       // wherever it fits
+    std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
+    bool stale = false;                        // since it was looked for all over the graph
+    int in_vain = 0;                           // that often, in a row
+    int pause = 0;                             // plannings until the next time
+  };
+  using Hidden = std::pair<const FrontierCluster*, Sight*>;
+
+  [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
+  static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
+
+  std::map<std::uint32_t, Sight> sights_;  // by cluster
+};
+
+}  // namespace frontlux::planner::detail
