@@ -1,0 +1,109 @@
+// A room with a tunnel that is too narrow for the robot, and clusters of frontiers in and beyond it.
+#include "tour/cluster_sights.hpp"
+
+#include "support/test.hpp"
+#include "support/voxel_keys.hpp"
+
+namespace frontlux::planner::detail {
+namespace {
+
+constexpr double kResolution = 0.2;
+constexpr KeyBox kBounds{{32768, 32768, 32768}, {32808, 32787, 32777}};
+
+VoxelKey at(int x, int y, int z) { return make_key(32768 + x, 32768 + y, 32768 + z); }
+
+TravelOptions flying_cube() {
+  TravelOptions options;
+  options.extents = {0.6, 0.6, 0.6};
+  options.min_height = -100.0;
+  return options;
+}
+
+FrontierCluster cluster_of(std::uint32_t id, const VoxelKey& key) {
+  FrontierCluster cluster;
+  cluster.id = id;
+  cluster.revision = 1;
+  cluster.keys = {key};
+  cluster.box = {key, key};
+  return cluster;
+}
+
+struct Scene {
+  VoxelGrid grid{kResolution};
+  TravelCorridor corridor{flying_cube(), Lattice(kResolution), kBounds};
+  TravelGraph graph{Lattice(kResolution), kBounds, 5, 2};
+  FieldOfView view{FieldOfView::Shape::kPyramid, 1.57, 1.2, 6.0};
+  ViewRegion region{view, kResolution};
+  std::unique_ptr<RayCaster> caster;
+  ClusterSights sights;
+  int asked = 0;  // whether the robot gets to a cell
+
+  Scene() {
+    test::fill(grid, {at(0, 0, 0), at(14, 14, 6)}, Occupancy::kFree);
+    test::fill(grid, {at(15, 7, 2), at(34, 7, 2)}, Occupancy::kFree);
+    corridor.update({grid}, at(7, 7, 3));
+    graph.update(corridor, {{kBounds}});
+    caster = make_grid_ray_caster(grid);
+  }
+
+  void look(const std::vector<FrontierCluster>& clusters, std::span<const KeyBox> changes) {
+    const ViewpointQuery query{*caster, grid.lattice(), graph, view, region};
+    const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
+      ++asked;
+      return corridor.contains(cell);
+    };
+    sights.update({query, clusters, changes, reaches});
+  }
+};
+
+TEST(ClusterSights, FindsClustersThatNoUsualPlaceShows) {
+  Scene scene;
+  const FrontierCluster end = cluster_of(3, at(35, 7, 2));  // of the tunnel, farther than half the range
+  scene.look({end}, {{kBounds}});
+  ASSERT_FALSE(scene.sights.viewpoints(3).empty());
+  for (const ClusterViewpoint& viewpoint : scene.sights.viewpoints(3)) {
+    EXPECT_EQ(viewpoint.seen, 1U);
+    EXPECT_TRUE(scene.corridor.contains(viewpoint.cell));
+    EXPECT_EQ(viewpoint.cell.y, at(0, 7, 0).y) << "in line with the tunnel";
+    EXPECT_NEAR(viewpoint.yaw, 0.0, 0.1);
+  }
+  EXPECT_TRUE(scene.sights.viewpoints(4).empty());
+  // It keeps them as long as they show it.
+  const auto before = scene.sights.viewpoints(3).front().cell;
+  scene.look({end}, {{kBounds}});
+  EXPECT_EQ(scene.sights.viewpoints(3).front().cell, before);
+  scene.look({}, {});
+  EXPECT_TRUE(scene.sights.viewpoints(3).empty());
+}
+
+// With something else to look at, it tries again and again, with pauses of 2, 4, 8, 8, ... plannings.
+TEST(ClusterSights, TriesHiddenClustersEverLessOften) {
+  Scene scene;
+  const FrontierCluster seen = cluster_of(1, at(15, 3, 3)), hidden = cluster_of(2, at(30, 18, 8));
+  std::vector<int> tries;
+  for (int planning = 1; planning <= 32; ++planning) {
+    scene.asked = 0;
+    scene.look({seen, hidden}, {{kBounds}});
+    ASSERT_FALSE(scene.sights.viewpoints(1).empty());
+    EXPECT_TRUE(scene.sights.viewpoints(2).empty());
+    if (scene.asked > 20) tries.push_back(planning);
+  }
+  EXPECT_EQ(tries, (std::vector{1, 3, 7, 15, 23, 31}));
+}
+
+TEST(ClusterSights, TriesAllBeforeItSeesNone) {
+  Scene scene;
+  const FrontierCluster hidden = cluster_of(2, at(30, 18, 8));
+  for (int planning = 1; planning <= 5; ++planning) {
+    scene.asked = 0;
+    scene.look({hidden}, {{kBounds}});
+    EXPECT_GT(scene.asked, 20);
+  }
+  // Nothing has changed.
+  scene.asked = 0;
+  scene.look({hidden}, {});
+  EXPECT_EQ(scene.asked, 0);
+}
+
+}  // namespace
+}  // namespace frontlux::planner::detail
