@@ -214,7 +214,7 @@ TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
   begin_to_fly(scene);
   // It met something that no sensor sees, where it was going.
   const double time = scene.time() + 0.05;
-  const Lattice& lattice = scene.grid().lattice();
+  const Lattice lattice = scene.grid().lattice();
   const Pose rests = exploration.at(0, time).pose;
   const Eigen::Vector3d next = exploration.at(0, time + 0.5).pose.position;
   const VoxelKey cell = lattice.key(next).value();
@@ -246,7 +246,7 @@ TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
   ContinuousExploration& exploration = scene.exploration();
   begin_to_fly(scene);
   const double time = scene.time() + 0.05;
-  const Lattice& lattice = scene.grid().lattice();
+  const Lattice lattice = scene.grid().lattice();
   const Pose rests = exploration.at(0, time).pose;
   const VoxelKey cell = lattice.key(rests.position).value();
   exploration.stopped(0, rests, time, {});
