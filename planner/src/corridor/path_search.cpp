@@ -76,7 +76,7 @@ class Search {
       if (entry.place == goal_) return true;
       const std::size_t cell = number(entry.place);
       if (labels_[cell] != entry.label) continue;
-      test_around(entry.place);
+      test_around(cell, entry.place);
       for_each_move(cell, [&](const CellMove& move, Label& label) {
         if (entry.label + move.length < label) reach(moved(entry.place, move), entry.label + move.length);
         return true;
@@ -117,9 +117,9 @@ class Search {
     queue_.push({label + at_least(place, goal_, metric_), label, place});
   }
 
-  void test_around(const Place& place) {
+  void test_around(std::size_t cell, const Place& place) {
     for (const CellMove& move : moves_) {
-      Label& label = labels_[number(place) + static_cast<std::size_t>(move.offset)];
+      Label& label = labels_[cell + static_cast<std::size_t>(move.offset)];
       if (label != kUntested) continue;
       const Place next = moved(place, move);
       label = is_inside(next) && open_(key(next)) ? kUnreached : kClosed;

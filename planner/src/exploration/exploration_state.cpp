@@ -175,15 +175,19 @@ void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   keep_goal(robot, step, extent_of_tours(robot));
   const PhaseClock clock(step, Phase::kPaths);
   const VoxelKey& cell = step.robots[robot].goal.cell;
-  if (selection->find_way(robot, cell, tours->first_way(robot))) return;
+  if (selection->find_way(robot, cell, tours->around_way_to(robot, cell))) return;
   selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
 }
 
 void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
                                   ExplorationStep& step) {
   const CountingRayCaster counting(*caster, lattice());
-  wanted = abandoned.without_abandoned(frontiers.keys());
-  step.abandoned = frontiers.size() - wanted.size();
+  {
+    const PhaseClock clock(step, Phase::kGoals);
+    wanted = abandoned.without_abandoned(frontiers.keys());
+    step.abandoned = frontiers.size() - wanted.size();
+    tours->note(changed);
+  }
   const auto update = [&](CorridorExtent extent) {
     keep_goal(robot, step, extent);
     const PhaseClock clock(step, Phase::kGoals);
@@ -192,9 +196,10 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   const auto has_way = [&] {
     const PhaseClock clock(step, Phase::kPaths);
     const auto tour = tours->tour(robot);
-    return tour.empty() || selection->find_way(robot, tour.front().cell, tours->first_way(robot));
+    if (tour.empty()) return true;
+    const VoxelKey& cell = tour.front().cell;
+    return selection->find_way(robot, cell, tours->around_way_to(robot, cell));
   };
-  tours->note(changed);
   update(extent_of_tours(robot));
   if (extent_of_tours(robot) == CorridorExtent::kNearby && !has_way()) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();

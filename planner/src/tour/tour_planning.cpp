@@ -88,12 +88,12 @@ double TourPlanning::first_distance(std::size_t robot) const {
   return distance == TourProblem::kNever ? 0.0 : distance;
 }
 
-std::function<bool(const VoxelKey&)> TourPlanning::first_way(std::size_t robot) const {
+std::function<bool(const VoxelKey&)> TourPlanning::around_way_to(std::size_t robot,
+                                                                 const VoxelKey& to) const {
+  if (!gets_to(robot, to)) return [](const VoxelKey&) { return false; };
   const Member& member = members_[robot];
-  const auto to = member.tour.empty() ? std::nullopt : member.graph.node(member.tour.front().cell);
-  if (!to || !member.here) return [](const VoxelKey&) { return false; };
-  return [&member, nodes = member.graph.around_way(member.distances.at(*member.graph.node(*member.here)),
-                                                   *to)](const VoxelKey& cell) {
+  const std::vector<double>& lengths = member.distances.at(*member.graph.node(*member.here));
+  return [&member, nodes = member.graph.around_way(lengths, *member.graph.node(to))](const VoxelKey& cell) {
     const auto node = member.graph.node(cell);
     return node && std::ranges::binary_search(nodes, *node);
   };

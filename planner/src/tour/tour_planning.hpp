@@ -73,8 +73,9 @@ class TourPlanning {
   [[nodiscard]] bool gets_to(std::size_t robot, const VoxelKey& cell) const;
   /// [m] from where the robot will be to the first stop of its tour, about; 0 if there is none.
   [[nodiscard]] double first_distance(std::size_t robot) const;
-  /// Whether the robot's way to the first stop of its tour may lead through a cell.
-  [[nodiscard]] std::function<bool(const VoxelKey&)> first_way(std::size_t robot) const;
+  /// Whether a cell is near a short way of the robot to some cell; for none if there is no way.
+  [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(std::size_t robot,
+                                                                   const VoxelKey& cell) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
 

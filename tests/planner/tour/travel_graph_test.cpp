@@ -39,6 +39,11 @@ VoxelGrid random_rooms(Random& random) {
   return grid;
 }
 
+VoxelKey free_key(Random& random, const VoxelGrid& grid) {
+  for (;;)
+    if (const VoxelKey key = random.key_in(kBounds); grid.at(key) == Occupancy::kFree) return key;
+}
+
 void expect_same(const TravelGraph& a, const TravelGraph& b) {
   ASSERT_EQ(a.size(), b.size());
   for_each_key(kBounds, [&](const VoxelKey& key) { EXPECT_EQ(a.node(key), b.node(key)); });
@@ -53,8 +58,7 @@ TEST(TravelGraph, ConnectsWhatTheCorridorConnects) {
   for (int round = 0; round < 30; ++round) {
     const VoxelGrid grid = random_rooms(random);
     TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
-    VoxelKey robot = random.key_in(kBounds);
-    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    const VoxelKey robot = free_key(random, grid);
     corridor.update({grid}, robot);
     TravelGraph graph(grid.lattice(), kBounds, 1 + random.below(9), 3);
     graph.update(corridor, {{kBounds}});
@@ -75,8 +79,7 @@ TEST(TravelGraph, KnowsAboutHowFarItIs) {
   for (int round = 0; round < 20; ++round) {
     const VoxelGrid grid = random_rooms(random);
     TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
-    VoxelKey robot = random.key_in(kBounds);
-    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    const VoxelKey robot = free_key(random, grid);
     corridor.update({grid}, robot);
     constexpr int kEdge = 4;
     TravelGraph graph(grid.lattice(), kBounds, kEdge, 2);
@@ -157,8 +160,7 @@ TEST(TravelGraph, FindsTheCellsAroundAWay) {
   for (int round = 0; round < 30; ++round) {
     const VoxelGrid grid = random_rooms(random);
     TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
-    VoxelKey robot = random.key_in(kBounds);
-    while (grid.at(robot) != Occupancy::kFree) robot = random.key_in(kBounds);
+    const VoxelKey robot = free_key(random, grid);
     corridor.update({grid}, robot);
     TravelGraph graph(grid.lattice(), kBounds, 4, 2);
     graph.update(corridor, {{kBounds}});
