@@ -41,6 +41,21 @@ double seconds(const Robot& robot, double distance, double turn) {
   return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
 }
 
+// Ways between places that are not known [m] are as short as those by one other place, or by where the robot
+// is.
+void complete(NumberTable& ways, std::span<const double> from_robot) {
+  const NumberTable known = ways;
+  const std::size_t count = from_robot.size();
+  for_each_index(count, [&](std::size_t i) {
+    const auto shorten = [&](double to_middle, const auto& from_middle) {
+      for (std::size_t j = 0; j < count && to_middle != TourProblem::kNever; ++j)
+        if (known(i, j) == TourProblem::kNever) ways(i, j) = std::min(ways(i, j), to_middle + from_middle(j));
+    };
+    shorten(from_robot[i], [&](std::size_t j) { return from_robot[j]; });
+    for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), [&](std::size_t j) { return known(k, j); });
+  });
+}
+
 double turn_between(double a, double b) { return std::abs(std::remainder(b - a, 2 * std::numbers::pi)); }
 
 }  // namespace
@@ -92,8 +107,8 @@ std::function<bool(const VoxelKey&)> TourPlanning::around_way_to(std::size_t rob
                                                                  const VoxelKey& to) const {
   if (!gets_to(robot, to)) return [](const VoxelKey&) { return false; };
   const Member& member = members_[robot];
-  const std::vector<double>& lengths = member.distances.at(*member.graph.node(*member.here));
-  return [&member, nodes = member.graph.around_way(lengths, *member.graph.node(to))](const VoxelKey& cell) {
+  return [&member,
+          nodes = member.graph.around_way(member.from_here, *member.graph.node(to))](const VoxelKey& cell) {
     const auto node = member.graph.node(cell);
     return node && std::ranges::binary_search(nodes, *node);
   };
@@ -123,7 +138,7 @@ void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> chan
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
   }
   member.graph.update(query.corridor, cells);
-  member.distances.clear();
+  member.near.clear();
 }
 
 // Finds the ways from where a robot is.
@@ -131,7 +146,7 @@ void TourPlanning::find_here(std::size_t robot, const MotionState& start) {
   Member& member = members_[robot];
   member.here = lattice_.key(start.pose.position);
   if (member.here && !member.graph.node(*member.here)) member.here.reset();
-  if (member.here) measure_from(member, {*member.here});
+  if (member.here) member.from_here = member.graph.distances(*member.graph.node(*member.here));
 }
 
 // [m] from where it is; `kNever` if there is no way.
@@ -156,8 +171,7 @@ bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
 bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
   const Member& member = members_[robot];
   const auto node = member.graph.node(cell);
-  return node && member.here &&
-         member.distances.at(*member.graph.node(*member.here))[*node] != TravelGraph::kFar;
+  return node && member.here && member.from_here[*node] != TravelGraph::kFar;
 }
 
 ViewpointQuery TourPlanning::sight_of(const Query& query) const {
@@ -176,26 +190,37 @@ double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
   return time + kReluctance * lost / robot.limits.acceleration;
 }
 
-// Finds the distances from the nodes of some cells to all others.
-void TourPlanning::measure_from(Member& member, std::vector<VoxelKey> cells) {
+// Finds the distances from the nodes of some cells to those near them.
+void TourPlanning::measure_from(Member& member, std::vector<VoxelKey> cells) const {
   std::vector<std::uint32_t> nodes;
   for (const VoxelKey& cell : cells)
-    if (const auto node = member.graph.node(cell); node && !member.distances.contains(*node))
+    if (const auto node = member.graph.node(cell); node && !member.near.contains(*node))
       nodes.push_back(*node);
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::vector<double>> distances(nodes.size());
-  for_each_index(nodes.size(), [&](std::size_t i) { distances[i] = member.graph.distances(nodes[i]); });
-  for (std::size_t i = 0; i < nodes.size(); ++i) member.distances[nodes[i]] = std::move(distances[i]);
+  std::vector<std::vector<TravelGraph::Distance>> near(nodes.size());
+  for_each_index(nodes.size(),
+                 [&](std::size_t i) { near[i] = member.graph.near_distances(nodes[i], options_.measured); });
+  for (std::size_t i = 0; i < nodes.size(); ++i) member.near[nodes[i]] = std::move(near[i]);
 }
 
-// [m] between two cells, the first of which has been measured from; `kNever` if there is no way.
-double TourPlanning::distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
-  const double straight = (lattice_.exact_center(b) - lattice_.exact_center(a)).norm();
+// [m] between the nodes of two cells, the first of which has been measured from; `kNever` if they are far
+// from each other, or there is no way.
+double TourPlanning::way_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
   const auto from = member.graph.node(a), to = member.graph.node(b);
   if (!from || !to) return TourProblem::kNever;
-  const double way = member.distances.at(*from)[*to];
-  if (way == TravelGraph::kFar) return TourProblem::kNever;
+  if (a == member.here) return member.from_here[*to];
+  const auto& near = member.near.at(*from);
+  const auto found = std::ranges::lower_bound(near, *to, {}, &TravelGraph::Distance::to);
+  return found != near.end() && found->to == *to ? found->length : TourProblem::kNever;
+}
+
+// [m] between two cells, the first of which has been measured from; `kNever` if they are far from each other,
+// or there is no way.
+double TourPlanning::distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
+  const double straight = (lattice_.exact_center(b) - lattice_.exact_center(a)).norm();
+  const double way = way_between(member, a, b);
+  if (way == TourProblem::kNever) return way;
   if (straight >= way) return straight;
   constexpr double kClear = 8.0;  // [m]
   const bool clear = straight < kClear &&
@@ -210,28 +235,42 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 }
 
 // Clusters near a robot one by one; of the others those together that lie in one zone and that the same
-// robots can see.
+// robots can see. Beyond a distance zones are as much wider as they are farther away, so that there are not
+// many.
 std::vector<TourPlanning::Stop> TourPlanning::stops(std::span<const MotionState> starts) const {
+  constexpr double kOneEdge = 4.0;  // of what is near: up to here zones are of one size
+  struct Zone {
+    int edge;  // [voxels]
+    VoxelKey at;
+    std::vector<bool> seen_by;
+    auto operator<=>(const Zone&) const = default;
+  };
   std::vector<Stop> stops;
-  std::map<std::pair<VoxelKey, std::vector<bool>>, Stop> zones;
+  std::map<Zone, Stop> zones;
   const auto clusters = clusters_.clusters();
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     const KeyBox& box = clusters[i].box;
     const VoxelKey middle =
         make_key((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
     std::vector<bool> seen_by;
-    bool near = false;
+    double nearest = TourProblem::kNever;  // of what is near
     for (std::size_t r = 0; r < members_.size(); ++r) {
       seen_by.push_back(best_viewpoint(members_[r], i) != nullptr);
       const double distance = (lattice_.exact_center(middle) - starts[r].pose.position).norm();
-      near = near || (seen_by[r] && distance <= options_.near * members_[r].robot.view.max_range);
+      if (seen_by[r])
+        nearest = std::min(nearest, distance / (options_.near * members_[r].robot.view.max_range));
     }
-    if (std::ranges::find(seen_by, true) == seen_by.end()) continue;
-    if (near)
+    if (nearest == TourProblem::kNever) continue;
+    if (nearest <= 1.0) {
       stops.push_back({i});
-    else
-      zones[{make_key(middle.x / zone_edge_, middle.y / zone_edge_, middle.z / zone_edge_), seen_by}]
-          .push_back(i);
+      continue;
+    }
+    int edge = zone_edge_;
+    while (nearest > kOneEdge) {
+      edge *= 2;
+      nearest /= 2.0;
+    }
+    zones[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), seen_by}].push_back(i);
   }
   for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
   return stops;
@@ -267,7 +306,8 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   for (std::size_t i = 0; i < count; ++i)
     if ((at[i] = best_viewpoint(member, stops[i].front())) != nullptr) cells.push_back(at[i]->cell);
   measure_from(member, std::move(cells));
-  std::vector<double> within(count);  // [s] from cluster to cluster of a stop
+  std::vector<double> to(count, TourProblem::kNever);  // [m] to each stop
+  std::vector<double> within(count);                   // [s] from cluster to cluster of a stop
   for (std::size_t i = 0; i < count; ++i) {
     if (at[i] == nullptr) continue;
     const double distance =
@@ -276,6 +316,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
       at[i] = nullptr;
       continue;
     }
+    to[i] = distance;
     Eigen::Vector3d before = lattice_.exact_center(at[i]->cell);
     for (const std::uint32_t cluster : in_order(member, stops[i], before)) {
       const Eigen::Vector3d next = lattice_.exact_center(best_viewpoint(member, cluster)->cell);
@@ -284,17 +325,21 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
     }
     robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
   }
+  NumberTable ways(count, count);  // [m] from stop to stop
   for_each_index(count, [&](std::size_t i) {
-    for (std::size_t j = 0; j < i && at[i] != nullptr; ++j) {
-      if (at[j] == nullptr) continue;
-      const double way = distance_between(member, at[i]->cell, at[j]->cell);
-      if (way != TourProblem::kNever)
-        robot.between(i, j) =
-            seconds(member.robot, way, turn_between(at[i]->yaw, at[j]->yaw)) + (within[i] + within[j]) / 2;
-    }
+    for (std::size_t j = 0; j < i; ++j)
+      ways(i, j) = at[i] != nullptr && at[j] != nullptr ? distance_between(member, at[i]->cell, at[j]->cell)
+                                                        : TourProblem::kNever;
   });
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = i + 1; j < count; ++j) robot.between(i, j) = robot.between(j, i);
+    for (std::size_t j = i + 1; j < count; ++j) ways(i, j) = ways(j, i);
+  complete(ways, to);
+  for_each_index(count, [&](std::size_t i) {
+    for (std::size_t j = 0; j < count; ++j)
+      if (i != j && ways(i, j) != TourProblem::kNever)
+        robot.between(i, j) = seconds(member.robot, ways(i, j), turn_between(at[i]->yaw, at[j]->yaw)) +
+                              (within[i] + within[j]) / 2;
+  });
   return robot;
 }
 
@@ -331,8 +376,9 @@ void TourPlanning::join_next_stops(const Query& query) {
     return seconds_to(member.robot, start, viewpoints[v], distances[v]);
   };
   const auto between = [&](std::size_t a, std::size_t b) {  // the first one has been measured from
-    return seconds(member.robot, distance_between(member, viewpoints[a].cell, viewpoints[b].cell),
-                   turn_between(viewpoints[a].yaw, viewpoints[b].yaw));
+    double way = distance_between(member, viewpoints[a].cell, viewpoints[b].cell);
+    if (way == TourProblem::kNever) way = distances[a] + distances[b];  // by where the robot is
+    return seconds(member.robot, way, turn_between(viewpoints[a].yaw, viewpoints[b].yaw));
   };
 
   TourProblem::Robot robot{{}, NumberTable(joined.size(), joined.size())};

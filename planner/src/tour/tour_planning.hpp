@@ -42,6 +42,7 @@ class TourPlanning {
     double least_gain = 10.0;   ///< [frontiers] that a stop shows
     std::size_t joined = 40;  ///< clusters that come next, which are looked at from as few places as see them
     std::size_t refined = 5;  ///< stops whose viewpoints are chosen together
+    std::size_t measured = 2500;  ///< nearest nodes to which the ways from a stop are known
   };
 
   /// @param starts  of the robots; those on a plane stay on it
@@ -84,10 +85,11 @@ class TourPlanning {
     Robot robot;
     ViewRegion region;
     TravelGraph graph;
-    bool planned = false;                                         // before
-    std::vector<VoxelKey> changed = {};                           // since its graph was updated
-    std::map<std::uint32_t, std::vector<double>> distances = {};  // [m] by node, in this graph
-    std::optional<VoxelKey> here = {};                            // where it fits when its trajectory begins
+    bool planned = false;                // before
+    std::vector<VoxelKey> changed = {};  // since its graph was updated
+    std::optional<VoxelKey> here = {};   // where it fits when its trajectory begins
+    std::vector<double> from_here = {};  // [m] to each node of the graph
+    std::map<std::uint32_t, std::vector<TravelGraph::Distance>> near = {};  // from other nodes
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
@@ -107,12 +109,13 @@ class TourPlanning {
   [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
                                                 std::span<const Stop> stops);
-  static void measure_from(Member& member, std::vector<VoxelKey> cells);
+  void measure_from(Member& member, std::vector<VoxelKey> cells) const;
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
   void join_next_stops(const Query& query);
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
+  [[nodiscard]] double way_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
   [[nodiscard]] double distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
 
   Lattice lattice_;

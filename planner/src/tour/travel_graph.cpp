@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <iterator>
-#include <queue>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -189,24 +187,45 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   return cubes_[cube_of(cell)].first + part_[cell] - 1u;
 }
 
-std::vector<double> TravelGraph::distances(std::uint32_t from) const {
-  std::vector<double> length(centers_.size(), kFar);
+// Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they
+// turn out to be nearer. Ends when the ways to so many are known.
+std::vector<double> TravelGraph::distances(std::uint32_t from, std::size_t count) const {
   using Entry = std::pair<double, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  length[from] = 0.0;
-  open.emplace(0.0, from);
-  while (!open.empty()) {
-    const auto [so_far, node] = open.top();
-    open.pop();
-    if (so_far > length[node]) continue;
-    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) {
-      const double through = so_far + static_cast<double>(edges_[e].length);
-      if (through >= length[edges_[e].to]) continue;
-      length[edges_[e].to] = through;
-      open.emplace(through, edges_[e].to);
+  const double width = edge_ * lattice_.resolution() / 2;  // [m] of nodes about as far as each other
+  const auto band = [width](double length) { return static_cast<std::size_t>(length / width); };
+  std::vector<double> lengths(centers_.size(), kFar);
+  std::vector<std::vector<Entry>> open(1);
+  lengths[from] = 0.0;
+  open[0].emplace_back(0.0, from);
+  std::size_t known = 0, now = 0;
+  for (; now < open.size() && known < count; ++now) {
+    for (std::size_t i = 0; i < open[now].size(); ++i) {
+      const auto [so_far, node] = open[now][i];
+      if (so_far > lengths[node]) continue;
+      for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) {
+        const auto& [to, length] = edges_[e];
+        const double through = so_far + static_cast<double>(length);
+        if (through >= lengths[to]) continue;
+        lengths[to] = through;
+        if (band(through) >= open.size()) open.resize(band(through) + 1);
+        open[band(through)].emplace_back(through, to);
+      }
     }
+    for (const auto& [so_far, node] : open[now]) known += so_far > lengths[node] ? 0 : 1;
+    open[now] = {};
   }
-  return length;
+  if (now < open.size())
+    for (double& length : lengths)
+      if (length != kFar && band(length) >= now) length = kFar;
+  return lengths;
+}
+
+std::vector<TravelGraph::Distance> TravelGraph::near_distances(std::uint32_t from, std::size_t count) const {
+  const std::vector<double> lengths = distances(from, count);
+  std::vector<Distance> near;
+  for (std::uint32_t node = 0; node < lengths.size(); ++node)
+    if (lengths[node] != kFar) near.push_back({node, lengths[node]});
+  return near;
 }
 
 std::vector<std::uint32_t> TravelGraph::around_way(const std::vector<double>& lengths,

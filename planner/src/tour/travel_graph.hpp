@@ -23,6 +23,7 @@ namespace frontlux::planner::detail {
 class TravelGraph {
  public:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
   /// @param bounds  of the cells
   /// @param edge    [voxels] of a cube, at most 40
@@ -42,8 +43,15 @@ class TravelGraph {
   /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
-  /// [m] from a node to all others, from middle to middle; `kFar` where there is no way.
-  [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
+  /// [m] from a node to others, from middle to middle; `kFar` where there is no way.
+  /// @param count  how many are enough: of the nodes that are farther than so many, most are `kFar`, too
+  [[nodiscard]] std::vector<double> distances(std::uint32_t from, std::size_t count = kAll) const;
+  struct Distance {
+    std::uint32_t to;  ///< node
+    double length;     ///< [m]
+  };
+  /// Of `distances` those that are known, sorted by node.
+  [[nodiscard]] std::vector<Distance> near_distances(std::uint32_t from, std::size_t count) const;
   /// The nodes of a shortest way to a node and those next to them, sorted: their cells connect.
   /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
   [[nodiscard]] std::vector<std::uint32_t> around_way(const std::vector<double>& lengths,

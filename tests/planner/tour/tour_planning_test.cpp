@@ -23,11 +23,11 @@ struct OpenSpace {
   FrontierSet frontiers;
   TourPlanning planning;
 
-  OpenSpace()
+  explicit OpenSpace(const TourPlanning::Options& options = {})
       : caster((test::fill(grid, {kBounds.min, make_key(32785, 32785, kBounds.max.z)}, Occupancy::kFree),
                 make_grid_ray_caster(grid))),
         frontiers(grid, kBounds),
-        planning({with_body()}, {&pose, 1}, grid.lattice(), kBounds, {}) {}
+        planning({with_body()}, {&pose, 1}, grid.lattice(), kBounds, options) {}
 
   Robot& with_body() {
     robot.travel.extents = {0.4, 0.4, 0.4};
@@ -70,6 +70,15 @@ TEST(TourPlanning, LooksAtClustersFromWhereTheRobotCanGo) {
   const Keys& first = space.planning.first_view(0);
   EXPECT_FALSE(first.empty());
   EXPECT_TRUE(std::ranges::includes(keys, first));
+}
+
+// Where the map is large only ways between near places are measured, and far clusters share stops.
+TEST(TourPlanning, LeadsToAllClustersHoweverFarTheyAre) {
+  OpenSpace all, some({.measured = 1}), far({.near = 0.02, .measured = 1});
+  for (OpenSpace* space : {&all, &some, &far}) space->plan(space->corridor());
+  ASSERT_GT(all.clusters().size(), 5U);
+  EXPECT_EQ(some.clusters(), all.clusters());
+  EXPECT_EQ(far.clusters(), all.clusters());
 }
 
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.

@@ -97,6 +97,39 @@ TEST(TravelGraph, KnowsAboutHowFarItIs) {
   EXPECT_NEAR(sum / exact_sum, 1.0, 0.15);
 }
 
+TEST(TravelGraph, MeasuresTheNearestNodesOnly) {
+  Random random(56);
+  std::size_t fewer = 0;
+  for (int round = 0; round < 30; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    corridor.update({grid}, random.key_in(kBounds));
+    TravelGraph graph(grid.lattice(), kBounds, 2 + random.below(4), 2);
+    graph.update(corridor, {{kBounds}});
+    const auto from = static_cast<std::uint32_t>(random.below(static_cast<int>(graph.size())));
+    const auto count = static_cast<std::size_t>(1 + random.below(60));
+    const std::vector<double> all = graph.distances(from);
+    const auto near = graph.near_distances(from, count);
+    double farthest = 0.0;
+    std::vector<bool> is_near(all.size());
+    for (const TravelGraph::Distance& distance : near) {
+      EXPECT_EQ(distance.length, all[distance.to]);
+      farthest = std::max(farthest, distance.length);
+      is_near[distance.to] = true;
+    }
+    const auto reached = all.size() - static_cast<std::size_t>(std::ranges::count(all, TravelGraph::kFar));
+    EXPECT_GE(near.size(), std::min(count, reached));
+    for (std::size_t node = 0; node < all.size(); ++node) EXPECT_TRUE(is_near[node] || all[node] >= farthest);
+    fewer += near.size() < reached ? 1 : 0;
+    // No way is shorter by way of a third node.
+    for (const auto& [middle, length] : near) {
+      const std::vector<double> on = graph.distances(middle);
+      for (std::size_t node = 0; node < all.size(); ++node) EXPECT_LE(all[node], length + on[node] + 1e-9);
+    }
+  }
+  EXPECT_GT(fewer, 10U);
+}
+
 TEST(TravelGraph, EqualsANewOneAfterChanges) {
   Random random(53);
   VoxelGrid grid = random_rooms(random);
