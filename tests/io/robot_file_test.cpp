@@ -63,6 +63,20 @@ TEST_F(RobotFile, ReadsLimitsMarginAndRate) {
   EXPECT_EQ(all.rate, 2.5);
 }
 
+TEST_F(RobotFile, ReadsRobotsOnTheGround) {
+  const std::string
+      start = R"({"name": "n", "motion": "ground", "box_m": [0.7, 0.5, 0.4], "mount_height_m": 0.5, )",
+      end = R"("sensor": {"kind": "spinning", "vertical_deg": 30, "range_m": 4, "columns": 8, "rows": 2}})";
+  const planner::TravelOptions usual = read(start + end).robot.travel,
+                               given =
+                                   read(start + R"("step_m": 0.25, "slope_deg": 45, )" + end).robot.travel;
+  EXPECT_EQ(usual.motion, planner::Motion::kGround);
+  EXPECT_EQ(usual.step, 0.15);
+  EXPECT_DOUBLE_EQ(usual.slope, std::numbers::pi / 9);
+  EXPECT_EQ(given.step, 0.25);
+  EXPECT_DOUBLE_EQ(given.slope, std::numbers::pi / 4);
+}
+
 TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
   const std::string good =
       R"({"name": "r", "motion": "plane", "box_m": [1, 1, 0.7], "mount_height_m": 0.75, "sensor": )"
@@ -76,9 +90,16 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with(R"("r")", R"("../r")"), "name is '../r'; give 1 to 40 letters"},
       {with(R"("r")", R"("")"), "name is ''; give"},
       {with(R"("r")", "7"), "name is 7; give"},
-      {with(R"("plane")", R"("hover")"), R"(motion is 'hover'; give "plane" or "space")"},
+      {with(R"("plane")", R"("hover")"), R"(motion is 'hover'; give "plane", "ground" or "space")"},
       {with(R"("plane")", R"("space")"),
-       R"(mount_height_m is for a robot with the motion "plane"; leave it out)"},
+       R"(mount_height_m is for a robot with the motion "plane" or "ground"; leave it out)"},
+      {with("0.75", "0.75, \"step_m\": 0.1"),
+       R"(step_m is for a robot with the motion "ground"; leave it out)"},
+      {with(R"("plane")", R"("ground", "require_ground": true)"),
+       R"(require_ground is for a robot with the motion "plane"; leave it out)"},
+      {with(R"("plane")", R"("ground", "slope_deg": 95)"),
+       "slope_deg is 95; give a number from 0 to 80 degrees"},
+      {with(R"("plane")", R"("ground", "step_m": -0.1)"), "step_m is -0.1; give a number from 0.001 to 10 m"},
       {with("0.75", "0.75, \"min_height_m\": 1"), "min_height_m is for a robot with the motion \"space\""},
       {with("0.75", "0.75, \"require_ground\": 1"), "require_ground is 1; give true or false"},
       {with("0.75", "-1"), "mount_height_m is -1; give a number from 0 to 100 m"},

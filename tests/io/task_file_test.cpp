@@ -230,7 +230,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
        "robots[0].limits.per_axis is 'yes'; give true or"},
       {with(R"("per_axis": true)", R"("jerk": 3)"), "the member 'robots[0].limits.jerk' is not known"},
       {with(R"("rate_hz": 20)", R"("rate_hz": 0)"), "robots[0].sensor.rate_hz is 0; give a number from 0.01"},
-      {with(R"("space")", R"("ground")"), R"(robots[0].motion is 'ground'; give "plane" or "space")"},
+      {with(R"("space")", R"("hover")"), R"(robots[0].motion is 'hover'; give "plane", "ground" or "space")"},
       {with(R"("seed": 7)", R"("seed": 7, "seed": 8)"), "the member 'seed' is there twice; keep one"},
       {with(R"("rate_hz": 20)", R"("rate_hz": 20, "rows": 3)"), "the member 'rows' is there twice"},
       {with(R"("seed": 7)", R"("seed": [[[[[[1]]]]]])"), "'seed' is nested too deeply; see docs/tasks.md"},

@@ -43,9 +43,8 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   if (robots.size() > kMaxRobots)
     throw BadInput("--team: " + std::to_string(robots.size()) + " robots are too many; give at most " +
                    std::to_string(kMaxRobots));
-  std::stable_partition(robots.begin(), robots.end(), [](const RobotDescription& robot) {
-    return robot.robot.travel.motion == Motion::kPlane;
-  });
+  std::stable_partition(robots.begin(), robots.end(),
+                        [](const RobotDescription& robot) { return robot.robot.travel.drives(); });
   std::map<std::string, int> total, number;
   for (const RobotDescription& robot : robots) ++total[robot.robot.name];
   for (RobotDescription& robot : robots) {
@@ -63,12 +62,11 @@ struct GivenStarts {
 };
 GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
   GivenStarts given{std::vector<std::optional<Pose>>(robots.size()), std::vector<std::string>(robots.size())};
-  std::size_t on_plane = 0, in_space = static_cast<std::size_t>(
-                                std::count_if(robots.begin(), robots.end(), [](const RobotDescription&robot) {
-                                  return robot.robot.travel.motion == Motion::kPlane;
-                                }));
+  std::size_t on_plane = 0, in_space = static_cast<std::size_t>(std::count_if(
+                                robots.begin(), robots.end(),
+                                [](const RobotDescription&robot) { return robot.robot.travel.drives(); }));
   for (const io::TaskRobot& robot : options.robots) {
-    const bool drives = robot.description.robot.travel.motion == Motion::kPlane;
+    const bool drives = robot.description.robot.travel.drives();
     const std::size_t r = drives ? on_plane++ : in_space++;
     given.poses.at(r) = robot.start;
     given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
@@ -118,7 +116,7 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
     if (!starts[r])
       throw BadInput(setup.sourced.world.name + ": the robot '" + robots[r].robot.name +
                      "' does not fit within 15 m of the start; give another --start, or its --pose");
-    if (robots[r].robot.travel.motion == Motion::kPlane)
+    if (robots[r].robot.travel.drives())
       ground =
           std::max(ground.value_or(-1e300), starts[r]->position.z() - robots[r].robot.travel.sensor_height);
   }
@@ -128,6 +126,16 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
           setup.lockstep ? ground.value_or(sim::ground_below(*setup.truth, around))
                          : sim::lower_face(setup.truth->lattice(), setup.truth->bounds().min.z);
     setup.head.starts.push_back({*starts[r], sim::start_bubble(*setup.truth, robots[r].robot, *starts[r])});
+  }
+}
+
+// Says what of a robot does not go with the voxels.
+void check_travel(const RobotDescription& robot, const sim::GroundTruth& truth) {
+  try {
+    planner::TravelCorridor(robot.robot.travel, truth.lattice(), truth.bounds());
+  } catch (const std::invalid_argument& error) {
+    throw BadInput("the robot '" + robot.robot.name + "': " + error.what() +
+                   "; change the robot's file, or --resolution");
   }
 }
 
@@ -264,6 +272,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
     const Eigen::Vector3d around =
         sim::free_start(setup.sourced.world, source.resolution, setup.sourced.kind != WorldKind::kMesh);
     setup.truth = std::make_unique<const sim::GroundTruth>(setup.sourced.world, source.resolution, around);
+    for (const RobotDescription& robot : setup.head.robots) check_travel(robot, *setup.truth);
     find_starts(given, around, setup);
     for (std::size_t r = 0; r < setup.head.robots.size(); ++r)
       setup.exploration.team[r].robot = setup.head.robots[r].robot;

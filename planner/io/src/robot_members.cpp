@@ -5,8 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace frontlux::io {
@@ -20,7 +23,12 @@ constexpr std::size_t kMaxName = 40;
 constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 26;
 constexpr Range kHeights{0.0, 100.0}, kMargins{0.0, 100.0}, kSensorRanges{0.01, 1000.0}, kAngles{0.1, 179.0};
 constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.01, 36000.0}, kRates{0.01, 10000.0};
+constexpr Range kSteps{0.001, 10.0}, kSlopes{0.0, 80.0};
 constexpr double kCameraRate = 15.0;  // [1/s]; that of others is RobotDescription's
+
+using NamedMotion = std::pair<std::string_view, Motion>;
+constexpr std::array<NamedMotion, 3> kMotions = {
+    {{"plane", Motion::kPlane}, {"space", Motion::kSpace}, {"ground", Motion::kGround}}};
 
 const std::string kSeeRobots = "an object, see docs/robots.md";
 
@@ -106,25 +114,33 @@ Eigen::Vector3d read_body(Members& members, RobotForm form) {
 }
 
 void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
-  const std::string motions = "\"plane\" or \"space\"";
+  const std::string motions = R"("plane", "ground" or "space")";
   const std::string motion = members.text("motion", motions);
-  if (motion != "plane" && motion != "space")
-    members.refuse("motion", "is " + quote(motion), "give " + motions);
-  travel.motion = motion == "plane" ? Motion::kPlane : Motion::kSpace;
+  const auto known = std::ranges::find(kMotions, motion, &NamedMotion::first);
+  if (known == kMotions.end()) members.refuse("motion", "is " + quote(motion), "give " + motions);
+  travel.motion = known->second;
   travel.extents = read_body(members, form);
   travel.margin = members.number("margin_m", "m", kMargins, travel.margin);
-  if (travel.motion == Motion::kPlane) {
+  if (travel.motion != Motion::kPlane)
+    members.not_here({"require_ground"}, "is for a robot with the motion \"plane\"");
+  if (travel.motion != Motion::kGround)
+    members.not_here({"step_m", "slope_deg"}, "is for a robot with the motion \"ground\"");
+  if (travel.drives()) {
     members.not_here({"min_height_m", "node_edge_m"}, "is for a robot with the motion \"space\"");
     travel.sensor_height = members.number("mount_height_m", "m", kHeights);
-    travel.require_ground = members.flag("require_ground", travel.require_ground);
+    if (travel.motion == Motion::kPlane)
+      travel.require_ground = members.flag("require_ground", travel.require_ground);
+    if (travel.motion == Motion::kGround) {
+      travel.step = members.number("step_m", "m", kSteps, travel.step);
+      travel.slope = members.number("slope_deg", "degrees", kSlopes, degrees_of(travel.slope)) * kDegree;
+    }
     if (const json* ground = members.find("ground_m")) {
       const auto edges = members.numbers("ground_m", *ground, 2, "two numbers in metres, along x and y",
                                          "m along each axis", kLengths);
       travel.ground_extents = Eigen::Vector2d(edges[0], edges[1]);
     }
   } else {
-    members.not_here({"mount_height_m", "require_ground", "ground_m"},
-                     "is for a robot with the motion \"plane\"");
+    members.not_here({"mount_height_m", "ground_m"}, R"(is for a robot with the motion "plane" or "ground")");
     travel.min_height = members.number("min_height_m", "m", kHeights, travel.extents.z() / 2);
     if (members.find("node_edge_m") != nullptr)
       travel.node_edge = members.number("node_edge_m", "m", {travel.extents.maxCoeff(), kLengths.high});
@@ -163,12 +179,16 @@ ordered_json json_of(const RobotDescription& robot) {
   const Eigen::Vector3d& size = travel.extents;
   ordered_json object;
   object["name"] = robot.robot.name;
-  object["motion"] = travel.motion == Motion::kPlane ? "plane" : "space";
+  object["motion"] = std::ranges::find(kMotions, travel.motion, &NamedMotion::second)->first;
   object["body"] = {{"kind", "box"}, {"size_m", {size.x(), size.y(), size.z()}}};
   object["margin_m"] = travel.margin;
-  if (travel.motion == Motion::kPlane) {
+  if (travel.drives()) {
     object["mount_height_m"] = travel.sensor_height;
-    object["require_ground"] = travel.require_ground;
+    if (travel.motion == Motion::kPlane) object["require_ground"] = travel.require_ground;
+    if (travel.motion == Motion::kGround) {
+      object["step_m"] = travel.step;
+      object["slope_deg"] = degrees_of(travel.slope);
+    }
     if (travel.ground_extents) object["ground_m"] = {travel.ground_extents->x(), travel.ground_extents->y()};
   } else {
     object["min_height_m"] = travel.min_height;

@@ -26,7 +26,7 @@ std::vector<RobotColor> robot_colors(std::span<const planner::RobotDescription> 
     return std::ranges::find(colors, color.light, &RobotColor::light) != colors.end();
   };
   for (const planner::RobotDescription& description : team) {
-    const bool ground = description.robot.travel.motion == planner::Motion::kPlane;
+    const bool ground = description.robot.travel.drives();
     const std::span<const RobotColor> choice = ground ? detail::ground_colors() : detail::aerial_colors();
     const std::size_t own = (number_of(description.robot.name) - 1) % choice.size();
     std::size_t i = 0;

@@ -22,7 +22,7 @@ json facts_of(const planner::RobotDescription& description) {
   const planner::Robot& robot = description.robot;
   const Eigen::Vector3d& extents = robot.travel.extents;
   return {{"name", robot.name},
-          {"plane", robot.travel.motion == planner::Motion::kPlane},
+          {"plane", robot.travel.drives()},
           {"extents", {extents.x(), extents.y(), extents.z()}},
           {"sensor_height", robot.mount_height()},
           {"shape", kShapes.at(static_cast<std::size_t>(robot.view.shape))},

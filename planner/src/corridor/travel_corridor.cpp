@@ -1,7 +1,7 @@
 #include "corridor/erosion.hpp"
-#include "corridor/ground.hpp"
 #include "corridor/path_distances.hpp"
 #include "corridor/path_search.hpp"
+#include "corridor/terrain.hpp"
 
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -19,10 +19,34 @@ namespace {
 constexpr double kSlack = 1e-9;  // of a voxel: 0.9 m are three voxels of 0.3 m, whatever the division says
 constexpr int kMaxWindow = 1024;
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kSteepest = 80.0 * kDegree;
 constexpr int kNearby = 40;  // [cells] along each axis
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
+
+// Whole voxels in a length.
+int voxels_in(double length, double resolution) {
+  return static_cast<int>(std::floor(length / resolution + kSlack));
+}
+
+// Voxels that cover a length.
+int voxels_over(double length, double resolution) {
+  return static_cast<int>(std::ceil(length / resolution - kSlack));
+}
+
+void check_ground(const TravelOptions& options, double resolution) {
+  if (!(options.step <= kMaxWindow * resolution && voxels_in(options.step, resolution) >= 1))
+    refuse("step is " + std::to_string(options.step) + " m, but has to be from a voxel, " +
+           std::to_string(resolution) + " m, to " + std::to_string(kMaxWindow) +
+           " of them: what is lower than a voxel cannot be told from flat floor");
+  if (!(options.slope >= 0.0 && options.slope <= kSteepest))
+    refuse("slope is " + std::to_string(options.slope) + ", but has to be from 0 to " +
+           std::to_string(kSteepest));
+  if (options.clearance() > std::min(options.sensor_height, options.extents.z()))
+    refuse("steps and slopes would reach " + std::to_string(options.clearance()) +
+           " m up, above the sensor or all of the body");
+}
 
 void check(const TravelOptions& options, double resolution, const KeyBox& bounds) {
   const auto size = [&](const char* name, double value, double low) {
@@ -35,7 +59,7 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
   for (const auto& [name, i] : {std::pair{"extents.x", 0}, {"extents.y", 1}, {"extents.z", 2}})
     size(name, options.extents[i], kSmallest);
   size("margin", options.margin, 0.0);
-  if (options.motion == Motion::kPlane) {
+  if (options.drives()) {
     size("sensor_height", options.sensor_height, 0.0);
     if (options.ground_extents) {
       size("ground_extents.x", options.ground_extents->x(), kSmallest);
@@ -44,7 +68,9 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
     if (options.ground_reach < 0 || options.ground_reach > kMaxWindow)
       refuse("ground_reach is " + std::to_string(options.ground_reach) + " voxels, but has to be 0 to " +
              std::to_string(kMaxWindow));
-    if (options.node_edge != 0.0) refuse("node_edge is for motion in space, and has to be 0 on a plane");
+    if (options.node_edge != 0.0)
+      refuse("node_edge is for motion in space, and has to be 0 for a robot that drives");
+    if (options.motion == Motion::kGround) check_ground(options, resolution);
   } else {
     if (!std::isfinite(options.floor)) refuse("floor is not finite");
     if (!std::isfinite(options.min_height)) refuse("min_height is not finite");
@@ -75,6 +101,16 @@ int node_edge_log2(double edge, double resolution) {
   return log2;
 }
 
+// Layers of voxels from the floor to the sensor of a robot that drives.
+int layers_below(const TravelOptions& options, double resolution) {
+  return voxels_in(options.sensor_height, resolution);
+}
+
+// Layers above the floor that steps and slopes may reach into.
+int reached_from_below(const TravelOptions& options, double resolution) {
+  return voxels_over(options.clearance(), resolution);
+}
+
 detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
   if (options.node_edge > 0.0) {
     const int edge = 1 << node_edge_log2(options.node_edge, resolution), half = edge / 2;
@@ -86,11 +122,10 @@ detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
     window.high[a] = half_width(box[static_cast<Eigen::Index>(a)], resolution);
     window.low[a] = -window.high[a];
   }
-  if (options.motion == Motion::kPlane) {
-    const int below = static_cast<int>(std::floor(options.sensor_height / resolution + kSlack));
-    const int layers = static_cast<int>(std::ceil(options.extents.z() / resolution - kSlack));
-    window.low[2] = -below;
-    window.high[2] = std::max(0, layers - 1 - below);
+  if (options.drives()) {
+    const int below = layers_below(options, resolution);
+    window.low[2] = std::min(0, reached_from_below(options, resolution) - below);
+    window.high[2] = std::max(0, voxels_over(options.extents.z(), resolution) - 1 - below);
   }
   return window;
 }
@@ -144,7 +179,7 @@ Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
   const Eigen::Vector3d half = travel.extents / 2;
   if (travel.motion == Motion::kSpace) return {-half, half};
   const double bottom = -travel.sensor_height;
-  return {Eigen::Vector3d(-half.x(), -half.y(), bottom),
+  return {Eigen::Vector3d(-half.x(), -half.y(), bottom + travel.clearance()),
           Eigen::Vector3d(half.x(), half.y(), bottom + travel.extents.z())};
 }
 
@@ -163,7 +198,7 @@ Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
   Eigen::Vector3d reach = Eigen::Vector3d::Zero();
   if (options.node_edge > 0.0) return reach;
   const double resolution = lattice.resolution();
-  for (Eigen::Index a = 0; a < (options.motion == Motion::kPlane ? 2 : 3); ++a) {
+  for (Eigen::Index a = 0; a < (options.drives() ? 2 : 3); ++a) {
     const double edge = options.box()[a];
     const double beyond = edge / 2 - half_width(edge, resolution) * resolution;
     if (beyond > kIgnored * resolution) reach[a] = std::min(beyond, (0.5 - kIgnored) * resolution);
@@ -193,11 +228,13 @@ struct TravelCorridor::State {
   const KeyBox bounds;
   const detail::VoxelWindow window = window_of(options, lattice.resolution());
   const Eigen::Vector3d reach = reach_of(options, lattice);
+  const int down = layers_below(options, lattice.resolution()) + 1;  // layers from a cell to its floor
 
   std::optional<std::uint16_t> plane;
   detail::CellFrame frame;
+  std::optional<detail::VoxelColumns> free;
   std::optional<detail::Erosion> erosion;
-  std::optional<detail::Ground> ground;
+  std::optional<detail::Terrain> terrain;
   std::optional<detail::PathDistances> distances;  // of all cells, or of those near by
   std::optional<VoxelKey> start;                   // the robot's cell
   std::vector<VoxelKey> way;                       // that was searched
@@ -209,9 +246,14 @@ struct TravelCorridor::State {
 
   [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
   void lay_out(const VoxelKey& robot);
+  void lay_ground(KeyBox box, const VoxelKey& robot);
   void read(const MapChange& change, const VoxelKey& robot);
+  [[nodiscard]] bool stands(const VoxelKey& cell) const {
+    if (!options.drives() || (options.motion == Motion::kPlane && !options.require_ground)) return true;
+    return terrain && cell.z >= down && terrain->carries(make_key(cell.x, cell.y, cell.z - down));
+  }
   [[nodiscard]] bool fits(const VoxelKey& cell) const {
-    return erosion->whole(cell) && (!ground || ground->carries(cell)) &&
+    return erosion->whole(cell) && stands(cell) &&
            (blocked.empty() || !std::binary_search(blocked.begin(), blocked.end(), cell));
   }
   [[nodiscard]] bool passable(const VoxelKey& cell) const {
@@ -246,30 +288,50 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   const auto count = [this](int low, int high) { return high < low ? 0 : (high - low) / frame.stride + 1; };
   frame.size = {count(middles.min.x, middles.max.x), count(middles.min.y, middles.max.y),
                 count(lowest, middles.max.z)};
+  free.emplace(box);
   erosion.emplace(box, window);
   distances.reset();
-  if (options.motion == Motion::kPlane && options.require_ground) {
-    const double resolution = lattice.resolution();
-    const int floor = robot.z + window.low[2] - 1;
-    const Eigen::Vector2d extents =
-        options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
-    ground.emplace(detail::Ground::Options{
-        box, floor < 0 ? std::nullopt : std::optional(static_cast<std::uint16_t>(floor)),
-        half_width(extents.x(), resolution), half_width(extents.y(), resolution), options.ground_reach,
-        options.without_ground});
+  terrain.reset();
+  if (options.drives()) lay_ground(box, robot);
+}
+
+// Floors are numbered as voxels are: that of a cell lies some layers below it.
+void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
+  const double resolution = lattice.resolution();
+  const Eigen::Vector2d extents =
+      options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
+  detail::Terrain::Options ground{.box = box,
+                                  .half_x = half_width(extents.x(), resolution),
+                                  .half_y = half_width(extents.y(), resolution),
+                                  .reach = options.ground_reach,
+                                  .exempt = options.without_ground};
+  if (options.motion == Motion::kPlane) {
+    if (robot.z < down) return;
+    ground.box.min.z = ground.box.max.z = clamped(robot.z - down);
+  } else {
+    ground.above = ground.below = reached_from_below(options, resolution);
+    ground.gap = voxels_in(options.step, resolution) - 1;
   }
+  for (KeyBox& exempt : ground.exempt) {
+    const bool flat = options.motion == Motion::kPlane;
+    exempt.min.z = flat ? ground.box.min.z : clamped(exempt.min.z - down);
+    exempt.max.z = flat ? ground.box.max.z : clamped(exempt.max.z - down);
+  }
+  terrain.emplace(std::move(ground));
 }
 
 void TravelCorridor::State::read(const MapChange& change, const VoxelKey& robot) {
   const auto& [grid, changed] = change;
   if (!erosion || (options.motion == Motion::kPlane && plane != robot.z)) {
     lay_out(robot);
-    erosion->read(grid);
-    if (ground) ground->read(grid);
+    free->read(grid, Occupancy::kFree);
+    if (terrain) terrain->read(grid);
   } else {
-    erosion->read(grid, changed);
-    if (ground) ground->read(grid, changed);
+    free->read(grid, Occupancy::kFree, changed);
+    if (terrain) terrain->read(grid, changed);
   }
+  erosion->erode(*free);
+  std::ranges::fill(free->stale, std::uint8_t{0});
 }
 
 CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {
@@ -283,7 +345,7 @@ CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const Vox
     return cell.z < frame.first.z || frame.size[2] == 0 ? CorridorState::kTooLow : CorridorState::kOutside;
   if (!erosion->whole(cell)) return CorridorState::kBoxNotFree;
   if (std::binary_search(blocked.begin(), blocked.end(), cell)) return CorridorState::kBoxNotFree;
-  if (ground && !ground->carries(cell)) return CorridorState::kWithoutGround;
+  if (!stands(cell)) return CorridorState::kWithoutGround;
   return CorridorState::kReady;
 }
 

@@ -72,8 +72,11 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   for (std::size_t r = 0; r < size(); ++r) {
     TravelOptions& travel = team[r].robot.travel;
     // No sensor sees the floor on which its robot stands.
-    if (travel.motion == Motion::kPlane && !starts[r].known_free.empty())
-      travel.without_ground.push_back(bounds_of(starts[r].known_free));
+    if (travel.drives() && !starts[r].known_free.empty()) {
+      KeyBox known = bounds_of(starts[r].known_free);
+      if (const auto start = lattice().key(starts[r].pose.position)) known.min.z = known.max.z = start->z;
+      travel.without_ground.push_back(known);
+    }
     voxel_corridors.emplace_back();
     if (travel.node_edge == 0.0) continue;
     TravelOptions by_voxels = travel;

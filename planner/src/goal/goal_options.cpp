@@ -39,18 +39,18 @@ void GoalOptions::check() const {
 }
 
 GoalOptions goal_options(const Robot& robot, Method method) {
-  const bool on_plane = robot.travel.motion == Motion::kPlane;
+  const bool drives = robot.travel.drives();
   GoalOptions options;
   options.rendering.azimuth_bins = 36;
   if (method == Method::kPaper) {
     options.distance = TravelDistance::kStraight;
-    options.rule = on_plane ? GoalRule::kViewQuality : GoalRule::kClusters;
+    options.rule = drives ? GoalRule::kViewQuality : GoalRule::kClusters;
     options.rendering.estimator = ViewQualityOptions::Estimator::kPaper;
-    options.refined = on_plane ? 0 : 4096;  // all cells that see a frontier
+    options.refined = drives ? 0 : 4096;  // all cells that see a frontier
   } else {
     options.advance = 4.0;
     options.min_gain = 10.0;  // fewer make a step quiet: `ExplorationOptions`
-    if (on_plane) {
+    if (drives) {
       options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
     } else {
       // In space there are so many pairs that it is faster to sample some and to count only the best cells.

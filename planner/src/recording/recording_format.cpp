@@ -67,7 +67,7 @@ void code_view(RecordBytes& bytes, FieldOfView& view) {
 
 void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   constexpr std::uint64_t kMostReach = 0xFFFF;  // [voxels]
-  bytes.whole(travel.motion, "motion", 1);
+  bytes.whole(travel.motion, "motion", 2);
   for (double& extent : travel.extents)
     code_length(bytes, extent, "an extent of the collision box is no length");
   bytes.whole(travel.metric, "path metric", 1);
@@ -83,6 +83,9 @@ void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   code_finite(bytes, travel.floor, "the floor's height is not finite");
   code_finite(bytes, travel.min_height, "the least height is not finite");
   code_length(bytes, travel.node_edge, "the edge of the nodes is no length");
+  if (travel.motion != Motion::kGround) return;
+  code_length(bytes, travel.step, "the highest step is no length");
+  code_finite(bytes, travel.slope, "the steepest slope is not finite");
 }
 
 void code_limits(RecordBytes& bytes, MotionLimits& limits) {

@@ -58,7 +58,7 @@ class Moves {
     constexpr int kHalvings = 4;
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
       Eigen::Vector3d step = scale * gradient[i].position;
-      if (motion_ == Motion::kPlane) step.z() = 0.0;
+      if (motion_ != Motion::kSpace) step.z() = 0.0;
       for (int n = 0; n < kHalvings && !step.isZero(0.0); ++n, step /= 2.0) {
         const Eigen::Vector3d to = within_reach(i, path[i].position + step);
         if (!admissible(path[i - 1].position, to) || !admissible(to, path[i + 1].position)) continue;
@@ -75,7 +75,7 @@ class Moves {
     const double length = shift.norm();
     if (length <= options_.max_shift) return at;
     Eigen::Vector3d nearer = origin_[i].position + options_.max_shift / length * shift;
-    if (motion_ == Motion::kPlane) nearer.z() = origin_[i].position.z();
+    if (motion_ != Motion::kSpace) nearer.z() = origin_[i].position.z();
     return nearer;
   }
   // The cells of both ends are among those that have to be passable.
@@ -142,7 +142,7 @@ RefinedPath refine_positions(std::span<const Pose> viewpoints, std::span<const V
   const detail::CountingRayCaster counting(caster, grid.lattice());
   const auto targets = centers(grid.lattice(), frontiers);
   const FieldOfView wide = widened(robot.view, options.max_shift);
-  const bool plane = robot.travel.motion == Motion::kPlane;
+  const bool plane = robot.travel.drives();
   const Moves moves(viewpoints, corridor, grid.lattice(), robot.travel.motion, options);
 
   RefinedPath refined{{viewpoints.begin(), viewpoints.end()}, {}, {}, 0, 0};

@@ -37,6 +37,8 @@ struct Rule {
   int ground = -1;                               // floor voxels beside the middle that must not be free
   std::vector<KeyBox> without_ground;
   std::vector<KeyBox> kept_out = {};
+  int down = 0;   // layers from the cell to its floor, if it is not below the box
+  int climb = 0;  // [voxels] that ground may rise and fall under the box, if it need not be flat
 
   [[nodiscard]] bool passable(const VoxelGrid& grid, const VoxelKey& cell, bool plane) const {
     KeyBox inside = kBounds;
@@ -48,6 +50,7 @@ struct Rule {
     for (const KeyBox& box_of_others : kept_out)
       if (box_of_others.contains(cell)) return false;
     if (ground < 0) return true;
+    if (climb > 0) return is_on_ground(grid, cell);
     for (const KeyBox& exempt : without_ground)
       if (exempt.contains({cell.x, cell.y, exempt.min.z})) return true;
     const VoxelKey below = moved(cell, 0, 0, low[2] - 1);
@@ -60,7 +63,30 @@ struct Rule {
     return any(grown({below, below}, 1, 1, 0), is(Occupancy::kOccupied)) &&
            !any(grown({below, below}, ground, ground, 0), is(Occupancy::kFree));
   }
+  [[nodiscard]] bool is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const;
 };
+
+// As in `Rule::passable`, of a robot that climbs a voxel: ground is what has nothing on top of it.
+bool Rule::is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const {
+  const auto is = [&](const VoxelKey& v, Occupancy state) {
+    return kBounds.contains(v) && grid.at(v) == state;
+  };
+  for (const KeyBox& exempt : without_ground)
+    if (exempt.contains(cell)) return kBounds.contains(moved(cell, 0, 0, -down));
+  const VoxelKey floor = moved(cell, 0, 0, -down);
+  if (!kBounds.contains(floor)) return false;
+  const auto is_hole = [&](const VoxelKey& v) {
+    bool has_ground = false;
+    for (int z = -climb; z <= climb; ++z)
+      has_ground = has_ground || is(moved(v, 0, 0, z), Occupancy::kOccupied);
+    return is(v, Occupancy::kFree) && !has_ground;
+  };
+  const auto is_ground = [&](const VoxelKey& v) {
+    return is(v, Occupancy::kOccupied) && !is(moved(v, 0, 0, 1), Occupancy::kOccupied);
+  };
+  return all_of(grown({floor, floor}, ground, ground, 0), [&](const VoxelKey& v) { return !is_hole(v); }) &&
+         !all_of(grown({floor, floor}, 1, 1, 0), [&](const VoxelKey& v) { return !is_ground(v); });
+}
 
 struct Robot {
   TravelOptions options;
@@ -120,6 +146,16 @@ std::vector<Robot> robots() {
   with_margin.extents = {0.7, 0.7, 0.7};
   with_margin.margin = 0.15;
   robots.push_back({with_margin, 0.3, robots[0].rule, key_at(0, 0, 2)});
+  // 0.6 m of slope rise half a voxel, and so a whole one; the sensor's voxel is the third above the floor.
+  TravelOptions climbing;
+  climbing.motion = Motion::kGround;
+  climbing.extents = {0.6, 0.2, 0.6};
+  climbing.ground_extents = Eigen::Vector2d(0.6, 0.5);
+  climbing.sensor_height = 0.5;
+  climbing.step = 0.2;
+  climbing.without_ground = {{key_at(-2, -2, 2), key_at(2, 2, 2)}};
+  robots.push_back(
+      {climbing, 0.2, {{-1, 0, -1}, {1, 0, 0}, 1, 0, 1, climbing.without_ground, {}, 3, 1}, key_at(0, 0, 2)});
   TravelOptions uav = uav_travel();
   robots.push_back({uav, 0.3, {{-1, -1, -1}, {1, 1, 1}, 1, 32768 + 4, -1, {}}, key_at(0, 0, 6)});
   uav.extents = {0.2, 0.1, 0.4};
@@ -309,6 +345,60 @@ TEST(TravelCorridor, KeepsToGround) {
   flying.update({grid}, key_at(0, 0, 2));
   for (const VoxelKey& key : flying.cells()) farthest = std::max(farthest, key.x - 32768);
   EXPECT_EQ(farthest, 12);  // half a box from the bounds
+}
+
+// A floor, a ramp as steep as its number of voxels along x for each one up, and a floor above.
+VoxelGrid ramp(int run, int rise) {
+  VoxelGrid grid(0.1);
+  for_each_key(kBounds, [&](const VoxelKey& key) {
+    const int x = key.x - Lattice::kOrigin, z = key.z - Lattice::kOrigin;
+    const int top = x < 0 ? 0 : std::min(x / run, rise);
+    grid.set(key, z == top || (z < top && x % run == 0) ? Occupancy::kOccupied
+                  : z > top                             ? Occupancy::kFree
+                                                        : Occupancy::kUnknown);
+  });
+  return grid;
+}
+
+TravelOptions small_ugv() {
+  TravelOptions options;
+  options.motion = Motion::kGround;
+  options.extents = {0.5, 0.5, 0.3};
+  options.sensor_height = 0.3;
+  return options;
+}
+
+TEST(TravelCorridor, DrivesUpSlopesAndStepsThatAreNotTooHigh) {
+  const auto farthest = [](const VoxelGrid& grid, const TravelOptions& options) {
+    TravelCorridor corridor(options, grid.lattice(), kBounds);
+    corridor.update({grid}, key_at(-6, 0, 4));
+    EXPECT_EQ(corridor.state(), CorridorState::kReady);
+    VoxelKey far = key_at(-6, 0, 4);
+    for (const VoxelKey& key : corridor.cells())
+      if (key.x > far.x) far = key;
+    return std::pair(far.x - Lattice::kOrigin, far.z - Lattice::kOrigin);
+  };
+  TravelOptions options = small_ugv();
+  EXPECT_EQ(farthest(ramp(3, 3), options), std::pair(12, 7));
+  EXPECT_LT(farthest(ramp(1, 5), options).first, 4) << "too steep";
+  EXPECT_EQ(farthest(ramp(40, 0), options), std::pair(12, 4));
+
+  // A step, as high as it may be and a voxel higher.
+  const auto step = [](int height) {
+    VoxelGrid grid = ramp(40, 0);
+    test::fill(grid, {key_at(3, -10, 1), key_at(14, 12, height)}, Occupancy::kOccupied);
+    return grid;
+  };
+  EXPECT_EQ(farthest(step(1), options), std::pair(12, 5));
+  EXPECT_EQ(farthest(step(2), options), std::pair(3, 4)) << "up to it";
+  options.step = 0.25;
+  EXPECT_EQ(farthest(step(2), options), std::pair(12, 6));
+  EXPECT_EQ(farthest(step(3), options), std::pair(3, 4));
+
+  // An edge beyond which it goes far down.
+  VoxelGrid edge = ramp(40, 0);
+  test::fill(edge, {key_at(3, -10, -5), key_at(14, 12, 0)}, Occupancy::kFree);
+  EXPECT_EQ(farthest(edge, small_ugv()).first, 0) << "half of its body before the edge";
 }
 
 TEST(TravelCorridor, HasReasonsForHavingNoCells) {

@@ -30,6 +30,11 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
       travel.require_ground = false;
       travel.node_edge = random.uniform(1, 2);
     }
+    if (i % 3 == 2) {
+      travel.motion = planner::Motion::kGround;
+      travel.step = random.uniform(0.1, 1);
+      travel.slope = random.uniform(0, 1);
+    }
     travel.margin = random.uniform(0, 1);
     robot.robot.limits = {random.uniform(0.1, 9), random.uniform(0.1, 9), random.uniform(0.1, 9),
                           random.one_in(2)};
@@ -140,7 +145,7 @@ class Listing {
     line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(), t.margin,
          static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
     if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
-    line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size());
+    line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size(), t.step, t.slope);
     for (const KeyBox& box : t.without_ground) add(box);
   }
 

@@ -26,9 +26,7 @@ struct FRONTLUX_EXPORT Robot {
   MotionLimits limits;   ///< how fast it is
 
   /// [m] of the sensor above the floor where the robot stands or, in space, above its middle
-  [[nodiscard]] double mount_height() const {
-    return travel.motion == Motion::kPlane ? travel.sensor_height : 0.0;
-  }
+  [[nodiscard]] double mount_height() const { return travel.drives() ? travel.sensor_height : 0.0; }
 
   /// @throws std::invalid_argument naming the value of the field of view or the limits that is out of bounds
   void check() const {

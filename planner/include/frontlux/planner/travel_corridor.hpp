@@ -8,9 +8,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -20,8 +23,9 @@ namespace frontlux::planner {
 
 /// How a robot moves.
 enum class Motion : std::uint8_t {
-  kPlane,  ///< on the layer of voxels that its sensor is in
-  kSpace,  ///< anywhere above a minimum height
+  kPlane,   ///< on the layer of voxels that its sensor is in
+  kSpace,   ///< anywhere above a minimum height
+  kGround,  ///< on the ground, up and down slopes and steps
 };
 
 /// What a step from cell to cell costs.
@@ -35,23 +39,33 @@ enum class PathMetric : std::uint8_t {
 /// Its collision box is made of whole voxels and does not turn with the yaw. Along each axis it is the
 /// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the
 /// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
-/// above that face, and the box has the fewest layers that cover its height and hold the sensor.
+/// above that face, and the box has the fewest layers that cover its height and hold the sensor. On the
+/// ground it is the same, but for the lowest layers, which steps and slopes may reach into.
 struct FRONTLUX_EXPORT TravelOptions {
-  /// On a plane or in space.
+  /// On a plane, in space or on the ground.
   Motion motion = Motion::kSpace;
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z
-  double margin = 0.0;  ///< [m] kept free around the body, on a plane to its sides
+  double margin = 0.0;  ///< [m] kept free around the body; of a robot that drives to its sides
   /// How paths are measured.
   PathMetric metric = PathMetric::kEuclidean;
 
-  double sensor_height = 0.75;  ///< [m] on a plane: of the sensor above the floor
+  double sensor_height = 0.75;  ///< [m] of a robot that drives: of the sensor above the floor
   /// On a plane: go only where no floor voxel under the box is known to be free, and one within
   /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is below the box.
   bool require_ground = true;
-  /// [m] Along x and y: the part of the floor that must not be known to be free; if not given, all of it.
+  /// [m] Along x and y: the part of the floor that must not be known to be free, on the ground in which no
+  /// hole may be known; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;                ///< [voxels] along x and y
   std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its floor
+
+  /// [m] On the ground: the highest step, at least a voxel, which is rounded down to whole ones. Floor is an
+  /// occupied voxel with none on top of it, from the lower face of the box down to one voxel less than a
+  /// step. There is a hole where a floor voxel is known to be free, and none above or below it within a step
+  /// and the rise of the steepest slope under half of the body, rounded up to whole voxels, is known to be
+  /// occupied.
+  double step = 0.15;
+  double slope = 20.0 * std::numbers::pi / 180.0;  ///< [rad] on the ground: the steepest, up to 80 degrees
 
   double floor = 0.0;       ///< [m] in space: height of the floor in the world
   double min_height = 1.2;  ///< [m] in space: of the cell's centre above the floor
@@ -60,10 +74,18 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// voxel above the node's centre on all axes.
   double node_edge = 0.0;
 
+  /// Whether it goes on a floor.
+  [[nodiscard]] bool drives() const { return motion != Motion::kSpace; }
+
   /// [m] body and margin
   [[nodiscard]] Eigen::Vector3d box() const {
-    const double above = motion == Motion::kPlane ? 0.0 : margin;
-    return extents + 2 * Eigen::Vector3d(margin, margin, above);
+    return extents + 2 * Eigen::Vector3d(margin, margin, drives() ? 0.0 : margin);
+  }
+
+  /// [m] On the ground: how far into its box steps and slopes may reach from below.
+  [[nodiscard]] double clearance() const {
+    const double half = std::max(extents.x(), extents.y()) / 2;
+    return motion == Motion::kGround ? std::max(step, std::tan(slope) * half) : 0.0;
   }
 };
 
@@ -72,7 +94,8 @@ struct FRONTLUX_EXPORT TravelOptions {
 [[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_travel();
 [[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_node_travel();
 
-/// [m] The body of a robot whose sensor is at the origin.
+/// [m] The body of a robot whose sensor is at the origin; on the ground without what the ground may reach
+/// into.
 [[nodiscard]] FRONTLUX_EXPORT Eigen::AlignedBox3d body_of(const TravelOptions& travel);
 
 /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
@@ -87,8 +110,8 @@ struct FRONTLUX_EXPORT TravelOptions {
 /// How far a body that is not in the middle of a voxel may stick out of the collision box around the voxel,
 /// along each axis [m]. The body fits at a position if all cells are passable that a box of this half width
 /// around the position touches. It is 0 along axes on which the collision box has room for the body anywhere
-/// in the voxel, on a plane along z, and for nodes. A ten thousandth of a voxel does not count, so that a
-/// body as wide as its collision box fits in the middle.
+/// in the voxel, for robots that drive along z, and for nodes. A ten thousandth of a voxel does not count, so
+/// that a body as wide as its collision box fits in the middle.
 [[nodiscard]] FRONTLUX_EXPORT Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
 
 /// Why there is a corridor, or none.
@@ -100,7 +123,7 @@ enum class CorridorState : std::uint8_t {
   kUnknown,        ///< it is in an unknown voxel
   kOccupied,       ///< it is in an occupied voxel
   kBoxNotFree,     ///< its collision box, or its node, is not known to be free
-  kWithoutGround,  ///< the floor under it does not satisfy `require_ground`
+  kWithoutGround,  ///< the floor under it is not known to carry it
 };
 
 /// In words, as the end of a sentence about the robot.

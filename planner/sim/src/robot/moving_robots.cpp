@@ -101,7 +101,7 @@ void MovingRobots::measure_clearance(std::size_t robot) {
   double& clearance = records_[robot].clearance;
   const Eigen::Vector3d& at = progress_[robot].pose.position;
   const planner::TravelOptions& travel = robots_[robot].robot.travel;
-  const bool stands = travel.motion == Motion::kPlane;  // and touches the floor
+  const bool stands = travel.drives();  // and touches the floor
   Eigen::AlignedBox3d box = planner::body_of(travel).translated(at);
   if (stands) {
     box.min().z() = body(robot, at).min().z();

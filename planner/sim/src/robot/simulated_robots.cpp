@@ -30,7 +30,7 @@ VoxelKey key_of(const Lattice& lattice, const Eigen::Vector3d& point) {
 Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
                             const Eigen::Vector3d& sensor) {
   const Eigen::Vector3d half = travel.extents / 2;
-  Eigen::AlignedBox3d body(sensor - half, sensor + half);
+  Eigen::AlignedBox3d body = planner::body_of(travel).translated(sensor);
   if (travel.motion == Motion::kPlane) {
     const KeyBox box = voxels_of_cell(travel, lattice, key_of(lattice, sensor));
     body.min().z() = (static_cast<int>(box.min.z) - Lattice::kOrigin) * lattice.resolution();

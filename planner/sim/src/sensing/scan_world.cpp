@@ -49,7 +49,7 @@ std::vector<Pose> sweep(const GroundTruth& truth, const planner::Robot& robot, c
     throw std::invalid_argument("sweep: a spacing of " + std::to_string(spacing) + " m is more than " +
                                 std::to_string(kLongestEdge) + " voxels");
 
-  const bool drives = robot.travel.motion == planner::Motion::kPlane;
+  const bool drives = robot.travel.drives();
   const Cell size(edge, edge, drives ? 1 : edge);
   const int lowest = drives ? lattice.key(start.position.z()).value() : first.z(),
             highest = drives ? lowest : last.z();

@@ -64,7 +64,7 @@ bool has_floor(const GroundTruth& truth, const VoxelKey& key) {
   return key.z > truth.bounds().min.z && !truth.open(make_key(key.x, key.y, key.z - 1), 2);
 }
 
-bool drives(const Robot& robot) { return robot.travel.motion == Motion::kPlane; }
+bool drives(const Robot& robot) { return robot.travel.drives(); }
 
 bool all_free(const GroundTruth& truth, const KeyBox& box) {
   return all_of(box, [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; });

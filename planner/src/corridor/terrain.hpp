@@ -1,0 +1,47 @@
+#pragma once
+
+#include "corridor/erosion.hpp"
+
+#include <frontlux/voxel_grid.hpp>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// Where what is known of the floor carries a robot.
+///
+/// A voxel of floor does if one near it is known to be the ground, and none under the robot is known to be a
+/// hole: free, with no ground a little above or below it.
+class Terrain {
+ public:
+  struct Options {
+    KeyBox box;                  ///< of the floor; beyond it is unknown
+    int half_x = 0, half_y = 0;  ///< [voxels] from the middle, within which there may be no hole
+    int reach = 1;               ///< [voxels] from the middle: ground has to be within it
+    int above = 0, below = 0;    ///< [voxels] along z: where there is ground, there is no hole
+    /// [voxels] How far ground may be below the middle. If it is not given, ground is any occupied voxel at
+    /// the height of the middle; else one on top of which none is occupied.
+    std::optional<int> gap = {};
+    std::vector<KeyBox> exempt = {};  ///< where floor need not be known
+  };
+  explicit Terrain(Options options);
+
+  void read(const VoxelGrid& grid);
+  void read(const VoxelGrid& grid, std::span<const VoxelKey> changed);
+
+  /// @param floor  the voxel below the middle of the robot
+  [[nodiscard]] bool carries(const VoxelKey& floor) const;
+
+ private:
+  void decide();
+
+  Options options_;
+  VoxelColumns free_, occupied_;
+  VoxelColumns closed_;  // no holes
+  VoxelColumns empty_;   // no ground
+  Erosion level_, bare_;
+};
+
+}  // namespace frontlux::planner::detail
