@@ -11,10 +11,18 @@ import numpy as np
 
 import frontlux
 
+try:
+    from frontlux import planner
+except ModuleNotFoundError:  # a build without it
+    planner = None
+
 SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 10
 SEED = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-KINDS = [value for value in vars(frontlux).values() if inspect.isclass(value) and not issubclass(value, int)]
+KINDS = [value for module in (frontlux, planner) if module is not None for value in vars(module).values()
+         if inspect.isclass(value) and not issubclass(value, int)]
 FUNCTIONS = [frontlux.best_window, frontlux.pinhole_directions, frontlux.instruction_set]
+if planner is not None:
+    FUNCTIONS += [planner.ugv, planner.uav]
 EXPECTED = (TypeError, ValueError, RuntimeError, MemoryError, OverflowError, AttributeError, ZeroDivisionError)
 
 
@@ -50,13 +58,17 @@ class Misuse:
             return self.array()
         if choose < 0.7 and self.objects:
             return self.random.choice(self.objects)
+        if choose < 0.72 and self.objects:
+            return [self.random.choice(self.objects) for _ in range(self.random.randrange(1, 3))]
         if choose < 0.75:
             names = ["stop", "state", "key", "end", "entry", "distance", "unknown", "free", "occupied", 3]
             return {self.random.choice(names): self.array() for _ in range(self.random.randrange(3))}
         return self.random.choice([None, True, 0, 1, -1, 2, 3, 7, 64, 2**31, 2**63, -2**63, 2**70, 0.1, 0.2, 0.5, 1.0, 1.5, -0.0,
                                    1e-300, 1e300, float("nan"), float("inf"), "block", "pass", "fast", "grid", "embree",
                                    "rays", "exact", "", "x\0y", b"bytes", (), (1, 2, 3), [0.0, 0.0, 1.0], [[1, 2], [3]],
-                                   (32768, 32768, 32768), (32700, 32700, 32760), object(), int, print, 1j, {}, range(3)])
+                                   (32768, 32768, 32768), (32700, 32700, 32760), (1.0, 1.0, 1.0, 0.5),
+                                   [[1.0, 1.0, 1.0, 0.0]], ((0.0, 0.0, 0.0), (3.0, 2.0, 2.0)), "plane", "space", "tour", "render",
+                                   lambda *_: None, lambda *_: (np.eye(3), np.ones(3)), object(), int, print, 1j, {}, range(3)])
 
     def arguments(self, function):
         """Of the right number, mostly; some by name."""
@@ -114,7 +126,24 @@ def first_objects():
     return [grid, frontlux.RayCaster(grid), frontlux.RayCaster(grid, "grid"), live, live.caster,
             live.insert(np.ones((5, 3)), (0, 0, 0)), *views, frontlux.FrontierSet(grid),
             *[frontlux.ViewQualityImage(0.2, view, "exact", azimuth_bins=4) for view in views],
-            *[frontlux.ViewQualityImage(0.2, view) for view in views]]
+            *[frontlux.ViewQualityImage(0.2, view) for view in views], *(first_explorations() if planner is not None else [])]
+
+
+def first_explorations():
+    """Some that have begun in a box of 3 x 2 x 2 m."""
+    robot = planner.Robot("robot", "space", (0.3, 0.3, 0.3), frontlux.FieldOfView.spinning(1.0, 2.0), 16, 8)
+    bounds, start = ((0.0, 0.0, 0.0), (3.0, 2.0, 2.0)), [[1.0, 1.0, 1.0, 0.0]]
+    directions = robot.view.directions(16, 8)
+    objects = [robot, planner.ContinuousExploration([robot], bounds, 0.2), planner.Exploration([robot], bounds, 0.2)]
+    for goal in ("tour", "render"):
+        exploration = planner.ContinuousExploration([robot], bounds, 0.2, goal)
+        step = exploration.begin(start)
+        exploration.insert(0, start[0], directions, np.full((8, 16), 0.7))
+        plan = exploration.plan(0.0)
+        objects += [exploration, step, plan, plan.trajectory]
+    lockstep = planner.Exploration([robot], bounds, 0.2)
+    lockstep.begin(start, lambda *_: (directions, np.full((8, 16), 0.7)))
+    return [*objects, lockstep]
 
 
 def run(misuse, end):
