@@ -20,7 +20,7 @@ struct Continuous {
   Team team;
   ContinuousExploration exploration;
   bool begun = false;
-  double time = 0.0;           // [s] the last that was given
+  double time = 0.0;          // [s] the last that was given
   std::size_t frontiers = 0;  // at the last planning
 
   explicit Continuous(Team given) : team(std::move(given)), exploration(team.options, Mapping(team.map)) {}
@@ -111,17 +111,17 @@ PlanPointer plan(const Self& self, double time) {
     auto planned = state.exploration.plan(time);
     if (!planned) return PlanPointer();
     state.frontiers = planned->step.frontiers;
-    return std::make_shared<Plan>(
-        Plan{planned->robot, std::string(name_of(planned->reason)),
-             std::make_shared<planner::Trajectory>(std::move(planned->trajectory)),
-             std::make_shared<ExplorationStep>(std::move(planned->step))});
+    return std::make_shared<Plan>(Plan{planned->robot, std::string(name_of(planned->reason)),
+                                       std::make_shared<planner::Trajectory>(std::move(planned->trajectory)),
+                                       std::make_shared<ExplorationStep>(std::move(planned->step))});
   });
 }
 
 // A property that `value(state)` is.
 template <class Value>
 auto property(Value value) {
-  return [value](const Self& self) { return self->use([&](const Continuous& state) { return value(state); }); };
+  return
+      [value](const Self& self) { return self->use([&](const Continuous& state) { return value(state); }); };
 }
 
 void bind_plan(py::module_& module) {
@@ -138,7 +138,8 @@ void bind_plan(py::module_& module) {
           "To be followed from its begin on; until then, the one before.")
       .def_property_readonly(
           "step", [](const PlanPointer& self) { return self->step; },
-          "The Step since the planning before. Of its goals and tours that of the robot that planned is new.");
+          "The Step since the planning before. Of its goals and tours that of the robot that planned is "
+          "new.");
 }
 
 }  // namespace
@@ -240,27 +241,25 @@ blocked: uint16 (..., 3), cells that it could not enter; None: the one that it i
           [](const Self& self, const std::filesystem::path& file) {
             self->use([&](const Continuous& state) { state.exploration.mapping().write(file); });
           },
-          py::arg("file"), "Writes the map as an OctoMap file: all log-odds to .ot, free and occupied only to .bt.")
-      .def_property_readonly(
-          "robots", property([](const Continuous& state) { return state.team.robots; }),
-          "As given: list of Robot.")
+          py::arg("file"),
+          "Writes the map as an OctoMap file: all log-odds to .ot, free and occupied only to .bt.")
+      .def_property_readonly("robots", property([](const Continuous& state) { return state.team.robots; }),
+                             "As given: list of Robot.")
       .def_property_readonly("time", property([](const Continuous& state) { return state.time; }),
                              "[s] The latest time that was given.")
       .def_property_readonly(
-          "end",
-          property([](const Continuous& state) -> std::optional<std::string> {
+          "end", property([](const Continuous& state) -> std::optional<std::string> {
             const auto end = state.exploration.end();
             return end ? std::optional(std::string(name_of(*end))) : std::nullopt;
           }),
           "Why it is over: 'nothing_to_do', 'low_gain', 'step_limit' or 'cut_off'; None while it goes on.")
-      .def_property_readonly(
-          "end_reason",
-          property([](const Continuous& state) -> std::optional<std::string> {
-            const auto end = state.exploration.end();
-            if (!end) return std::nullopt;
-            return describe(*end, state.exploration.options(), "plannings");
-          }),
-          "The same in words.")
+      .def_property_readonly("end_reason",
+                             property([](const Continuous& state) -> std::optional<std::string> {
+                               const auto end = state.exploration.end();
+                               if (!end) return std::nullopt;
+                               return describe(*end, state.exploration.options(), "plannings");
+                             }),
+                             "The same in words.")
       .def_property_readonly(
           "grid", property([](const Continuous& state) {
             return std::make_shared<Guarded<VoxelGrid>>(state.exploration.mapping().grid());

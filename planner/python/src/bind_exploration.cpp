@@ -32,7 +32,8 @@ class LockStep {
     const py::gil_scoped_release others_run;
     const std::lock_guard lock(mutex_);
     if (broken_)
-      throw std::runtime_error("the exploration is unfinished, since drive raised an exception; make a new one");
+      throw std::runtime_error(
+          "the exploration is unfinished, since drive raised an exception; make a new one");
     return use(exploration_);
   }
 

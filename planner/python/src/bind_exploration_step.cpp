@@ -50,9 +50,8 @@ py::array_t<double> goals(const Self& self) {
 }  // namespace
 
 void bind_exploration_step(py::module_& module) {
-  py::class_<ExplorationStep, Self>(
-      module, "Step",
-      R"(What a team of r robots planned, did and mapped between two moments.
+  py::class_<ExplorationStep, Self>(module, "Step",
+                                    R"(What a team of r robots planned, did and mapped between two moments.
 
 Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
       .def_property_readonly(
@@ -62,12 +61,12 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
       .def_property_readonly(
           "frontiers", [](const Self& self) { return self->frontiers; }, "In the map when it was planned.")
       .def_property_readonly(
-          "unassigned", [](const Self& self) { return self->unassigned; },
-          "Frontiers that no robot can see.")
+          "unassigned", [](const Self& self) { return self->unassigned; }, "Frontiers that no robot can see.")
       .def_property_readonly(
           "abandoned", [](const Self& self) { return self->abandoned; },
           "Frontiers no longer tried, since they stay unknown when looked at.")
-      .def_property_readonly("rays", [](const Self& self) { return self->rays; }, "Cast to plan it.")
+      .def_property_readonly(
+          "rays", [](const Self& self) { return self->rays; }, "Cast to plan it.")
       .def_property_readonly("goals", &goals, "float64 (r, 4): the robots' goals; NaN where there is none.")
       .def_property_readonly(
           "goal_states",
@@ -97,7 +96,8 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
             for (const RobotStep& robot : self->robots) tours.push_back(tour_of(robot));
             return tours;
           },
-          "r dicts: where each robot that planned means to look from, in order: pose, float64 (n, 4); clusters "
+          "r dicts: where each robot that planned means to look from, in order: pose, float64 (n, 4); "
+          "clusters "
           "and frontiers, int64 (n,), that it sees from there.")
       .def_property_readonly("travelled",
                              of_robots<std::int64_t>([](const RobotStep& robot) { return robot.travelled; }),
@@ -116,7 +116,8 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
               seconds[py::str(std::string(name_of(static_cast<planner::Phase>(i))))] = self->seconds[i];
             return seconds;
           },
-          "A dict of what it took on this machine [s]: frontiers, caster, goals, paths, optimization, moving.");
+          "A dict of what it took on this machine [s]: frontiers, caster, goals, paths, optimization, "
+          "moving.");
 }
 
 }  // namespace frontlux::python

@@ -37,7 +37,8 @@ Eigen::Matrix<double, kSize, 1> edges_of(const char* name, const py::object& obj
     throw py::value_error(std::string(name) + ": has to be of shape (" + std::to_string(kSize) + ",)");
   Eigen::Matrix<double, kSize, 1> edges;
   for (std::size_t i = 0; i < kSize; ++i)
-    edges[static_cast<Eigen::Index>(i)] = within(name, numbers.number(0, i), 0.01, 100.0, "m along each axis");
+    edges[static_cast<Eigen::Index>(i)] =
+        within(name, numbers.number(0, i), 0.01, 100.0, "m along each axis");
   return edges;
 }
 
@@ -83,13 +84,12 @@ void bind_robot(py::module_& module) {
       R"(A robot: its body, its sensor and its limits. Its pose is that of its sensor: in space the middle of its body.
 
 docs/robots.md says more of each value.)")
-      .def(
-          py::init(&make), py::arg("name"), py::arg("motion"), py::arg("box"), py::arg("view"),
-          py::arg("columns"), py::arg("rows"), py::arg("rate") = 10.0, py::arg("margin") = 0.0,
-          py::arg("sensor_height") = 0.75, py::arg("require_ground") = true, py::arg("ground") = py::none(),
-          py::arg("min_height") = py::none(), py::arg("speed") = 1.0, py::arg("acceleration") = 2.0,
-          py::arg("yaw_rate") = std::numbers::pi / 3, py::arg("per_axis") = false,
-          R"(A robot of these values.
+      .def(py::init(&make), py::arg("name"), py::arg("motion"), py::arg("box"), py::arg("view"),
+           py::arg("columns"), py::arg("rows"), py::arg("rate") = 10.0, py::arg("margin") = 0.0,
+           py::arg("sensor_height") = 0.75, py::arg("require_ground") = true, py::arg("ground") = py::none(),
+           py::arg("min_height") = py::none(), py::arg("speed") = 1.0, py::arg("acceleration") = 2.0,
+           py::arg("yaw_rate") = std::numbers::pi / 3, py::arg("per_axis") = false,
+           R"(A robot of these values.
 
 name: in messages. motion: 'plane', on the floor that it starts on, or 'space'. box: (3,) [m] its body along x, y and z,
 whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
@@ -107,25 +107,24 @@ Raises ValueError naming the value that is out of bounds.)")
           },
           py::arg("file"),
           "A robot of a JSON file. Raises RuntimeError naming the file and the value that is wrong.")
-      .def_property_readonly("name", [](const Self& self) { return self->robot.name; }, "As in messages.")
+      .def_property_readonly(
+          "name", [](const Self& self) { return self->robot.name; }, "As in messages.")
       .def_property_readonly(
           "motion",
-          [](const Self& self) {
-            return self->robot.travel.motion == Motion::kPlane ? "plane" : "space";
-          },
+          [](const Self& self) { return self->robot.travel.motion == Motion::kPlane ? "plane" : "space"; },
           "'plane' or 'space'.")
       .def_property_readonly(
-          "box",
-          [](const Self& self) {
-            return py::array_t<double>(3, self->robot.travel.extents.data());
-          },
+          "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },
           "float64 (3,): [m] its body along x, y and z.")
       .def_property_readonly(
           "view", [](const Self& self) { return std::make_shared<FieldOfView>(self->robot.view); },
           "What its sensor sees.")
-      .def_property_readonly("columns", [](const Self& self) { return self->columns; }, "Of a scan's rays.")
-      .def_property_readonly("rows", [](const Self& self) { return self->rows; }, "Of a scan's rays.")
-      .def_property_readonly("rate", [](const Self& self) { return self->rate; }, "[1/s] of scans in motion.")
+      .def_property_readonly(
+          "columns", [](const Self& self) { return self->columns; }, "Of a scan's rays.")
+      .def_property_readonly(
+          "rows", [](const Self& self) { return self->rows; }, "Of a scan's rays.")
+      .def_property_readonly(
+          "rate", [](const Self& self) { return self->rate; }, "[1/s] of scans in motion.")
       .def_property_readonly(
           "speed", [](const Self& self) { return self->robot.limits.speed; }, "[m/s] at most.")
       .def_property_readonly(
@@ -135,11 +134,13 @@ Raises ValueError naming the value that is out of bounds.)")
           "yaw_rate", [](const Self& self) { return self->robot.limits.yaw_rate; }, "[rad/s] at most.");
   module.def(
       "ugv", [] { return std::make_shared<RobotDescription>(planner::ugv_description()); },
-      "The paper's ground robot: 1.0 x 1.0 x 0.7 m, 1 m/s, a lidar of 40 degrees that sees 6 m far, 32 x 720 rays, 10 "
+      "The paper's ground robot: 1.0 x 1.0 x 0.7 m, 1 m/s, a lidar of 40 degrees that sees 6 m far, 32 x 720 "
+      "rays, 10 "
       "scans a second.");
   module.def(
       "uav", [] { return std::make_shared<RobotDescription>(planner::uav_description()); },
-      "The paper's aerial robot: a cube of 0.8 m, 1.5 m/s, a depth camera of 90 x 72 degrees that sees 10 m far, 160 x "
+      "The paper's aerial robot: a cube of 0.8 m, 1.5 m/s, a depth camera of 90 x 72 degrees that sees 10 m "
+      "far, 160 x "
       "120 pixels, 15 scans a second.");
 }
 

@@ -21,7 +21,8 @@ whoever explores.)")
       .def(
           "at",
           [](const Self& self, const py::object& times) {
-            return motion_arrays(times, [&](const auto& fill) { fill([&](double time) { return self->at(time); }); });
+            return motion_arrays(
+                times, [&](const auto& fill) { fill([&](double time) { return self->at(time); }); });
           },
           py::arg("times"),
           R"(Where the robot is at some times, and how it moves.
