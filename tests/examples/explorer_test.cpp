@@ -2,7 +2,7 @@
 
 #include "explorer.hpp"
 
-#include "support/test.hpp"
+#include "support/complaint.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/sensor_rays.hpp>

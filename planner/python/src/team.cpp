@@ -19,7 +19,7 @@ KeyBox given_bounds(const Lattice& lattice, const py::object& object) {
     return Eigen::Vector3d(bounds.number(i, 0), bounds.number(i, 1), bounds.number(i, 2));
   };
   if (!corner(0).allFinite() || !corner(1).allFinite()) throw py::value_error("bounds: not finite");
-  return voxels_of(lattice, {corner(0), corner(1)});
+  return planner::voxels_of(lattice, {corner(0), corner(1)});
 }
 
 // Nothing for tours, which only robots in motion make, and for what the method says.
@@ -122,7 +122,7 @@ std::vector<ExplorationStart> starts_of(const Team& team, const py::object& obje
     KeyBox box = body;
     if (free_radius > 0.0) {
       const Eigen::Vector3d reach = Eigen::Vector3d::Constant(free_radius);
-      box = hull(body, voxels_of(lattice, {at - reach, at + reach}));
+      box = hull(body, planner::voxels_of(lattice, {at - reach, at + reach}));
     }
     if (size_of(box) > kMostVoxels)
       throw py::value_error("free_radius: a box of " + std::to_string(size_of(box)) +
