@@ -1,78 +1,70 @@
-"""Writes the reference of the Python modules, as a page for Doxygen: python_reference.py PAGE.md
+"""Writes the reference of the Python modules as a page for Doxygen: python_reference.py PAGE.md
 
-Fails, and names them, if public names have no docstring."""
+Names and types are those of the stubs, words those of the docstrings; fails, and names them, if there are names without any."""
+import ast
 import inspect
 import pathlib
 import sys
-import types
 
 import frontlux
 import frontlux.planner
 
 
-def names_of(module):
-    """The public names that a module defines or hands on from its extension."""
-    return [name for name, value in sorted(vars(module).items())
-            if not name.startswith("_") and not isinstance(value, types.ModuleType) and
-            getattr(value, "__module__", module.__name__).startswith("frontlux")]
+def heading(node):
+    """`name(arguments) -> type`, or `name -> type` of a property."""
+    if isinstance(node, ast.ClassDef):
+        return node.name
+    result = f" -> {ast.unparse(node.returns)}" if node.returns is not None and node.name != "__init__" else ""
+    if any(isinstance(decorator, ast.Name) and decorator.id == "property" for decorator in node.decorator_list):
+        return node.name + result
+    node.args.args = [argument for argument in node.args.args if argument.arg != "self"]
+    return f"{node.name}({ast.unparse(node.args)}){result}"
 
 
-def split(value):
-    """(signature, text) of a docstring. pybind11 writes the signature into the first line."""
+def block(title, text):
+    return f"\n~~~{{.unparsed}}\n{title}\n\n" + "".join(f"    {line}".rstrip() + "\n" for line in text.splitlines()) + "~~~\n"
+
+
+def words(value):
+    """A docstring, without the signature that pybind11 writes into its first line."""
     text = inspect.getdoc(value) or ""
     first, _, rest = text.partition("\n")
-    if "(" in first and " -> " in first:
-        signature = first.split(" -> ")[0].split("(", 1)[1].removeprefix("self: ")
-        begin = signature.find(", ") if "." in signature.split(",")[0] and ":" not in signature.split(",")[0] else -1
-        return f"({signature[begin + 2:] if begin >= 0 else signature}", rest.strip()
-    if inspect.isfunction(value):
-        return str(inspect.signature(value)), text
-    return "", text
+    return rest.strip() if "(" in first and " -> " in first else text
 
 
-def block(text):
-    return f"\n~~~{{.unparsed}}\n{text}\n~~~\n" if text else ""
-
-
-def members_of(kind):
-    return [(name, member) for name, member in sorted(vars(kind).items())
-            if (name == "__init__" or not name.startswith("_")) and
-            (callable(member) or isinstance(member, (property, staticmethod)))]
-
-
-def describe(module, missing):
-    lines = [f"\n## {module.__name__}\n", block(inspect.getdoc(module))]
-    for name in names_of(module):
-        value = getattr(module, name)
-        signature, text = split(value) if not inspect.isclass(value) else ("", inspect.getdoc(value))
-        lines += [f"\n### {module.__name__}.{name}\n", block(f"{name}{signature}\n\n{text}" if signature else text)]
-        if not value.__doc__:
-            missing.append(f"{module.__name__}.{name}")
-        if not inspect.isclass(value) or issubclass(value, int):
-            if inspect.isclass(value):
-                lines.append(block("\n".join(f"{member.name} = {member.value}" for member in value)))
+def pages_of(module, missing):
+    stub = ast.parse((pathlib.Path(module.__file__).parent / "__init__.pyi").read_text(encoding="utf-8"))
+    lines = [f"\n## {module.__name__}\n\n{inspect.getdoc(module)}\n"]
+    for node in stub.body:
+        if not isinstance(node, (ast.ClassDef, ast.FunctionDef)):
             continue
-        for member_name, _ in members_of(value):
-            member = inspect.getattr_static(value, member_name)
-            member = member if isinstance(member, property) else getattr(value, member_name)
-            signature, text = split(member)
+        value = getattr(module, node.name)
+        constants = [ast.unparse(member) for member in getattr(node, "body", []) if isinstance(member, ast.Assign)]
+        text = "\n".join([words(value), *([""] if constants else []), *constants])
+        lines.append(f"\n### {module.__name__}.{node.name}\n" + block(heading(node), text))
+        if not words(value):
+            missing.append(f"{module.__name__}.{node.name}")
+        if isinstance(node, ast.FunctionDef):
+            continue
+        for member in node.body:
+            if not isinstance(member, ast.FunctionDef) or (member.name.startswith("__") and member.name != "__init__"):
+                continue
+            text = words(inspect.getattr_static(value, member.name)) or words(getattr(value, member.name))
+            title = heading(member)
+            lines.append(block(title.replace("__init__", node.name, 1) if member.name == "__init__" else title, text))
             if not text:
-                missing.append(f"{module.__name__}.{name}.{member_name}")
-            title = name if member_name == "__init__" else f"{name}.{member_name}"
-            lines.append(block(f"{title}{signature}\n\n" + "\n".join("    " + line for line in text.splitlines())))
+                missing.append(f"{module.__name__}.{node.name}.{member.name}")
     return lines
 
 
 def main():
     missing = []
-    lines = ["# Python reference {#python_reference}\n",
-             "Made from the docstrings, which `help(frontlux)` and `help(frontlux.planner)` show, too. "
-             "[Python](@ref docs/python.md) has examples.\n"]
-    for module in (frontlux, frontlux.planner):
-        lines += describe(module, missing)
+    pages = [page for module in (frontlux, frontlux.planner) for page in pages_of(module, missing)]
     if missing:
         sys.exit("these public names have no docstring: " + ", ".join(missing))
-    pathlib.Path(sys.argv[1]).write_text("".join(lines))
+    pathlib.Path(sys.argv[1]).write_text(
+        "# Python reference {#python_reference}\n\nMade from the docstrings, which `help(frontlux)` and `help(frontlux.planner)` show, "
+        "too. Examples are in docs/python.md.\n" + "".join(pages), encoding="utf-8")
 
 
 if __name__ == "__main__":
