@@ -2,7 +2,10 @@
 import functools
 import os
 import pathlib
+import shutil
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -385,6 +388,15 @@ class Refusals(unittest.TestCase):
 class Module(unittest.TestCase):
     def test_everything_is_documented_and_typed(self):
         public_names.expect_documented_and_typed(self, planner)
+
+    def test_the_package_can_be_moved(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(pathlib.Path(frontlux.__file__).parent, os.path.join(folder, "frontlux"))
+            maps = subprocess.run([sys.executable, "-c", "import frontlux.planner; print(open('/proc/self/maps').read())"],
+                                  env={**os.environ, "PYTHONPATH": folder}, check=True, capture_output=True, text=True).stdout
+            ours = {line.split()[-1] for line in maps.splitlines() if "frontlux" in line}
+            self.assertGreater(len(ours), 1)
+            self.assertEqual([file for file in ours if not file.startswith(folder)], [])
 
 
 if __name__ == "__main__":
