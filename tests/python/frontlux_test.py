@@ -286,9 +286,11 @@ class Module(unittest.TestCase):
 
     def test_import_is_quick(self):
         def seconds(code):
-            begin = time.perf_counter()
+            """Of processors: the clock would count what else runs on this machine."""
+            begin = os.times()
             subprocess.run([sys.executable, "-c", code], check=True)
-            return time.perf_counter() - begin
+            end = os.times()
+            return end.children_user + end.children_system - begin.children_user - begin.children_system
         with_us, without = ([seconds(code) for _ in range(5)] for code in ("import frontlux", "pass"))
         took = min(with_us) - min(without)
         print(f"import frontlux: {1e3 * took:.0f} ms")
