@@ -57,8 +57,11 @@ ExplorationStart start_of(const Pose& pose, const Lattice& lattice, const Travel
 Explorer::Explorer(Options options) : options_(std::move(options)) {
   options_.robot.check();
   static_cast<void>(Lattice(options_.resolution));  // refuses what is no length
-  if (!(options_.reach.minCoeff() > 0.0)) throw std::invalid_argument("reach has to be above 0 m");
-  if (!(options_.free_radius >= 0.0)) throw std::invalid_argument("free_radius has to be 0 m or more");
+  if (!(options_.reach.array() > 0.0).all() || !options_.reach.allFinite())
+    throw std::invalid_argument("reach has to be above 0 m");
+  constexpr double kWidest = 10.0;  // [m]
+  if (!(options_.free_radius >= 0.0 && options_.free_radius <= kWidest))
+    throw std::invalid_argument("free_radius has to be 0 to 10 m");
 }
 
 void Explorer::begin(double time, const Pose& pose) {
