@@ -113,7 +113,8 @@ std::optional<std::vector<Explorer::Waypoint>> Explorer::insert(double time,
 
 void Explorer::stopped(double time, const Eigen::Isometry3d& T_map_sensor) {
   if (!exploration_) throw std::invalid_argument("there was no scan yet");
-  exploration_->stopped(0, upright(T_map_sensor), std::max(time, time_), {});
+  time_ = std::max(time, time_);
+  exploration_->stopped(0, upright(T_map_sensor), time_, {});
 }
 
 std::optional<std::string> Explorer::end() const {
