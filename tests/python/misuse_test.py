@@ -1,5 +1,6 @@
 """Calls everything in the Python module at random, with arguments that fit and that do not: exceptions are answers,
 a crash is none. misuse_test.py [SECONDS [SEED]]"""
+import collections
 import inspect
 import random
 import sys
@@ -29,7 +30,9 @@ EXPECTED = (TypeError, ValueError, RuntimeError, MemoryError, OverflowError, Att
 class Misuse:
     def __init__(self, seed, objects):
         self.random, self.numpy, self.objects = random.Random(seed), np.random.default_rng(seed), objects
-        self.calls = self.answers = 0
+        self.kept = len(objects)
+        self.time = 0.0  # of the planner's clocks
+        self.calls, self.answers = 0, collections.Counter()
 
     def array(self):
         shape = self.random.choice([(), (3,), (0, 3), (7, 3), (7, 3), (7,), (2, 5, 3), (4, 4), (3, 3), (3, 4, 5), (7, 2)])
@@ -70,19 +73,42 @@ class Misuse:
                                    [[1.0, 1.0, 1.0, 0.0]], ((0.0, 0.0, 0.0), (3.0, 2.0, 2.0)), "plane", "space", "tour", "render",
                                    lambda *_: None, lambda *_: (np.eye(3), np.ones(3)), object(), int, print, 1j, {}, range(3)])
 
+    def fitting(self, name):
+        """What may well be taken for an argument of this name."""
+        self.time += self.random.choice([0.0, 0.1, 0.5])
+        pose = np.array([self.random.uniform(0.3, 2.7), self.random.uniform(0.3, 1.7), 1.0, self.random.uniform(-9, 9)])
+        directions = frontlux.FieldOfView.spinning(1.0, 2.0).directions(16, 8)
+        values = {"robot": 0, "pose": pose, "time": self.time, "times": self.time + self.numpy.uniform(-1, 3, 5),
+                  "directions": directions, "ranges": self.numpy.uniform(0.1, 3, (8, 16)), "starts": pose[None], "blocked": None,
+                  "points": self.numpy.normal(size=(50, 3)), "free_radius": 0.3, "bounds": ((0.0, 0.0, 0.0), (3.0, 2.0, 2.0)),
+                  "resolution": 0.2, "method": "default", "goal": self.random.choice(["render", "nearest"]), "latency": 0.1,
+                  "seed": 1, "period": 1.0, "epsilon": None, "max_steps": None,
+                  "drive": lambda *_: (directions, self.numpy.uniform(0.1, 3, (8, 16)))}
+        places, keys = self.numpy.uniform(0, 2, (2, 7, 3)), self.numpy.integers(32768, 32780, (7, 3)).astype(np.uint16)
+        values |= {"origins": pose[:3], "origin": pose[:3], "max_range": 2.0, "unknown": self.random.choice(["block", "pass"]),
+                   "from_points": places[0], "to_points": places[1], "out": None, "keys": keys, "viewpoints": keys, "targets": keys,
+                   "renderer": "rays", "samples": 10, "azimuth_bins": 4, "kind": "fast", "columns": 4, "rows": 3}
+        kinds = {"grid": "VoxelGrid", "caster": "RayCaster", "change": "MapChange", "view": "FieldOfView",
+                 "field_of_view": "FieldOfView", "robots": "Robot"}
+        if name in kinds:
+            fitting = [one for one in self.objects if type(one).__name__ == kinds[name]]
+            return fitting[:1] if name == "robots" else self.random.choice(fitting)
+        return values[name] if name in values else self.value()
+
     def arguments(self, function):
         """Of the right number, mostly; some by name."""
         signature = (function.__doc__ or "").split("\n")[0]
         names = [part.split(":")[0].strip() for part in signature[signature.find("(") + 1:].split(",") if ":" in part]
         names = [name for name in names if name.isidentifier() and (name != "self" or not inspect.ismethod(function))]
-        values = [self.value() for _ in names]
+        wild = self.random.choice([0.0, 0.2, 1.0])
+        values = [self.value() if self.random.random() < wild else self.fitting(name) for name in names]
         if self.random.random() < 0.1:
             return [self.value() for _ in range(self.random.randrange(6))], {}
         kept = len(names) if self.random.random() < 0.7 else self.random.randrange(len(names) + 1)
         return values[:kept], dict(zip(names[kept:], values[kept:])) if self.random.random() < 0.3 else {}
 
     def step(self):
-        choose = self.random.random()
+        choose, label = self.random.random(), ""
         if choose < 0.1:
             kind = self.random.choice(KINDS)
             made = kind.__new__(kind) if self.random.random() < 0.2 else None
@@ -92,7 +118,8 @@ class Misuse:
             function = self.random.choice(FUNCTIONS)
             args, kwargs = self.arguments(function)
         else:
-            one = self.random.choice(self.objects)
+            kind = self.random.choice(KINDS)
+            one = self.random.choice([one for one in self.objects if type(one) is kind] or self.objects)
             name = self.random.choice([n for n in dir(type(one)) if not n.startswith("__") or
                                        n in ("__eq__", "__len__", "__init__", "__copy__")])
             if name == "write":
@@ -102,17 +129,17 @@ class Misuse:
             if not callable(member):
                 self.keep(member)
                 return
-            function = member
+            function, label = member, f"{type(one).__name__}.{name}"
             args, kwargs = self.arguments(member)
         self.calls += 1
         result = function(*args, **kwargs)
-        self.answers += 1
+        self.answers[label] += 1
         self.keep(result)
 
     def keep(self, result):
         if isinstance(result, tuple(KINDS)):
             if len(self.objects) > 200:
-                self.objects[self.random.randrange(20, 200)] = result
+                self.objects[self.random.randrange(self.kept, 200)] = result
             else:
                 self.objects.append(result)
 
@@ -166,10 +193,14 @@ def main():
     run(users[0], end)
     for thread in threads:
         thread.join()
-    calls, answers = sum(user.calls for user in users), sum(user.answers for user in users)
+    calls, answered = sum(user.calls for user in users), sum((user.answers for user in users), collections.Counter())
+    answers = answered.total()
     print(f"{calls} calls, {answers} of them with an answer and no exception")
-    if not calls > answers > calls / 100:
-        sys.exit("that tests nothing")
+    wanted = ["RayCaster.cast", "LiveMap.insert"]
+    if planner is not None:
+        wanted += ["ContinuousExploration.insert", "ContinuousExploration.plan", "Exploration.step", "Trajectory.at"]
+    if not calls > answers > calls / 100 or not all(answered[name] for name in wanted):
+        sys.exit(f"that tests nothing: {answered}")
 
 
 if __name__ == "__main__":
