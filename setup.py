@@ -3,6 +3,7 @@ environment asks for frontlux.planner, too."""
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -20,6 +21,8 @@ class CMakeBuild(build_ext):
     def run(self):
         package = pathlib.Path(self.get_ext_fullpath(self.extensions[0].name)).resolve().parent
         build = pathlib.Path(self.build_temp).resolve()
+        for left in [package / "planner", *package.glob("libfrontlux_*")] if not PLANNER else []:
+            shutil.rmtree(left) if left.is_dir() else left.unlink(missing_ok=True)  # by a build with the planner
         options = {"CMAKE_BUILD_TYPE": "Release", "FRONTLUX_BUILD_PYTHON": "ON",
                    "FRONTLUX_BUILD_PLANNER": "ON" if PLANNER else "OFF", "FRONTLUX_BUILD_COMMAND": "OFF",
                    "FRONTLUX_BUILD_TESTS": "OFF", "FRONTLUX_BUILD_BENCH": "OFF", "FRONTLUX_INSTALL": "OFF",
