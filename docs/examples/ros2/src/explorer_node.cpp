@@ -4,6 +4,7 @@
 
 #include <frontlux/io/robot_file.hpp>
 
+#include <geometry_msgs/msg/pose_stamped.hpp>
 #include <nav_msgs/msg/path.hpp>
 #include <octomap/OcTree.h>
 #include <octomap_msgs/conversions.h>
