@@ -49,7 +49,8 @@ function(frontlux_compile_together name first)
   endif()
 endfunction()
 
-# frontlux_shared_twin(NAME): the shared library frontlux_NAME_shared of the same objects, for the tests of what leaves it.
+# frontlux_shared_twin(NAME): the shared library frontlux_NAME_shared of the same objects as a static one: for the tests of
+# what leaves it, and for the modules of Python, which have to share one engine (docs/architecture.md).
 function(frontlux_shared_twin name)
   add_library(frontlux_${name}_shared SHARED $<TARGET_OBJECTS:frontlux_${name}>)
   get_target_property(linked frontlux_${name} LINK_LIBRARIES)
@@ -70,7 +71,8 @@ function(frontlux_install name export)
     install(TARGETS frontlux_${name} EXPORT ${export})
     install(DIRECTORY include/frontlux DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   endif()
-  if(FRONTLUX_BUILD_TESTS)
+  get_target_property(type frontlux_${name} TYPE)
+  if(type STREQUAL STATIC_LIBRARY AND (FRONTLUX_BUILD_TESTS OR (FRONTLUX_BUILD_PYTHON AND FRONTLUX_BUILD_PLANNER)))
     frontlux_shared_twin(${name})
   endif()
 endfunction()

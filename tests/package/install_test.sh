@@ -100,9 +100,11 @@ g++ -std=c++20 -O2 "$sources/tests/consumer/planner/main.cpp" -o "$work/by_pkg_c
   $(pkg-config --cflags --libs "frontlux-planner >= 0.1")
 "$work/by_pkg_config" "$room"
 
-say "python3-frontlux: the example"
+say "python3-frontlux: two examples"
 python3 "$sources/docs/examples/next_best_view.py" "$room" | tee "$work/python.log"
 grep -qx 'scan 6: 374873 voxels free, 41848 frontiers' "$work/python.log" || fail "the example prints something else"
+python3 "$sources/docs/examples/explore_room.py" "$room" "$work/explored.bt" | tee "$work/python.log"
+grep -q '^99.* % of the room' "$work/python.log" || fail "the exploration in Python ended early"
 
 say "purging"
 purge

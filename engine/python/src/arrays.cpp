@@ -1,4 +1,4 @@
-#include "arrays.hpp"
+#include <frontlux/python/arrays.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
 #include <frontlux/frontier_set.hpp>
+#include <frontlux/python/arrays.hpp>
 
 namespace frontlux::python {
 namespace {

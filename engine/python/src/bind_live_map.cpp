@@ -1,7 +1,8 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
+#include <frontlux/live_map.hpp>
 #include <frontlux/octomap.hpp>
+#include <frontlux/python/arrays.hpp>
 
 #include <Eigen/Geometry>
 #include <octomap/ColorOcTree.h>
@@ -48,7 +49,7 @@ ChangePointer insert(const Self& self, const Numbers& points, const Eigen::Affin
         },
         map.tree);
     const MapChange change = map.live.update();
-    return ChangePointer(new Change{change.grid, {change.keys.begin(), change.keys.end()}});
+    return ChangePointer(new Change(change));
   });
 }
 

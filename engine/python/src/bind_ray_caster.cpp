@@ -1,7 +1,7 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
 #include <frontlux/parallel.hpp>
+#include <frontlux/python/arrays.hpp>
 
 #include <pybind11/stl.h>
 

@@ -1,6 +1,6 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
+#include <frontlux/python/arrays.hpp>
 #include <frontlux/sensor_rays.hpp>
 
 namespace frontlux::python {

@@ -1,6 +1,6 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
+#include <frontlux/python/arrays.hpp>
 #include <frontlux/view_quality.hpp>
 
 #include <pybind11/stl.h>

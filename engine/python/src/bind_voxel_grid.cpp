@@ -1,8 +1,8 @@
-#include "arrays.hpp"
 #include "bindings.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/parallel.hpp>
+#include <frontlux/python/arrays.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

@@ -1,31 +1,8 @@
 #pragma once
 
-#include "guarded.hpp"
-
-#include <frontlux/field_of_view.hpp>
-#include <frontlux/live_map.hpp>
-#include <frontlux/ray_caster.hpp>
-#include <frontlux/voxel_grid.hpp>
-
-#include <memory>
-#include <mutex>
-#include <vector>
+#include <frontlux/python/objects.hpp>
 
 namespace frontlux::python {
-
-/// A caster of its own, or that of a live map, which alone updates it.
-struct Caster {
-  std::shared_ptr<const RayCaster> answers;
-  std::shared_ptr<RayCaster> own{};
-  std::mutex updating{};
-};
-
-/// A `MapChange` that lasts.
-struct Change {
-  VoxelGrid grid;
-  std::vector<VoxelKey> keys;
-  [[nodiscard]] MapChange change() const { return {grid, keys}; }
-};
 
 void bind_voxel_grid(py::module_& module);
 void bind_ray_caster(py::module_& module);
@@ -35,13 +12,3 @@ void bind_frontier_set(py::module_& module);
 void bind_view_quality(py::module_& module);
 
 }  // namespace frontlux::python
-
-template <>
-class pybind11::detail::type_caster<std::shared_ptr<frontlux::python::Caster>>
-    : public SomeObject<frontlux::python::Caster> {};
-template <>
-class pybind11::detail::type_caster<std::shared_ptr<frontlux::python::Change>>
-    : public SomeObject<frontlux::python::Change> {};
-template <>
-class pybind11::detail::type_caster<std::shared_ptr<frontlux::FieldOfView>>
-    : public SomeObject<frontlux::FieldOfView> {};

@@ -1,0 +1,37 @@
+// castRay replaced, one by one and in a batch, in a map that grows; compared with OctoMap's: drop_in MAP.bt
+#include <frontlux/octomap.hpp>
+
+#include <octomap/OcTree.h>
+
+#include <iostream>
+#include <vector>
+
+int main(int, char** arguments) {
+  octomap::OcTree tree(arguments[1]);
+  const octomap::point3d origin(2.0F, 2.0F, 1.0F), direction(1.0F, 0.7F, 0.1F), sensor(5.0F, 5.0F, 1.5F);
+  octomap::point3d end, theirs;
+  octomap::Pointcloud scan;
+  scan.push_back(5.0F, 3.0F, 1.5F);
+  std::vector<frontlux::Ray> rays;
+  for (int i = -500; i < 500; ++i)
+    rays.push_back({{2.0F, 2.0F, 1.0F}, {1.0F, 0.01F * static_cast<float>(i), 0.1F}, 30.0});
+  std::vector<frontlux::Hit> hits(rays.size());
+
+  const bool their_hit = tree.castRay(origin, direction, theirs, true, 30.0);
+
+  frontlux::OctreeRayCaster fast(tree);                               // of an octomap::OcTree or ColorOcTree
+  const bool hit = fast.castRay(origin, direction, end, true, 30.0);  // OctoMap's signature and its answer
+  fast.castRays(rays, hits, true);                                    // many rays on all cores
+  tree.insertPointCloud(scan, sensor);
+  fast.refresh();  // from here on, casts see the new map
+
+  fast.castRays(rays, hits, true);
+  std::size_t same = hit == their_hit && end == theirs ? 1 : 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const octomap::point3d along(rays[i].direction.x(), rays[i].direction.y(), rays[i].direction.z());
+    const bool theirs_hit = tree.castRay(origin, along, theirs, true, 30.0);
+    const bool same_end = frontlux::to_octomap(hits[i].key) == tree.coordToKey(theirs);
+    same += hits[i].occupied() == theirs_hit && same_end ? 1 : 0;
+  }
+  std::cout << same << " of " << rays.size() + 1 << " answers are castRay's\n";
+}

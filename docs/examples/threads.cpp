@@ -1,0 +1,49 @@
+// One thread inserts scans while another one casts, and never waits for it: threads MAP.bt
+#include <frontlux/live_map.hpp>
+#include <frontlux/sensor_rays.hpp>
+
+#include <octomap/OcTree.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+#include <thread>
+
+using namespace frontlux;
+
+int main(int, char** arguments) {
+  const OctreeRayCaster world(read_octree(arguments[1]));  // what the lidar sees
+  const auto directions = sensor_directions({FieldOfView::Shape::kSpinning, 0.0, 0.6, 12.0}, 720, 32);
+  octomap::OcTree tree(0.1);
+  LiveMap map(tree);
+  std::atomic<bool> sensing = true;
+
+  // The map belongs to this thread: it alone changes the tree and calls update.
+  std::thread sensor([&] {
+    for (int scan = 0; scan < 10; ++scan) {
+      const Eigen::Vector3d at(2.0 + 0.7 * scan, 2.0, 1.0);
+      std::vector<Hit> hits(directions.size());
+      world.castRays(rays_from(Eigen::Isometry3d(Eigen::Translation3d(at)), directions, 12.0), hits, true);
+      tree.insertPointCloud(to_pointcloud(hits), to_octomap(at.cast<float>()));
+      map.update();
+    }
+    sensing = false;
+  });
+
+  // This one casts meanwhile, on one core: each batch is answered from the map as it was when it began.
+  const RayCaster& caster = map.caster();
+  const auto rays = rays_from(Eigen::Isometry3d(Eigen::Translation3d(2.0, 2.0, 1.0)), directions);
+  std::vector<Hit> hits(rays.size());
+  tbb::task_arena one_core(1);
+  std::size_t batches = 0;
+  do {
+    one_core.execute([&] { caster.cast(rays, hits, UnknownPolicy::kBlock); });
+    ++batches;
+  } while (sensing);
+  sensor.join();
+
+  caster.cast(rays, hits, UnknownPolicy::kBlock);
+  std::cout << batches << " batches meanwhile; now " << std::ranges::count_if(hits, &Hit::occupied) << " of "
+            << hits.size() << " rays hit something\n";
+}

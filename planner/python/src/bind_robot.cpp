@@ -1,0 +1,147 @@
+#include "bindings.hpp"
+
+#include <frontlux/io/robot_file.hpp>
+#include <frontlux/python/arrays.hpp>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace frontlux::python {
+namespace {
+
+using planner::Motion, planner::RobotDescription, planner::TravelOptions;
+using Self = std::shared_ptr<RobotDescription>;
+using View = std::shared_ptr<FieldOfView>;
+
+constexpr std::size_t kMostRays = std::size_t{1} << 26;
+
+// The bounds are those of robots' files, which docs/robots.md names.
+double within(const char* name, double value, double low, double high, const char* unit) {
+  if (!(value >= low && value <= high))
+    throw py::value_error(std::string(name) + ": " + py::str(py::float_(value)).cast<std::string>() +
+                          ", but has to be " + py::str(py::float_(low)).cast<std::string>() + " to " +
+                          py::str(py::float_(high)).cast<std::string>() + " " + unit);
+  return value;
+}
+
+template <int kSize>
+Eigen::Matrix<double, kSize, 1> edges_of(const char* name, const py::object& object) {
+  const Numbers numbers(name, object, kSize);
+  if (!numbers.shape().empty())
+    throw py::value_error(std::string(name) + ": has to be of shape (" + std::to_string(kSize) + ",)");
+  Eigen::Matrix<double, kSize, 1> edges;
+  for (std::size_t i = 0; i < kSize; ++i)
+    edges[static_cast<Eigen::Index>(i)] =
+        within(name, numbers.number(0, i), 0.01, 100.0, "m along each axis");
+  return edges;
+}
+
+Self make(const std::string& name, const std::string& motion, const py::object& box, const View& view,
+          std::size_t columns, std::size_t rows, double rate, double margin, double sensor_height,
+          bool require_ground, const py::object& ground, std::optional<double> min_height, double speed,
+          double acceleration, double yaw_rate, bool per_axis) {
+  constexpr std::size_t kLongestName = 40;
+  if (name.empty() || name.size() > kLongestName)
+    throw py::value_error("name: has to have 1 to 40 characters");
+  if (motion != "plane" && motion != "space")
+    throw py::value_error("motion: '" + motion + "', but has to be 'plane' or 'space'");
+  RobotDescription robot;
+  robot.robot.name = name;
+  TravelOptions& travel = robot.robot.travel;
+  travel.motion = motion == "plane" ? Motion::kPlane : Motion::kSpace;
+  travel.extents = edges_of<3>("box", box);
+  travel.margin = within("margin", margin, 0.0, 100.0, "m");
+  travel.sensor_height = within("sensor_height", sensor_height, 0.0, 100.0, "m");
+  travel.require_ground = require_ground;
+  if (!ground.is_none()) travel.ground_extents = edges_of<2>("ground", ground);
+  travel.min_height = within("min_height", min_height.value_or(travel.extents.z() / 2), 0.0, 100.0, "m");
+  robot.robot.view = *view;
+  within("view.max_range", view->max_range, 0.01, 1000.0, "m");
+  if (columns < 1 || rows < 1 || columns > kMostRays || rows > kMostRays / columns)
+    throw py::value_error("columns, rows: " + std::to_string(columns) + " x " + std::to_string(rows) +
+                          " rays, but there have to be 1 to " + std::to_string(kMostRays));
+  robot.columns = columns;
+  robot.rows = rows;
+  robot.rate = within("rate", rate, 0.01, 10000.0, "scans a second");
+  robot.robot.limits = {within("speed", speed, 0.001, 1000.0, "m/s"),
+                        within("acceleration", acceleration, 0.001, 1000.0, "m/s^2"),
+                        within("yaw_rate", yaw_rate, 0.0001, 1000.0, "rad/s"), per_axis};
+  robot.robot.check();
+  return std::make_shared<RobotDescription>(robot);
+}
+
+}  // namespace
+
+void bind_robot(py::module_& module) {
+  py::class_<RobotDescription, Self>(
+      module, "Robot",
+      R"(A robot: its body, its sensor and its limits. Its pose is that of its sensor: in space the middle of its body.
+
+docs/robots.md says more of each value.)")
+      .def(py::init(&make), py::arg("name"), py::arg("motion"), py::arg("box"), py::arg("view"),
+           py::arg("columns"), py::arg("rows"), py::arg("rate") = 10.0, py::arg("margin") = 0.0,
+           py::arg("sensor_height") = 0.75, py::arg("require_ground") = true, py::arg("ground") = py::none(),
+           py::arg("min_height") = py::none(), py::arg("speed") = 1.0, py::arg("acceleration") = 2.0,
+           py::arg("yaw_rate") = std::numbers::pi / 3, py::arg("per_axis") = false,
+           R"(A robot of these values.
+
+name: in messages. motion: 'plane', on the floor that it starts on, or 'space'. box: (3,) [m] its body along x, y and z,
+whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
+margin: [m] kept free around the body, on a plane to its sides.
+On a plane: sensor_height: [m] above the floor; require_ground: it goes only where floor is known; ground: (2,) [m] along x
+and y, the area of the floor that must not be missing; None: all under the box.
+In space: min_height: [m] of its middle above the bottom of the bounds; None: half of its height.
+speed [m/s], acceleration [m/s^2], yaw_rate [rad/s]: at most; per_axis: speed and acceleration along x, y and z each.
+Raises ValueError naming the value that is out of bounds.)")
+      .def_static(
+          "read",
+          [](const std::filesystem::path& file) {
+            const py::gil_scoped_release others_run;
+            return std::make_shared<RobotDescription>(io::read_robot(file));
+          },
+          py::arg("file"),
+          "A robot of a JSON file. Raises RuntimeError naming the file and the value that is wrong.")
+      .def_property_readonly(
+          "name", [](const Self& self) { return self->robot.name; }, "As in messages.")
+      .def_property_readonly(
+          "motion",
+          [](const Self& self) { return self->robot.travel.motion == Motion::kPlane ? "plane" : "space"; },
+          "'plane' or 'space'.")
+      .def_property_readonly(
+          "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },
+          "float64 (3,): [m] its body along x, y and z.")
+      .def_property_readonly(
+          "view", [](const Self& self) { return std::make_shared<FieldOfView>(self->robot.view); },
+          "What its sensor sees.")
+      .def_property_readonly(
+          "columns", [](const Self& self) { return self->columns; }, "Of a scan's rays.")
+      .def_property_readonly(
+          "rows", [](const Self& self) { return self->rows; }, "Of a scan's rays.")
+      .def_property_readonly(
+          "rate", [](const Self& self) { return self->rate; }, "[1/s] of scans in motion.")
+      .def_property_readonly(
+          "speed", [](const Self& self) { return self->robot.limits.speed; }, "[m/s] at most.")
+      .def_property_readonly(
+          "acceleration", [](const Self& self) { return self->robot.limits.acceleration; },
+          "[m/s^2] at most.")
+      .def_property_readonly(
+          "yaw_rate", [](const Self& self) { return self->robot.limits.yaw_rate; }, "[rad/s] at most.");
+  module.def(
+      "ugv", [] { return std::make_shared<RobotDescription>(planner::ugv_description()); },
+      "The paper's ground robot: 1.0 x 1.0 x 0.7 m, 1 m/s, a lidar of 40 degrees that sees 6 m far, 32 x 720 "
+      "rays, 10 "
+      "scans a second.");
+  module.def(
+      "uav", [] { return std::make_shared<RobotDescription>(planner::uav_description()); },
+      "The paper's aerial robot: a cube of 0.8 m, 1.5 m/s, a depth camera of 90 x 72 degrees that sees 10 m "
+      "far, 160 x "
+      "120 pixels, 15 scans a second.");
+}
+
+}  // namespace frontlux::python

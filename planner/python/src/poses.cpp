@@ -1,0 +1,64 @@
+#include "poses.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace frontlux::python {
+namespace {
+
+using planner::Pose;
+
+Eigen::Isometry3d matrix_of(const char* name, const Numbers& numbers) {
+  Eigen::Isometry3d T_map_sensor;
+  for (Eigen::Index row = 0; row < 4; ++row)
+    for (Eigen::Index column = 0; column < 4; ++column)
+      T_map_sensor.matrix()(row, column) =
+          numbers.number(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+  constexpr double kRounding = 1e-4;
+  const Eigen::Matrix3d turn = T_map_sensor.linear();
+  if (!T_map_sensor.matrix().allFinite() || !(turn * turn.transpose()).isIdentity(kRounding) ||
+      turn.determinant() < 0.0)
+    throw py::value_error(std::string(name) + ": its upper left (3, 3) has to be a rotation");
+  return T_map_sensor;
+}
+
+void write(const Pose& pose, double* numbers) {
+  Eigen::Map<Eigen::Vector4d>(numbers) << pose.position, pose.yaw;
+}
+
+}  // namespace
+
+SensorPose sensor_pose(const char* name, const py::object& object, const Lattice& lattice) {
+  const Numbers numbers(name, object, 4);
+  SensorPose pose;
+  if (numbers.shape() == Shape{4}) {
+    pose.T_map_sensor = matrix_of(name, numbers);
+    const Eigen::Vector3d forward = pose.T_map_sensor.linear().col(0);
+    pose.upright = {pose.T_map_sensor.translation(), std::atan2(forward.y(), forward.x())};
+  } else if (numbers.shape().empty()) {
+    pose.upright = {{numbers.number(0, 0), numbers.number(0, 1), numbers.number(0, 2)}, numbers.number(0, 3)};
+    pose.T_map_sensor = Eigen::Translation3d(pose.upright.position) *
+                        Eigen::AngleAxisd(pose.upright.yaw, Eigen::Vector3d::UnitZ());
+  } else {
+    throw py::value_error(std::string(name) + ": shape " + text_of(with(numbers.shape(), 4)) +
+                          ", but has to be (4,), x, y, z and yaw, or (4, 4)");
+  }
+  if (!std::isfinite(pose.upright.yaw) || !lattice.key(pose.upright.position))
+    throw py::value_error(std::string(name) + ": not finite, or outside the key range");
+  return pose;
+}
+
+py::array_t<double> to_array(std::span<const Pose> poses) {
+  py::array_t<double> array(Shape{static_cast<py::ssize_t>(poses.size()), 4});
+  double* numbers = array.mutable_data();
+  for (std::size_t i = 0; i < poses.size(); ++i) write(poses[i], numbers + 4 * i);
+  return array;
+}
+
+py::array_t<double> to_array(const Pose& pose) {
+  py::array_t<double> array(4);
+  write(pose, array.mutable_data());
+  return array;
+}
+
+}  // namespace frontlux::python

@@ -1,0 +1,149 @@
+#include "team.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace frontlux::python {
+namespace {
+
+using planner::ExplorationOptions, planner::ExplorationStart, planner::GoalRule, planner::Method;
+using planner::Motion, planner::Robot, planner::TravelOptions;
+
+KeyBox given_bounds(const Lattice& lattice, const py::object& object) {
+  const Numbers bounds("bounds", object, 3);
+  if (bounds.shape() != Shape{2})
+    throw py::value_error("bounds: has to be of shape (2, 3), the lower and the upper corner [m]");
+  const auto corner = [&](std::size_t i) {
+    return Eigen::Vector3d(bounds.number(i, 0), bounds.number(i, 1), bounds.number(i, 2));
+  };
+  if (!corner(0).allFinite() || !corner(1).allFinite()) throw py::value_error("bounds: not finite");
+  return planner::voxels_of(lattice, {corner(0), corner(1)});
+}
+
+// Nothing for tours, which only robots in motion make, and for what the method says.
+std::optional<GoalRule> rule_of(const std::optional<std::string>& goal, bool lockstep) {
+  if (!goal || (!lockstep && goal == "tour")) return std::nullopt;
+  if (goal == "render") return GoalRule::kViewQuality;
+  if (goal == "cluster") return GoalRule::kClusters;
+  if (goal == "nearest") return GoalRule::kNearest;
+  throw py::value_error("goal: '" + *goal + "', but has to be " + (lockstep ? "" : "'tour', ") +
+                        "'render', 'cluster' or 'nearest'");
+}
+
+// A robot whose body and height the planner accepts, above the bottom of the bounds.
+Robot robot_above(const planner::RobotDescription& description, const Lattice& lattice,
+                  const KeyBox& bounds) {
+  Robot robot = description.robot;
+  robot.travel.floor = (bounds.min.z - static_cast<double>(Lattice::kOrigin)) * lattice.resolution();
+  try {
+    planner::TravelCorridor(robot.travel, lattice, {bounds.min, bounds.min});
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("robot '" + robot.name + "': " + error.what());
+  }
+  return robot;
+}
+
+Team make_team(const TeamArguments& arguments, bool lockstep, Method method) {
+  Team team{arguments.robots, planner::exploration_options(method), {}};
+  team.map.resolution = arguments.resolution;
+  const Lattice lattice = team.lattice();
+  team.map.bounds = given_bounds(lattice, arguments.bounds);
+  const std::optional<GoalRule> rule = rule_of(arguments.goal, lockstep);
+  ExplorationOptions& options = team.options;
+  options.seed = arguments.seed;
+  options.tours = arguments.goal == "tour";
+  if (rule == GoalRule::kNearest) options.epsilon = 1.0;
+  constexpr double kWorthAStop = 0.3;  // [m2] of frontiers
+  if (options.tours)
+    options.epsilon =
+        std::max(options.epsilon, std::round(kWorthAStop / (arguments.resolution * arguments.resolution)));
+  options.epsilon = arguments.epsilon.value_or(options.epsilon);
+  options.max_steps =
+      arguments.max_steps.value_or(lockstep ? options.max_steps : std::numeric_limits<int>::max());
+  if (!lockstep) options.max_visits = 1;
+  for (const auto& description : arguments.robots) {
+    const Robot robot = robot_above(*description, lattice, team.map.bounds);
+    planner::GoalOptions goal = planner::goal_options(robot, method);
+    goal.rule = rule.value_or(goal.rule);
+    if (!lockstep) goal.advance = 2.0;
+    goal.rendering.seed = arguments.seed;
+    if (method == Method::kDefault) goal.min_gain = options.epsilon;
+    options.team.push_back({robot, goal});
+  }
+  return team;
+}
+
+}  // namespace
+
+const planner::RobotDescription& Team::robot(std::size_t number) const {
+  if (number >= robots.size())
+    throw py::value_error("robot: " + std::to_string(number) + ", but there are " +
+                          std::to_string(robots.size()) + ", counted from 0");
+  return *robots[number];
+}
+
+Team team_in_motion(const TeamArguments& arguments, double latency, double period) {
+  Team team = make_team(arguments, false, Method::kDefault);
+  team.options.latency = latency;
+  team.options.period = period;
+  team.options.check();
+  return team;
+}
+
+Team team_in_lockstep(const TeamArguments& arguments, bool paper) {
+  Team team = make_team(arguments, true, paper ? Method::kPaper : Method::kDefault);
+  team.options.check();
+  return team;
+}
+
+std::vector<ExplorationStart> starts_of(const Team& team, const py::object& object, double free_radius) {
+  const Lattice lattice = team.lattice();
+  const Numbers numbers("starts", object, 4);
+  const auto robots = static_cast<py::ssize_t>(team.robots.size());
+  if (numbers.shape() != Shape{robots})
+    throw py::value_error("starts: shape " + text_of(with(numbers.shape(), 4)) + ", but has to be (" +
+                          std::to_string(robots) + ", 4)");
+  constexpr double kWidest = 100.0;  // [m]
+  constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;
+  if (!(free_radius >= 0.0 && free_radius <= kWidest))
+    throw py::value_error("free_radius: has to be 0 to 100 m");
+  std::vector<ExplorationStart> starts;
+  for (std::size_t r = 0; r < team.robots.size(); ++r) {
+    const std::string name = "starts: number " + std::to_string(r);
+    const Eigen::Vector3d at(numbers.number(r, 0), numbers.number(r, 1), numbers.number(r, 2));
+    const auto key = lattice.key(at);
+    if (!key || !team.map.bounds.contains(*key) || !std::isfinite(numbers.number(r, 3)))
+      throw py::value_error(name + " is not finite, or outside the bounds");
+    ExplorationStart start{{at, numbers.number(r, 3)}, {}};
+    const TravelOptions& travel = team.options.team[r].robot.travel;
+    const KeyBox body = voxels_of_cell(travel, lattice, cell_of(travel, lattice, *key));
+    KeyBox box = body;
+    if (free_radius > 0.0) {
+      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(free_radius);
+      box = hull(body, planner::voxels_of(lattice, {at - reach, at + reach}));
+    }
+    if (size_of(box) > kMostVoxels)
+      throw py::value_error("free_radius: a box of " + std::to_string(size_of(box)) +
+                            " voxels around a start, but there may be at most 2^24");
+    const auto known = [&](const VoxelKey& voxel) {
+      if (body.contains(voxel)) return true;
+      const Eigen::Vector3d offset = lattice.exact_center(voxel) - at;
+      if (travel.motion == Motion::kSpace) return offset.norm() <= free_radius;
+      return offset.head<2>().norm() <= free_radius && body.min.z <= voxel.z && voxel.z <= key->z;
+    };
+    for_each_key(box, [&](const VoxelKey& voxel) {
+      if (known(voxel)) start.known_free.push_back(voxel);
+    });
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+double known_volume(const VoxelGrid& grid) {
+  const auto count = grid.count();
+  return static_cast<double>(count[1] + count[2]) * std::pow(grid.resolution(), 3);
+}
+
+}  // namespace frontlux::python
