@@ -168,6 +168,23 @@ TEST(StartPose, SeveralRobotsOfEachKindKeepApart) {
   }
 }
 
+TEST(StartPose, BodiesDoNotTouchAtFineVoxels) {
+  planner::Robot ugv = kUgv, uav = kUav;
+  ugv.travel.extents = {0.6, 0.5, 0.4};
+  ugv.travel.sensor_height = 0.5;
+  uav.travel.extents = {0.5, 0.5, 0.3};
+  uav.travel.min_height = 0.15;
+  const std::vector team{ugv, uav, uav};
+  const auto starts = Place(make_world("room", 1), true, 0.1).starts(team);
+  for (std::size_t i = 0; i < team.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto body = [&](std::size_t r) {
+        return planner::body_of(team[r].travel).translated(starts[r].value().position);
+      };
+      EXPECT_GE(body(i).exteriorDistance(body(k)), 0.1 - 1e-9) << i << " and " << k;
+    }
+}
+
 TEST(StartPose, ARobotOfNodesStartsInAFreeNode) {
   const planner::Robot nodes = planner::uav(planner::Method::kPaper);
   for (const auto& [name, description] : built_in_worlds()) {

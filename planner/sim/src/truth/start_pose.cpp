@@ -12,6 +12,7 @@ using planner::Motion, planner::Pose, planner::Robot;
 
 constexpr double kSearched = 15.0;          // [m] along each axis
 constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
+constexpr double kApart = 0.1;              // [m] between bodies
 
 // The voxels to search, around a centre within the bounds.
 KeyBox search_box(const GroundTruth& truth, const VoxelKey& center) {
@@ -94,12 +95,25 @@ KeyBox taken_by(const Lattice& lattice, const Robot& robot, const Pose& sensor_p
   return taken;
 }
 
+// A robot that is placed.
+struct Placed {
+  KeyBox taken;  // where no other one may be
+  Eigen::AlignedBox3d body;
+};
+
+Eigen::AlignedBox3d body_at(const Robot& robot, const Pose& pose) {
+  return planner::body_of(robot.travel).translated(pose.position);
+}
+
 // The pose, if the robot can be there beside those that are placed.
 std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const Pose& pose,
-                            std::span<const KeyBox> taken) {
+                            std::span<const Placed> placed) {
   if (obstacle_at(truth, robot, pose)) return std::nullopt;
   const KeyBox box = taken_by(truth.lattice(), robot, pose);
-  if (std::ranges::any_of(taken, [&](const KeyBox& other) { return intersection(box, other).has_value(); }))
+  const Eigen::AlignedBox3d body = body_at(robot, pose);
+  if (std::ranges::any_of(placed, [&](const Placed& other) {
+        return intersection(box, other.taken).has_value() || body.exteriorDistance(other.body) < kApart;
+      }))
     return std::nullopt;
   return pose;
 }
@@ -123,23 +137,23 @@ std::optional<Pose> find_with_room(const GroundTruth& truth, const Eigen::Vector
 }
 
 std::optional<Pose> find_on_floor(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
-                                  std::span<const KeyBox> taken) {
+                                  std::span<const Placed> placed) {
   return find_with_room(truth, around, robot, [&](const VoxelKey& key) -> std::optional<Pose> {
     if (!has_floor(truth, key)) return std::nullopt;
     Pose pose{truth.lattice().exact_center(key)};
     pose.position.z() = lower_face(truth.lattice(), key.z) + robot.travel.sensor_height;
-    return if_free(truth, robot, pose, taken);
+    return if_free(truth, robot, pose, placed);
   });
 }
 
 std::optional<Pose> find_in_space(const GroundTruth& truth, const Eigen::Vector3d& around, const Robot& robot,
-                                  double ground, std::span<const KeyBox> taken) {
+                                  double ground, std::span<const Placed> placed) {
   const Lattice& lattice = truth.lattice();
   constexpr double kRounding = 1e-9;
   const auto good = [&](const VoxelKey& key) -> std::optional<Pose> {
     const Pose pose{lattice.exact_center(key)};
     if (pose.position.z() < ground + robot.travel.min_height - kRounding) return std::nullopt;
-    return if_free(truth, robot, pose, taken);
+    return if_free(truth, robot, pose, placed);
   };
   if (robot.travel.node_edge > 0.0) {
     const auto in_node = find(truth, around, [&](const VoxelKey& key) -> std::optional<Pose> {
@@ -205,17 +219,18 @@ std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eig
   std::vector<std::optional<Pose>> starts(robots.size());
   std::optional<double> ground;  // [m] the highest that a robot stands on
   // Beside robots of its kind a robot keeps a voxel free.
-  const auto taken_for = [&](const Robot& robot) {
-    std::vector<KeyBox> taken;
+  const auto placed_beside = [&](const Robot& robot) {
+    std::vector<Placed> placed;
     for (std::size_t i = 0; i < robots.size(); ++i)
       if (starts[i])
-        taken.push_back(grown(taken_by(truth.lattice(), robots[i], *starts[i]),
-                              drives(robots[i]) == drives(robot) ? 1 : 0));
-    return taken;
+        placed.push_back({grown(taken_by(truth.lattice(), robots[i], *starts[i]),
+                                drives(robots[i]) == drives(robot) ? 1 : 0),
+                          body_at(robots[i], *starts[i])});
+    return placed;
   };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (!drives(robots[i])) continue;
-    starts[i] = find_on_floor(truth, around, robots[i], taken_for(robots[i]));
+    starts[i] = find_on_floor(truth, around, robots[i], placed_beside(robots[i]));
     if (!starts[i]) continue;
     const double stands_on = starts[i]->position.z() - robots[i].travel.sensor_height;
     ground = ground ? std::max(*ground, stands_on) : stands_on;
@@ -223,7 +238,7 @@ std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eig
   if (!ground) ground = ground_below(truth, around);
   for (std::size_t i = 0; i < robots.size(); ++i)
     if (!drives(robots[i]))
-      starts[i] = find_in_space(truth, around, robots[i], *ground, taken_for(robots[i]));
+      starts[i] = find_in_space(truth, around, robots[i], *ground, placed_beside(robots[i]));
   return starts;
 }
 
