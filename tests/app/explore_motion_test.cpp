@@ -183,6 +183,15 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
   test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
 }
 
+// After 28 s, when it had mapped a twelfth, this team once ended its run: two robots rested in the third
+// one's way.
+TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
+  expect_answer({"maze", "--seed", "1", "--team", "3uav", "--latency", "0.25", "--stop-time", "45",
+                 "--report", "off", "-o", path("run")});
+  EXPECT_EQ(json_in("run").at("end"), "time_limit");
+  EXPECT_GT(json_in("run").at("coverage_observable"), 0.1);
+}
+
 TEST_F(ExploreMotion, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_answer(quick("whole", "5"));
   // In the middle of a step, and at the very end.

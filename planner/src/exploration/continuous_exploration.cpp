@@ -106,9 +106,8 @@ MotionState ContinuousExploration::at(std::size_t robot, double time) const {
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
-  const auto idle = [](const auto& member) { return member.planned && !member.going; };
   const auto low = [&](const auto& member) { return member.low_gains >= state.team.options.low_gain_steps; };
-  const bool all_idle = std::ranges::all_of(state.members, idle);
+  const bool all_idle = std::ranges::all_of(state.members, State::is_idle);
   if (all_idle || std::ranges::all_of(state.members, low)) {
     for (std::size_t r = 0; r < state.members.size(); ++r)
       if (state.team.is_cut_off(r, state.members[r].goal)) return ExplorationEnd::kCutOff;

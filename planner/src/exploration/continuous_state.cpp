@@ -135,7 +135,8 @@ void ContinuousExploration::State::note_look(std::size_t robot, ExplorationStep&
   team.abandoned.visited(now.still_unknown);
 }
 
-// The cells in whose middle a robot would be too near to where another one will come to rest.
+// The cells in whose middle a robot would be too near to where another one will come to rest. A robot whose
+// way through the others has turned out to be too near keeps out of all cells in which it might be.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot) const {
   std::vector<KeyBox> places;
   const auto body = body_of(team.options.team[robot].robot.travel);
@@ -148,7 +149,8 @@ std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t r
       const double height = team.poses[robot].position.z();
       if (height <= box.min().z() || height >= box.max().z()) continue;
     }
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(team.lattice().resolution() / 2);
+    const double within = members[robot].waits > 0 ? 0.0 : 0.5;  // of a cell
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(within * team.lattice().resolution());
     const auto low = team.lattice().key(Eigen::Vector3d(box.min() + half)),
                high = team.lattice().key(Eigen::Vector3d(box.max() - half));
     if (low && high) places.push_back({*low, *high});
@@ -341,6 +343,12 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
   const bool low = step.goal.pose ? step.goal.gain < team.options.epsilon : !member.going;
   member.low_gains = low ? member.low_gains + 1 : 0;
+  member.waits = step.goal.pose && !member.going ? member.waits + 1 : 0;
+}
+
+bool ContinuousExploration::State::is_idle(const Member& member) {
+  constexpr int kPatience = 10;  // plannings, about a second each
+  return member.planned && !member.going && (member.waits == 0 || member.waits > kPatience);
 }
 
 }  // namespace frontlux::planner

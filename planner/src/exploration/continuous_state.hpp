@@ -27,6 +27,7 @@ struct ContinuousExploration::State {
     bool goes_back = false;         // on the way on which it came
     bool going = false;             // it has a goal, or goes back
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
+    int waits = 0;                  // plannings in a row in which others were in its way to a goal
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys needed = {};               // voxels that its trajectory needs free; sorted
@@ -44,6 +45,8 @@ struct ContinuousExploration::State {
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void take(std::size_t robot, const MapChange& change);
   [[nodiscard]] ExplorationStep collect(double time);
+  /// Whether there is nothing for a robot to do, or it has waited for others long enough.
+  [[nodiscard]] static bool is_idle(const Member& member);
 
  private:
   void note_look(std::size_t robot, ExplorationStep& step);

@@ -107,6 +107,17 @@ TEST(Separation, IsThatOfManySamples) {
   EXPECT_GT(passed, 3) << "robots that are too near, and part";
 }
 
+// Robots rest in the middle of voxels, and so often at the very distance that they have to keep.
+TEST(Separation, PlacesThatAreJustFarEnoughAreFree) {
+  for (int i = 1; i < 200; ++i) {
+    const double at = (i + 0.5) * 0.3;
+    const detail::Follower other{Trajectory({{at, 0, 0}, 0.0}, 0.0)};
+    const auto ends = [&](double x) { return straight({x - 1.0, 0, 0}, {x, 0, 0}, 0.0, {}); };
+    EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), cube(0.8), other, cube(0.8), 0.1)) << i;
+    EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), cube(0.8), other, cube(0.8), 0.1)) << i;
+  }
+}
+
 TEST(Separation, LooksAsFarAheadAsTheOtherMoves) {
   // A robot that has long arrived when the other one comes by.
   const MotionLimits limits;
