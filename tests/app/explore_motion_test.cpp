@@ -192,6 +192,19 @@ TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
   EXPECT_GT(json_in("run").at("coverage_observable"), 0.1);
 }
 
+// Runs that end by themselves have mapped their world: nobody gave up early, or was in another one's way.
+TEST_F(ExploreMotion, LongRunsMapTheirWorld) {
+  for (const char* world : {"maze", "factory"})
+    for (const char* seed : {"1", "9"})
+      for (const char* team : {"uav", "3uav", "uav+ugv"}) {
+        SCOPED_TRACE(std::string(world) + " " + seed + " " + team);
+        expect_answer({world, "--seed", seed, "--team", team, "--latency", "0.25", "--report", "off",
+                       "--force", "-o", path("run")});
+        EXPECT_EQ(json_in("run").at("end"), "nothing_to_do");
+        EXPECT_GT(json_in("run").at("coverage_observable"), 0.99);
+      }
+}
+
 TEST_F(ExploreMotion, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_answer(quick("whole", "5"));
   // In the middle of a step, and at the very end.

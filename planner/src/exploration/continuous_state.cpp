@@ -298,7 +298,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   take_up(robot, start, trajectory, step);
   member.planned = time;
   member.blocked = member.stopped = false;
-  judge(member, step.robots[robot]);
+  judge(robot, step.robots[robot]);
   ++team.number;
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   if (team.tours)
@@ -340,8 +340,14 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 }
 
 // What the end depends on.
-void ContinuousExploration::State::judge(Member& member, const RobotStep& step) const {
-  const bool low = step.goal.pose ? step.goal.gain < team.options.epsilon : !member.going;
+void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& step) {
+  Member& member = members[robot];
+  double gain = step.goal.gain;
+  if (team.tours) {  // the next stop may show little, on the way to others
+    gain = 0.0;
+    for (const detail::TourStop& stop : team.tours->tour(robot)) gain += static_cast<double>(stop.seen);
+  }
+  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going;
   member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = step.goal.pose && !member.going ? member.waits + 1 : 0;
 }

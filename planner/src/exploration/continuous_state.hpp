@@ -55,7 +55,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] Trajectory go_back(std::size_t robot, double start, ExplorationStep& step);
   void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
-  void judge(Member& member, const RobotStep& step) const;
+  void judge(std::size_t robot, const RobotStep& step);
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
