@@ -91,10 +91,12 @@ class Robots(unittest.TestCase):
         robot = drone()
         self.assertEqual((robot.name, robot.motion, robot.columns, robot.rows, robot.rate), ("drone", "space", 48, 36, 4.0))
         np.testing.assert_array_equal(robot.box, [0.6, 0.6, 0.4])
+        rover = planner.Robot("rover", "ground", (0.6, 0.5, 0.4), robot.view, 8, 8, step=0.2, slope=0.3)
+        self.assertEqual(rover.motion, "ground")
         good = {"name": "r", "motion": "plane", "box": (1, 1, 1), "view": robot.view, "columns": 8, "rows": 8}
         planner.Robot(**good)
         for name, value, error in [
-                ("name", "", ValueError), ("name", 3, TypeError), ("motion", "water", ValueError), ("box", (1, 1), ValueError),
+                ("name", "", ValueError), ("name", 3, TypeError), ("motion", "water", ValueError), ("step", 0, ValueError), ("slope", 2, ValueError), ("box", (1, 1), ValueError),
                 ("box", (1, 1, NAN), ValueError), ("box", np.ones((3, 3)), ValueError), ("box", "big", TypeError),
                 ("view", None, TypeError), ("columns", 0, ValueError), ("columns", -1, TypeError), ("rows", 2**40, ValueError),
                 ("rate", 0.0, ValueError), ("rate", INF, ValueError), ("margin", -0.1, ValueError), ("speed", 0.0, ValueError),

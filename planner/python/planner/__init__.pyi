@@ -20,10 +20,10 @@ Drive = Callable[[int, Float64], Optional[Scan]]
 
 @final
 class Robot:
-    def __init__(self, name: str, motion: Literal["plane", "space"], box: Floats, view: FieldOfView, columns: int,
+    def __init__(self, name: str, motion: Literal["plane", "ground", "space"], box: Floats, view: FieldOfView, columns: int,
                  rows: int, rate: float = ..., margin: float = ..., sensor_height: float = ...,
-                 require_ground: bool = ..., ground: Optional[Floats] = ..., min_height: Optional[float] = ...,
-                 speed: float = ..., acceleration: float = ..., yaw_rate: float = ..., per_axis: bool = ...) -> None: ...
+                 require_ground: bool = ..., ground: Optional[Floats] = ..., step: float = ..., slope: float = ...,
+                 min_height: Optional[float] = ..., speed: float = ..., acceleration: float = ..., yaw_rate: float = ..., per_axis: bool = ...) -> None: ...
     @staticmethod
     def read(file: File) -> Robot: ...
     @property

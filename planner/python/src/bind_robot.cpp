@@ -6,16 +6,25 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace frontlux::python {
 namespace {
 
 using planner::Motion, planner::RobotDescription, planner::TravelOptions;
+
+constexpr std::array<std::pair<std::string_view, Motion>, 3> kMotions = {
+    {{"plane", Motion::kPlane}, {"ground", Motion::kGround}, {"space", Motion::kSpace}}};
+constexpr double kDegree = std::numbers::pi / 180.0;
+
 using Self = std::shared_ptr<RobotDescription>;
 using View = std::shared_ptr<FieldOfView>;
 
@@ -44,22 +53,26 @@ Eigen::Matrix<double, kSize, 1> edges_of(const char* name, const py::object& obj
 
 Self make(const std::string& name, const std::string& motion, const py::object& box, const View& view,
           std::size_t columns, std::size_t rows, double rate, double margin, double sensor_height,
-          bool require_ground, const py::object& ground, std::optional<double> min_height, double speed,
-          double acceleration, double yaw_rate, bool per_axis) {
+          bool require_ground, const py::object& ground, double step, double slope,
+          std::optional<double> min_height, double speed, double acceleration, double yaw_rate,
+          bool per_axis) {
   constexpr std::size_t kLongestName = 40;
   if (name.empty() || name.size() > kLongestName)
     throw py::value_error("name: has to have 1 to 40 characters");
-  if (motion != "plane" && motion != "space")
-    throw py::value_error("motion: '" + motion + "', but has to be 'plane' or 'space'");
+  const auto known = std::ranges::find(kMotions, motion, [](const auto& named) { return named.first; });
+  if (known == kMotions.end())
+    throw py::value_error("motion: '" + motion + "', but has to be 'plane', 'ground' or 'space'");
   RobotDescription robot;
   robot.robot.name = name;
   TravelOptions& travel = robot.robot.travel;
-  travel.motion = motion == "plane" ? Motion::kPlane : Motion::kSpace;
+  travel.motion = known->second;
   travel.extents = edges_of<3>("box", box);
   travel.margin = within("margin", margin, 0.0, 100.0, "m");
   travel.sensor_height = within("sensor_height", sensor_height, 0.0, 100.0, "m");
   travel.require_ground = require_ground;
   if (!ground.is_none()) travel.ground_extents = edges_of<2>("ground", ground);
+  travel.step = within("step", step, 0.001, 10.0, "m");
+  travel.slope = within("slope", slope, 0.0, 80.0 * kDegree, "rad");
   travel.min_height = within("min_height", min_height.value_or(travel.extents.z() / 2), 0.0, 100.0, "m");
   robot.robot.view = *view;
   within("view.max_range", view->max_range, 0.01, 1000.0, "m");
@@ -87,15 +100,17 @@ docs/robots.md says more of each value.)")
       .def(py::init(&make), py::arg("name"), py::arg("motion"), py::arg("box"), py::arg("view"),
            py::arg("columns"), py::arg("rows"), py::arg("rate") = 10.0, py::arg("margin") = 0.0,
            py::arg("sensor_height") = 0.75, py::arg("require_ground") = true, py::arg("ground") = py::none(),
-           py::arg("min_height") = py::none(), py::arg("speed") = 1.0, py::arg("acceleration") = 2.0,
-           py::arg("yaw_rate") = std::numbers::pi / 3, py::arg("per_axis") = false,
+           py::arg("step") = 0.15, py::arg("slope") = 20.0 * kDegree, py::arg("min_height") = py::none(),
+           py::arg("speed") = 1.0, py::arg("acceleration") = 2.0, py::arg("yaw_rate") = std::numbers::pi / 3,
+           py::arg("per_axis") = false,
            R"(A robot of these values.
 
-name: in messages. motion: 'plane', on the floor that it starts on, or 'space'. box: (3,) [m] its body along x, y and z,
-whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
-margin: [m] kept free around the body, on a plane to its sides.
-On a plane: sensor_height: [m] above the floor; require_ground: it goes only where floor is known; ground: (2,) [m] along x
-and y, the area of the floor that must not be missing; None: all under the box.
+name: in messages. motion: 'plane', on the floor that it starts on, 'ground', up and down slopes and steps as well, or 'space'.
+box: (3,) [m] its body along x, y and z, whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
+margin: [m] kept free around the body; of a robot that drives to its sides.
+On a plane and on the ground: sensor_height: [m] above the floor; ground: (2,) [m] along x and y, the area of the floor that
+must not be missing; None: all under the box. On a plane: require_ground: it goes only where floor is known. On the ground:
+step: [m] the highest, at least a voxel; slope: [rad] the steepest.
 In space: min_height: [m] of its middle above the bottom of the bounds; None: half of its height.
 speed [m/s], acceleration [m/s^2], yaw_rate [rad/s]: at most; per_axis: speed and acceleration along x, y and z each.
 Raises ValueError naming the value that is out of bounds.)")
@@ -111,8 +126,12 @@ Raises ValueError naming the value that is out of bounds.)")
           "name", [](const Self& self) { return self->robot.name; }, "As in messages.")
       .def_property_readonly(
           "motion",
-          [](const Self& self) { return self->robot.travel.motion == Motion::kPlane ? "plane" : "space"; },
-          "'plane' or 'space'.")
+          [](const Self& self) {
+            return std::ranges::find(kMotions, self->robot.travel.motion,
+                                     [](const auto& m) { return m.second; })
+                ->first;
+          },
+          "'plane', 'ground' or 'space'.")
       .def_property_readonly(
           "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },
           "float64 (3,): [m] its body along x, y and z.")
