@@ -112,15 +112,16 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
     why.pop_back();
     why = in_red(why, STDOUT_FILENO) + '\n';
   }
-  std::string out = row("run", run_.folder.string()) + row("world", setup_.head.world) + why +
-                    row("steps", std::to_string(sums.steps)) +
-                    row("mapped", percent(sums.observable) + " of the observable space, " +
-                                      percent(sums.bounding) + " of the world's box") +
-                    (unseen ? row("unseen", percent(unseen->narrow) + " where only smaller robots see it, " +
-                                                percent(unseen->hidden) + " hidden from everywhere, " +
-                                                percent(unseen->in_view) + " that they could have seen")
-                            : "") +
-                    row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
+  std::string out =
+      row("run", run_.folder.string()) + row("world", setup_.head.world) + why +
+      row("steps", std::to_string(sums.steps)) +
+      row("mapped", percent(sums.observable) + " of the observable space, " + percent(sums.bounding) +
+                        " of the world's box") +
+      (unseen ? row("unseen", percent(unseen->narrow) + " where only " + others_than(setup_.head.robots) +
+                                  " see it, " + percent(unseen->hidden) + " hidden from everywhere, " +
+                                  percent(unseen->in_view) + " that they could have seen")
+              : "") +
+      row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
   for (std::size_t r = 0; r < setup_.head.robots.size(); ++r) {
     const RobotNumbers& robot = numbers.robots[r];
     out += row(setup_.head.robots[r].robot.name, "travelled " + fixed(robot.length, 1) + " m, idle " +

@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/exploration.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace frontlux::app {
@@ -23,11 +24,18 @@ std::string late_planning(double planning, double latency) {
 }
 
 std::string too_narrow(const sim::Unseen& unseen, const ExploreSetup& setup) {
-  return ": " + percent(unseen.narrow) + " are where only smaller robots see them; with voxels finer than " +
-         rounded(setup.head.resolution) + " m (--resolution) robots fit through narrower doors";
+  return ": " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
+         " see them; with voxels finer than " + rounded(setup.head.resolution) +
+         " m (--resolution) robots fit through narrower doors";
 }
 
 }  // namespace
+
+std::string others_than(std::span<const planner::RobotDescription> robots) {
+  const bool all_drive = std::ranges::all_of(
+      robots, [](const planner::RobotDescription& robot) { return robot.robot.travel.drives(); });
+  return all_drive ? "smaller robots, or those that fly," : "smaller robots";
+}
 
 bool ends_badly(const RunSums& sums, const RunEnd& end) {
   const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };

@@ -5,6 +5,7 @@
 #include "explore/run_loop.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace frontlux::app {
 
 /// Whether a robot was cut off, or the run ended by itself far from done.
 [[nodiscard]] bool ends_badly(const RunSums& sums, const RunEnd& end);
+
+/// Who might see what a team cannot get to see.
+[[nodiscard]] std::string others_than(std::span<const planner::RobotDescription> robots);
 
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
 /// far from done, or that plannings took longer than the clock charges robots in motion for them.
