@@ -136,7 +136,8 @@ void ContinuousExploration::State::note_look(std::size_t robot, ExplorationStep&
 }
 
 // The cells in whose middle a robot would be too near to where another one will come to rest. A robot whose
-// way through the others has turned out to be too near keeps out of all cells in which it might be.
+// way past the others has turned out to be too near keeps out of all cells in which it might be; but every
+// other time, since it may rest in one of them.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot) const {
   std::vector<KeyBox> places;
   const auto body = body_of(team.options.team[robot].robot.travel);
@@ -149,7 +150,7 @@ std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t r
       const double height = team.poses[robot].position.z();
       if (height <= box.min().z() || height >= box.max().z()) continue;
     }
-    const double within = members[robot].waits > 0 ? 0.0 : 0.5;  // of a cell
+    const double within = members[robot].waits % 2 == 1 ? 0.0 : 0.5;  // of a cell
     const Eigen::Vector3d half = Eigen::Vector3d::Constant(within * team.lattice().resolution());
     const auto low = team.lattice().key(Eigen::Vector3d(box.min() + half)),
                high = team.lattice().key(Eigen::Vector3d(box.max() - half));
