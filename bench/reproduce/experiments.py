@@ -1,0 +1,96 @@
+"""The runs that experiments.json declares: each is one task file for `frontlux explore`."""
+
+import json
+from pathlib import Path
+from typing import NamedTuple
+
+DECLARED = Path(__file__).resolve().parent / "experiments.json"
+FIRST_SEED = 6  # parameters were fixed on seeds 1 to 5
+COMPLETE = 0.99  # of the observable space, unless the task says otherwise
+
+
+class Run(NamedTuple):
+    task: str
+    method: str
+    seed: int
+    timed: bool = False  # alone on the machine, with two threads
+
+    @property
+    def name(self):
+        return f"{self.task}-{self.method}-{self.seed}" + ("-timed" if self.timed else "")
+
+
+def merged(one, other):
+    """`other` wins; its nulls remove members."""
+    result = dict(one)
+    for key, value in other.items():
+        if value is None:
+            result.pop(key, None)
+        elif isinstance(value, dict) and isinstance(result.get(key), dict):
+            result[key] = merged(result[key], value)
+        else:
+            result[key] = value
+    return result
+
+
+class Experiments:
+    """All that is declared; raises ValueError, with the file and the value, for what is wrong."""
+
+    def __init__(self, file=DECLARED):
+        self.file = file
+        try:
+            self.declared = json.loads(Path(file).read_text(encoding="utf-8"))
+            self.tasks, self.methods, self.sets = (self.declared[k] for k in ("tasks", "methods", "sets"))
+            self.common, self.seed_offset = self.declared["common"], self.declared["seed_offset"]
+        except KeyError as error:
+            raise ValueError(f"{file}: the member {error} is missing; add it") from error
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from error
+        for name in self.sets:
+            self.runs(name)
+
+    def wrong(self, what, do):
+        return ValueError(f"{self.file}: {what}; {do}")
+
+    def runs(self, set_name):
+        """In the order of the blocks, and in each seed by seed, so that an early end leaves pairs to compare."""
+        if set_name not in self.sets:
+            raise self.wrong(f"there is no set {set_name!r}", f"there are {', '.join(self.sets)}")
+        runs = []
+        for block in self.sets[set_name]:
+            for kind, known in (("tasks", self.tasks), ("methods", self.methods)):
+                for name in block[kind]:
+                    if name not in known:
+                        raise self.wrong(f"{kind[:-1]} {name!r} of set {set_name!r} is not declared",
+                                         f"there are {', '.join(known)}")
+            first, last = block["seeds"]
+            if not FIRST_SEED <= first <= last:
+                raise self.wrong(f"seeds of set {set_name!r} are {first} to {last}",
+                                 f"give a first one from {FIRST_SEED} on and a last one that is not before it")
+            runs += [Run(t, m, s, set_name == "timed") for s in range(first, last + 1) for t in block["tasks"]
+                     for m in block["methods"]]
+        return list(dict.fromkeys(runs))
+
+    def file_of(self, task):
+        """The name of the world's file; None for built-in worlds."""
+        return self.tasks[task].get("file")
+
+    def complete(self, task):
+        return self.tasks[task].get("complete", COMPLETE)
+
+    def title(self, run):
+        return self.methods[run.method]["title"]
+
+    def task_file(self, run):
+        """What the run is, without the folder of the world's file."""
+        declared = self.tasks[run.task]
+        task = merged(merged(self.common, declared.get("task", {})), self.methods[run.method]["task"])
+        task["name"], task["seed"] = run.name, run.seed + self.seed_offset
+        if self.file_of(run.task) is None:
+            return {**task, "world_seed": run.seed}
+        start = declared["starts"][(run.seed - FIRST_SEED) % len(declared["starts"])]
+        if len(start) == 3:
+            task = merged(task, {"options": {"start": ",".join(map(str, start))}})
+        else:
+            task["robots"] = [{**task["robots"][0], "start": start}, *task["robots"][1:]]
+        return {**task, "world": self.file_of(run.task)}
