@@ -2,12 +2,11 @@
 
 import logging
 import time
-from concurrent.futures import CancelledError
 from contextlib import contextmanager
 
 import dask
 import explore
-from distributed import Client, KilledWorker, LocalCluster, wait
+from distributed import CancelledError, Client, KilledWorker, LocalCluster, TimeoutError, wait
 
 WAIT_FOR_WORKERS = 60  # [s]
 LOST_WORKERS = 3  # a run whose worker has died more often has failed

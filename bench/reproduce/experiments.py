@@ -41,7 +41,8 @@ class Experiments:
         try:
             self.declared = json.loads(Path(file).read_text(encoding="utf-8"))
             self.tasks, self.methods, self.sets = (self.declared[k] for k in ("tasks", "methods", "sets"))
-            self.common, self.seed_offset = self.declared["common"], self.declared["seed_offset"]
+            self.common, self.seed_offset, self.start_shifts = (
+                self.declared[k] for k in ("common", "seed_offset", "start_shifts"))
         except KeyError as error:
             raise ValueError(f"{file}: the member {error} is missing; add it") from error
         except ValueError as error:
@@ -75,11 +76,12 @@ class Experiments:
         """The name of the world's file; None for built-in worlds."""
         return self.tasks[task].get("file")
 
-    def complete(self, task):
-        return self.tasks[task].get("complete", COMPLETE)
+    def complete(self, run):
+        """How much of the observable space the run has to map, or it has failed."""
+        return min(self.tasks[run.task].get("complete", COMPLETE), self.methods[run.method].get("complete", COMPLETE))
 
-    def title(self, run):
-        return self.methods[run.method]["title"]
+    def title(self, method):
+        return self.methods[method]["title"]
 
     def task_file(self, run):
         """What the run is, without the folder of the world's file."""
@@ -88,9 +90,10 @@ class Experiments:
         task["name"], task["seed"] = run.name, run.seed + self.seed_offset
         if self.file_of(run.task) is None:
             return {**task, "world_seed": run.seed}
-        start = declared["starts"][(run.seed - FIRST_SEED) % len(declared["starts"])]
-        if len(start) == 3:
-            task = merged(task, {"options": {"start": ",".join(map(str, start))}})
-        else:
+        shift = self.start_shifts[(run.seed - FIRST_SEED) % len(self.start_shifts)]
+        start = [round(p + d, 3) for p, d in zip(declared["start"], shift)] + declared["start"][2:]
+        if "robots" in task:  # with a yaw
             task["robots"] = [{**task["robots"][0], "start": start}, *task["robots"][1:]]
+        else:
+            task = merged(task, {"options": {"start": ",".join(map(str, start))}})
         return {**task, "world": self.file_of(run.task)}

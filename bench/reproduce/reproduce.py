@@ -9,11 +9,12 @@ import sys
 import time
 from pathlib import Path
 
-from experiments import Experiments, Run
+from experiments import Experiments
 from explore import version_of
-from results import Results, is_kept, read_result, write_result
+from results import Results, is_kept, write_result
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(1, str(ROOT / "bench"))  # of all plots
 
 
 def stop(*_):

@@ -121,7 +121,7 @@ class Results:
                 content = read_result(file)
                 if content["task"] != experiments.task_file(run):
                     raise ValueError(f"{file} is of another declaration of this run; run it again")
-                self.all[run] = Result(run, content, experiments.complete(run.task))
+                self.all[run] = Result(run, content, experiments.complete(run))
             except FileNotFoundError:
                 pass
             except (OSError, ValueError) as error:
