@@ -88,7 +88,7 @@ def chart(title, note, names, titles):
 
 def progress(results, tasks, names, title, of_curve, x_title):
     """Coverage against `of_curve`: thin lines by seed, a thick one for their mean. Failed runs are drawn as well."""
-    tasks = [t for t in tasks if any(results.of(t, name) for name in names)]
+    tasks = [t for t in tasks if any(r.curve for name in names for r in results.of(t, name))]
     names = [n for n in names if any(r.curve for t in tasks for r in results.of(t, n))]
     titles = {n: results.experiments.title(n) for n in names}
     drawing = chart(title, "Thin: each seed; thick: their mean, where a run that has ended keeps its last value; failed runs "

@@ -2,7 +2,7 @@
 
 The environment tells it what to do to runs by their name: MADE_UP_FAILS ends with exit code 3, MADE_UP_SLEEPS
 waits until it is killed, MADE_UP_DIES_ONCE kills its parent, the worker, the first time. MADE_UP_LOG is a file that
-gets a line for every call.
+gets a line for every call: name, parent's and own process.
 """
 
 import csv
@@ -51,7 +51,7 @@ def made_up(task, seconds=None, coverage=0.999, uav_part=0.75, speeds=(0.5, 1.0)
 
 
 def write_files(folder, run, rows):
-    folder.mkdir(parents=True)
+    folder.mkdir(parents=True, exist_ok=True)
     (folder / "run.json").write_text(json.dumps(run), encoding="utf-8")
     with open(folder / "steps.csv", "w", encoding="utf-8", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS)
@@ -70,7 +70,7 @@ def main(arguments):
     given = dict(zip(arguments[1::2], arguments[2::2])) | {"-o": arguments[-1]}
     task = json.loads(Path(given["--task"]).read_text(encoding="utf-8"))
     with open(os.environ["MADE_UP_LOG"], "a", encoding="utf-8") as log:
-        log.write(f"{task['name']} {os.getppid()}\n")
+        log.write(f"{task['name']} {os.getppid()} {os.getpid()}\n")
     if named("MADE_UP_FAILS", task["name"]):
         print(FAILURE, file=sys.stderr)
         return 3
