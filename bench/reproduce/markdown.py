@@ -14,6 +14,8 @@ def plain(text):
 
 def table(header, rows, texts=1):
     """The first columns are text, the others numbers; cells are Markdown already."""
+    if not rows:
+        return "No runs.\n"
     rule = ["---"] * texts + ["---:"] * (len(header) - texts)
     lines = [header, rule, *rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"

@@ -199,11 +199,10 @@ def failures_list(results):
     return "".join(lines) or "None.\n"
 
 
-def page(results, images, absent=()):
-    """images: the figures' folder, as seen from the document."""
+def page(results, images, runs, absent=()):
+    """images, runs: the figures' folder and the table of all runs, as seen from the page; absent: files of worlds."""
     built_in, others = results.tasks(of_files=False), results.tasks(of_files=True)
     ours, papers = our_lines(results), paper_lines(results)
-    theirs = main_table(results, others, MAIN) if others else "No runs.\n"
 
     def figure(name, title):
         return f"![{title}]({images}/{name}.svg)\n"
@@ -212,7 +211,7 @@ def page(results, images, absent=()):
 # Results
 
 Written by `./dev reproduce` from {origin(results)}
-What is missing stands at the end of the page, and no line here is about runs that were not made.
+[{runs}]({runs}) has a row for each; [reproducing.md](reproducing.md) says how to make them. What is missing stands at the end of the page.
 
 ## What is compared
 
@@ -259,7 +258,7 @@ held back.
 {held_back_table(results)}
 ## Worlds of others
 
-{theirs}
+{main_table(results, others, MAIN)}
 ## The paper, line by line
 
 {summary(papers)}. In lock-step as printed. A number that the paper prints is *reproduced* if there is an effect beyond chance and

@@ -37,6 +37,7 @@ def read_options():
                        "minutes on two cores; its page is out/reproduce/quick.md")
     which.add_argument("--timed", action="store_const", const="timed", dest="set", help="the runs whose planning times "
                        "are published: one after the other, with two threads, on a machine without other work")
+    parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
     which.add_argument("--tables-only", action="store_true", help="run nothing; write the page from the runs that are there")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster whose workers have the program "
                         "[a local cluster of one worker a core]")
@@ -92,7 +93,7 @@ def chosen_runs(experiments, options):
 
 
 def world_file(name, options):
-    """With a scheduler the workers have to look."""
+    """Its path, if one of the folders has it."""
     for folder in options.worlds:
         if (folder / name).is_file():
             return str((folder / name).absolute())
@@ -142,6 +143,7 @@ def execute(experiments, runs, options):
 
 
 def write_page(experiments, runs, options, absent):
+    from csv_of_runs import csv_of_runs
     from figures import figures
     from page import page
     from svg_chart import save
@@ -150,10 +152,12 @@ def write_page(experiments, runs, options, absent):
         raise ValueError(f"there is no result in {options.runs}: run ./dev reproduce without --tables-only")
     images = options.page.parent / "images/results"
     drawn = figures(results)
-    text = page(results, os.path.relpath(images, options.page.parent), absent)
+    table = options.page.with_suffix(".csv")
+    text = page(results, os.path.relpath(images, options.page.parent), table.name, absent)
     images.mkdir(parents=True, exist_ok=True)
     for name, figure in drawn.items():
         save(images / f"{name}.svg", figure)
+    save(table, csv_of_runs(results))
     save(options.page, text)
     for name, reason in results.broken.items():
         print(f"reproduce: {name}: {reason}", file=sys.stderr)
@@ -168,6 +172,9 @@ def main():
     try:
         experiments = Experiments()
         runs, absent = chosen_runs(experiments, options)
+        if options.list:
+            say("\n".join(run.name for run in runs))
+            return 0
         if not options.tables_only:
             for file in absent:
                 say(f"left out: {file} is in none of the folders given by --worlds")

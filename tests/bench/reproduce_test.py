@@ -3,6 +3,8 @@
 reproduce_test.py FOLDER, that of bench/reproduce; runs are made up in a temporary folder.
 """
 
+import csv
+import io
 import json
 import os
 import re
@@ -20,6 +22,7 @@ sys.path[:0] = [str(REPRODUCE), str(REPRODUCE.parent)]
 
 import explore
 from claims import at_least, at_most, change, effect, our_lines, paper_lines
+from csv_of_runs import csv_of_runs
 from experiments import Experiments, Run, merged
 from figures import figures, mean_curve, round_step, value_at
 from intervals import Interval, bootstrap, difference, mean, ratio
@@ -204,7 +207,7 @@ class OneRun(Made):
         pairs, ours, theirs = results.pairs("maze", "tour", "render")
         self.assertEqual(([a.run.seed for a, _ in pairs], ours, theirs), ([6], 1, 1))
         self.assertEqual(ratio([pairs], lambda r: r.seconds("end")).value, 0.5)
-        text = page(results, "images")
+        text = page(results, "images", "runs.csv")
         row = next(line for line in text.splitlines() if line.startswith("| maze | tours | 3 | 1 |"))
         self.assertIn("| 200 |", row)  # of 100 and 300
         self.assertIn("- maze-tour-7: ended at 50.0 %\n", text)
@@ -327,20 +330,29 @@ class Page(Made):
         runs = []
         all_hold(lambda run, **how: runs.append(self.make(run, **how)))
         results = Results(self.experiments, runs + [Run("factory", "render_bumper", 6)], self.folder)
-        text = page(results, "pictures", ["complex_office.ply"])
+        text = page(results, "pictures", "runs.csv", ["complex_office.ply"])
         self.columns_agree(text)
         self.assertIn(f"from {len(runs)} of {len(runs) + 1} runs of version 9.9", text)
         self.assertIn("| factory | render\\_bumper 1 of 1 |", text)
         self.assertIn("complex\\_office.ply", text)
         for name in figures(results):
             self.assertIn(f"(pictures/{name}.svg)", text)
-        self.assertEqual(text, page(results, "pictures", ["complex_office.ply"]))
+        self.assertEqual(text, page(results, "pictures", "runs.csv", ["complex_office.ply"]))
         self.assertNotIn(str(self.folder), text)
+
+    def test_table_of_runs(self):
+        runs = [self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995, separation_min_m=None), Run("maze", "tour", 7),
+                self.make(Run("maze", "tour", 8), failure='a "b", c'), self.make(Run("maze", "tour", 6, True))]
+        rows = list(csv.DictReader(io.StringIO(csv_of_runs(self.results(runs)))))
+        self.assertEqual([row["seed"] for row in rows], ["6", "8"])
+        self.assertEqual([rows[0][key] for key in ("s_to_end", "m_ugv", "m_uav", "share_uav", "steps_to_90", "end", "separation_min_m")],
+                         ["400.0", "200.0", "400.0", "0.75", "37", "nothing_to_do", ""])
+        self.assertEqual((rows[1]["failure"], rows[1]["s_to_end"]), ('a "b", c', ""))
 
     def test_hostile_names(self):
         runs = [self.make(Run("maze", "tour", 6), failure=FAILURE + "\n# x"), self.make(Run("maze", "tour", 7)),
                 self.make(Run("maze", "tour", 8), end="<b>|\n## y")]
-        text = page(self.results(runs), "images")
+        text = page(self.results(runs), "images", "runs.csv")
         for bad in ("<script", "[here](x)", "\n# x", "\n## y", "<b>"):
             self.assertNotIn(bad, text)
         self.assertIn(plain(FAILURE), text)
