@@ -7,6 +7,7 @@ from intervals import FEWEST, Interval, bootstrap, mean, ratio
 from markdown import interval, percent, value
 
 NOT_MEASURED = "not measured"
+TEAMS = ("tour", "tour_uav", "tour_2uav", "tour_3uav", "tour_4uav")  # as they are by default, without bumpers
 SEPARATION = 0.1  # [m], what a trajectory keeps between bodies
 
 
@@ -196,23 +197,18 @@ def team_lines(results):
                          "station", ["station"], method, "tour_uav", end_of, limit)
 
 
-def tours_of(results):
-    """All finished runs by tours in motion, with ideal sensors and without bumpers."""
-    return [r for r in results.all.values() if r.facts and r.run.method.startswith("tour") and not r.run.timed
-            and r.run.method != "tour_bumper"]
-
-
 def safety_lines(results):
-    runs = tours_of(results)
+    everything = [r for r in results.all.values() if r.run.method in TEAMS and not r.run.timed]
+    runs = [r for r in everything if r.facts]
     touched = [r for r in runs if r.facts["contacts"]]
     yield Line("Tours without bumpers: no body touches a surface",
-               f"{sum(r.facts['contacts'] for r in runs)} contacts in {len(touched)} of {len(runs)} runs; with none in n "
-               f"runs, up to 3/n of runs may have one (here {percent(3 / len(runs))})" if runs else "",
+               f"{sum(r.facts['contacts'] for r in runs)} contacts in {len(touched)} of {len(runs)} runs" +
+               ("" if touched else f"; so with 95 % confidence fewer than {percent(3 / len(runs))} of runs have any")
+               if runs else "",
                NOT_MEASURED if not runs else failed(f"does not hold: {len(touched)} runs") if touched else "holds")
     apart = [r.facts["separation_min_m"] for r in runs if r.facts["separation_min_m"] is not None]
     yield Line(f"Tours: bodies stay {SEPARATION} m apart", f"least {value(min(apart), 2, ' m')} in {len(apart)} runs" if apart
                else "", NOT_MEASURED if not apart else "holds" if min(apart) >= SEPARATION - 1e-9 else failed("does not hold"))
-    everything = [r for r in results.all.values() if r.run.method.startswith("tour") and not r.run.timed]
     failures = [r for r in everything if r.failure]
     yield Line("Tours: every run ends by itself with the world mapped (99 %, hospital 90 %)",
                f"{len(failures)} failures in {len(everything)} runs" if everything else "",

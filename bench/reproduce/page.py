@@ -9,6 +9,8 @@ from results import LEVELS
 
 # Of the main table; "steps" are lock-step and have tables of their own.
 MAIN = ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "render_uav", "tour_2uav", "tour_3uav", "tour_4uav")
+NO_VARIANTS = ("tour_bumper", "render_bumper", "tour_grid_caster")  # they have tables and lines of their own
+REALITY = ("tour_noise", "tour_dropout")
 METHODS = """\
 - **tours** (`--goal tour`, the default): tours over all that is left to see, shared out to the robots.
 - **view quality** (`--goal render`): one goal after the other, by eq. 1 and exact view quality.
@@ -43,6 +45,13 @@ def least(runs, fact, unit):
     return value(min(values) if values else None, 2, unit)
 
 
+def why_unseen(runs):
+    """Where only smaller robots would see it, nobody would, or ours would; estimates, in percent of the observable space."""
+    unseen = [r.facts["unseen"] for r in runs if r.facts.get("unseen")]
+    return " / ".join(f"{100 * sum(u[part] for u in unseen) / len(unseen):.1f}" for part in ("narrow", "hidden", "in_view")) + " %" \
+        if unseen else NOTHING
+
+
 def main_table(results, tasks, methods):
     rows = []
     for task in tasks:
@@ -56,9 +65,9 @@ def main_table(results, tasks, methods):
                          interval(mean(map(end_of, done))), means(done, lambda r: r.coverage, 1, " %", 100),
                          means(done, lambda r: r.metres()), means(done, lambda r: r.metres("uav")),
                          str(sum(r.facts["contacts"] for r in moved)), least(moved, "clearance_min_m", ""),
-                         least(moved, "separation_min_m", "")])
+                         least(moved, "separation_min_m", ""), why_unseen(done)])
     return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end", "mapped", "metres", "UAVs' metres",
-                  "contacts", "clearance [m]", "bodies apart [m]"], rows, texts=2)
+                  "contacts", "clearance [m]", "bodies apart [m]", "unseen: narrow / hidden / in view"], rows, texts=2)
 
 
 def pairs_table(results, tasks, first, others):
@@ -77,12 +86,12 @@ def pairs_table(results, tasks, first, others):
                   "to the end [s]", "metres", "ratio of times to the end"], rows, texts=2)
 
 
-def variants_table(results, base):
+def variants_table(results, base, of_reality=False):
     """Each variant against its base, by pairs; tasks together."""
     rows = []
     tasks = results.tasks(of_files=False)
     for method in results.experiments.methods:
-        if not method.startswith(f"{base}_") or method in MAIN or method in ("tour_bumper", "render_bumper", "tour_grid_caster"):
+        if not method.startswith(f"{base}_") or method in (*MAIN, *NO_VARIANTS) or (method in REALITY) != of_reality:
             continue
         found, said, failures = compared(results, tasks, method, base, end_of)
         if not found and not said:
@@ -230,6 +239,7 @@ its pair is lost, which is counted.
 ## Main table
 
 Means of the runs that did not fail; contacts, least clearance of a body to a surface and least distance of two bodies of all runs.
+What was not mapped is in view only of smaller robots (narrow), of none (hidden), or of these (in view), by estimates.
 
 {main_table(results, built_in, MAIN)}
 {figure("coverage_by_time", "Mapped part of the observable space against seconds, by method")}
@@ -250,6 +260,11 @@ One thing changed at a time, by pairs with the method unchanged; above 1 the cha
 View quality:
 
 {variants_table(results, "render")}
+## What reality adds
+
+Errors of the simulated sensors, otherwise as above; tours:
+
+{variants_table(results, "tour", of_reality=True)}
 ## Contacts and bumpers
 
 Without bumpers contacts are counted; with them, the default of `explore`, a robot that would touch a surface rests, which is counted as
