@@ -203,7 +203,7 @@ def safety_lines(results):
     touched = [r for r in runs if r.facts["contacts"]]
     yield Line("Tours without bumpers: no body touches a surface",
                f"{sum(r.facts['contacts'] for r in runs)} contacts in {len(touched)} of {len(runs)} runs" +
-               ("" if touched else f"; so with 95 % confidence fewer than {percent(3 / len(runs))} of runs have any")
+               ("" if touched else f"; so with 95 % confidence fewer than {percent(1 - 0.05 ** (1 / len(runs)))} of runs have any")
                if runs else "",
                NOT_MEASURED if not runs else failed(f"does not hold: {len(touched)} runs") if touched else "holds")
     apart = [r.facts["separation_min_m"] for r in runs if r.facts["separation_min_m"] is not None]

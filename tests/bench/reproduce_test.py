@@ -332,7 +332,7 @@ class Page(Made):
         results = Results(self.experiments, runs + [Run("factory", "render_bumper", 6)], self.folder)
         text = page(results, "pictures", "runs.csv", ["complex_office.ply"])
         self.columns_agree(text)
-        self.assertIn(f"from {len(runs)} of {len(runs) + 1} runs of version 9.9", text)
+        self.assertIn(f"from {len(runs)} of {len(runs) + 1} runs, seeds 6 to 13, version 9.9.", text[:500])
         self.assertIn("| factory | render\\_bumper 1 of 1 |", text)
         self.assertIn("complex\\_office.ply", text)
         for name in figures(results):
