@@ -91,8 +91,8 @@ def progress(results, tasks, names, title, of_curve, x_title):
     tasks = [t for t in tasks if any(r.curve for name in names for r in results.of(t, name))]
     names = [n for n in names if any(r.curve for t in tasks for r in results.of(t, n))]
     titles = {n: results.experiments.title(n) for n in names}
-    drawing = chart(title, "Thin: each seed; thick: their mean, where a run that has ended keeps its last value; failed runs "
-                    "are among them", names, titles)
+    drawing = chart(title, "Thin: each seed; thick: their mean, where a run that has ended keeps its last value; with "
+                    "failed runs", names, titles)
     for column, task in enumerate(tasks):
         runs = {name: [r for r in results.of(task, name) if r.curve] for name in names}
         ends = {name: max((of_curve(r)[-1] for r in runs[name]), default=0) for name in names}
@@ -119,7 +119,8 @@ def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper
                 rows.append((task, other, found, ours, theirs))
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
-    drawing.text(MARGIN, 61, "Ratio of the means by pairs with the same seed, 95 % intervals; left of 1 tours end earlier", "faint")
+    drawing.text(MARGIN, 61, "Ratio of the means, by pairs with the same seed, and its 95 % interval; left of 1 tours end "
+                 "earlier", "faint")
     right, top = WIDTH - MARGIN - 90, 92
     values = [v for _, _, f, _, _ in rows for v in f[:3] if v] or [1]
     low, high = min(min(values), 0.5) / 1.05, max(max(values), 1.1) * 1.05

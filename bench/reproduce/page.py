@@ -4,8 +4,8 @@ from claims import our_lines, paper_lines
 from explore import LONGEST
 from intervals import FEWEST, LEVEL, RESAMPLES
 from markdown import plain
-from tables import (bumpers_table, failures_list, lines_table, main_table, missing_table, optimisation_table, pairs_table,
-                    planning_table, steps_table, variants_table)
+from tables import (bumpers_table, failures_list, lines_table, main_table, missing_table, optimisation_table,
+                    pairs_table, planning_table, steps_table, variants_table)
 
 METHODS = """\
 - **tours** (`--goal tour`, the default): tours over all that is left to see, shared out to the robots.

@@ -38,13 +38,14 @@ def read_options():
     which.add_argument("--timed", action="store_const", const="timed", dest="set", help="the runs whose planning times "
                        "are published: one after the other, with two threads, on a machine without other work")
     parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
-    which.add_argument("--tables-only", action="store_true", help="run nothing; write the page from the runs that are there")
+    which.add_argument("--tables-only", action="store_true", help="run nothing; write the page from the runs "
+                       "that are there")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster whose workers have the program "
                         "[a local cluster of one worker a core]")
     parser.add_argument("--workers", type=number(1, 1000), default=os.cpu_count() or 1, metavar="N",
                         help="of the local cluster [one a core]")
-    parser.add_argument("--hours", type=number(0.0, 10000.0, float), metavar="H", help="begin no run after so long; the page says "
-                        "what is missing")
+    parser.add_argument("--hours", type=number(0.0, 10000.0, float), metavar="H", help="begin no run after so "
+                        "long; the page says what is missing")
     parser.add_argument("--seeds", type=number(1, 1000), metavar="N", help="only the first N seeds of each row")
     parser.add_argument("--tasks", metavar="NAME,...", help="only these")
     parser.add_argument("--methods", metavar="NAME,...", help="only these")
@@ -52,14 +53,15 @@ def read_options():
                         "worlds of others lie, on all workers; repeatable [FRONTLUX_WORLDS, folders joined by :]")
     parser.add_argument("--command", metavar="FRONTLUX", help="the program [build/release/bin/frontlux; with "
                         "--scheduler: frontlux on the workers' PATH]")
-    parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER", help="of all results")
+    parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER",
+                        help="of all results")
     parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md]")
     options = parser.parse_args()
     options.set = options.set or "full"
     if options.set == "timed" and options.scheduler:
         parser.error("--timed is for this machine alone: leave out --scheduler")
     options.worlds += [Path(folder) for folder in os.environ.get("FRONTLUX_WORLDS", "").split(":") if folder]
-    options.page = options.page or (ROOT / "out/reproduce/quick.md" if options.set == "quick" else ROOT / "docs/results.md")
+    options.page = options.page or ROOT / ("out/reproduce/quick.md" if options.set == "quick" else "docs/results.md")
     options.command = options.command or ("frontlux" if options.scheduler else str(ROOT / "build/release/bin/frontlux"))
     return options
 
@@ -93,8 +95,8 @@ def chosen_runs(experiments, options):
 
 
 def world_file(name, options):
-    """Its path, if one of the folders has it."""
-    for folder in options.worlds:
+    """Its path, or nothing for a built-in world and for what is in no folder."""
+    for folder in options.worlds if name else ():
         if (folder / name).is_file():
             return str((folder / name).absolute())
     return ""
@@ -122,14 +124,14 @@ def execute(experiments, runs, options):
         if version is None:
             versions = set(client.run(version_of, options.command).values())
             if len(versions) > 1:
-                raise ValueError(f"the workers have different versions of {options.command}: {', '.join(sorted(versions))}; "
-                                 "install the same everywhere")
+                raise ValueError(f"the workers have different versions of {options.command}: "
+                                 f"{', '.join(sorted(versions))}; install the same everywhere")
             version = versions.pop()
         tasks = {run: experiments.task_file(run) for run in runs}
         left = [run for run in runs if not is_kept(folder, run, tasks[run], version)]
         say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
-        calls = {run.name: (options.command, version, tasks[run], world_file(experiments.file_of(run.task) or "", options)
-                            if experiments.file_of(run.task) else "", 2 if run.timed else 1) for run in left}
+        calls = {run.name: (options.command, version, tasks[run], world_file(experiments.file_of(run.task), options),
+                            2 if run.timed else 1) for run in left}
         by_name = {run.name: run for run in left}
         begin = time.monotonic()
         until = begin + 3600 * options.hours if options.hours is not None else None
@@ -162,7 +164,7 @@ def write_page(experiments, runs, options, absent):
     for name, reason in results.broken.items():
         print(f"reproduce: {name}: {reason}", file=sys.stderr)
     failed = sum("failure" in r.content for r in results.all.values())
-    say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed, figures in {images}")
+    say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed; figures in {images}")
     return 1 if failed or results.broken else 0
 
 
@@ -180,8 +182,8 @@ def main():
                 say(f"left out: {file} is in none of the folders given by --worlds")
             execute(experiments, runs, options)
         # The page is about all that is declared.
-        wanted = experiments.runs(options.set) if options.set == "quick" else experiments.runs("full") + experiments.runs("timed")
-        return write_page(experiments, wanted, options, absent)
+        sets = ("quick",) if options.set == "quick" else ("full", "timed")
+        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options, absent)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130

@@ -33,10 +33,11 @@ def read_result(file):
             and isinstance(result["measured"], dict)
         if whole and "failure" not in result:
             end = result["curve"][-1]
-            whole = isinstance(result["facts"]["end"], str) and isinstance(result["facts"]["time_s"]["end"], (int, float)) \
-                and 0 <= result["facts"]["coverage_observable"] <= 1 and isinstance(result["gains"], dict) \
+            facts, number = result["facts"], (int, float)
+            whole = isinstance(facts["end"], str) and isinstance(facts["time_s"]["end"], number) \
+                and 0 <= facts["coverage_observable"] <= 1 and isinstance(result["gains"], dict) \
                 and all(isinstance(end[member], kind) for member, kind in
-                        (("time_s", (int, float)), ("coverage", (int, float)), ("length_m", dict), ("first", dict)))
+                        (("time_s", number), ("coverage", number), ("length_m", dict), ("first", dict)))
     except (KeyError, IndexError, TypeError, RecursionError) as error:
         raise ValueError(f"{file} is not the result of a run: {error!r}") from error
     except ValueError as error:
@@ -133,7 +134,8 @@ class Results:
 
     def of(self, task, method, timed=False):
         """All runs, by seed."""
-        return sorted((r for r in self.all.values() if (r.run.task, r.run.method, r.run.timed) == (task, method, timed)),
+        key = (task, method, timed)
+        return sorted((r for r in self.all.values() if (r.run.task, r.run.method, r.run.timed) == key),
                       key=lambda r: r.run.seed)
 
     def done(self, task, method):

@@ -161,8 +161,8 @@ def planning_table(results):
                          NOTHING if lockstep else f"{result.content['task']['latency_s']} s",
                          f"{printed:.2f} s" if lockstep else NOTHING])
     if not rows:
-        return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and there "
-                "are none yet.\nIn all other tables the clock charges a fixed latency, which no load changes.\n")
+        return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and "
+                "there are none yet.\nIn all other tables the clock charges a fixed latency, which no load changes.\n")
     return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV"], rows, texts=2)
 
 

@@ -78,7 +78,8 @@ class Cluster(unittest.TestCase):
     def workers(self, number, **environment):
         """A scheduler and workers in processes of their own; its address."""
         file = self.folder / "scheduler.json"
-        self.start(["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file])
+        self.start(["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                    "--scheduler-file", file])
         until(lambda: file.exists() and file.read_text().rstrip().endswith("}"), "a scheduler")
         for i in range(number):
             self.start(["-m", "distributed.cli.dask_worker", "--scheduler-file", file, "--nthreads", "1", "--no-nanny",
