@@ -175,8 +175,8 @@ def speed_lines(results):
     yield ours_below(results, "Time to the end: tours at most 0.7 of view quality, mean of worlds", built_in, "tour",
                      "render", end_of, 0.7)
     for task in built_in or paper.WORLDS:
-        for what, measure in (("Time to the end", end_of), ("Time to 95 %", lambda r: r.seconds("95")),
-                              ("Metres of all robots", lambda r: r.metres())):
+        for what, measure in (("Time to 95 %", lambda r: r.seconds("95")), ("Time to 99 %", lambda r: r.seconds("99")),
+                              ("Time to the end", end_of), ("Metres of all robots", lambda r: r.metres())):
             yield ours_below(results, f"{what}: tours below view quality, {task}", [task], "tour", "render", measure)
     for task in others:
         yield ours_below(results, f"Time to the end: tours below view quality, {task}", [task], "tour", "render", end_of)

@@ -109,7 +109,7 @@ def progress(results, tasks, names, title, of_curve, x_title):
 
 def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper", "tour_uav")):
     """A mark for each task and method with its interval, on a logarithmic axis about 1."""
-    title, row_height, left = "Time to the end: tours by another method", 22, 330
+    title, row_height, left = "Time to the end: tours divided by each other method", 22, 330
     rows = []
     for task in results.tasks():
         for other in others:

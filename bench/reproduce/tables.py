@@ -74,12 +74,12 @@ def pairs_table(results, first="tour"):
             if pairs or ours or theirs:
                 rows.append([
                     task, results.experiments.title(other), str(len(pairs)), f"{ours} / {theirs}",
-                    interval(difference(pairs, lambda r: r.seconds("95")), sign=True),
+                    *(interval(difference(pairs, lambda r, k=level: r.seconds(k)), sign=True) for level in ("95", "99")),
                     interval(difference(pairs, end_of), sign=True),
                     interval(difference(pairs, lambda r: r.metres()), sign=True),
                     interval(ratio([pairs], end_of), 2, unit="×")])
     return table(["task", f"{results.experiments.title(first)} less", "pairs", "pairs lost, failures of first / second",
-                  "to 95 % [s]", "to the end [s]", "metres", "ratio of times to the end"], rows, texts=2)
+                  "to 95 % [s]", "to 99 % [s]", "to the end [s]", "metres", "ratio of times to the end"], rows, texts=2)
 
 
 def variants_table(results, base, of_reality=False):
