@@ -78,7 +78,8 @@ def compared(results, tasks, method, other, measure):
     pairs = [results.pairs(task, method, other) for task in tasks]
     found = ratio([p for p, _, _ in pairs], measure)
     ours, theirs = (sum(n[i] for n in pairs) for i in (1, 2))
-    said = [f"{found.count} pairs"] if found else []
+    where = ", ".join(task for task, (p, _, _) in zip(tasks, pairs) if p)
+    said = [f"{found.count} pairs" + (f" of {where}" if len(tasks) > 1 else "")] if found else []
     said += [f"{n} lost to failures of the {which}" for n, which in ((ours, "first"), (theirs, "second")) if n]
     return found, "; ".join(said), ours
 

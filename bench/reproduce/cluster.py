@@ -34,8 +34,8 @@ def connect(scheduler, workers, folder):
             yield client
         return
     folder.mkdir(parents=True, exist_ok=True)
-    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, local_directory=str(folder),
-                      silence_logs=logging.CRITICAL) as cluster, Client(cluster) as client:
+    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0",
+                      local_directory=str(folder), silence_logs=logging.CRITICAL) as cluster, Client(cluster) as client:
         client.upload_file(explore.__file__)
         yield client
 

@@ -53,7 +53,8 @@ class Cluster(unittest.TestCase):
 
     def start(self, arguments, **environment):
         process = subprocess.Popen([sys.executable, "-B", *map(str, arguments)], text=True, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, env={**os.environ, "MADE_UP_LOG": str(self.log), **environment})
+                                   stderr=subprocess.PIPE, start_new_session=True,
+                                   env={**os.environ, "MADE_UP_LOG": str(self.log), **environment})
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -128,15 +129,16 @@ class Cluster(unittest.TestCase):
         self.assertEqual(self.calls(), [])
 
     def test_ctrl_c_leaves_nothing_running_and_goes_on_later(self):
-        for runs, interrupt in (("runs", signal.SIGINT), ("others", signal.SIGTERM)):
+        for runs, interrupt in (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
+                                ("others", lambda process: process.send_signal(signal.SIGTERM))):
             self.log.unlink(missing_ok=True)
             process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS="factory-tour-6")
             until(lambda: ["factory-tour-6"] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")
             worker, asleep = map(int, self.calls()[-1][1:])
             self.assertTrue(is_running(asleep))
-            process.send_signal(interrupt)
+            interrupt(process)
             self.finish(process, 130)
-            self.assertIn("stopped; finished runs are kept", self.errors)
+            self.assertRegex(self.errors, r"^\nstopped; finished runs are kept in .*\n$")
             until(lambda: not is_running(asleep) and not is_running(worker), "the end of the run and its worker")
             before = [name for name, *_ in self.calls() if name != "factory-tour-6"]
             self.assertEqual(sorted(self.results(runs)), sorted(before))
