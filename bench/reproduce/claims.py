@@ -198,15 +198,21 @@ def team_lines(results):
                          "station", ["station"], method, "tour_uav", end_of, limit)
 
 
-def safety_lines(results):
-    everything = [r for r in results.all.values() if r.run.method in TEAMS and not r.run.timed]
-    runs = [r for r in everything if r.facts]
+def contacts_line(results, who, methods):
+    runs = [r for r in results.all.values() if r.run.method in methods and not r.run.timed and r.facts]
     touched = [r for r in runs if r.facts["contacts"]]
-    said = f"{sum(r.facts['contacts'] for r in runs)} contacts in {len(touched)} of {len(runs)} runs"
+    said = f"{sum(r.facts['contacts'] for r in runs)} contacts, in {len(touched)} of {len(runs)} runs"
     if runs and not touched:
         said += f"; so with 95 % confidence fewer than {percent(1 - 0.05 ** (1 / len(runs)))} of runs have any"
-    yield Line("Tours without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs))
+    return Line(f"{who} without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs))
 
+
+def safety_lines(results):
+    yield contacts_line(results, "Tours", TEAMS)
+    yield contacts_line(results, "View quality", ("render",))
+
+    everything = [r for r in results.all.values() if r.run.method in TEAMS and not r.run.timed]
+    runs = [r for r in everything if r.facts]
     several = [r for r in runs if r.facts["separation_min_m"] is not None]
     near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
     least = min((r.facts["separation_min_m"] for r in several), default=None)

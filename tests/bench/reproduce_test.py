@@ -267,7 +267,7 @@ def none_hold(make):
         for world in BUILT_IN:
             for method, seconds in (("tour", 300.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 100.0),
                                     ("paper", 100.0), ("tour_uav", 150.0), ("tour_2uav", 280.0), ("tour_4uav", 250.0)):
-                make(Run(world, method, seed), seconds=seconds + seed, contacts=int(method == "tour"),
+                make(Run(world, method, seed), seconds=seconds + seed, contacts=int(method in ("tour", "render")),
                      separation_min_m=0.01)
             make(Run(world, "steps", seed), seconds=200.0, uav_part=0.5, coverage=0.91, steps=90, gains=(100, 90, 80))
             make(Run(world, "steps_uav", seed), seconds=100.0, steps=80)
