@@ -5,6 +5,7 @@ import hashlib
 import json
 import shutil
 import signal
+import socket
 import subprocess
 import tempfile
 from pathlib import Path
@@ -19,10 +20,11 @@ GAINS = ("gain_tangent", "gain_predicted", "gained")
 
 
 def find_program(command):
-    """The program's path on this machine. Raises OSError."""
+    """The program's path. Raises OSError."""
     found = shutil.which(command)
     if found is None:
-        raise OSError(f"there is no program {command} on this machine: build it with ./dev build, or install it")
+        raise OSError(f"there is no program {command} on {socket.gethostname()}: build it with ./dev build, or install "
+                      "it")
     return found
 
 
@@ -73,9 +75,9 @@ def explore(command, version, task, world, threads=1, folder=None):
     program = find_program(command)
     found = version_of(program)
     if found != version:
-        raise OSError(f"{program} on this machine is version {found} instead of {version}: install that")
+        raise OSError(f"{program} on {socket.gethostname()} is version {found} instead of {version}: install that")
     if world and not Path(world).is_file():
-        raise OSError(f"{world} is not on this machine: copy it there")
+        raise OSError(f"there is no {world} on {socket.gethostname()}: copy it there")
     with tempfile.TemporaryDirectory(prefix="frontlux-", dir=folder) as temporary:
         run = Path(temporary) / "run"
         file = Path(temporary) / "task.json"

@@ -47,11 +47,10 @@ def origin(results):
             (f" ({builds} builds of it)" if builds > 1 else ""))
 
 
-def page(results, images, runs, absent=()):
-    """images, runs: the figures' folder and the table of all runs, as seen from the page; absent: files of worlds."""
+def page(results, images, runs):
+    """images, runs: the figures' folder and the table of all runs, as seen from the page."""
     built_in, others = results.tasks(of_files=False), results.tasks(of_files=True)
     ours, papers = our_lines(results), paper_lines(results)
-    absent = f"\nNo folder given by `--worlds` holds {plain(', '.join(absent))}.\n" if absent else ""
 
     def figure(name, title):
         return f"![{title}]({images}/{name}.svg)\n"
@@ -142,4 +141,6 @@ In lock-step; a voxel belongs to the robot that observed it first.
 {failures_list(results)}
 ## Missing runs
 
-{missing_table(results)}{absent}"""
+Worlds of others are no part of this project, and are run where `--worlds` names their folder.
+
+{missing_table(results)}"""

@@ -144,18 +144,18 @@ def execute(experiments, runs, options):
                 f"; about {minutes:.0f} min left")
 
 
-def write_page(experiments, runs, options, absent):
+def write_page(experiments, runs, options):
     from csv_of_runs import csv_of_runs
     from figures import figures
     from page import page
     from svg_chart import save
     results = Results(experiments, runs, options.runs)
     if not results.all:
-        raise ValueError(f"there is no result in {options.runs}: run ./dev reproduce without --tables-only")
+        raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
     images = options.page.parent / "images/results"
     drawn = figures(results)
     table = options.page.with_suffix(".csv")
-    text = page(results, os.path.relpath(images, options.page.parent), table.name, absent)
+    text = page(results, os.path.relpath(images, options.page.parent), table.name)
     images.mkdir(parents=True, exist_ok=True)
     for name, figure in drawn.items():
         save(images / f"{name}.svg", figure)
@@ -183,7 +183,7 @@ def main():
             execute(experiments, runs, options)
         # The page is about all that is declared.
         sets = ("quick",) if options.set == "quick" else ("full", "timed")
-        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options, absent)
+        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130
