@@ -10,7 +10,7 @@ from svg_chart import MARGIN, WIDTH, Drawing, svg
 
 RUNS = [tuple(pair) for pair in PALETTE["runs"]]
 COLOURS = {"tour": TEAM, "tour_uav": UAV, "render": RUNS[0], "paper": RUNS[1], **colours("goals"),
-           "steps": TEAM, "steps_uav": UAV, "steps_ugv": UGV}
+           "steps": TEAM, "steps_uav": UAV, "steps_ugv": UGV, "uav": UAV, "ugv": UGV}
 DASHES = {"tour": "", "tour_uav": "2 3", "render": "7 3", "paper": "9 3 2 3", "cluster": "4 4", "nearest": "12 4",
           "steps": "", "steps_uav": "7 3", "steps_ugv": "2 3"}
 
@@ -48,8 +48,15 @@ class Panel:
     def at(self, x, y):
         return self.left + x / self.x_end * self.width, self.bottom - min(y / self.y_end, 1) * PANEL_HEIGHT
 
+    def path(self, points):
+        return "L".join("{:.1f} {:.1f}".format(*self.at(x, y)) for x, y in points)
+
+    def area(self, name, lower, upper):
+        outline = self.path(upper) + "L" + self.path(reversed(lower))
+        self.drawing.lines.append(f'<path d="M{outline}z" class="fill-{name}" opacity="0.85"/>')
+
     def curve(self, name, points, mean):
-        path = "L".join("{:.1f} {:.1f}".format(*self.at(x, y)) for x, y in points)
+        path = self.path(points)
         style = f'stroke-width="2.2" stroke-dasharray="{DASHES[name]}"' if mean else 'stroke-width="0.8" opacity="0.22"'
         self.drawing.lines.append(f'<path d="M{path}" class="line-{name}" fill="none" stroke-linejoin="round" {style}/>')
 
@@ -73,14 +80,17 @@ def mean_curve(curves):
 
 
 def chart(title, note, names, titles):
-    """With its head and a legend."""
+    """With its head and a legend: of lines, and of areas where a name has no dashes."""
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
     drawing.text(MARGIN, 61, note, "faint")
     x = MARGIN + 6
     for name in names:
-        drawing.lines.append(f'<path d="M{x} 78h26" class="line-{name}" stroke-width="2.2" '
-                             f'stroke-dasharray="{DASHES[name]}"/>')
+        if name in DASHES:
+            drawing.lines.append(f'<path d="M{x} 78h26" class="line-{name}" stroke-width="2.2" '
+                                 f'stroke-dasharray="{DASHES[name]}"/>')
+        else:
+            drawing.bar(x, 72, 26, 11, name)
         drawing.text(x + 33, 82, titles[name])
         x += 33 + 7 * len(titles[name]) + 18
     return drawing
@@ -105,6 +115,26 @@ def progress(results, tasks, names, title, of_curve, x_title):
             if curves:
                 panel.curve(name, mean_curve(curves), True)
     return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {name: COLOURS[name] for name in names}, drawing)
+
+
+def contributions(results, method="steps"):
+    """What each kind of robot mapped first, stacked, by step: means over seeds."""
+    title, kinds = "What each robot mapped first, the paper's method", ("ugv", "uav")
+    drawing = chart(title, "Means over seeds, where a run that has ended keeps its last value; with failed runs", kinds,
+                    {"ugv": "UGV", "uav": "UAV"})
+    tasks = [t for t in paper.WORLDS if any(r.curve for r in results.of(t, method))]
+    for column, task in enumerate(tasks):
+        runs = [r for r in results.of(task, method) if r.curve]
+        x_end = max(max(steps_of(r)[-1] for r in runs), 1)
+        panel = Panel(drawing, column, len(tasks), x_end, 100, task, "steps", "mapped part of the observable space [%]")
+        lower = [(x_end * i / SAMPLES, 0) for i in range(SAMPLES + 1)]
+        for kind in kinds:
+            own = mean_curve([sampled(steps_of(r), [100 * row["first"].get(kind, 0) for row in r.curve], x_end)
+                              for r in runs])
+            upper = [(x, below + y) for (x, below), (_, y) in zip(lower, own)]
+            panel.area(kind, lower, upper)
+            lower = upper
+    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {kind: COLOURS[kind] for kind in kinds}, drawing)
 
 
 def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper", "tour_uav")):
@@ -165,4 +195,5 @@ def figures(results):
         "ratios": ratios(results),
         "coverage_by_step": progress(results, paper.WORLDS, ("steps", "steps_uav", "steps_ugv"),
                                      "Coverage by step, the paper's method", steps_of, "steps"),
+        "contributions": contributions(results),
     }

@@ -128,6 +128,7 @@ In lock-step; a voxel belongs to the robot that observed it first.
 
 {steps_table(results)}
 {figure("coverage_by_step", "Mapped part against steps: team, UAV alone, UGV alone")}
+{figure("contributions", "What each robot mapped first, against steps")}
 {optimisation_table(results)}
 ## Planning times
 

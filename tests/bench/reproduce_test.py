@@ -376,6 +376,10 @@ class Page(Made):
         (_, y0), (_, ym), (_, y1) = points[0], points[len(points) // 2], points[-1]
         self.assertAlmostEqual(y0 - y1, 210 * 0.999, delta=0.2)
         self.assertAlmostEqual(ym, (y0 + y1) / 2, delta=0.2)
+        # Three quarters are the UAV's: its area begins a quarter up at the end.
+        area = re.search(r'<path d="M([^"]*)z" class="fill-uav"', figures(self.results(runs))["contributions"])[1]
+        points = [tuple(map(float, point.split())) for point in area.split("L")]
+        self.assertAlmostEqual(points[len(points) // 2 - 1][1] - points[len(points) // 2][1], -210 * 0.999 * 0.75, delta=0.3)
 
     def test_curves(self):
         self.assertEqual([value_at([0, 2, 4], [0, 10, 30], x) for x in (0, 1, 2, 3, 4, 9)], [0, 5, 10, 20, 30, 30])
