@@ -12,10 +12,10 @@ def plain(text):
     return re.sub(r"([\\`*_\[\]|!#~$@])", r"\\\1", text)
 
 
-def table(header, rows, texts=1):
-    """The first columns are text, the others numbers; cells are Markdown already."""
+def table(header, rows, texts=1, none="No runs."):
+    """The first columns are text, the others numbers; cells are Markdown already. `none` stands for a table of no rows."""
     if not rows:
-        return "No runs.\n"
+        return none + "\n"
     rule = ["---"] * texts + ["---:"] * (len(header) - texts)
     lines = [header, rule, *rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"

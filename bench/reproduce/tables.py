@@ -167,18 +167,19 @@ def planning_table(results):
 
 
 def missing_table(results):
-    wanted, there = {}, {}
-    for run in results.wanted:
-        key = (run.task, run.method + (" (timed)" if run.timed else ""))
-        wanted[key] = wanted.get(key, 0) + 1
-        there[key] = there.get(key, 0) + (run in results.all)
     rows = {}
-    for (task, method), number in wanted.items():
-        if there[task, method] < number:
-            rows.setdefault(task, []).append(f"{method} {number - there[task, method]} of {number}")
-    if not rows:
-        return "None.\n"
-    return table(["task", "missing"], [[task, plain(", ".join(words))] for task, words in rows.items()], texts=2)
+    for run in results.wanted:
+        name = run.method + (" (timed)" if run.timed else "")
+        counts = rows.setdefault(run.task, {}).setdefault(name, [0, 0])
+        counts[0] += run not in results.all
+        counts[1] += 1
+    cells = [[task, ", ".join(f"{name} {missing} of {wanted}" for name, (missing, wanted) in methods.items()
+                              if 0 < missing < wanted),
+              ", ".join(name for name, (missing, wanted) in methods.items() if missing == wanted)]
+             for task, methods in rows.items()]
+    return table(["task", "missing in part", "without any run"],
+                 [[task, plain(part) or NOTHING, plain(whole) or NOTHING] for task, part, whole in cells if part or whole],
+                 texts=3, none="None.")
 
 
 def failures_list(results):
