@@ -163,9 +163,9 @@ def write_page(experiments, runs, options):
     save(options.page, text)
     for name, reason in results.broken.items():
         print(f"reproduce: {name}: {reason}", file=sys.stderr)
-    failed = sum("failure" in r.content for r in results.all.values())
+    failed = sum(bool(r.failure) for r in results.all.values())
     say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed; figures in {images}")
-    return 1 if failed or results.broken else 0
+    return 1 if results.broken or any("failure" in r.content for r in results.all.values()) else 0
 
 
 def main():
