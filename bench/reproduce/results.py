@@ -68,7 +68,7 @@ class Result:
         end, coverage = self.facts["end"], self.facts["coverage_observable"]
         if end not in BY_ITSELF:
             return f"{end} at {100 * coverage:.1f} %"
-        return f"ended at {100 * coverage:.1f} %" if coverage < complete else None
+        return f"ended at {100 * coverage:.1f} % ({end})" if coverage < complete else None
 
     @property
     def coverage(self):

@@ -28,7 +28,7 @@ def parts(runs, measure):
 
 def least(runs, fact):
     values = [r.facts[fact] for r in runs if r.facts.get(fact) is not None]
-    return value(min(values) if values else None, 2)
+    return value(min(values) if values else None, 3)
 
 
 def with_facts(runs):

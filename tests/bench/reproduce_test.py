@@ -191,7 +191,7 @@ class OneRun(Made):
 
     def test_what_counts_as_a_failure(self):
         for seed, (how, failure) in enumerate((
-                ({"coverage": 0.98}, "ended at 98.0 %"), ({"end": "cut_off"}, "cut_off at 99.9 %"),
+                ({"coverage": 0.98}, "ended at 98.0 % (nothing_to_do)"), ({"end": "cut_off"}, "cut_off at 99.9 %"),
                 ({"end": "time_limit"}, "time_limit at 99.9 %"), ({"failure": "exit code 1: x"}, "exit code 1: x"),
                 ({}, None)), 6):
             run = self.make(Run("maze", "tour", seed), **how)
@@ -211,7 +211,7 @@ class OneRun(Made):
         text = page(results, "images", "runs.csv")
         row = next(line for line in text.splitlines() if line.startswith("| maze | tours | 3 | 1 |"))
         self.assertIn("| 200 |", row)  # of 100 and 300
-        self.assertIn("- maze-tour-7: ended at 50.0 %\n", text)
+        self.assertIn("- maze-tour-7: ended at 50.0 % (nothing\\_to\\_do)\n", text)
 
     def test_kept_if_it_is_the_same_run(self):
         run = Run("maze", "tour", 6)
