@@ -117,9 +117,10 @@ that is counted as held back.
 {main_table(results, others)}
 ## The paper, line by line
 
-{summary(papers)} All in lock-step as printed. A change that the paper prints is
-*reproduced* if there is one beyond chance, and the interval does not exclude one as large as the paper's; a limit, if
-the whole interval keeps it. The paper prints one run of each kind.
+{summary(papers)} In lock-step, once as printed, once with what replaces it by default (`--goal render
+--lockstep`). A change that the paper prints is *reproduced* if there is one beyond chance, and the interval does not
+exclude one as large as the paper's; a limit, if the whole interval keeps it; *open*, if failures took more than a tenth
+of the pairs. The paper prints one run of each kind.
 
 {lines_table(papers)}
 ## The paper's tables

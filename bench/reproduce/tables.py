@@ -135,18 +135,18 @@ def steps_table(results):
 
 def optimisation_table(results):
     rows = []
-    for world in paper.WORLDS:
-        before, after = results.done(world, "steps_yaw_ahead"), results.done(world, "steps")
+    for world, steps in ((w, s) for s in ("steps", "steps_render") for w in paper.WORLDS):
+        before, after = results.done(world, f"{steps}_yaw_ahead"), results.done(world, steps)
         if before or after:
             seen = [means(after, lambda r, c=c: r.gain("uav", c)) for c in ("gain_tangent", "gain_predicted", "gained")]
             shares = " / ".join(means(runs, lambda r: r.share("uav"), 0, " %", 100) for runs in (before, after))
             metres = " / ".join(means(runs, lambda r: r.metres("uav"), 0, " m") for runs in (before, after))
-            rows.append([world, *seen, means(before, lambda r: r.gain("uav", "gained")),
+            rows.append([world, results.experiments.title(steps), *seen, means(before, lambda r: r.gain("uav", "gained")),
                          "{} / {} %".format(*paper.UAV_SHARE[world]), shares,
                          "{} / {} m".format(*paper.UAV_LENGTH[world]), metres])
-    return table(["world", "frontiers in view, looking ahead", "with optimised yaws", "mapped by a path",
+    return table(["world", "", "frontiers in view, looking ahead", "with optimised yaws", "mapped by a path",
                   "without optimisation", "UAV's share, paper, before / after", "ours",
-                  "UAV's path, paper, before / after", "ours"], rows)
+                  "UAV's path, paper, before / after", "ours"], rows, texts=2)
 
 
 def planning_table(results):
