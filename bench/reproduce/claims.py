@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import paper
 from intervals import FEWEST, Interval, bootstrap, mean, ratio
-from markdown import interval, percent, value
+from markdown import counted, interval, percent, value
 
 NOT_MEASURED = "not measured"
 UNDECIDED = "open: the interval contains the limit"
@@ -26,11 +26,11 @@ def failed(word):
     return f"**{word}**"
 
 
-def none_of(bad, runs, what="runs"):
+def none_of(bad, runs, what="run"):
     """Of facts that are there or not."""
     if not runs:
         return NOT_MEASURED
-    return failed(f"does not hold: {len(bad)} {what}") if bad else "holds"
+    return failed(f"does not hold: {counted(len(bad), what)}") if bad else "holds"
 
 
 def at_most(found, limit, yes="holds", no="does not hold", strictly=False):
@@ -79,15 +79,16 @@ def compared(results, tasks, method, other, measure):
     found = ratio([p for p, _, _ in pairs], measure)
     ours, theirs = (sum(n[i] for n in pairs) for i in (1, 2))
     where = ", ".join(task for task, (p, _, _) in zip(tasks, pairs) if p)
-    said = [f"{found.count} pairs" + (f" of {where}" if len(tasks) > 1 else "")] if found else []
-    said += [f"{n} lost to failures of the {which}" for n, which in ((ours, "first"), (theirs, "second")) if n]
+    said = [counted(found.count, "pair") + (f" of {where}" if len(tasks) > 1 else "")] if found else []
+    said += [f"{counted(n, 'failure')} of the {which}" for n, which in ((ours, "first"), (theirs, "second")) if n]
     return found, "; ".join(said), ours
 
 
 def changed(results, world, method, other, measure, sign=1):
     """The ratio as a relative change, with sign -1 what is saved; what to say of it; and how many pairs were lost."""
     found, said, _ = compared(results, [world], method, other, measure)
-    lost = sum(results.pairs(world, method, other)[1:])
+    seeds = [{r.run.seed for r in results.of(world, m)} for m in (method, other)]
+    lost = len(seeds[0] & seeds[1]) - len(results.pairs(world, method, other)[0])
     if found is None:
         return None, said, lost
     change = Interval(found.value - 1, *(None if v is None else v - 1 for v in found[1:3]), found.count)
@@ -97,13 +98,13 @@ def changed(results, world, method, other, measure, sign=1):
 
 def unless_lost(verdict, change, lost):
     """More than a tenth of the pairs, had they not failed, could have decided otherwise."""
-    return f"open: failures took {lost} pairs" if lost * 10 > lost + (change.count if change else 0) else verdict
+    return f"open: failures took {counted(lost, 'pair')}" if lost * 10 > lost + (change.count if change else 0) else verdict
 
 
 def ours_below(results, claim, tasks, method, other, measure, limit=None):
     """Without a limit, below the other. A failed run of the first fails the line: a lost pair would help it."""
     found, said, failures = compared(results, tasks, method, other, measure)
-    verdict = failed(f"does not hold: {failures} runs failed") if failures else \
+    verdict = failed(f"does not hold: {counted(failures, 'run')} failed") if failures else \
         at_most(found, 1 if limit is None else limit, strictly=limit is None)
     return Line(claim, f"{interval(found, 2, unit='×')}, {said}" if found else said, verdict)
 
@@ -147,14 +148,15 @@ def paper_optimisation_lines(results, mode, steps):
         seen = [(a, b) for a, b in seen if a is not None and b]
         found = bootstrap([seen], lambda groups: sum(a for a, _ in groups[0]) / sum(b for _, b in groups[0]))
         yield Line(f"{mode}, {world}: with optimised yaws a path sees more frontiers than looking ahead (no number is "
-                   "printed)", f"{interval(found, 2, unit='×')}, {found.count} runs" if found else "", at_least(found, 1 + 1e-9))
+                   "printed)", f"{interval(found, 2, unit='×')}, {counted(found.count, 'run')}" if found else "",
+                   at_least(found, 1 + 1e-9))
 
 
 def paper_coverage_lines(results, mode, steps):
     for world in paper.WORLDS:
         found = mean(r.coverage for r in results.of(world, steps) if r.facts)
         yield Line(f"{mode}, {world}: {percent(paper.COVERAGE[world])} are covered at the end; of the observable space",
-                   f"{interval(found, 1, 100, ' %')}, {found.count} runs" if found else "",
+                   f"{interval(found, 1, 100, ' %')}, {counted(found.count, 'run')}" if found else "",
                    at_least(found, paper.COVERAGE[world]))
 
 
@@ -231,7 +233,7 @@ def safety_lines(results):
 
     failures = [r for r in everything if r.failure]
     yield Line("Tours: every run ends by itself with the world mapped (99 %, hospital 90 %)",
-               f"{len(failures)} failures in {len(everything)} runs" if everything else "", none_of(failures, everything))
+               f"{counted(len(failures), 'failure')} in {counted(len(everything), 'run')}" if everything else "", none_of(failures, everything))
 
 
 def time_lines(results):
@@ -251,7 +253,7 @@ def sameness_lines(results):
         pairs = [(plain_runs[key], other) for key, other in others.items() if key in plain_runs]
         unlike = [a for a, b in pairs if a.same_everywhere != b.same_everywhere]
         yield Line(claim, f"{len(pairs) - len(unlike)} of {len(pairs)} pairs of runs are the same" if pairs else "",
-                   none_of(unlike, pairs, "pairs"))
+                   none_of(unlike, pairs, "pair"))
 
 
 def our_lines(results):

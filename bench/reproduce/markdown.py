@@ -25,6 +25,10 @@ def value(number, digits=0, unit=""):
     return NOTHING if number is None else f"{number:,.{digits}f}{unit}"
 
 
+def counted(number, word):
+    return f"{number} {word}" + ("s" if number != 1 else "")
+
+
 def percent(part, digits=1):
     return value(None if part is None else 100 * part, digits, " %")
 

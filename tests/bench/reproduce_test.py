@@ -321,7 +321,7 @@ class Lines(Made):
             all_hold(lambda run, **how: make(run, **({**how, "end": "cut_off"} if run[:3] == ("maze", "steps_uav", 9) else how)))
         lines = {line.claim: line for line in self.lines(lost)}
         claim = "the team takes at least 30 % fewer planning steps than the UAV alone (up to 54 %); to 90 %"
-        self.assertEqual(lines[f"as printed, maze: {claim}"].verdict, "open: failures took 1 pairs")
+        self.assertEqual(lines[f"as printed, maze: {claim}"].verdict, "open: failures took 1 pair")
         self.assertEqual(lines[f"default mode, maze: {claim}"].verdict, "reproduced")
 
     def test_one_failed_run_of_ours_fails_the_line(self):
@@ -329,7 +329,7 @@ class Lines(Made):
             all_hold(lambda run, **how: make(run, **({"coverage": 0.5} if run == ("maze", "tour", 9, False) else how)))
         lines = {line.claim: line for line in self.lines(one)}
         claim = "Time to the end: tours below view quality, "
-        self.assertEqual(lines[claim + "maze"].verdict, "**does not hold: 1 runs failed**")
+        self.assertEqual(lines[claim + "maze"].verdict, "**does not hold: 1 run failed**")
         self.assertEqual(lines[claim + "factory"].verdict, "holds")
 
 
