@@ -98,7 +98,8 @@ def changed(results, world, method, other, measure, sign=1):
 
 def unless_lost(verdict, change, lost):
     """More than a tenth of the pairs, had they not failed, could have decided otherwise."""
-    return f"open: failures took {counted(lost, 'pair')}" if lost * 10 > lost + (change.count if change else 0) else verdict
+    every = lost + (change.count if change else 0)
+    return f"open: failures took {counted(lost, 'pair')}" if 10 * lost > every else verdict
 
 
 def ours_below(results, claim, tasks, method, other, measure, limit=None):
@@ -115,11 +116,12 @@ def ours_below(results, claim, tasks, method, other, measure, limit=None):
 def paper_team_lines(results, mode, steps):
     for world in paper.WORLDS:
         saved, said, lost = changed(results, world, steps, f"{steps}_uav", lambda r: r.steps(0.9), -1)
-        yield Line(f"{mode}, {world}: the team takes at least 30 % fewer planning steps than the UAV alone (up to 54 %); "
-                   "to 90 %", said, unless_lost(at_least(saved, paper.STEPS_SAVED), saved, lost))
+        yield Line(f"{mode}, {world}: the team takes at least 30 % fewer planning steps than the UAV alone (up to 54 %)"
+                   "; to 90 %", said, unless_lost(at_least(saved, paper.STEPS_SAVED), saved, lost))
     shorter = 1 - paper.UAV_TEAM_LENGTH / paper.UAV_ALONE_LENGTH
     saved, said, lost = changed(results, "station", steps, f"{steps}_uav", lambda r: r.metres("uav"), -1)
-    yield Line(f"{mode}, station: the UAV's path is {100 * shorter:.0f} % shorter in the team than alone (1,147 and 663 m)",
+    yield Line(f"{mode}, station: the UAV's path is {100 * shorter:.0f} % shorter in the team than alone "
+               "(1,147 and 663 m)",
                said, unless_lost(effect(saved, shorter), saved, lost))
 
 
@@ -165,7 +167,8 @@ def paper_time_lines(results, mode, steps):
         seconds = [r.measured["planning_mean_s"] for r in results.of(world, steps, timed=True) if r.facts]
         late = [s for s in seconds if s >= paper.LONGEST_PLANNING]
         yield Line(f"{mode}, {world}: planning takes less than 5 s a step on average",
-                   value(max(seconds), 3, " s") if seconds else "", NOT_MEASURED if not seconds else failed("not reproduced") if late else "reproduced")
+                   value(max(seconds), 3, " s") if seconds else "",
+                   NOT_MEASURED if not seconds else failed("not reproduced") if late else "reproduced")
 
 
 def paper_lines(results):
@@ -233,7 +236,8 @@ def safety_lines(results):
 
     failures = [r for r in everything if r.failure]
     yield Line("Tours: every run ends by itself with the world mapped (99 %, hospital 90 %)",
-               f"{counted(len(failures), 'failure')} in {counted(len(everything), 'run')}" if everything else "", none_of(failures, everything))
+               f"{counted(len(failures), 'failure')} in {counted(len(everything), 'run')}" if everything else "",
+               none_of(failures, everything))
 
 
 def time_lines(results):

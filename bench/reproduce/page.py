@@ -117,8 +117,9 @@ that is counted as held back.
 {main_table(results, others)}
 ## The paper, line by line
 
-{summary(papers)} In lock-step, once as printed, once with what replaces it by default (`--goal render
---lockstep`). A change that the paper prints is *reproduced* if there is one beyond chance, and the interval does not
+{summary(papers)}
+
+In lock-step, once as printed, once with what replaces it by default (`--goal render --lockstep`). A change that the paper prints is *reproduced* if there is one beyond chance, and the interval does not
 exclude one as large as the paper's; a limit, if the whole interval keeps it; *open*, if failures took more than a tenth
 of the pairs. The paper prints one run of each kind.
 
