@@ -10,6 +10,7 @@ NOT_MEASURED = "not measured"
 UNDECIDED = "open: the interval contains the limit"
 TOO_FEW = f"open: fewer than {FEWEST} runs in a world"
 TEAMS = ("tour", "tour_uav", "tour_2uav", "tour_3uav", "tour_4uav")  # as they are by default, without bumpers
+CLEARANCE = 0.01  # [m], less is luck: a trajectory keeps the robot's margin, which is 0 here
 SEPARATION = 0.1  # [m], what a trajectory keeps between bodies
 
 
@@ -228,6 +229,9 @@ def safety_lines(results):
 
     everything = [r for r in results.all.values() if r.run.method in TEAMS and not r.run.timed]
     runs = [r for r in everything if r.facts]
+    near = [r for r in runs if r.facts["clearance_min_m"] is not None and r.facts["clearance_min_m"] < CLEARANCE]
+    yield Line(f"Tours: bodies keep {CLEARANCE} m from surfaces", f"less in {len(near)} of {counted(len(runs), 'run')}"
+               if runs else "", none_of(near, runs))
     several = [r for r in runs if r.facts["separation_min_m"] is not None]
     near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
     least = min((r.facts["separation_min_m"] for r in several), default=None)

@@ -271,7 +271,7 @@ def none_hold(make):
             for method, seconds in (("tour", 300.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 100.0),
                                     ("paper", 100.0), ("tour_uav", 150.0), ("tour_2uav", 280.0), ("tour_4uav", 250.0)):
                 make(Run(world, method, seed), seconds=seconds + seed, contacts=int(method in ("tour", "render")),
-                     separation_min_m=0.01)
+                     separation_min_m=0.01, clearance_min_m=0.0)
             for steps in LOCKSTEP:
                 make(Run(world, steps, seed), seconds=200.0, uav_part=0.5, coverage=0.91, steps=90, gains=(100, 90, 80))
                 make(Run(world, f"{steps}_uav", seed), seconds=100.0, steps=80)
