@@ -1,23 +1,21 @@
-"""The figures of docs/results.md: one panel for each world, side by side."""
+"""The figures of docs/results.md."""
 
 import math
-import sys
-from pathlib import Path
 
-sys.path.insert(1, str(Path(__file__).resolve().parent.parent))  # of all plots
-
-from palette import TEAM, UAV, UGV, colours
-from recorded import PHASES
-from runs import VARIANTS, WORLDS
+import paper
+from claims import end_of
+from intervals import ratio
+from palette import PALETTE, TEAM, UAV, UGV, colours
 from svg_chart import MARGIN, WIDTH, Drawing, svg
 
-COLOURS = {"team": TEAM, "uav": UAV, "ugv": UGV, **colours("goals"), **colours("phases")}
-DASHES = {"team": "", "uav": "7 3", "ugv": "2 3", "cluster": "7 3", "nearest": "2 3"}
-TITLES = {"uav": "UAV", "ugv": "UGV"}
+RUNS = [tuple(pair) for pair in PALETTE["runs"]]
+COLOURS = {"tour": TEAM, "tour_uav": UAV, "render": RUNS[0], "paper": RUNS[1], **colours("goals"),
+           "steps": TEAM, "steps_uav": UAV, "steps_ugv": UGV, "uav": UAV, "ugv": UGV}
+DASHES = {"tour": "", "tour_uav": "2 3", "render": "7 3", "paper": "9 3 2 3", "cluster": "4 4", "nearest": "12 4",
+          "steps": "", "steps_uav": "7 3", "steps_ugv": "2 3"}
 
-AXIS, GAP, PANEL_HEIGHT, TOP = 40, 24, 200, 142
-PANEL_WIDTH = (WIDTH - 2 * MARGIN - 3 * AXIS - 2 * GAP) / 3
-SAMPLES = 160  # along a curve
+AXIS, GAP, PANEL_HEIGHT, TOP = 40, 24, 210, 142
+SAMPLES = 200  # along a curve
 
 
 def round_step(largest, most):
@@ -29,13 +27,13 @@ def round_step(largest, most):
 class Panel:
     """Axes from 0 and what is drawn between them."""
 
-    def __init__(self, drawing, column, row, x_end, y_end, title, x_title, y_title):
+    def __init__(self, drawing, column, columns, x_end, y_end, title, x_title, y_title):
         self.drawing, self.x_end, self.y_end = drawing, x_end, y_end
-        self.left = MARGIN + AXIS + column * (PANEL_WIDTH + AXIS + GAP)
-        self.top = TOP + row * (PANEL_HEIGHT + 92)
-        self.right, self.bottom = self.left + PANEL_WIDTH, self.top + PANEL_HEIGHT
-        drawing.text(self.left - AXIS + 6, self.top - 28, title, "map")
-        drawing.text(self.left - AXIS + 6, self.top - 13, y_title, "faint")
+        self.width = (WIDTH - 2 * MARGIN - columns * AXIS - (columns - 1) * GAP) / columns
+        self.left = MARGIN + AXIS + column * (self.width + AXIS + GAP)
+        self.right, self.bottom = self.left + self.width, TOP + PANEL_HEIGHT
+        drawing.text(self.left - AXIS + 6, TOP - 28, title, "map")
+        drawing.text(self.left - AXIS + 6, TOP - 13, y_title, "faint")
         drawing.text((self.left + self.right) / 2, self.bottom + 35, x_title, "faint", "middle")
         for step, end, horizontal in ((round_step(y_end, 5), y_end, True), (round_step(x_end, 5), x_end, False)):
             for i in range(int(end / step * (1 + 1e-9)) + 1):
@@ -48,19 +46,19 @@ class Panel:
                     drawing.text(x, self.bottom + 18, f"{i * step:,.6g}", "faint", "middle")
 
     def at(self, x, y):
-        return self.left + x / self.x_end * PANEL_WIDTH, self.bottom - min(y / self.y_end, 1) * PANEL_HEIGHT
+        return self.left + x / self.x_end * self.width, self.bottom - min(y / self.y_end, 1) * PANEL_HEIGHT
 
     def path(self, points):
         return "L".join("{:.1f} {:.1f}".format(*self.at(x, y)) for x, y in points)
 
-    def curve(self, name, points, mean):
-        style = f'stroke-width="2.4" stroke-dasharray="{DASHES[name]}"' if mean else 'stroke-width="1" opacity="0.35"'
-        self.drawing.lines.append(f'<path d="M{self.path(points)}" class="line-{name}" fill="none" '
-                                  f'stroke-linejoin="round" {style}/>')
-
     def area(self, name, lower, upper):
         outline = self.path(upper) + "L" + self.path(reversed(lower))
         self.drawing.lines.append(f'<path d="M{outline}z" class="fill-{name}" opacity="0.85"/>')
+
+    def curve(self, name, points, mean):
+        path = self.path(points)
+        style = f'stroke-width="2.2" stroke-dasharray="{DASHES[name]}"' if mean else 'stroke-width="0.8" opacity="0.22"'
+        self.drawing.lines.append(f'<path d="M{path}" class="line-{name}" fill="none" stroke-linejoin="round" {style}/>')
 
 
 def value_at(xs, ys, x):
@@ -81,100 +79,121 @@ def mean_curve(curves):
     return [(points[0][0], sum(y for _, y in points) / len(points)) for points in zip(*curves)]
 
 
-def chart(title, note, names, titles, dashed=True):
-    """With its head and a legend."""
+def chart(title, note, names, titles):
+    """With its head and a legend: of lines, and of areas where a name has no dashes."""
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
     drawing.text(MARGIN, 61, note, "faint")
     x = MARGIN + 6
     for name in names:
-        if dashed:
-            drawing.lines.append(f'<path d="M{x} 78h26" class="line-{name}" stroke-width="2.4" '
+        if name in DASHES:
+            drawing.lines.append(f'<path d="M{x} 78h26" class="line-{name}" stroke-width="2.2" '
                                  f'stroke-dasharray="{DASHES[name]}"/>')
         else:
             drawing.bar(x, 72, 26, 11, name)
         drawing.text(x + 33, 82, titles[name])
-        x += 33 + 7 * len(titles[name]) + 22
+        x += 33 + 7 * len(titles[name]) + 18
     return drawing
 
 
-def finish(drawing, title, names, rows=1):
-    height = TOP + rows * (PANEL_HEIGHT + 92) - 92 + 35 + MARGIN - 8
-    return svg(title, height, {name: COLOURS[name] for name in names}, drawing)
-
-
-def progress(results, names, title, measure, x_title):
-    """Coverage against what `measure` gives by step: thin lines by seed, a thick one for their mean."""
-    drawing = chart(title, "Thin: each seed; thick: their mean, where a finished run keeps its last value; cut at three "
-                    "times the longest run of the team", names, {n: VARIANTS[n].title for n in names})
-    for column, world in enumerate(WORLDS):
-        runs = {name: results.of(world, name) for name in names}
-        ends = [(name, measure(run)[-1]) for name in names for run in runs[name]]
-        team = max((end for name, end in ends if name == "team"), default=math.inf)
-        x_end = max(min(max((end for _, end in ends), default=1), 3 * team), 1)
-        panel = Panel(drawing, column, 0, x_end, 100, world, x_title, "coverage of the observable space [%]")
+def progress(results, tasks, names, title, of_curve, x_title):
+    """Coverage against `of_curve`: thin lines by seed, a thick one for their mean. Failed runs are drawn as well."""
+    tasks = [t for t in tasks if any(r.curve for name in names for r in results.of(t, name))]
+    names = [n for n in names if any(r.curve for t in tasks for r in results.of(t, n))]
+    titles = {n: results.experiments.title(n) for n in names}
+    drawing = chart(title, "Thin: each seed; thick: their mean, where a run that has ended keeps its last value; with "
+                    "failed runs", names, titles)
+    for column, task in enumerate(tasks):
+        runs = {name: [r for r in results.of(task, name) if r.curve] for name in names}
+        ends = {name: max((of_curve(r)[-1] for r in runs[name]), default=0) for name in names}
+        x_end = max(min(max(ends.values()), 3 * (ends.get(names[0]) or max(ends.values()))), 1)
+        panel = Panel(drawing, column, len(tasks), x_end, 100, task, x_title, "mapped part of the observable space [%]")
         for name in reversed(names):
-            curves = [sampled(measure(r), [100 * c for c in r.coverage], x_end) for r in runs[name]]
+            curves = [sampled(of_curve(r), [100 * row["coverage"] for row in r.curve], x_end) for r in runs[name]]
             for points, run in zip(curves, runs[name]):
-                panel.curve(name, [p for p in points if p[0] <= measure(run)[-1]] or points[:1], False)
+                panel.curve(name, [p for p in points if p[0] <= of_curve(run)[-1]] or points[:1], False)
             if curves:
                 panel.curve(name, mean_curve(curves), True)
-    return finish(drawing, title, names)
+    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {name: COLOURS[name] for name in names}, drawing)
+
+
+def contributions(results, method="steps"):
+    """What each kind of robot mapped first, stacked, by step: means over seeds."""
+    title, kinds = "What each robot mapped first, the paper's method", ("ugv", "uav")
+    drawing = chart(title, "Means over seeds, where a run that has ended keeps its last value; with failed runs", kinds,
+                    {"ugv": "UGV", "uav": "UAV"})
+    tasks = [t for t in paper.WORLDS if any(r.curve for r in results.of(t, method))]
+    for column, task in enumerate(tasks):
+        runs = [r for r in results.of(task, method) if r.curve]
+        x_end = max(max(steps_of(r)[-1] for r in runs), 1)
+        panel = Panel(drawing, column, len(tasks), x_end, 100, task, "steps", "mapped part of the observable space [%]")
+        lower = [(x_end * i / SAMPLES, 0) for i in range(SAMPLES + 1)]
+        for kind in kinds:
+            own = mean_curve([sampled(steps_of(r), [100 * row["first"].get(kind, 0) for row in r.curve], x_end)
+                              for r in runs])
+            upper = [(x, below + y) for (x, below), (_, y) in zip(lower, own)]
+            panel.area(kind, lower, upper)
+            lower = upper
+    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {kind: COLOURS[kind] for kind in kinds}, drawing)
+
+
+def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper", "tour_uav")):
+    """A mark for each task and method with its interval, on a logarithmic axis about 1."""
+    title, row_height, left = "Time to the end: tours divided by each other method", 22, 330
+    rows = []
+    for task in results.tasks():
+        for other in others:
+            pairs, ours, theirs = results.pairs(task, first, other)
+            found = ratio([pairs], end_of)
+            if found:
+                rows.append((task, other, found, ours, theirs))
+    drawing = Drawing()
+    drawing.text(MARGIN, 40, title, "title")
+    drawing.text(MARGIN, 61, "Ratio of the means, by pairs with the same seed, and its 95 % interval; left of 1 tours end "
+                 "earlier", "faint")
+    right, top = WIDTH - MARGIN - 90, 92
+    values = [v for _, _, f, _, _ in rows for v in f[:3] if v] or [1]
+    low, high = min(min(values), 0.5) / 1.05, max(max(values), 1.1) * 1.05
+
+    def at(x):
+        return left + (math.log(x) - math.log(low)) / (math.log(high) - math.log(low)) * (right - left)
+
+    bottom = top + row_height * len(rows)
+    for tick in (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 3.0, 5.0):
+        if low <= tick <= high:
+            drawing.line(at(tick), top - 8, at(tick), bottom, "base" if tick == 1 else "rule")
+            drawing.text(at(tick), bottom + 16, f"{tick:g}", "faint", "middle")
+    previous = None
+    for i, (task, other, found, ours, theirs) in enumerate(rows):
+        y = top + row_height * (i + 0.5)
+        if task != previous:
+            drawing.text(MARGIN, y + 4, task, "strong")
+        previous = task
+        drawing.text(left - 12, y + 4, results.experiments.title(other), "", "end")
+        name = f'class="line-{other}" stroke-width="2.2"'
+        if found.low is not None:
+            drawing.lines.append(f'<path d="M{at(found.low):.1f} {y:.1f}H{at(found.high):.1f}" {name}/>')
+        drawing.lines.append(f'<circle cx="{at(found.value):.1f}" cy="{y:.1f}" r="4.2" class="fill-{other}"/>')
+        drawing.text(WIDTH - MARGIN, y + 4, f"{found.count} pairs", "faint", "end")
+    return svg(title, bottom + 30 + MARGIN - 8, {name: COLOURS[name] for name in others}, drawing)
+
+
+def seconds_of(run):
+    return [row["time_s"] for row in run.curve]
 
 
 def steps_of(run):
-    return list(range(run.steps + 1))
-
-
-def contributions(results):
-    names, title = ("ugv", "uav"), "What each robot observed first"
-    drawing = chart(title, "Means over seeds; a finished run keeps its last value", names, TITLES, False)
-    for row, variant in enumerate(("team", "unoptimised")):
-        for column, world in enumerate(WORLDS):
-            runs = results.of(world, variant)
-            x_end = max((run.steps for run in results.of(world, "team") + results.of(world, "unoptimised")), default=1)
-            panel = Panel(drawing, column, row, max(x_end, 1), 100, f"{world}, {VARIANTS[variant].title}", "steps",
-                          "coverage of the observable space [%]")
-            lower = [(0, 0), (x_end, 0)]
-            total = [0.0] * (SAMPLES + 1)
-            for name in names if runs else ():
-                own = mean_curve([sampled(steps_of(r), [100 * k for k in r.known_by(name)], x_end) for r in runs])
-                total = [t + y for t, (_, y) in zip(total, own)]
-                upper = [(x, t) for (x, _), t in zip(own, total)]
-                panel.area(name, lower, upper)
-                lower = upper
-    return finish(drawing, title, names, 2)
-
-
-def planning_time(results):
-    title = "Planning time of each step"
-    drawing = chart(title, "Both robots; one run for each world, alone on the machine, 2 threads; dashed lines are "
-                    "the means", PHASES, {name: name for name in PHASES}, False)
-    for column, world in enumerate(WORLDS):
-        run = results.timed(world)
-        sums = [1e3 * s for s in run.seconds("planning_s")] if run else []
-        highest = max(max(sums, default=1), 1e-3)
-        x_end, y_end = max(len(sums), 1), math.ceil(highest / round_step(highest, 5)) * round_step(highest, 5)
-        panel = Panel(drawing, column, 0, x_end, y_end, world, "steps", "planning [ms]")
-        lower = [0.0] * len(sums)
-        for phase in PHASES if sums else ():
-            upper = [a + 1e3 * s for a, s in zip(lower, run.seconds(f"{phase}_s"))]
-            panel.area(phase, *([(x, y) for i, y in enumerate(ys) for x in (i, i + 1)] for ys in (lower, upper)))
-            lower = upper
-        if sums:
-            (x1, y), (x2, _) = panel.at(0, sum(sums) / len(sums)), panel.at(x_end, 0)
-            drawing.line(x1, y, x2, y, "base")
-    return finish(drawing, title, PHASES)
+    return list(range(len(run.curve)))
 
 
 def figures(results):
     """{name: SVG}"""
-    robots, goals = ("team", "uav", "ugv"), ("team", "cluster", "nearest")
+    methods = ("tour", "render", "cluster", "nearest", "paper", "tour_uav")
     return {
-        "coverage_by_step": progress(results, robots, "Coverage by step", steps_of, "steps"),
-        "coverage_by_path": progress(results, robots, "Coverage by path", lambda run: run.travelled(),
-                                     "length of all robots' paths [m]"),
-        "goals": progress(results, goals, "Coverage by how goals are chosen", steps_of, "steps"),
+        "coverage_by_time": progress(results, results.tasks(of_files=False), methods, "Coverage by time", seconds_of,
+                                     "time on the clock [s]"),
+        "ratios": ratios(results),
+        "coverage_by_step": progress(results, paper.WORLDS, ("steps", "steps_uav", "steps_ugv"),
+                                     "Coverage by step, the paper's method", steps_of, "steps"),
         "contributions": contributions(results),
-        "planning_time": planning_time(results),
     }

@@ -1,4 +1,4 @@
-"""Text and tables of a Markdown file; names may hold any characters."""
+"""Text, numbers and tables of a Markdown file; names may hold any characters."""
 
 import re
 
@@ -12,8 +12,10 @@ def plain(text):
     return re.sub(r"([\\`*_\[\]|!#~$@])", r"\\\1", text)
 
 
-def table(header, rows, texts=1):
-    """The first columns are text, the others numbers; cells are Markdown already."""
+def table(header, rows, texts=1, none="No runs."):
+    """The first columns are text, the others numbers; cells are Markdown already. `none` stands for a table of no rows."""
+    if not rows:
+        return none + "\n"
     rule = ["---"] * texts + ["---:"] * (len(header) - texts)
     lines = [header, rule, *rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"
@@ -23,17 +25,18 @@ def value(number, digits=0, unit=""):
     return NOTHING if number is None else f"{number:,.{digits}f}{unit}"
 
 
+def counted(number, word):
+    return f"{number} {word}" + ("s" if number != 1 else "")
+
+
 def percent(part, digits=1):
     return value(None if part is None else 100 * part, digits, " %")
 
 
-def mean_of(spread, digits=0, scale=1.0, unit=""):
-    return value(spread and scale * spread.mean, digits, unit)
-
-
-def spread_of(spread, digits=0, scale=1.0, unit=""):
-    """Mean, and where there are more values than one, the smallest, largest and standard deviation."""
-    if spread is None or spread.count == 1:
-        return mean_of(spread, digits, scale, unit)
-    low, high, deviation = (f"{scale * v:,.{digits}f}" for v in spread[1:4])
-    return f"{scale * spread.mean:,.{digits}f}{unit} ({low}..{high}, sd {deviation})"
+def interval(found, digits=0, scale=1.0, unit="", sign=False):
+    """Value, and in brackets its interval if it has one."""
+    if found is None:
+        return NOTHING
+    mark = "+" if sign else ""
+    middle, *ends = (None if v is None else f"{scale * v:{mark},.{digits}f}" for v in found[:3])
+    return middle + unit + (f" ({ends[0]} to {ends[1]})" if ends[0] is not None else "")

@@ -1,239 +1,188 @@
-"""docs/results.md: the tables of the paper beside ours."""
+"""The tables of the page of results."""
 
 import paper
-from checklist import checklist, same, savings
-from markdown import NOTHING, mean_of, percent, plain, spread_of, table, value
-from recorded import PHASES, spread
-from runs import CASTERS, STEP_LIMIT, VARIANTS, WORLDS
+from claims import compared, end_of
+from intervals import difference, mean, ratio
+from markdown import NOTHING, interval, percent, plain, table, value
+from results import LEVELS
 
-NOT_COMPARABLE = f"""\
-- The paper's worlds are not published. Ours have the same names and are generated from a seed, with other sizes and
-  contents: metres and steps in one row of a table belong to different worlds.
-- The paper does not define coverage. Ours is the known fraction of the observable space, which is the free space
-  connected with the start and the surfaces around it. The table of all variants also has the coverage of the box.
-- A step ends where its path ends, so the number of steps depends on the length of the paths. The paper prints one run
-  of each kind, without a spread.
-- Our sensors are simulated from the meshes of the worlds without noise, and poses are exact.
-- The paper does not name the processor of its planning times. It prints them by robot; we measure by phase, both
-  robots together.
-- Where the paper leaves a choice open, the default mode uses what works best, and paper mode what is printed.
-- A run that never reaches 90 % counts with its step limit, {STEP_LIMIT:,} steps; the means of the runs that reached it
-  are beside."""
+# In motion, of the main table. Methods of the name "steps..." are in lock-step and have tables of their own.
+MAIN = ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "render_uav", "tour_2uav", "tour_3uav",
+        "tour_4uav")
+BUMPERS = {"tour_bumper": "tour", "render_bumper": "render"}  # with bumpers: the same without
+REALITY = ("tour_noise", "tour_dropout")
 
 
-def steps_to_90(runs):
-    """Mean with the step limit for runs that did not reach it, mean of the others alone, and their number."""
-    reached = [run.steps_to(0.9) for run in runs if run.steps_to(0.9) is not None]
-    counted = mean_of(spread(run.steps_or_limit(0.9) for run in runs), 1)
-    if not runs or len(reached) == len(runs):
-        return counted
-    there = mean_of(spread(reached), 1) + " in " if reached else ""
-    return f"{counted} ({there}{len(reached)} of {len(runs)} that reached it)"
+def means(runs, measure, digits=0, unit="", scale=1.0):
+    found = mean(map(measure, runs))
+    return value(found and scale * found.value, digits, unit)
 
 
-def coverage_table(results):
+def mean_interval(runs, measure):
+    return interval(mean(map(measure, runs)))
+
+
+def parts(runs, measure):
+    return means(runs, measure, 1, " %", 100)
+
+
+def least(runs, fact):
+    values = [r.facts[fact] for r in runs if r.facts.get(fact) is not None]
+    return value(min(values) if values else None, 3)
+
+
+def with_facts(runs):
+    return [r for r in runs if r.facts]
+
+
+def total(runs, fact):
+    return sum(r.facts[fact] for r in runs)
+
+
+def why_unseen(runs):
+    """Where only smaller robots would see it, nobody would, or ours would: estimates, in percent of the observable
+    space."""
+    unseen = [r.facts["unseen"] for r in runs if r.facts.get("unseen")]
+    if not unseen:
+        return NOTHING
+    return " / ".join(f"{100 * sum(u[p] for u in unseen) / len(unseen):.1f}" for p in ("narrow", "hidden", "in_view"))
+
+
+def main_table(results, tasks):
     rows = []
-    for world in WORLDS:
-        runs = results.of(world, "team")
-        aim = paper.COVERAGE[world]
-        got_there = [s for s in (run.steps_to(aim) for run in runs) if s is not None]
-        rows.append([world, percent(aim), spread_of(spread(r.coverage[-1] for r in runs), 1, 100, " %"),
-                     str(paper.STEPS[world]), spread_of(spread(r.steps for r in runs), 1),
-                     spread_of(spread(got_there), 1) + f", {len(got_there)} of {len(runs)} runs",
-                     steps_to_90(runs)])
-    return table(["world", "coverage, paper", "ours", "steps, paper", "ours", "ours, to the paper's coverage",
-                  "ours, to 90 %"], rows)
+    for task in tasks:
+        for method in (m for m in results.methods(task) if m in MAIN):
+            runs, done = results.of(task, method), results.done(task, method)
+            moved = with_facts(runs)
+            rows.append([
+                task, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
+                *(means(done, lambda r, k=level: r.seconds(k)) for level in LEVELS[:-1]), mean_interval(done, end_of),
+                parts(done, lambda r: r.coverage), means(done, lambda r: r.metres()),
+                means(done, lambda r: r.metres("uav")), str(total(moved, "contacts")), least(moved, "clearance_min_m"),
+                least(moved, "separation_min_m"), why_unseen(done)])
+    return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end", "mapped", "metres",
+                  "UAVs' metres", "contacts", "clearance [m]", "bodies apart [m]",
+                  "unseen [%]: narrow / hidden / in view"], rows, texts=2)
 
 
-def uav_path(runs):
-    return spread_of(spread(r.travelled("uav")[-1] for r in runs), 0, 1, " m")
-
-
-def team_table(results):
+def pairs_table(results, first="tour"):
+    """The first method less the others."""
     rows = []
-    for world in (*WORLDS, "all"):
-        worlds = WORLDS if world == "all" else [world]
-        team, uav, ugv = ([r for w in worlds for r in results.of(w, v)] for v in ("team", "uav", "ugv"))
-        counted, reached = savings(results, "team", "uav", worlds)
-        pairs = f" ({reached.count if reached else 0} of {counted.count if counted else 0})"
-        rows.append([world, *(steps_to_90(runs) for runs in (team, uav, ugv)), spread_of(counted, 1, 100, " %"),
-                     mean_of(reached, 1, 100, " %") + pairs, uav_path(uav), uav_path(team)])
-    return table(["world", "steps to 90 %: team", "UAV alone", "UGV alone", "saved by the team", "if both reached it",
-                  "UAV's path alone", "in the team"], rows)
+    for task in results.tasks():
+        for other in (m for m in MAIN if m != first):
+            pairs, ours, theirs = results.pairs(task, first, other)
+            if pairs or ours or theirs:
+                rows.append([
+                    task, results.experiments.title(other), str(len(pairs)), f"{ours} / {theirs}",
+                    *(interval(difference(pairs, lambda r, k=level: r.seconds(k)), sign=True) for level in ("95", "99")),
+                    interval(difference(pairs, end_of), sign=True),
+                    interval(difference(pairs, lambda r: r.metres()), sign=True),
+                    interval(ratio([pairs], end_of), 2, unit="×")])
+    return table(["task", f"{results.experiments.title(first)} less", "pairs", "pairs lost, failures of first / second",
+                  "to 95 % [s]", "to 99 % [s]", "to the end [s]", "metres", "ratio of times to the end"], rows, texts=2)
 
 
-def uav_efficiency(runs):
-    """Percent of the observable space per 100 m of flight."""
-    return spread(1e4 * r.known_by("uav")[-1] / r.travelled("uav")[-1] for r in runs if r.travelled("uav")[-1] > 0)
-
-
-def contribution_table(results):
+def variants_table(results, base, of_reality=False):
+    """Each variant against its base, by pairs; built-in tasks together."""
     rows = []
-    for world in WORLDS:
-        before, after, mixed = (results.of(world, v) for v in ("unoptimised", "team", "unassigned"))
-        rows.append([world, "{} / {} %".format(*paper.UAV_SHARE[world]),
-                     *(spread_of(spread(r.fraction_of("uav") for r in runs), 0, 100, " %") for runs in (before, after)),
-                     *(mean_of(uav_efficiency(runs), 2) for runs in (mixed, after, results.of(world, "uav")))])
-    return table(["world", "UAV's fraction, paper, before / after", "ours, before", "ours, after",
-                  "% per 100 m: no assignment", "team", "UAV alone"], rows)
+    tasks = results.tasks(of_files=False)
+    for method in results.experiments.methods:
+        if not method.startswith(f"{base}_") or method in MAIN or method in BUMPERS or method == "tour_grid_caster" \
+                or (method in REALITY) != of_reality:
+            continue
+        found, said, failures = compared(results, tasks, method, base, end_of)
+        if found or said:
+            pairs = [results.pairs(task, method, base)[0] for task in tasks]
+            ratios = [interval(ratio(pairs, measure), 2, unit="×") for measure in
+                      (lambda r: r.seconds("90"), lambda r: r.seconds("99"), end_of, lambda r: r.metres())]
+            contacts = sum(total(with_facts(results.of(t, method)), "contacts") for t in tasks)
+            rows.append([results.experiments.title(method), str(found.count if found else 0), str(failures), *ratios,
+                         str(contacts)])
+    return table(["changed", "pairs", "failed", "time to 90 %", "to 99 %", "to the end", "metres", "contacts"], rows)
+
+
+def bumpers_table(results):
+    rows = []
+    for task in results.tasks():
+        for method, without in BUMPERS.items():
+            runs, bare = with_facts(results.of(task, method)), with_facts(results.of(task, without))
+            if runs:
+                rows.append([task, results.experiments.title(without), str(len(runs)), str(total(runs, "held_back")),
+                             str(len(bare)), str(total(bare, "contacts"))])
+    return table(["task", "method", "runs with bumpers", "times held back", "runs without", "contacts"], rows, texts=2)
+
+
+def lines_table(lines):
+    return table(["claim", "measured", ""],
+                 [[plain(x.claim), plain(x.measured) or NOTHING, x.verdict] for x in lines], texts=3)
+
+
+def steps_table(results):
+    rows = []
+    for world in paper.WORLDS:
+        for method in results.methods(world, "steps"):
+            runs, done = results.of(world, method), results.done(world, method)
+            rows.append([
+                world, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
+                parts(with_facts(runs), lambda r: r.coverage),
+                f"{percent(paper.COVERAGE[world])} in {paper.STEPS[world]}" if method == "steps" else NOTHING,
+                mean_interval(done, lambda r: r.steps()), mean_interval(done, lambda r: r.steps(0.9)),
+                means(done, lambda r: r.metres("uav")), means(done, lambda r: r.share("uav"), 0, " %", 100),
+                means(done, lambda r: r.efficiency("uav"), 1)])
+    return table(["world", "", "runs", "failed", "mapped, by all runs", "paper, mapped in steps", "steps",
+                  "steps to 90 %", "UAV's metres", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
 
 
 def optimisation_table(results):
     rows = []
-    for world in WORLDS:
-        before, after = results.of(world, "unoptimised"), results.of(world, "team")
-        gains = [spread(g for r in after for g in r.gains("uav", column))
-                 for column in ("gain_tangent", "gain_predicted", "gained")]
-        ratio = gains[0] and gains[0].mean and gains[1].mean / gains[0].mean
-        rows.append([world, *(mean_of(g, 0) for g in gains), value(ratio or None, 2, "×"),
-                     mean_of(spread(g for r in before for g in r.gains("uav", "gained")), 0),
-                     "{} / {} m".format(*paper.UAV_LENGTH[world]),
-                     uav_path(before), uav_path(after)])
-    return table(["world", "frontiers per path, before", "after", "gained", "after / before",
-                  "gained without optimisation", "UAV's path, paper, before / after", "ours, before", "ours, after"],
-                 rows)
+    for world, steps in ((w, s) for s in ("steps", "steps_render") for w in paper.WORLDS):
+        before, after = results.done(world, f"{steps}_yaw_ahead"), results.done(world, steps)
+        if before or after:
+            seen = [means(after, lambda r, c=c: r.gain("uav", c)) for c in ("gain_tangent", "gain_predicted", "gained")]
+            shares = " / ".join(means(runs, lambda r: r.share("uav"), 0, " %", 100) for runs in (before, after))
+            metres = " / ".join(means(runs, lambda r: r.metres("uav"), 0, " m") for runs in (before, after))
+            rows.append([world, results.experiments.title(steps), *seen, means(before, lambda r: r.gain("uav", "gained")),
+                         "{} / {} %".format(*paper.UAV_SHARE[world]), shares,
+                         "{} / {} m".format(*paper.UAV_LENGTH[world]), metres])
+    return table(["world", "", "frontiers in view, looking ahead", "with optimised yaws", "mapped by a path",
+                  "without optimisation", "UAV's share, paper, before / after", "ours",
+                  "UAV's path, paper, before / after", "ours"], rows, texts=2)
 
 
 def planning_table(results):
     rows = []
-    for world in WORLDS:
-        both = f"{paper.UAV_PLANNING[world] + paper.UGV_PLANNING[world]:.2f} s"
-        run = results.timed(world)
-        beside = spread(r.planning_mean for r in results.of(world, "team"))
-        phases = [mean_of(spread(run.seconds(f"{p}_s")), 1, 1e3) if run else NOTHING for p in PHASES]
-        rows.append([world, *phases, value(run and 1e3 * run.planning_mean, 1),
-                     value(run and 1e3 * run.planning_max, 1), both,
-                     value(run and paper.UAV_PLANNING[world] / max(run.planning_mean, 1e-9), 0, "×"),
-                     mean_of(beside, 1, 1e3)])
-    return table(["world", *PHASES, "planning, mean [ms]", "max", "paper, UAV and UGV", "paper's UAV / ours",
-                  "mean of the runs side by side, 1 thread"], rows)
+    for run, result in results.all.items():
+        if run.timed and result.facts:
+            lockstep = result.content["task"].get("lockstep")
+            printed = paper.UAV_PLANNING[run.task] + paper.UGV_PLANNING[run.task]
+            rows.append([run.task, results.experiments.title(run.method) + (", lock-step" if lockstep else ""),
+                         *(value(result.measured[key], 3, " s") for key in
+                           ("planning_mean_s", "planning_p99_s", "planning_max_s")),
+                         NOTHING if lockstep else f"{result.content['task']['latency_s']} s",
+                         f"{printed:.2f} s" if lockstep else NOTHING])
+    if not rows:
+        return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and "
+                "there are none yet.\nIn all other tables the clock charges a fixed latency, which no load changes.\n")
+    return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV"], rows, texts=2)
 
 
-def engine_table(results):
-    rows = []
-    for world in WORLDS:
-        fast = results.timed(world)
-        for caster in CASTERS:
-            run = results.timed(world, caster)
-            if run:
-                ratio = run.planning_mean / fast.planning_mean if fast and fast.planning_mean else None
-                rows.append([world, caster, same(fast, run) if fast else NOTHING, str(run.steps),
-                             percent(run.coverage[-1]), value(1e3 * run.planning_mean, 1),
-                             value(1e3 * run.planning_max, 1), value(ratio, 2, "×"), value(run.wall, 0, " s")])
-    return table(["world", "caster", "run", "steps", "coverage", "planning, mean [ms]", "max", "mean / fast's",
-                  "whole run"], rows, texts=3)
+def missing_table(results):
+    rows = {}
+    for run in results.wanted:
+        name = run.method + (" (timed)" if run.timed else "")
+        counts = rows.setdefault(run.task, {}).setdefault(name, [0, 0])
+        counts[0] += run not in results.all
+        counts[1] += 1
+    cells = [[task, ", ".join(f"{name} {missing} of {wanted}" for name, (missing, wanted) in methods.items()
+                              if 0 < missing < wanted),
+              ", ".join(name for name, (missing, wanted) in methods.items() if missing == wanted)]
+             for task, methods in rows.items()]
+    return table(["task", "missing in part", "without any run"],
+                 [[task, plain(part) or NOTHING, plain(whole) or NOTHING] for task, part, whole in cells if part or whole],
+                 texts=3, none="None.")
 
 
-def goal_table(results):
-    rows = []
-    for world in (*WORLDS, "all"):
-        for variant in ("team", "cluster", "nearest"):
-            runs = [r for w in (WORLDS if world == "all" else [world]) for r in results.of(w, variant)]
-            rows.append([world, "method" if variant == "team" else VARIANTS[variant].title,
-                         spread_of(spread(r.steps for r in runs), 1), steps_to_90(runs),
-                         spread_of(spread(r.travelled()[-1] for r in runs), 0, 1, " m"),
-                         spread_of(spread(r.length_to(0.9) for r in runs), 0, 1, " m")])
-    return table(["world", "goals", "steps", "steps to 90 %", "path, all robots", "path to 90 %"], rows, texts=2)
-
-
-def variant_table(results):
-    rows = []
-    for world in WORLDS:
-        for name, variant in VARIANTS.items():
-            runs = results.of(world, name)
-            ends = [run.end for run in runs]
-            rows.append([world, variant.title, spread_of(spread(r.coverage[-1] for r in runs), 1, 100, " %"),
-                         mean_of(spread(r.coverage_box for r in runs), 1, 100, " %"),
-                         mean_of(spread(r.steps for r in runs), 1), steps_to_90(runs),
-                         mean_of(spread(r.travelled()[-1] for r in runs), 0, 1, " m"),
-                         mean_of(spread(r.planning_mean for r in runs), 1, 1e3),
-                         ", ".join(f"{ends.count(e)} × {plain(e)}" for e in sorted(set(ends))) or NOTHING,
-                         value(sum(r.collisions for r in runs) if runs else None)])
-    return table(["world", "variant", "coverage", "of the box", "steps", "steps to 90 %", "path, all robots",
-                  "planning, mean [ms]", "ends", "collisions"], rows, texts=2)
-
-
-def origin(results):
-    def said(key):
-        values = sorted({plain(run.facts.get(key, "unknown")) for run in results.runs.values()})
-        return "; ".join(values) or "unknown"
-
-    seeds = sorted({run.run.seed for run in results.runs.values() if not run.run.timed})
-    return (f"{len(results.runs)} of {results.wanted} runs, seeds {', '.join(map(str, seeds)) or 'none'} (of world and "
-            f"run alike), version {said('version')}, voxels of {said('resolution_m')} m, on {said('machine')}.")
-
-
-def broken_list(results):
-    if not results.broken:
-        return "None.\n"
-    return "".join(f"- {plain(name)}: {plain(reason)}\n" for name, reason in results.broken.items())
-
-
-def document(results, images):
-    """images: the figures' folder, as seen from the document."""
-    def figure(name, title):
-        return f"![{title}]({images}/{name}.svg)\n"
-
-    return f"""\
-# Results: the figures of the paper and ours
-
-Written by `./dev reproduce`: {origin(results)}
-Values are means over seeds; the team and the UAV alone have more seeds than the other variants. The smallest value, the
-largest value and the standard deviation are in brackets. Coverage is of the observable space. Planning times are those
-of one run in each world, alone on the machine, with 2 threads; all other times are those of runs with 1 thread, one run
-on each core.
-
-## What is not comparable
-
-{NOT_COMPARABLE}
-
-## What must hold
-
-Computed from the runs. Coverage holds if the worst seed does.
-
-{checklist(results)}
-## Coverage and steps
-
-{coverage_table(results)}
-{figure("coverage_by_step", "Coverage against steps, for the team and each robot alone")}
-## The team and each robot alone
-
-The paper: 30 to 54 % fewer steps than the UAV alone; the UAV flies 1,147 m alone and 663 m in the team in one world.
-
-{team_table(results)}
-{figure("coverage_by_path", "Coverage against the length of all robots' paths")}
-## Contributions
-
-A voxel belongs to the robot that observed it first. Before: without optimisation. In the paper, assignment of
-frontiers raises the efficiency of the UAV by 24 % in the factory; coverage per 100 m is one reading of that.
-
-{contribution_table(results)}
-{figure("contributions", "What each robot observed first, against steps")}
-## Path optimisation
-
-Frontiers in view of the UAV's path in a step, with yaws along the path (before) and optimised yaws (after), and
-frontiers that its scans made known. Means over steps with a path.
-
-{optimisation_table(results)}
-## Planning time
-
-Mean of each phase, in ms per step, both robots.
-
-{planning_table(results)}
-{figure("planning_time", "Planning time of each step, by phase")}
-## The ray casters
-
-The same runs with other casters. The rounding of the octomap caster leads to other decisions; planning times are
-compared per step.
-
-{engine_table(results)}
-## Goals
-
-{goal_table(results)}
-{figure("goals", "Coverage against steps, by how goals are chosen")}
-## Every variant
-
-{variant_table(results)}
-## Runs that failed or are missing
-
-{broken_list(results)}"""
+def failures_list(results):
+    lines = [f"- {plain(r.run.name)}: {plain(r.failure)}\n" for r in results.all.values() if r.failure]
+    lines += [f"- {plain(name)}: {plain(reason)}\n" for name, reason in results.broken.items()]
+    return "".join(lines) or "None.\n"

@@ -9,7 +9,7 @@ if(NOT result STREQUAL 0 OR NOT output MATCHES "Ran [1-9][0-9]* tests")
 endif()
 
 # What ./dev refuses before it builds anything.
-foreach(arguments "--seeds" "--seeds;0" "--seeds;3;4" "--seeds;-1" "--worlds;3")
+foreach(arguments "--seeds" "--seeds;0" "--quick;3" "--quick;--timed" "--methods;tuor" "--worlds")
   execute_process(COMMAND ${REPRODUCE}/../../dev reproduce ${arguments} RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
   if(NOT result STREQUAL 2)
     message(FATAL_ERROR "exit code ${result} instead of 2: ./dev reproduce ${arguments}")

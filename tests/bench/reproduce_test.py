@@ -1,38 +1,38 @@
-"""The reproduction's numbers against values worked out by hand, and what it makes of runs that are broken or fail.
+"""The reproduction's numbers against values worked out by hand, lines that hold and that fail, and broken runs.
 
 reproduce_test.py FOLDER, that of bench/reproduce; runs are made up in a temporary folder.
 """
 
+import csv
+import io
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import xml.etree.ElementTree
 from pathlib import Path
 
-from made_up_runs import FAILURE, write_run
+from made_up_runs import FAILURE, VERSION, made_up, write_files
 
 REPRODUCE = Path(sys.argv.pop(1)).resolve()
-sys.path.insert(0, str(REPRODUCE))
+sys.path[:0] = [str(REPRODUCE), str(REPRODUCE.parent)]
 
-from checklist import means, savings, verdict
+import explore
+from claims import at_least, at_most, effect, negative, our_lines, paper_lines
+from csv_of_runs import csv_of_runs
+from experiments import Experiments, Run, merged
 from figures import figures, mean_curve, round_step, value_at
-from markdown import plain, spread_of
-from recorded import Recorded, Results, first_difference, spread
-from runs import Run, next_action, wanted_runs
-from tables import document
+from intervals import Interval, bootstrap, difference, mean, ratio
+from markdown import interval, plain
+from page import page
+from results import Results, is_kept, read_result, write_result
 
-CURVE = [0.1, 0.5, 0.9, 0.95]
-
-
-def reaching(step, last=0.96):
-    """A curve that has 90 % first in that step, and ends two steps later."""
-    return [0.1] * step + [0.9, 0.93, last]
+SEEDS = range(6, 14)
+BUILT_IN = ("maze", "factory", "station")
+LOCKSTEP = ("steps", "steps_render")
 
 
 class Made(unittest.TestCase):
@@ -40,165 +40,301 @@ class Made(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
+        self.experiments = Experiments()
 
-    def make(self, run, coverage, **facts):
-        robots = (run.variant,) if run.variant in ("uav", "ugv") else ("ugv", "uav")
-        write_run(self.folder / run.name, run.world, run.seed, coverage, robots, **facts)
+    def outcome(self, run, **how):
+        files = self.folder / "files"
+        facts, rows = made_up(self.experiments.task_file(run), **how)
+        write_files(files / run.name, facts, rows)
+        curve, gains = explore.read_steps(files / run.name / "steps.csv")
+        return {"facts": {key: facts.get(key) for key in explore.FACTS}, "gains": gains, "curve": curve,
+                "measured": {key: facts.get(key) for key in explore.MEASURED}}
+
+    def make(self, run, **how):
+        outcome = {"failure": how["failure"], "measured": {}} if "failure" in how else self.outcome(run, **how)
+        write_result(self.folder, run, self.experiments.task_file(run), VERSION, outcome)
         return run
 
-    def row(self, text, heading, first):
-        """Cells of the first row of that section that begins so."""
-        section = text.split(f"## {heading}\n")[1].split("\n## ")[0]
-        line = next(line for line in section.splitlines() if line.startswith(f"| {first} |"))
-        return [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+    def results(self, runs):
+        return Results(self.experiments, runs, self.folder)
 
 
-class Numbers(Made):
-    def test_spread(self):
-        self.assertEqual(spread([97.0, 99.0, 98.0]), (98.0, 97.0, 99.0, 1.0, 3))
-        self.assertEqual(spread([5.0, None, float("nan")]), (5.0, 5.0, 5.0, 0.0, 1))
-        self.assertIsNone(spread([]))
-        self.assertEqual(spread_of(spread([0.97, 0.99, 0.98]), 1, 100, " %"), "98.0 % (97.0..99.0, sd 1.0)")
+class Declared(Made):
+    def test_tasks_of_runs(self):
+        task = self.experiments.task_file(Run("maze", "tour", 7))
+        self.assertEqual(task, {"name": "maze-tour-7", "world": "maze", "world_seed": 7, "seed": 1007, "method": "tour",
+                                "resolution_m": 0.3, "latency_s": 0.25, "team": "uav+ugv", "end": {"time_s": 7200},
+                                "options": {"bumper": "off"}})
+        steps = self.experiments.task_file(Run("maze", "steps_uav", 7))
+        self.assertEqual((steps["lockstep"], steps["team"], "end" in steps), (True, "uav", False))
+        mesh = self.experiments.task_file(Run("hospital", "tour", 7))
+        self.assertEqual((mesh["world"], mesh["options"]["start"]), ("hospital_aws_floor1.ply", "-9.15,-4.35,0.45"))
+        self.assertNotIn("world_seed", mesh)
+        office = self.experiments.task_file(Run("complex_office", "tour", 8))
+        self.assertEqual((office["robots"][0]["start"], "team" in office), ([1.3, 0, 1, 0], False))
 
-    def test_one_run(self):
-        run = self.make(Run("maze", "team", 1), CURVE)
-        recorded = Recorded(run, self.folder / run.name)
-        self.assertEqual(recorded.steps, 3)
-        self.assertEqual(recorded.coverage, CURVE)
-        self.assertEqual(recorded.steps_to(0.9), 2)
-        self.assertIsNone(recorded.steps_to(0.96))
-        self.assertEqual(recorded.steps_or_limit(0.96), 1000)
-        self.assertEqual(recorded.length_to(0.9), 2 * (4 + 8))
-        self.assertEqual(recorded.travelled("uav"), [0, 8, 16, 24])
-        self.assertAlmostEqual(recorded.fraction_of("uav"), 0.75)
-        self.assertEqual(recorded.gains("uav", "gain_predicted"), [150] * 3)
-        self.assertEqual(recorded.seconds("optimization_s"), [0.010] * 3)
+    def test_no_two_runs_are_the_same_exploration(self):
+        for name in ("quick", "full", "timed"):
+            runs = self.experiments.runs(name)
+            tasks = {json.dumps({**self.experiments.task_file(r), "name": ""}, sort_keys=True) for r in runs}
+            self.assertEqual(len(tasks), len(runs))
+            self.assertGreaterEqual(min(r.seed for r in runs), 6)
 
-    def test_a_limit_of_its_own(self):
-        run = self.make(Run("maze", "team", 1), [0.1, 0.2], max_steps=77)
-        self.assertEqual(Recorded(run, self.folder / run.name).steps_or_limit(0.9), 77)
+    def test_main_rows_have_twenty_seeds(self):
+        runs = self.experiments.runs("full")
+        for task in BUILT_IN:
+            for method in ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "tour_3uav", "steps",
+                           "steps_uav"):
+                self.assertEqual(sum((r.task, r.method) == (task, method) for r in runs), 20, (task, method))
 
-    def test_several_robots_of_a_kind(self):
-        run = Run("maze", "team", 1)
-        self.make(run, CURVE)
-        file = self.folder / run.name / "steps.csv"
-        lines = file.read_text().splitlines()
-        twice = [lines[0]] + [line.replace(",uav,", f",uav{i},") for line in lines[1:] for i in (1, 2)
-                              if i == 1 or ",uav," in line]
-        file.write_text("\n".join(twice) + "\n")
-        self.assertEqual(Recorded(run, file.parent).travelled("uav")[-1], 48)
+    def test_merged(self):
+        self.assertEqual(merged({"a": {"b": 1, "c": 2}, "d": 3}, {"a": {"b": None, "e": 4}, "d": 5}),
+                         {"a": {"c": 2, "e": 4}, "d": 5})
 
-    def test_savings(self):
-        runs = [self.make(Run("maze", "team", 1), reaching(6)), self.make(Run("maze", "uav", 1), reaching(10)),
-                self.make(Run("maze", "team", 2), reaching(5)), self.make(Run("maze", "uav", 2), [0.1, 0.8]),
-                self.make(Run("maze", "team", 3), reaching(5))]
-        results = Results(runs, self.folder, {})
-        counted, reached = savings(results, "team", "uav", ["maze"])
-        self.assertEqual(counted.count, 2)  # seed 3 has no partner
-        self.assertAlmostEqual(counted.mean, (0.4 + 0.995) / 2)
-        self.assertEqual(reached.count, 1)
-        self.assertAlmostEqual(reached.mean, 0.4)
-        pairs = results.pairs("team", "uav", ["maze"])
-        self.assertEqual(means(pairs, lambda run: run.steps), ((8 + 7) / 2, (12 + 1) / 2))
-        self.assertEqual(means(pairs, lambda run: run.length_to(0.9)), (6 * 12, 10 * 8))  # UAV alone: 8 m a step
-
-    def test_verdicts(self):
-        self.assertEqual(verdict(97.2, 97.2), "holds")
-        self.assertEqual(verdict(97.0, 97.2, " points", 2), "**falls short by 0.20 points**")
-        self.assertEqual(verdict(0.5, 0.5, at_most=True), "holds")
-        self.assertEqual(verdict(0.75, 0.5, " s", 2, at_most=True), "**falls short by 0.25 s**")
-        self.assertEqual(verdict(10, 12, below=True), "holds")
-        self.assertEqual(verdict(12, 12, below=True), "**falls short: the same**")
-        self.assertEqual(verdict(None, 1), "not measured")
-
-    def test_differences(self):
-        one, slower, other, shorter = (Run("maze", "team", seed) for seed in range(1, 5))
-        self.make(one, CURVE)
-        self.make(slower, CURVE, phases=(0.1, 0.2, 0.3, 0.4, 0.5))
-        self.make(other, [0.1, 0.5, 0.8, 0.95])
-        self.make(shorter, CURVE[:3])
-        read = Results([one, slower, other, shorter], self.folder, {}).runs
-        self.assertIsNone(first_difference(read[one], read[slower]))
-        self.assertEqual(first_difference(read[one], read[other]), 2)
-        self.assertEqual(first_difference(read[one], read[shorter]), 3)
-
-    def test_curves(self):
-        self.assertEqual([value_at([0, 2, 4], [0, 10, 30], x) for x in (0, 1, 2, 3, 4, 9)], [0, 5, 10, 20, 30, 30])
-        self.assertEqual(mean_curve([[(0, 1), (1, 4)], [(0, 3), (1, 8)]]), [(0, 2), (1, 6)])
-        self.assertEqual([round_step(v, 5) for v in (100, 137, 0.9, 5)], [20, 50, 0.2, 1])
+    def test_wrong_declarations(self):
+        good = json.loads((REPRODUCE / "experiments.json").read_text())
+        for change_it, said in ((lambda d: d.pop("tasks"), "'tasks' is missing"),
+                                (lambda d: d["sets"]["quick"][0].update(seeds=[1, 9]), "seeds of set 'quick' are 1 to 9"),
+                                (lambda d: d["sets"]["quick"][0].update(seeds=[9, 8]), "9 to 8"),
+                                (lambda d: d["sets"]["quick"][0].update(methods=["tuor"]), "method 'tuor' of set 'quick'")):
+            wrong = json.loads(json.dumps(good))
+            change_it(wrong)
+            file = self.folder / "experiments.json"
+            file.write_text(json.dumps(wrong))
+            with self.assertRaisesRegex(ValueError, f"{file}.*{said}"):
+                Experiments(file)
+        with self.assertRaisesRegex(ValueError, "there is no set 'all'"):
+            self.experiments.runs("all")
 
 
-class Document(Made):
-    def results(self, runs, failures=None):
-        return Results(runs, self.folder, failures or {})
+class Intervals(unittest.TestCase):
+    def test_values(self):
+        self.assertEqual(mean([2, None, 4])[:], (3, None, None, 2))
+        self.assertIsNone(mean([None]))
+        self.assertEqual(mean([5] * 6), (5, 5, 5, 6))
+        pairs = [(i, 2 * i) for i in range(1, 9)]
+        self.assertEqual(difference(pairs, lambda v: v).value, -4.5)
+        self.assertEqual(ratio([pairs], lambda v: v), (0.5, 0.5, 0.5, 8))
+        # The ratio of the means, not the mean of the ratios; of two groups the mean.
+        self.assertEqual(ratio([[(1, 1), (9, 4)]], lambda v: v).value, 2)
+        self.assertEqual(ratio([[(1, 1), (9, 4)], [(1, 1)], []], lambda v: v).value, 1.5)
+        self.assertEqual(ratio([[(1, 1), (None, 4)]], lambda v: v).count, 1)
 
-    def test_cells(self):
-        runs = [self.make(Run("maze", "team", 1), reaching(6, 0.975)),
-                self.make(Run("maze", "team", 2), reaching(8, 0.965)),
-                self.make(Run("maze", "uav", 1), reaching(12)), self.make(Run("maze", "uav", 2), [0.1, 0.8]),
-                self.make(Run("maze", "unoptimised", 1), CURVE, uav_part=0.6, optimize=False),
-                self.make(Run("maze", "team", 1, "fast", 2, True), reaching(6, 0.975), threads=2),
-                self.make(Run("maze", "team", 1, "grid", 2, True), reaching(7, 0.975), threads=2,
-                          phases=(0.001, 0.002, 0.023, 0.004, 0.010))]
-        text = document(self.results(runs), "images")
-        self.assertEqual(self.row(text, "Coverage and steps", "maze"),
-                         ["maze", "97.2 %", "97.0 % (96.5..97.5, sd 0.7)", "69", "9.0 (8.0..10.0, sd 1.4)",
-                          "8.0, 1 of 2 runs", "7.0"])
-        row = self.row(text, "The team and each robot alone", "maze")
-        self.assertEqual(row[1:4], ["7.0", "506.0 (12.0 in 1 of 2 that reached it)", "–"])
-        self.assertEqual(row[4:6], ["74.6 % (50.0..99.2, sd 34.8)", "50.0 % (1 of 2)"])
-        self.assertEqual(row[6:], ["60 m (8..112, sd 74)", "72 m (64..80, sd 11)"])
-        self.assertEqual(self.row(text, "Contributions", "maze")[2:4], ["60 %", "75 % (75..75, sd 0)"])
-        self.assertEqual(self.row(text, "Planning time", "maze")[1:9],
-                         ["1.0", "2.0", "3.0", "4.0", "10.0", "20.0", "40.0", "2.26 s"])
-        self.assertEqual(self.row(text, "The ray casters", "maze | grid")[2:8],
-                         ["**not the same** from step 6 on", "9", "97.5 %", "40.0", "80.0", "2.00×"])
-        self.assertIn("| lowest 96.5 %, mean 97.0 %; seeds 1, 2 | **falls short by 0.70 points** |", text)
-        self.assertIn("| maze: **not the same** from step 6 on | **falls short in 1 worlds** |", text)
+    def test_interval_of_a_coin(self):
+        # 20 throws, half of them heads: the binomial's 2.5 and 97.5 % quantiles are 6 and 14.
+        found = mean([0, 1] * 10)
+        self.assertEqual(found.value, 0.5)
+        self.assertAlmostEqual(found.low, 0.3, delta=0.051)
+        self.assertAlmostEqual(found.high, 0.7, delta=0.051)
 
-    def test_broken_runs_are_listed_and_left_out(self):
-        good, *bad = (Run("maze", "team", seed) for seed in range(1, 15))
-        for run in (good, *bad):
-            self.make(run, CURVE)
+    def test_same_values_same_interval(self):
+        values = [1, 5, 2, 8, 3, 9, 4]
+        self.assertEqual(mean(values), mean(values))
+        self.assertLess(mean(values).low, mean(values).value)
 
-        def change(run, name, edit):
-            file = self.folder / run.name / name
-            file.write_text(edit(file.read_text(encoding="utf-8")), encoding="utf-8")
+    def test_too_few_values_have_no_interval(self):
+        self.assertIsNone(mean([1, 2, 3, 4, 5]).low)
+        self.assertIsNotNone(mean([1, 2, 3, 4, 5, 6]).low)
+        self.assertIsNone(bootstrap([[1] * 20, [1] * 5], lambda groups: 1).low)
 
-        change(bad[0], "steps.csv", lambda t: t[:-40])
-        change(bad[1], "steps.csv", lambda t: t[:t.rindex("3,37.5,uav")])
-        change(bad[2], "steps.csv", lambda t: t.replace("0.95,", "nan,"))
-        change(bad[3], "steps.csv", lambda t: t.replace("0.95,", "1.5,"))
-        change(bad[4], "steps.csv", lambda t: t.replace("planning_s", "thinking_s"))
-        change(bad[5], "steps.csv", lambda t: "")
-        change(bad[6], "steps.csv", lambda t: t[:t.index("\n2,25.0,ugv")] + "\n")
-        change(bad[7], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": NaN'))
-        change(bad[8], "run.json", lambda t: t.replace('"wall_s": 36.0', '"wall_s": 1e999'))
-        change(bad[9], "run.json", lambda t: t.replace('"low_gain"', '"stopped"'))
-        change(bad[10], "run.json", lambda t: "[" * 100000)
-        (self.folder / bad[11].name / "run.json").write_bytes(b"\xff\xfe\x00{")
-        (self.folder / bad[12].name / "steps.csv").unlink()
-        results = self.results([good, *bad])
-        self.assertEqual([run.run for run in results.runs.values()], [good])
-        self.assertEqual(len(results.broken), len(bad))
-        reasons = list(results.broken.values())
-        for reason, part in zip(reasons, ("cells, not", "every robot in every step", "not within", "not within 0 and 1",
-                                          "no column planning_s", "no column", "3 steps, steps.csv 1",
-                                          "NaN is not a number", "wall_s is inf", "not finished", "too deeply")):
-            self.assertIn(part, reason)
-        text = document(results, "images")
-        for run, reason in zip(bad, reasons):
-            self.assertIn(f"- {plain(run.name)}: {plain(reason)}\n", text)
-        self.assertIn("1 of 14 runs", text)
-        self.assertIn("13 failed or missing | **falls short by 13 runs**", text)
+    def test_text(self):
+        self.assertEqual(interval(Interval(0.5, 0.25, 0.75, 8), 1, 100, " %"), "50.0 % (25.0 to 75.0)")
+        self.assertEqual(interval(Interval(-3, None, None, 1), sign=True, unit=" s"), "-3 s")
+        self.assertEqual(interval(None), "–")
 
-    def test_hostile_names(self):
-        runs = [self.make(Run("maze", "team", 1), CURVE, end=FAILURE, machine=FAILURE + "\n# x", version="<b>|")]
-        text = document(self.results([*runs, Run("maze", "uav", 1)], {"maze_uav_1": FAILURE + "\n\n## y"}), "images")
-        self.assertNotIn("<script", text)
-        self.assertNotIn("[here](x)", text)
-        self.assertNotIn("\n# x", text)
-        self.assertNotIn("\n## y", text)
+
+class Verdicts(unittest.TestCase):
+    def test_limits(self):
+        self.assertEqual(at_most(Interval(0.6, 0.5, 0.7, 8), 0.7), "holds")
+        self.assertEqual(at_most(Interval(0.6, 0.5, 0.7, 8), 0.7, strictly=True), "open: the interval contains the limit")
+        self.assertEqual(at_most(Interval(0.6, 0.5, 0.71, 8), 0.7), "open: the interval contains the limit")
+        self.assertEqual(at_most(Interval(0.9, 0.8, 1.0, 8), 0.7), "**does not hold**")
+        self.assertEqual(at_most(Interval(0.1, None, None, 5), 0.7), "open: fewer than 6 runs in a world")
+        self.assertEqual(at_most(None, 0.7), "not measured")
+        self.assertEqual(at_least(Interval(0.9, 0.8, 1.0, 8), 0.7), "reproduced")
+        self.assertEqual(at_least(Interval(0.6, 0.5, 0.65, 8), 0.7), "**not reproduced**")
+        self.assertEqual(at_least(Interval(0.9, None, None, 2), 0.7), "open: fewer than 6 runs in a world")
+
+    def test_effects(self):
+        self.assertEqual(effect(Interval(0.2, 0.1, 0.3, 8), 0.24), "reproduced")
+        self.assertEqual(effect(Interval(0.5, 0.4, 0.6, 8), 0.24), "reproduced")
+        self.assertEqual(effect(Interval(0.1, 0.05, 0.2, 8), 0.24), "**not reproduced: smaller**")
+        self.assertEqual(effect(Interval(0.1, -0.1, 0.3, 8), 0.24), "**not reproduced: no effect shown**")
+        self.assertEqual(effect(Interval(-0.2, -0.3, -0.1, 8), 0.24), "**not reproduced: the opposite**")
+        self.assertEqual(effect(None, 0.24), "not measured")
+        self.assertEqual(negative(Interval(0.75, 0.5, 1.25, 8)), (-0.75, -1.25, -0.5, 8))
+
+
+class OneRun(Made):
+    def test_numbers(self):
+        run = self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995)
+        result = self.results([run]).all[run]
+        self.assertIsNone(result.failure)
+        self.assertEqual((result.seconds("end"), result.coverage, result.steps()), (400, 0.995, 40))
+        self.assertAlmostEqual(result.seconds("50"), 400 * 0.5 / 0.995)
+        self.assertEqual((result.metres(), result.metres("uav"), result.metres("ugv")), (600, 400, 200))
+        self.assertEqual(result.steps(0.9), 37)  # 0.995 * 37 / 40 = 0.920
+        self.assertAlmostEqual(result.metres(None, 0.9), 555)
+        self.assertIsNone(result.steps(0.999))
+        self.assertAlmostEqual(result.share("uav"), 0.75, places=5)
+        self.assertAlmostEqual(result.efficiency("uav"), 99.5 * 0.75 / 4, places=3)
+        self.assertEqual(result.gain("uav", "gain_predicted"), 150)
+        self.assertIsNone(result.gain("balloon", "gained"))
+
+    def test_robots_of_a_kind_are_added(self):
+        run = Run("maze", "tour", 6)
+        facts, rows = made_up(self.experiments.task_file(run), seconds=100.0)
+        write_files(self.folder / "two", facts, [{**row, "robot": f"uav{i}"} for row in rows if row["robot"] == "uav"
+                                                 for i in (1, 2)])
+        curve, gains = explore.read_steps(self.folder / "two/steps.csv")
+        self.assertEqual(curve[-1]["length_m"], {"uav": 200})
+        self.assertEqual(gains["uav"], {"gain_tangent": 100, "gain_predicted": 150, "gained": 120})
+
+    def test_what_counts_as_a_failure(self):
+        for seed, (how, failure) in enumerate((
+                ({"coverage": 0.98}, "ended at 98.0 % (nothing_to_do)"), ({"end": "cut_off"}, "cut_off at 99.9 %"),
+                ({"end": "time_limit"}, "time_limit at 99.9 %"), ({"failure": "exit code 1: x"}, "exit code 1: x"),
+                ({}, None)), 6):
+            run = self.make(Run("maze", "tour", seed), **how)
+            self.assertEqual(self.results([run]).all[run].failure, failure)
+        run = self.make(Run("hospital", "tour", 6), coverage=0.95)
+        self.assertIsNone(self.results([run]).all[run].failure)
+
+    def test_failed_runs_enter_no_mean_and_lose_their_pair(self):
+        runs = [self.make(Run("maze", "tour", 6), seconds=100.0), self.make(Run("maze", "tour", 8), seconds=300.0),
+                self.make(Run("maze", "tour", 7), seconds=5.0, coverage=0.5)]
+        runs += [self.make(Run("maze", "render", 6), seconds=200.0), self.make(Run("maze", "render", 7), seconds=200.0),
+                 self.make(Run("maze", "render", 8), failure="exit code 1: x"), self.make(Run("maze", "render", 9))]
+        results = self.results(runs)
+        pairs, ours, theirs = results.pairs("maze", "tour", "render")
+        self.assertEqual(([a.run.seed for a, _ in pairs], ours, theirs), ([6], 1, 1))
+        self.assertEqual(ratio([pairs], lambda r: r.seconds("end")).value, 0.5)
+        text = page(results, "images", "runs.csv")
+        row = next(line for line in text.splitlines() if line.startswith("| maze | tours | 3 | 1 |"))
+        self.assertIn("| 200 |", row)  # of 100 and 300
+        self.assertIn("- maze-tour-7: ended at 50.0 % (nothing\\_to\\_do)\n", text)
+
+    def test_kept_if_it_is_the_same_run(self):
+        run = Run("maze", "tour", 6)
+        task = self.experiments.task_file(run)
+        self.assertFalse(is_kept(self.folder, run, task, VERSION))
+        self.make(run)
+        self.assertTrue(is_kept(self.folder, run, task, VERSION))
+        self.assertFalse(is_kept(self.folder, run, {**task, "latency_s": 0.5}, VERSION))
+        self.assertFalse(is_kept(self.folder, run, task, "9.8"))
+        self.make(run, failure="exit code 1: x")
+        self.assertFalse(is_kept(self.folder, run, task, VERSION))
+
+    def test_broken_results_are_named_and_left_out(self):
+        run = self.make(Run("maze", "tour", 6))
+        other = self.make(Run("maze", "tour", 7))
+        file = self.folder / f"{run.name}.json"
+        whole = file.read_text()
+        for text in ("", "{", "[]", "[" * 100000, whole[:-200], whole.replace('"format": 1', '"format": 2'),
+                     whole.replace('"coverage_observable": 0.999', '"coverage_observable": NaN'),
+                     whole.replace('"coverage_observable": 0.999', '"coverage_observable": 1.5'),
+                     whole.replace('"curve"', '"curves"'), whole.replace('"latency_s": 0.25', '"latency_s": 0.5')):
+            self.assertNotEqual(text, whole)
+            file.write_text(text)
+            results = self.results([run, other])
+            self.assertEqual((list(results.all), list(results.broken)), ([other], [run.name]), text[:80])
+            self.assertIn(file.name, results.broken[run.name])
+        file.write_bytes(b"\xff\xfe{")
+        self.assertIn(run.name, self.results([run, other]).broken)
+
+
+def all_hold(make):
+    """Runs of which every line holds."""
+    for seed in SEEDS:
+        for world in BUILT_IN:
+            for method, seconds in (("tour", 100.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 400.0),
+                                    ("paper", 300.0), ("tour_uav", 150.0), ("tour_2uav", 80.0), ("tour_4uav", 50.0)):
+                make(Run(world, method, seed), seconds=seconds + seed)
+            for steps in LOCKSTEP:
+                make(Run(world, steps, seed), seconds=100.0, uav_part=0.93, steps=40)
+                make(Run(world, f"{steps}_uav", seed), seconds=200.0, steps=80)
+                make(Run(world, f"{steps}_unassigned", seed), seconds=130.0, uav_part=0.75, steps=50)
+                make(Run(world, f"{steps}_yaw_ahead", seed), seconds=400.0, uav_part=0.6, steps=60)
+        for method, seconds in (("tour", 100.0), ("render", 200.0), ("tour_uav", 150.0)):
+            make(Run("small_maze", method, seed), seconds=seconds)
+        make(Run("maze", "tour_grid_caster", seed), seconds=100.0 + seed)
+    for world in BUILT_IN:
+        make(Run(world, "tour", 6, True), seconds=106.0)
+        for steps in LOCKSTEP:
+            make(Run(world, steps, 6, True), seconds=100.0, uav_part=0.93, steps=40)
+
+
+def none_hold(make):
+    """Runs of which no line holds: each is worse where a line looks."""
+    for seed in SEEDS:
+        for world in BUILT_IN:
+            for method, seconds in (("tour", 300.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 100.0),
+                                    ("paper", 100.0), ("tour_uav", 150.0), ("tour_2uav", 280.0), ("tour_4uav", 250.0)):
+                make(Run(world, method, seed), seconds=seconds + seed, contacts=int(method in ("tour", "render")),
+                     separation_min_m=0.01, clearance_min_m=0.0)
+            for steps in LOCKSTEP:
+                make(Run(world, steps, seed), seconds=200.0, uav_part=0.5, coverage=0.91, steps=90, gains=(100, 90, 80))
+                make(Run(world, f"{steps}_uav", seed), seconds=100.0, steps=80)
+                make(Run(world, f"{steps}_unassigned", seed), seconds=130.0, uav_part=0.75, steps=50)
+                make(Run(world, f"{steps}_yaw_ahead", seed), seconds=100.0, uav_part=0.6, steps=60)
+        for method, seconds in (("tour", 300.0), ("render", 200.0), ("tour_uav", 150.0)):
+            make(Run("small_maze", method, seed), seconds=seconds)
+        make(Run("maze", "tour_grid_caster", seed), seconds=301.0 + seed)
+    make(Run("maze", "tour", 14), coverage=0.5)  # and no partner
+    for world in BUILT_IN:
+        make(Run(world, "tour", 6, True), seconds=107.0, planning_p99_s=0.3)
+        for steps in LOCKSTEP:
+            make(Run(world, steps, 6, True), seconds=200.0, planning_mean_s=5.1)
+
+
+class Lines(Made):
+    def lines(self, fill):
+        runs = []
+        fill(lambda run, **how: runs.append(self.make(run, **how)))
+        results = self.results(runs)
+        return [line for line in [*our_lines(results), *paper_lines(results)] if line.verdict != "not comparable"]
+
+    def test_every_line_can_hold(self):
+        for line in self.lines(all_hold):
+            self.assertIn(line.verdict, ("holds", "reproduced"), line)
+
+    def test_every_line_can_fail(self):
+        good = [line.claim for line in self.lines(all_hold)]
+        bad = self.lines(none_hold)
+        self.assertEqual([line.claim for line in bad], good)
+        for line in bad:
+            self.assertRegex(line.verdict, r"^\*\*(does not hold|not reproduced)", line)
+
+    def test_nothing_holds_without_runs(self):
+        for line in self.lines(lambda make: None):
+            self.assertEqual((line.measured, line.verdict), ("", "not measured"))
+
+    def test_nothing_holds_of_two_seeds(self):
+        def two(make):
+            all_hold(lambda run, **how: make(run, **how) if run.seed in (6, 7) else None)
+        for line in self.lines(two):
+            if "×" in line.measured or ("%" in line.measured and "contacts" not in line.measured):
+                self.assertRegex(line.verdict, "^open", line)
+
+    def test_lost_pairs_leave_a_claim_of_the_paper_open(self):
+        def lost(make):
+            all_hold(lambda run, **how: make(run, **({**how, "end": "cut_off"} if run[:3] == ("maze", "steps_uav", 9) else how)))
+        lines = {line.claim: line for line in self.lines(lost)}
+        claim = "the team takes at least 30 % fewer planning steps than the UAV alone (up to 54 %); to 90 %"
+        self.assertEqual(lines[f"as printed, maze: {claim}"].verdict, "open: failures took 1 pair")
+        self.assertEqual(lines[f"default mode, maze: {claim}"].verdict, "reproduced")
+
+    def test_one_failed_run_of_ours_fails_the_line(self):
+        def one(make):
+            all_hold(lambda run, **how: make(run, **({"coverage": 0.5} if run == ("maze", "tour", 9, False) else how)))
+        lines = {line.claim: line for line in self.lines(one)}
+        claim = "Time to the end: tours below view quality, "
+        self.assertEqual(lines[claim + "maze"].verdict, "**does not hold: 1 run failed**")
+        self.assertEqual(lines[claim + "factory"].verdict, "holds")
+
+
+class Page(Made):
+    def columns_agree(self, text):
         columns = None
         for line in text.splitlines():
             cells = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else None
@@ -206,107 +342,149 @@ class Document(Made):
                 self.assertEqual(cells, columns, line)
             columns = cells
 
+    def test_whole(self):
+        runs = []
+        all_hold(lambda run, **how: runs.append(self.make(run, **how)))
+        results = Results(self.experiments, runs + [Run("factory", "render_bumper", 6)], self.folder)
+        text = page(results, "pictures", "runs.csv")
+        self.columns_agree(text)
+        self.assertIn(f"from {len(runs)} of {len(runs) + 1} runs, seeds 6 to 13, version 9.9.", text[:500])
+        self.assertIn("| factory | – | render\\_bumper |", text)
+        self.assertNotIn("| maze | – |", text)
+        for name in figures(results):
+            self.assertIn(f"(pictures/{name}.svg)", text)
+        self.assertEqual(text, page(results, "pictures", "runs.csv"))
+        self.assertNotIn(str(self.folder), text)
+
+    def test_table_of_runs(self):
+        runs = [self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995, separation_min_m=None),
+                Run("maze", "tour", 7), self.make(Run("maze", "tour", 8), failure='a "b", c'), self.make(Run("maze", "tour", 6, True))]
+        rows = list(csv.DictReader(io.StringIO(csv_of_runs(self.results(runs)))))
+        self.assertEqual([row["seed"] for row in rows], ["6", "8"])
+        columns = ("s_to_end", "m_ugv", "m_uav", "share_uav", "steps_to_90", "end", "separation_min_m")
+        self.assertEqual([rows[0][key] for key in columns],
+                         ["400.0", "200.0", "400.0", "0.75", "37", "nothing_to_do", ""])
+        self.assertEqual((rows[1]["failure"], rows[1]["s_to_end"]), ('a "b", c', ""))
+
+    def test_hostile_names(self):
+        runs = [self.make(Run("maze", "tour", 6), failure=FAILURE + "\n# x"), self.make(Run("maze", "tour", 7)),
+                self.make(Run("maze", "tour", 8), end="<b>|\n## y")]
+        text = page(self.results(runs), "images", "runs.csv")
+        for bad in ("<script", "[here](x)", "\n# x", "\n## y", "<b>"):
+            self.assertNotIn(bad, text)
+        self.assertIn(plain(FAILURE), text)
+        self.columns_agree(text)
+
     def test_figures(self):
-        runs = [self.make(Run("maze", "team", 1), [0.0, 0.5, 1.0])]
-        drawn = figures(self.results(runs))
-        for name, figure in drawn.items():
-            xml.etree.ElementTree.fromstring(figure)
-            self.assertNotRegex(figure, r"\bnan\b|\binf\b", name)
-        # From the origin to the corner of the panel: 0 % in step 0, 100 % in the last, in a straight line.
-        lines = re.findall(r'<path d="M([^"]*)" class="line-team" fill="none"[^>]*stroke-width="2.4"',
-                           drawn["coverage_by_step"])
+        runs = [self.make(Run("maze", m, s), seconds=200.0 if m == "steps" else None)
+                for m in ("tour", "render", "steps") for s in SEEDS]
+        for chosen in (runs, runs[:1], [self.make(Run("maze", "tour", 20), failure="x")]):
+            drawn = figures(self.results(chosen))
+            for name, figure in drawn.items():
+                xml.etree.ElementTree.fromstring(figure)
+                self.assertNotRegex(figure, r"\bnan\b|\binf\b", name)
+        # From the origin to the panel's corner, 0 to 99.9 %, in a straight line.
+        drawn = figures(self.results(runs))["coverage_by_step"]
+        lines = re.findall(r'<path d="M([^"]*)" class="line-steps" fill="none"[^>]*stroke-width="2.2"', drawn)
         points = [tuple(map(float, point.split())) for point in lines[0].split("L")]
-        (x0, y0), (xm, ym), (x1, y1) = points[0], points[len(points) // 2], points[-1]
-        self.assertAlmostEqual(y0 - y1, 200, delta=0.2)
+        (_, y0), (_, ym), (_, y1) = points[0], points[len(points) // 2], points[-1]
+        self.assertAlmostEqual(y0 - y1, 210 * 0.999, delta=0.2)
         self.assertAlmostEqual(ym, (y0 + y1) / 2, delta=0.2)
-        self.assertAlmostEqual(xm, (x0 + x1) / 2, delta=0.2)
+        # Three quarters are the UAV's: its area begins a quarter up at the end.
+        area = re.search(r'<path d="M([^"]*)z" class="fill-uav"', figures(self.results(runs))["contributions"])[1]
+        points = [tuple(map(float, point.split())) for point in area.split("L")]
+        self.assertAlmostEqual(points[len(points) // 2 - 1][1] - points[len(points) // 2][1], -210 * 0.999 * 0.75, delta=0.3)
+
+    def test_curves(self):
+        self.assertEqual([value_at([0, 2, 4], [0, 10, 30], x) for x in (0, 1, 2, 3, 4, 9)], [0, 5, 10, 20, 30, 30])
+        self.assertEqual(mean_curve([[(0, 1), (1, 4)], [(0, 3), (1, 8)]]), [(0, 2), (1, 6)])
+        self.assertEqual([round_step(v, 5) for v in (100, 137, 0.9, 5)], [20, 50, 0.2, 1])
 
 
-class Running(Made):
+class Exploring(Made):
+    """What a worker does, without Dask."""
+
     def setUp(self):
         super().setUp()
-        self.log, self.runs = self.folder / "log", self.folder / "runs"
         self.command = self.folder / "frontlux"
-        program = Path(__file__).resolve().parent / "made_up_runs.py"
-        self.command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -B "{program}" "$@"\n')
+        self.is_program(f'exec "{sys.executable}" -B "{Path(__file__).resolve().parent / "made_up_runs.py"}" "$@"')
+        self.scratch = self.folder / "scratch"
+        self.scratch.mkdir()
+        os.environ["MADE_UP_LOG"] = str(self.folder / "log")
+        self.task = self.experiments.task_file(Run("maze", "tour", 6))
+
+    def is_program(self, script):
+        version = f'if [ "$1" = --version ]; then echo "frontlux {VERSION}, x"; exit; fi'
+        self.command.write_text(f"#!/bin/sh\n{version}\n{script}\n")
         self.command.chmod(0o755)
 
-    def start(self, *arguments, **environment):
-        return subprocess.Popen(
-            [sys.executable, "-B", REPRODUCE / "results.py", "--seeds", "1", "--jobs", "2", "--command", self.command,
-             "--runs", self.runs, "--results", self.folder / "docs/results.md", "--images", self.folder / "docs/images",
-             *arguments], env={**os.environ, "MADE_UP_LOG": str(self.log), **environment}, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    def explore(self, world=""):
+        result = explore.explore(str(self.command), VERSION, self.task, world, folder=str(self.scratch))
+        self.assertEqual(list(self.scratch.iterdir()), [])
+        return result
 
-    def reproduce(self, code, *arguments, **environment):
-        """The calls that it made."""
-        self.log.unlink(missing_ok=True)
-        process = self.start(*arguments, **environment)
-        self.output, self.errors = process.communicate()
-        self.assertEqual(process.returncode, code, self.output + self.errors)
-        return self.log.read_text().splitlines() if self.log.exists() else []
+    def test_a_run(self):
+        result = self.explore()
+        self.assertEqual(result["facts"], {key: made_up(self.task)[0].get(key) for key in explore.FACTS})
+        self.assertEqual(len(result["curve"]), 41)
+        for key in ("planning_mean_s", "wall_s", "machine", "memory_mb"):
+            self.assertNotIn(key, json.dumps({**result, "measured": None}))
+        self.assertEqual(self.explore(), result)
 
-    def test_kept_resumed_repeated_and_failed(self):
-        calls = self.reproduce(1, MADE_UP_FAILS="maze_uav_1", MADE_UP_STOPS="factory_ugv_1")
-        self.assertEqual(len(calls), len(wanted_runs(1)))
-        self.assertIn("exit code 3", self.errors)
-        text = (self.folder / "docs/results.md").read_text()
-        self.assertIn(f"- maze\\_uav\\_1: exit code 3: {plain(FAILURE)}\n", text)
-        self.assertIn("- factory\\_ugv\\_1: exit code 0, but", text)
-        self.assertEqual(len(list((self.folder / "docs/images").glob("*.svg"))), 5)
-        # The failed one once more, the unfinished one from where it is, one of another version from anew.
-        file = self.runs / "station_paper_1/run.json"
-        file.write_text(file.read_text().replace('"9.9"', '"9.8"'))
-        calls = sorted(self.reproduce(0))
-        self.assertEqual(len(calls), 3)
-        self.assertEqual(calls[0], f"explore --resume {self.runs / 'factory_ugv_1'} --report off")
-        self.assertEqual(calls[1].split(" -o ")[0], "explore maze --lockstep --seed 1 --threads 1 --caster fast "
-                         "--max-steps 1000 --team uav --report off")
-        self.assertRegex(calls[2], r"^explore station .*--mode paper.* --force$")
-        self.assertIn("None.", (self.folder / "docs/results.md").read_text())
-        self.assertEqual(self.reproduce(0), [])
+    def test_the_worlds_file_is_given_apart(self):
+        mesh = self.folder / "mesh.ply"
+        mesh.touch()
+        self.is_program('cat "$3" >&2; exit 2')
+        self.assertIn(str(mesh), self.explore(str(mesh))["failure"])
+        with self.assertRaisesRegex(OSError, "there is no .*none.ply on .*: copy it there"):
+            self.explore(str(self.folder / "none.ply"))
 
-    def test_ctrl_c_keeps_what_is_finished(self):
-        process = self.start("--jobs", "1", MADE_UP_SLEEPS="maze_team_1")
-        asleep = self.runs / "logs/maze_team_1.log"
-        deadline = time.monotonic() + 60
-        while time.monotonic() < deadline and not (asleep.exists() and "asleep" in asleep.read_text()):
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130, errors)
-        self.assertIn("stopped", errors)
-        calls = self.log.read_text().splitlines()
-        self.assertEqual(calls[-1], "interrupted")
-        finished = [run for run in wanted_runs(1) if next_action(run, self.runs / run.name, "9.9") == "keep"]
-        self.assertEqual(len(finished), len(calls) - 2)
-        self.assertGreater(len(finished), 0)
-        self.assertFalse((self.folder / "docs").exists())
-        self.assertEqual(len(self.reproduce(0)), len(wanted_runs(1)) - len(finished))
+    def test_failures(self):
+        for script, said in (("echo no; echo why >&2; exit 3", "exit code 3: why"), ("kill -9 $$", "ended by SIGKILL"),
+                             ("exit 0", "what it left cannot be read"), ("exit 4", "exit code 4: it said nothing")):
+            self.is_program(script)
+            result = self.explore()
+            self.assertEqual(set(result), {"failure", "measured"})
+            self.assertIn(said, result["failure"])
+            self.assertNotIn(str(self.scratch), result["failure"])
 
-    def test_other_options_are_another_run(self):
-        run = Run("maze", "nearest", 1)
-        for facts, expected in (({"goal": "nearest"}, "keep"), ({"goal": "render"}, "force"), ({}, "force"),
-                                ({"goal": "nearest", "threads": 2}, "force"), ({"goal": "nearest", "seed": 2}, "force"),
-                                ({"goal": "nearest", "optimize": False}, "force"),
-                                ({"goal": "nearest", "end": "stopped"}, "resume"),
-                                ({"goal": "nearest", "end": None}, "resume")):
-            with self.subTest(facts):
-                write_run(self.runs / run.name, "maze", facts.pop("seed", 1), CURVE, **facts)
-                self.assertEqual(next_action(run, self.runs / run.name, "9.9"), expected)
-        (self.runs / run.name / "run.json").write_text("{")
-        self.assertEqual(next_action(run, self.runs / run.name, "9.9"), "force")
-        (self.runs / run.name / "run.json").unlink()
-        self.assertEqual(next_action(run, self.runs / run.name, "9.9"), "resume")
-        self.assertEqual(next_action(run, self.runs / "none", "9.9"), "start")
+    def test_a_run_that_hangs_is_ended(self):
+        self.is_program("exec sleep 600")
+        longest, explore.LONGEST = explore.LONGEST, 0.3
+        try:
+            self.assertEqual(self.explore()["failure"], "not done after 0.3 s")
+        finally:
+            explore.LONGEST = longest
 
+    def test_cut_off_tables_are_failures(self):
+        self.explore()
+        facts, rows = made_up(self.task)
+        for cut in (lambda text: text[:-9], lambda text: text.split("\n")[0],
+                    lambda text: text.replace("travelled_m", "x")):
+            kept = self.folder / "kept"
+            write_files(kept, facts, rows)
+            (kept / "steps.csv").write_text(cut((kept / "steps.csv").read_text()))
+            self.is_program(f'for last in "$@"; do :; done; mv "{kept}" "$last"')
+            self.assertIn("cannot be read", self.explore()["failure"])
+
+    def test_another_version_is_no_failure_of_the_run(self):
+        with self.assertRaisesRegex(OSError, f"is version {VERSION} instead of 9.8"):
+            explore.explore(str(self.command), "9.8", self.task, "", folder=str(self.scratch))
+        with self.assertRaisesRegex(OSError, "there is no program"):
+            explore.explore(str(self.folder / "none"), VERSION, self.task, "", folder=str(self.scratch))
+
+
+class Calls(unittest.TestCase):
     def test_bad_calls(self):
-        self.reproduce(2, "--seeds", "0")
-        self.reproduce(2, "--seeds", "many")
-        self.reproduce(2, "--command", str(self.folder / "none"))
-        self.assertIn("./dev build", self.errors)
-        self.reproduce(2, "--tables-only")
-        self.assertFalse((self.folder / "docs").exists())
+        for arguments, said in ((["--seeds", "0"], "1 to 1000"), (["--hours", "x"], "--hours"),
+                                (["--quick", "--timed"], "not allowed"),
+                                (["--tables-only", "--tasks", "mase"], "'mase'"), (["--tables-only", "--methods", "x"], "'x'"),
+                                (["--timed", "--scheduler", "tcp://x:1"], "--scheduler"),
+                                (["--tables-only", "--runs", "/nonexistent"], "no result in /nonexistent")):
+            done = subprocess.run([sys.executable, "-B", REPRODUCE / "reproduce.py", *arguments], capture_output=True,
+                                  text=True)
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn(said, done.stderr)
 
 
 if __name__ == "__main__":

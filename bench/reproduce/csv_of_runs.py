@@ -1,0 +1,30 @@
+"""All runs of the page as a table to compute with: a row for each."""
+
+import csv
+import io
+
+from results import LEVELS
+
+FACTS = ("end", "coverage_observable", "auc", "contacts", "held_back", "clearance_min_m", "separation_min_m")
+HEADER = ("task", "method", "seed", "failure", *(f"s_to_{level}" for level in LEVELS), "m_ugv", "m_uav", "share_uav",
+          "steps", "steps_to_90", *FACTS)
+
+
+def rounded(value):
+    return "" if value is None else round(value, 4) if isinstance(value, float) else value
+
+
+def row_of(run):
+    row = [run.run.task, run.run.method, run.run.seed, run.failure or ""]
+    if run.facts:
+        row += [*map(run.seconds, LEVELS), run.metres("ugv"), run.metres("uav"), run.share("uav"), run.steps(),
+                run.steps(0.9), *map(run.facts.get, FACTS)]
+    return [rounded(value) for value in row] + [""] * (len(HEADER) - len(row))
+
+
+def csv_of_runs(results):
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADER)
+    writer.writerows(row_of(results.all[run]) for run in results.wanted if run in results.all and not run.timed)
+    return text.getvalue()

@@ -1,0 +1,119 @@
+"""One exploration, done by a worker: no other file of this folder is needed here."""
+
+import csv
+import hashlib
+import json
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+from pathlib import Path
+
+LONGEST = 3600  # [s], after which a run counts as hanging
+# Of run.json: what is the same on every machine, and what is not.
+FACTS = ("version", "end", "steps", "coverage_observable", "coverage_box", "unseen", "time_s", "auc", "explored_m3",
+         "clearance_min_m", "contacts", "collisions", "held_back", "separation_min_m", "by_robot", "path_length_m")
+MEASURED = ("planning_mean_s", "planning_p99_s", "planning_max_s", "phases_s", "wall_s", "memory_mb", "machine",
+            "instructions", "threads")
+GAINS = ("gain_tangent", "gain_predicted", "gained")
+
+
+def find_program(command):
+    """The program's path. Raises OSError."""
+    found = shutil.which(command)
+    if found is None:
+        raise OSError(f"there is no program {command} on {socket.gethostname()}: build it with ./dev build, or install "
+                      "it")
+    return found
+
+
+def version_of(command):
+    """The version that `frontlux --version` prints."""
+    said = subprocess.run([find_program(command), "--version"], capture_output=True, text=True, timeout=60, check=True)
+    return said.stdout.split(",")[0].strip().removeprefix("frontlux ")
+
+
+def kind_of(robot):
+    """uav2 is a uav."""
+    return robot.rstrip("0123456789")
+
+
+def last_line(text):
+    lines = [line.strip() for line in text.replace("\r", "\n").splitlines() if line.strip()]
+    return lines[-1][:300] if lines else "it said nothing"
+
+
+def read_steps(file):
+    """The curve, and by kind of robot the mean gains of a path: steps.csv in short. Raises ValueError."""
+    curve, gains, number = [], {}, None
+    with open(file, encoding="utf-8", newline="") as stream:
+        for row in csv.DictReader(stream):
+            if None in row or None in row.values():
+                raise ValueError(f"steps.csv is cut off in step {row.get('step')}")
+            if row["step"] != number:
+                number = row["step"]
+                curve.append({"time_s": round(float(row["time_s"] or 0), 4),
+                              "coverage": round(float(row["coverage_observable"]), 6), "length_m": {}, "first": {}})
+            kind, now = kind_of(row["robot"]), curve[-1]
+            for member, column in (("length_m", "travelled_m"), ("first", "robot_observable")):
+                now[member][kind] = round(now[member].get(kind, 0.0) + float(row[column] or 0), 6)
+            if len(curve) > 1 and int(row["viewpoints"] or 0) > 0:
+                sums = gains.setdefault(kind, [0, [0] * len(GAINS)])
+                sums[0] += 1
+                sums[1] = [total + int(row[column] or 0) for total, column in zip(sums[1], GAINS)]
+    if not curve:
+        raise ValueError("steps.csv has no steps")
+    means = {kind: {c: round(total / n, 4) for c, total in zip(GAINS, totals)} for kind, (n, totals) in gains.items()}
+    return curve, means
+
+
+def explore(command, version, task, world, threads=1, folder=None):
+    """Runs a task: what came of it, either "facts", "gains" and "curve", or why it failed, "failure"; "measured"
+    depends on the machine, nothing else does. The world's file is given apart, or empty. Files go to a new folder in
+    `folder`, which is removed. Raises OSError if this machine does not have the program, its version or the file."""
+    program = find_program(command)
+    found = version_of(program)
+    if found != version:
+        raise OSError(f"{program} on {socket.gethostname()} is version {found} instead of {version}: install that")
+    if world and not Path(world).is_file():
+        raise OSError(f"there is no {world} on {socket.gethostname()}: copy it there")
+    with tempfile.TemporaryDirectory(prefix="frontlux-", dir=folder) as temporary:
+        run = Path(temporary) / "run"
+        file = Path(temporary) / "task.json"
+        file.write_text(json.dumps({**task, "world": world} if world else task), encoding="utf-8")
+        arguments = [program, "explore", "--task", str(file), "--threads", str(threads), "--report", "off", "--quiet",
+                     "-o", str(run)]
+        if setpriv := shutil.which("setpriv"):  # it ends with the worker, even if that is killed
+            arguments = [setpriv, "--pdeathsig", "KILL", *arguments]
+        log = Path(temporary) / "log"
+        with open(log, "w", encoding="utf-8") as output:
+            # In a session of its own, so that Ctrl-C reaches the client alone.
+            process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
+                                       start_new_session=True)
+            try:
+                code = process.wait(LONGEST)
+            except subprocess.TimeoutExpired:
+                return {"failure": f"not done after {LONGEST} s", "measured": {}}
+            finally:
+                process.kill()
+                process.wait()
+        if code != 0:
+            said = last_line(log.read_text(encoding="utf-8", errors="replace")).replace(temporary, "")
+            ended = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
+            return {"failure": f"{ended}: {said}", "measured": {}}
+        try:
+            facts = json.loads((run / "run.json").read_text(encoding="utf-8"))
+            curve, gains = read_steps(run / "steps.csv")
+            measured = {key: facts.get(key) for key in MEASURED}
+            measured["program"] = hashlib.sha256(Path(program).read_bytes()).hexdigest()[:12]
+            return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,
+                    "measured": measured}
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            return {"failure": f"what it left cannot be read: {error}".replace(temporary, ""), "measured": {}}
+
+
+def explore_on_worker(*arguments):
+    """explore() in the worker's own folder, which Dask clears if the worker is killed."""
+    from distributed import get_worker
+    return explore(*arguments, folder=get_worker().local_directory)

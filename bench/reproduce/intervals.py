@@ -1,0 +1,57 @@
+"""Means with bootstrap intervals; the same values give the same interval."""
+
+import random
+from statistics import fmean
+from typing import NamedTuple, Optional
+
+RESAMPLES, SEED, LEVEL = 2000, 24, 0.95
+FEWEST = 6  # fewer values have no interval
+
+
+class Interval(NamedTuple):
+    value: float
+    low: Optional[float]  # None: too few values
+    high: Optional[float]
+    count: int
+
+
+def bootstrap(groups, statistic):
+    """The statistic of several groups of values, with its percentile interval when each group is drawn from itself with
+    replacement. None without values."""
+    groups = [list(group) for group in groups if group]
+    if not groups:
+        return None
+    count, value = sum(map(len, groups)), statistic(groups)
+    if min(map(len, groups)) < FEWEST:
+        return Interval(value, None, None, count)
+    draw = random.Random(SEED)
+    values = sorted(statistic([draw.choices(group, k=len(group)) for group in groups]) for _ in range(RESAMPLES))
+    tail = round(RESAMPLES * (1 - LEVEL) / 2)
+    return Interval(value, values[tail], values[-1 - tail], count)
+
+
+def present(values):
+    return [v for v in values if v is not None]
+
+
+def mean(values):
+    return bootstrap([present(values)], lambda groups: fmean(groups[0]))
+
+
+def both(pairs, measure):
+    """What `measure` gives of both runs of the pairs, where it gives something."""
+    values = [(measure(a), measure(b)) for a, b in pairs]
+    return [(a, b) for a, b in values if a is not None and b is not None]
+
+
+def difference(pairs, measure):
+    """Of the pairs' means: the first run's less the second's."""
+    return bootstrap([both(pairs, measure)], lambda groups: fmean(a - b for a, b in groups[0]))
+
+
+def ratio(groups_of_pairs, measure):
+    """The first runs' mean by the second runs', in each group; of several groups the mean of that."""
+    def of(pairs):
+        below = sum(b for _, b in pairs)
+        return sum(a for a, _ in pairs) / below if below else 0.0
+    return bootstrap([both(pairs, measure) for pairs in groups_of_pairs], lambda groups: fmean(map(of, groups)))

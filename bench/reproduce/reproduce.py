@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+"""Runs what experiments.json declares on a cluster, and writes the page of results and its figures from it."""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from experiments import Experiments
+from explore import version_of
+from results import Results, is_kept, write_result
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(1, str(ROOT / "bench"))  # of all plots
+
+
+def stop(*_):
+    raise KeyboardInterrupt
+
+
+def number(low, high, kind=int):
+    def read(text):
+        value = kind(text)
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"it is {text}, but has to be {low} to {high}")
+        return value
+    return read
+
+
+def read_options():
+    parser = argparse.ArgumentParser(prog="./dev reproduce", description=__doc__)
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--quick", action="store_const", const="quick", dest="set", help="a reduced set, about ten "
+                       "minutes on two cores; its page is out/reproduce/quick.md")
+    which.add_argument("--timed", action="store_const", const="timed", dest="set", help="the runs whose planning times "
+                       "are published: one after the other, with two threads, on a machine without other work")
+    parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
+    which.add_argument("--tables-only", action="store_true", help="run nothing; write the page from the runs "
+                       "that are there")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster whose workers have the program "
+                        "[a local cluster of one worker a core]")
+    parser.add_argument("--workers", type=number(1, 1000), default=os.cpu_count() or 1, metavar="N",
+                        help="of the local cluster [one a core]")
+    parser.add_argument("--hours", type=number(0.0, 10000.0, float), metavar="H", help="begin no run after so "
+                        "long; the page says what is missing")
+    parser.add_argument("--seeds", type=number(1, 1000), metavar="N", help="only the first N seeds of each row")
+    parser.add_argument("--tasks", metavar="NAME,...", help="only these")
+    parser.add_argument("--methods", metavar="NAME,...", help="only these")
+    parser.add_argument("--worlds", action="append", type=Path, default=[], metavar="FOLDER", help="where the files of "
+                        "worlds of others lie, on all workers; repeatable [FRONTLUX_WORLDS, folders joined by :]")
+    parser.add_argument("--command", metavar="FRONTLUX", help="the program [build/release/bin/frontlux; with "
+                        "--scheduler: frontlux on the workers' PATH]")
+    parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER",
+                        help="of all results")
+    parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md]")
+    options = parser.parse_args()
+    options.set = options.set or "full"
+    if options.set == "timed" and options.scheduler:
+        parser.error("--timed is for this machine alone: leave out --scheduler")
+    options.worlds += [Path(folder) for folder in os.environ.get("FRONTLUX_WORLDS", "").split(":") if folder]
+    options.page = options.page or ROOT / ("out/reproduce/quick.md" if options.set == "quick" else "docs/results.md")
+    options.command = options.command or ("frontlux" if options.scheduler else str(ROOT / "build/release/bin/frontlux"))
+    return options
+
+
+def names(text, known, what):
+    chosen = text.split(",") if text else list(known)
+    for name in chosen:
+        if name not in known:
+            raise ValueError(f"there is no {what} {name!r}: there are {', '.join(known)}")
+    return chosen
+
+
+def chosen_runs(experiments, options):
+    """Those of the set that the options leave, and whose world is there; and the files that are not."""
+    tasks = names(options.tasks, experiments.tasks, "task")
+    methods = names(options.methods, experiments.methods, "method")
+    runs, absent = [], set()
+    first = {}
+    for run in experiments.runs(options.set):
+        first.setdefault((run.task, run.method), run.seed)
+        if run.task not in tasks or run.method not in methods:
+            continue
+        if options.seeds and run.seed >= first[run.task, run.method] + options.seeds:
+            continue
+        file = experiments.file_of(run.task)
+        if file and not world_file(file, options):
+            absent.add(file)
+            continue
+        runs.append(run)
+    return runs, sorted(absent)
+
+
+def world_file(name, options):
+    """Its path, or nothing for a built-in world and for what is in no folder."""
+    for folder in options.worlds if name else ():
+        if (folder / name).is_file():
+            return str((folder / name).absolute())
+    return ""
+
+
+def say(line):
+    print(line, flush=True)
+
+
+def describe(result):
+    if "failure" in result:
+        return f"FAILED: {result['failure']}"
+    facts = result["facts"]
+    return f"{facts['end']} after {facts['time_s']['end']:.0f} s, {100 * facts['coverage_observable']:.1f} %"
+
+
+def execute(experiments, runs, options):
+    """Runs those that have no result yet."""
+    from cluster import connect, run_all  # only here: tables need no Dask
+    version = version_of(options.command) if not options.scheduler else None
+    folder = options.runs
+    folder.mkdir(parents=True, exist_ok=True)
+    workers = 1 if options.set == "timed" else options.workers
+    with connect(options.scheduler, workers, folder.parent / "workers") as client:
+        if version is None:
+            versions = set(client.run(version_of, options.command).values())
+            if len(versions) > 1:
+                raise ValueError(f"the workers have different versions of {options.command}: "
+                                 f"{', '.join(sorted(versions))}; install the same everywhere")
+            version = versions.pop()
+        tasks = {run: experiments.task_file(run) for run in runs}
+        left = [run for run in runs if not is_kept(folder, run, tasks[run], version)]
+        say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
+        calls = {run.name: (options.command, version, tasks[run], world_file(experiments.file_of(run.task), options),
+                            2 if run.timed else 1) for run in left}
+        by_name = {run.name: run for run in left}
+        begin = time.monotonic()
+        until = begin + 3600 * options.hours if options.hours is not None else None
+        for number_done, (name, result) in enumerate(run_all(client, calls, until), 1):
+            run = by_name[name]
+            write_result(folder, run, tasks[run], version, result)
+            minutes = (time.monotonic() - begin) / number_done * (len(left) - number_done) / 60
+            took = result["measured"].get("wall_s")
+            say(f"[{number_done}/{len(left)}] {name}: {describe(result)}" + (f"; took {took:.0f} s" if took else "") +
+                f"; about {minutes:.0f} min left")
+
+
+def write_page(experiments, runs, options):
+    from csv_of_runs import csv_of_runs
+    from figures import figures
+    from page import page
+    from svg_chart import save
+    results = Results(experiments, runs, options.runs)
+    if not results.all:
+        raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
+    images = options.page.parent / "images/results"
+    drawn = figures(results)
+    table = options.page.with_suffix(".csv")
+    text = page(results, os.path.relpath(images, options.page.parent), table.name)
+    images.mkdir(parents=True, exist_ok=True)
+    for name, figure in drawn.items():
+        save(images / f"{name}.svg", figure)
+    save(table, csv_of_runs(results))
+    save(options.page, text)
+    for name, reason in results.broken.items():
+        print(f"reproduce: {name}: {reason}", file=sys.stderr)
+    failed = sum(bool(r.failure) for r in results.all.values())
+    say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed; figures in {images}")
+    return 1 if results.broken or any("failure" in r.content for r in results.all.values()) else 0
+
+
+def main():
+    signal.signal(signal.SIGTERM, stop)
+    options = read_options()
+    try:
+        experiments = Experiments()
+        runs, absent = chosen_runs(experiments, options)
+        if options.list:
+            say("\n".join(run.name for run in runs))
+            return 0
+        if not options.tables_only:
+            for file in absent:
+                say(f"left out: {file} is in none of the folders given by --worlds")
+            execute(experiments, runs, options)
+        # The page is about all that is declared.
+        sets = ("quick",) if options.set == "quick" else ("full", "timed")
+        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options)
+    except KeyboardInterrupt:
+        print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
+        return 130
+    except (OSError, ValueError, subprocess.SubprocessError) as error:
+        print(f"reproduce: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,166 @@
+"""The reproduction on Dask: lost workers, failed runs, Ctrl-C, and the same results wherever they were made.
+
+cluster_test.py FOLDER, that of bench/reproduce; runs are made up.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from made_up_runs import FAILURE
+
+REPRODUCE = Path(sys.argv.pop(1)).resolve()
+sys.path.insert(0, str(REPRODUCE))
+
+from experiments import Experiments
+
+PATIENCE = 60  # [s]
+SOME = ["--quick", "--seeds", "1"]
+ALL = [run.name for run in Experiments().runs("quick") if run.seed == 6]
+
+
+def until(true, what):
+    deadline = time.monotonic() + PATIENCE
+    while not true():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"{what}: not within {PATIENCE} s")
+        time.sleep(0.05)
+
+
+def is_running(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+class Cluster(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.log = self.folder / "log"
+        self.command = self.folder / "frontlux"
+        program = Path(__file__).resolve().parent / "made_up_runs.py"
+        self.command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -B "{program}" "$@"\n')
+        self.command.chmod(0o755)
+
+    def start(self, arguments, **environment):
+        process = subprocess.Popen([sys.executable, "-B", *map(str, arguments)], text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, start_new_session=True,
+                                   env={**os.environ, "MADE_UP_LOG": str(self.log), **environment})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def reproduce(self, *arguments, runs="runs", **environment):
+        return self.start([REPRODUCE / "reproduce.py", *SOME, "--command", self.command, "--runs", self.folder / runs,
+                           "--page", self.folder / "page.md", *arguments], **environment)
+
+    def finish(self, process, code):
+        self.output, self.errors = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, code, self.output + self.errors)
+
+    def calls(self):
+        """Name, parent and process of each call of the program."""
+        return [line.split() for line in self.log.read_text().splitlines()] if self.log.exists() else []
+
+    def results(self, runs="runs"):
+        """By name, without what was measured."""
+        read = {file.stem: json.loads(file.read_text()) for file in (self.folder / runs).glob("*.json")}
+        return {name: json.dumps({**result, "measured": None}, sort_keys=True) for name, result in read.items()}
+
+    def workers(self, number, **environment):
+        """A scheduler and workers in processes of their own; its address."""
+        file = self.folder / "scheduler.json"
+        self.start(["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                    "--scheduler-file", file])
+        until(lambda: file.exists() and file.read_text().rstrip().endswith("}"), "a scheduler")
+        for i in range(number):
+            self.start(["-m", "distributed.cli.dask_worker", "--scheduler-file", file, "--nthreads", "1", "--no-nanny",
+                        "--no-dashboard", "--local-directory", self.folder / f"worker{i}"], **environment)
+        return json.loads(file.read_text())["address"]
+
+    def test_a_killed_worker_loses_its_run_only(self):
+        self.finish(self.reproduce("--workers", "1"), 0)
+        alone = self.results()
+        self.assertEqual(sorted(alone), sorted(ALL))
+        self.log.unlink()
+        address = self.workers(2, MADE_UP_DIES_ONCE="factory-tour-6")
+        self.finish(self.reproduce("--scheduler", address, runs="elsewhere"), 0)
+        self.assertEqual(self.results("elsewhere"), alone)
+        died, other = self.assert_repeated("factory-tour-6")
+        self.assertFalse(is_running(died))
+        self.assertTrue(is_running(other))
+
+    def assert_repeated(self, name):
+        """Every run was begun once, this one twice; a result that the dead worker had not handed over yet is made again.
+        Returns both workers."""
+        died, other = (int(parent) for run, parent, _ in self.calls() if run == name)
+        self.assertNotEqual(died, other)
+        elsewhere = [run for run, parent, _ in self.calls() if int(parent) != died]
+        self.assertEqual(len(set(elsewhere)), len(elsewhere))
+        self.assertEqual({run for run, *_ in self.calls()}, set(ALL))
+        self.assertLessEqual(len(self.calls()), len(ALL) + 2)
+        return died, other
+
+    def test_a_worker_of_the_local_cluster_is_replaced(self):
+        self.finish(self.reproduce("--workers", "2", MADE_UP_DIES_ONCE="factory-tour-6"), 0)
+        self.assertEqual(sorted(self.results()), sorted(ALL))
+        self.assert_repeated("factory-tour-6")
+
+    def test_failed_runs_are_failures_and_are_run_again(self):
+        self.finish(self.reproduce("--workers", "2", MADE_UP_FAILS="maze-tour-6"), 1)
+        self.assertEqual(len(self.results()), len(ALL))
+        self.assertIn(f"maze-tour-6: FAILED: exit code 3: {FAILURE}", self.output)
+        text = (self.folder / "page.md").read_text()
+        self.assertIn("- maze-tour-6: exit code 3: no", text)
+        self.log.unlink()
+        self.finish(self.reproduce("--workers", "2"), 0)
+        self.assertEqual([name for name, *_ in self.calls()], ["maze-tour-6"])
+        self.log.unlink()
+        self.finish(self.reproduce("--workers", "2"), 0)
+        self.assertEqual(self.calls(), [])
+
+    def test_ctrl_c_leaves_nothing_running_and_goes_on_later(self):
+        for runs, interrupt in (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
+                                ("others", lambda process: process.send_signal(signal.SIGTERM))):
+            self.log.unlink(missing_ok=True)
+            process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS="factory-tour-6")
+            until(lambda: ["factory-tour-6"] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")
+            worker, asleep = map(int, self.calls()[-1][1:])
+            self.assertTrue(is_running(asleep))
+            interrupt(process)
+            self.finish(process, 130)
+            self.assertRegex(self.errors, r"^\nstopped; finished runs are kept in .*\n$")
+            until(lambda: not is_running(asleep) and not is_running(worker), "the end of the run and its worker")
+            before = [name for name, *_ in self.calls() if name != "factory-tour-6"]
+            self.assertEqual(sorted(self.results(runs)), sorted(before))
+            self.assertGreater(len(before), 0)
+            self.assertFalse((self.folder / "page.md").exists())
+        self.finish(self.reproduce("--workers", "1"), 0)
+        self.assertEqual(sorted(self.results()), sorted(ALL))
+
+    def test_hours(self):
+        self.finish(self.reproduce("--workers", "1", "--hours", "0"), 2)
+        self.assertIn("no result in", self.errors)
+        self.assertEqual(self.calls(), [])
+
+    def test_nobody_there(self):
+        self.finish(self.reproduce("--scheduler", "tcp://127.0.0.1:9"), 2)
+        self.assertIn("no scheduler answers at tcp://127.0.0.1:9: start one with dask-scheduler", self.errors)
+
+    def test_a_worker_without_the_program(self):
+        address = self.workers(1)
+        self.finish(self.reproduce("--scheduler", address, "--command", "/nonexistent/frontlux"), 2)
+        self.assertIn("there is no program /nonexistent/frontlux", self.errors)
+
+
+if __name__ == "__main__":
+    unittest.main()
