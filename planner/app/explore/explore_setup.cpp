@@ -62,12 +62,12 @@ struct GivenStarts {
 };
 GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
   GivenStarts given{std::vector<std::optional<Pose>>(robots.size()), std::vector<std::string>(robots.size())};
-  std::size_t on_plane = 0, in_space = static_cast<std::size_t>(std::count_if(
-                                robots.begin(), robots.end(),
-                                [](const RobotDescription&robot) { return robot.robot.travel.drives(); }));
+  std::size_t driving = 0, flying = static_cast<std::size_t>(std::count_if(
+                               robots.begin(), robots.end(),
+                               [](const RobotDescription&robot) { return robot.robot.travel.drives(); }));
   for (const io::TaskRobot& robot : options.robots) {
     const bool drives = robot.description.robot.travel.drives();
-    const std::size_t r = drives ? on_plane++ : in_space++;
+    const std::size_t r = drives ? driving++ : flying++;
     given.poses.at(r) = robot.start;
     given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }

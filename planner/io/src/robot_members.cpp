@@ -5,11 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 namespace frontlux::io {
@@ -25,10 +22,6 @@ constexpr Range kHeights{0.0, 100.0}, kMargins{0.0, 100.0}, kSensorRanges{0.01, 
 constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.01, 36000.0}, kRates{0.01, 10000.0};
 constexpr Range kSteps{0.001, 10.0}, kSlopes{0.0, 80.0};
 constexpr double kCameraRate = 15.0;  // [1/s]; that of others is RobotDescription's
-
-using NamedMotion = std::pair<std::string_view, Motion>;
-constexpr std::array<NamedMotion, 3> kMotions = {
-    {{"plane", Motion::kPlane}, {"space", Motion::kSpace}, {"ground", Motion::kGround}}};
 
 const std::string kSeeRobots = "an object, see docs/robots.md";
 
@@ -116,9 +109,9 @@ Eigen::Vector3d read_body(Members& members, RobotForm form) {
 void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
   const std::string motions = R"("plane", "ground" or "space")";
   const std::string motion = members.text("motion", motions);
-  const auto known = std::ranges::find(kMotions, motion, &NamedMotion::first);
-  if (known == kMotions.end()) members.refuse("motion", "is " + quote(motion), "give " + motions);
-  travel.motion = known->second;
+  const auto known = planner::motion_named(motion);
+  if (!known) members.refuse("motion", "is " + quote(motion), "give " + motions);
+  travel.motion = *known;
   travel.extents = read_body(members, form);
   travel.margin = members.number("margin_m", "m", kMargins, travel.margin);
   if (travel.motion != Motion::kPlane)
@@ -179,7 +172,7 @@ ordered_json json_of(const RobotDescription& robot) {
   const Eigen::Vector3d& size = travel.extents;
   ordered_json object;
   object["name"] = robot.robot.name;
-  object["motion"] = std::ranges::find(kMotions, travel.motion, &NamedMotion::second)->first;
+  object["motion"] = planner::name_of(travel.motion);
   object["body"] = {{"kind", "box"}, {"size_m", {size.x(), size.y(), size.z()}}};
   object["margin_m"] = travel.margin;
   if (travel.drives()) {

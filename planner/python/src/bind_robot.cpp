@@ -6,23 +6,17 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 
 namespace frontlux::python {
 namespace {
 
-using planner::Motion, planner::RobotDescription, planner::TravelOptions;
+using planner::RobotDescription, planner::TravelOptions;
 
-constexpr std::array<std::pair<std::string_view, Motion>, 3> kMotions = {
-    {{"plane", Motion::kPlane}, {"ground", Motion::kGround}, {"space", Motion::kSpace}}};
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 using Self = std::shared_ptr<RobotDescription>;
@@ -59,13 +53,12 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   constexpr std::size_t kLongestName = 40;
   if (name.empty() || name.size() > kLongestName)
     throw py::value_error("name: has to have 1 to 40 characters");
-  const auto known = std::ranges::find(kMotions, motion, [](const auto& named) { return named.first; });
-  if (known == kMotions.end())
-    throw py::value_error("motion: '" + motion + "', but has to be 'plane', 'ground' or 'space'");
+  const auto known = planner::motion_named(motion);
+  if (!known) throw py::value_error("motion: '" + motion + "', but has to be 'plane', 'ground' or 'space'");
   RobotDescription robot;
   robot.robot.name = name;
   TravelOptions& travel = robot.robot.travel;
-  travel.motion = known->second;
+  travel.motion = *known;
   travel.extents = edges_of<3>("box", box);
   travel.margin = within("margin", margin, 0.0, 100.0, "m");
   travel.sensor_height = within("sensor_height", sensor_height, 0.0, 100.0, "m");
@@ -125,12 +118,7 @@ Raises ValueError naming the value that is out of bounds.)")
       .def_property_readonly(
           "name", [](const Self& self) { return self->robot.name; }, "As in messages.")
       .def_property_readonly(
-          "motion",
-          [](const Self& self) {
-            return std::ranges::find(kMotions, self->robot.travel.motion,
-                                     [](const auto& m) { return m.second; })
-                ->first;
-          },
+          "motion", [](const Self& self) { return planner::name_of(self->robot.travel.motion); },
           "'plane', 'ground' or 'space'.")
       .def_property_readonly(
           "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },

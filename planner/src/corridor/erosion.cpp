@@ -49,7 +49,7 @@ void Erosion::erode(const VoxelColumns& columns) {
   }
   erode_across<1>(along_z_, along_yz_);
   erode_across<0>(along_yz_, whole_);
-  for (VoxelColumns* done : {&along_z_, &along_yz_, &whole_}) std::ranges::fill(done->stale, std::uint8_t{0});
+  for (VoxelColumns* done : {&along_z_, &along_yz_, &whole_}) done->settle();
 }
 
 }  // namespace frontlux::planner::detail

@@ -48,14 +48,13 @@ void Terrain::decide() {
   }
   level_.erode(closed_);
   bare_.erode(empty_);
-  for (VoxelColumns* read : {&free_, &occupied_, &closed_, &empty_})
-    std::ranges::fill(read->stale, std::uint8_t{0});
+  for (VoxelColumns* done : {&free_, &occupied_, &closed_, &empty_}) done->settle();
 }
 
 bool Terrain::carries(const VoxelKey& floor) const {
-  if (std::ranges::any_of(options_.exempt, [&](const KeyBox& box) { return box.contains(floor); }))
-    return options_.box.contains(floor);
-  return options_.box.contains(floor) && level_.whole(floor) && !bare_.whole(floor);
+  const auto holds_floor = [&](const KeyBox& box) { return box.contains(floor); };
+  return holds_floor(options_.box) &&
+         (std::ranges::any_of(options_.exempt, holds_floor) || (level_.whole(floor) && !bare_.whole(floor)));
 }
 
 }  // namespace frontlux::planner::detail

@@ -21,6 +21,7 @@ constexpr int kMaxWindow = 1024;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSteepest = 80.0 * kDegree;
 constexpr int kNearby = 40;  // [cells] along each axis
+constexpr std::array<std::string_view, 3> kMotions = {"plane", "space", "ground"};
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
@@ -141,6 +142,14 @@ std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(ke
 
 }  // namespace
 
+std::string_view name_of(Motion motion) { return kMotions.at(static_cast<std::size_t>(motion)); }
+
+std::optional<Motion> motion_named(std::string_view name) {
+  const auto found = std::ranges::find(kMotions, name);
+  if (found == kMotions.end()) return std::nullopt;
+  return static_cast<Motion>(found - kMotions.begin());
+}
+
 TravelOptions ugv_travel() {
   TravelOptions options;
   options.motion = Motion::kPlane;
@@ -248,8 +257,11 @@ struct TravelCorridor::State {
   void lay_out(const VoxelKey& robot);
   void lay_ground(KeyBox box, const VoxelKey& robot);
   void read(const MapChange& change, const VoxelKey& robot);
+  [[nodiscard]] bool needs_ground() const {
+    return options.motion == Motion::kGround || (options.motion == Motion::kPlane && options.require_ground);
+  }
   [[nodiscard]] bool stands(const VoxelKey& cell) const {
-    if (!options.drives() || (options.motion == Motion::kPlane && !options.require_ground)) return true;
+    if (!needs_ground()) return true;
     return terrain && cell.z >= down && terrain->carries(make_key(cell.x, cell.y, cell.z - down));
   }
   [[nodiscard]] bool fits(const VoxelKey& cell) const {
@@ -292,7 +304,7 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   erosion.emplace(box, window);
   distances.reset();
   terrain.reset();
-  if (options.drives()) lay_ground(box, robot);
+  if (needs_ground()) lay_ground(box, robot);
 }
 
 // Floors are numbered as voxels are: that of a cell lies some layers below it.
@@ -331,7 +343,7 @@ void TravelCorridor::State::read(const MapChange& change, const VoxelKey& robot)
     if (terrain) terrain->read(grid, changed);
   }
   erosion->erode(*free);
-  std::ranges::fill(free->stale, std::uint8_t{0});
+  free->settle();
 }
 
 CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {

@@ -23,6 +23,9 @@ class VoxelColumns {
   void read(const VoxelGrid& grid, Occupancy state);
   void read(const VoxelGrid& grid, Occupancy state, std::span<const VoxelKey> changed);
 
+  /// No column is stale any more.
+  void settle() { stale.assign(stale.size(), 0); }
+
   [[nodiscard]] const KeyBox& box() const { return box_; }
   [[nodiscard]] int size_x() const { return size_x_; }
   [[nodiscard]] int size_y() const { return size_y_; }

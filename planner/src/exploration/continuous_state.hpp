@@ -27,7 +27,7 @@ struct ContinuousExploration::State {
     bool goes_back = false;         // on the way on which it came
     bool going = false;             // it has a goal, or goes back
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
-    int waits = 0;                  // plannings in a row in which others were in its way to a goal
+    int waits = 0;                  // plannings in a row after which it could not set out for its goal
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys needed = {};               // voxels that its trajectory needs free; sorted

@@ -4,11 +4,9 @@
 #include "tour/shortest_choice.hpp"
 
 #include <frontlux/parallel.hpp>
-#include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -16,6 +14,8 @@ namespace frontlux::planner::detail {
 namespace {
 
 using Keys = std::vector<VoxelKey>;
+
+static_assert(TravelGraph::kFar == TourProblem::kNever);
 
 int voxels(double length, const Lattice& lattice) {
   return std::max(1, static_cast<int>(std::lround(length / lattice.resolution())));
@@ -74,7 +74,7 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
     TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge,
                       voxels(options.spacing * robot.view.max_range, lattice));
     ViewRegion region(robot.view, lattice.resolution());
-    members_.push_back({std::move(robot), std::move(region), std::move(graph)});
+    members_.push_back({std::move(robot), std::move(region), {lattice, std::move(graph), options.measured}});
   }
 }
 
@@ -99,19 +99,13 @@ Keys TourPlanning::frontiers_of(std::size_t robot) const {
 
 double TourPlanning::first_distance(std::size_t robot) const {
   const Member& member = members_[robot];
-  const double distance = member.tour.empty() ? 0.0 : distance_to(member, member.tour.front().cell);
+  const double distance = member.tour.empty() ? 0.0 : member.ways.from_start(member.tour.front().cell);
   return distance == TourProblem::kNever ? 0.0 : distance;
 }
 
 std::function<bool(const VoxelKey&)> TourPlanning::around_way_to(std::size_t robot,
                                                                  const VoxelKey& to) const {
-  if (!gets_to(robot, to)) return [](const VoxelKey&) { return false; };
-  const Member& member = members_[robot];
-  return [&member,
-          nodes = member.graph.around_way(member.from_here, *member.graph.node(to))](const VoxelKey& cell) {
-    const auto node = member.graph.node(cell);
-    return node && std::ranges::binary_search(nodes, *node);
-  };
+  return members_[robot].ways.around_way_to(to);
 }
 
 // Boxes that hold all voxels that have changed since the robot's last planning.
@@ -128,7 +122,7 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
   return boxes;
 }
 
-void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> changes) {
+void TourPlanning::update_ways(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
   std::vector<KeyBox> cells;  // whose boxes hold a changed voxel
   for (const KeyBox& box : changes) {
@@ -137,28 +131,14 @@ void TourPlanning::update_graph(const Query& query, std::span<const KeyBox> chan
     cells.push_back(grown(box, by(reach.min.x, box.min.x, reach.max.x),
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
   }
-  member.graph.update(query.corridor, cells);
-  member.near.clear();
-}
-
-// Finds the ways from where a robot is.
-void TourPlanning::find_here(std::size_t robot, const MotionState& start) {
-  Member& member = members_[robot];
-  member.here = lattice_.key(start.pose.position);
-  if (member.here && !member.graph.node(*member.here)) member.here.reset();
-  if (member.here) member.from_here = member.graph.distances(*member.graph.node(*member.here));
-}
-
-// [m] from where it is; `kNever` if there is no way.
-double TourPlanning::distance_to(const Member& member, const VoxelKey& cell) const {
-  return member.here ? distance_between(member, *member.here, cell) : TourProblem::kNever;
+  member.ways.update(query.corridor, cells);
 }
 
 // Of the robot that plans: exact near by.
 double TourPlanning::own_distance_to(const Query& query, const VoxelKey& cell) const {
   if (const auto distance = query.corridor.distance(cell)) return *distance;
   return query.corridor.extent() == CorridorExtent::kAllCells ? TourProblem::kNever
-                                                              : distance_to(members_[query.robot], cell);
+                                                              : members_[query.robot].ways.from_start(cell);
 }
 
 // Other robots may be in the way only if the corridor knows its cells.
@@ -169,14 +149,12 @@ bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
 }
 
 bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
-  const Member& member = members_[robot];
-  const auto node = member.graph.node(cell);
-  return node && member.here && member.from_here[*node] != TravelGraph::kFar;
+  return members_[robot].ways.reaches(cell);
 }
 
 ViewpointQuery TourPlanning::sight_of(const Query& query) const {
   const Member& member = members_[query.robot];
-  return {query.caster, lattice_, member.graph, member.robot.view, member.region, options_.least_gain};
+  return {query.caster, lattice_, member.ways.graph(), member.robot.view, member.region, options_.least_gain};
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] by its way.
@@ -188,45 +166,6 @@ double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
   if (way.isZero()) return time;
   const double lost = start.velocity.norm() - start.velocity.dot(way.normalized());
   return time + kReluctance * lost / robot.limits.acceleration;
-}
-
-// Finds the distances from the nodes of some cells to those near them.
-void TourPlanning::measure_from(Member& member, std::vector<VoxelKey> cells) const {
-  std::vector<std::uint32_t> nodes;
-  for (const VoxelKey& cell : cells)
-    if (const auto node = member.graph.node(cell); node && !member.near.contains(*node))
-      nodes.push_back(*node);
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::vector<TravelGraph::Distance>> near(nodes.size());
-  for_each_index(nodes.size(),
-                 [&](std::size_t i) { near[i] = member.graph.near_distances(nodes[i], options_.measured); });
-  for (std::size_t i = 0; i < nodes.size(); ++i) member.near[nodes[i]] = std::move(near[i]);
-}
-
-// [m] between the nodes of two cells, the first of which has been measured from; `kNever` if they are far
-// from each other, or there is no way.
-double TourPlanning::way_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
-  const auto from = member.graph.node(a), to = member.graph.node(b);
-  if (!from || !to) return TourProblem::kNever;
-  if (a == member.here) return member.from_here[*to];
-  const auto& near = member.near.at(*from);
-  const auto found = std::ranges::lower_bound(near, *to, {}, &TravelGraph::Distance::to);
-  return found != near.end() && found->to == *to ? found->length : TourProblem::kNever;
-}
-
-// [m] between two cells, the first of which has been measured from; `kNever` if they are far from each other,
-// or there is no way.
-double TourPlanning::distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const {
-  const double straight = (lattice_.exact_center(b) - lattice_.exact_center(a)).norm();
-  const double way = way_between(member, a, b);
-  if (way == TourProblem::kNever) return way;
-  if (straight >= way) return straight;
-  constexpr double kClear = 8.0;  // [m]
-  const bool clear = straight < kClear &&
-                     SegmentVoxels(lattice_, lattice_.exact_center(a), lattice_.exact_center(b))
-                         .all_of([&](const VoxelKey& key) { return member.graph.node(key).has_value(); });
-  return clear ? straight : way;
 }
 
 const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::uint32_t cluster) const {
@@ -299,19 +238,19 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), NumberTable(count, count)};
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
-  if (!member.here) return robot;
+  if (!member.ways.has_start()) return robot;
 
   std::vector<const ClusterViewpoint*> at(count);
   std::vector<VoxelKey> cells;
   for (std::size_t i = 0; i < count; ++i)
     if ((at[i] = best_viewpoint(member, stops[i].front())) != nullptr) cells.push_back(at[i]->cell);
-  measure_from(member, std::move(cells));
+  member.ways.measure_from(cells);
   std::vector<double> to(count, TourProblem::kNever);  // [m] to each stop
   std::vector<double> within(count);                   // [s] from cluster to cluster of a stop
   for (std::size_t i = 0; i < count; ++i) {
     if (at[i] == nullptr) continue;
     const double distance =
-        r == query.robot ? own_distance_to(query, at[i]->cell) : distance_to(member, at[i]->cell);
+        r == query.robot ? own_distance_to(query, at[i]->cell) : member.ways.from_start(at[i]->cell);
     if (distance == TourProblem::kNever) {
       at[i] = nullptr;
       continue;
@@ -328,7 +267,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   NumberTable ways(count, count);  // [m] from stop to stop
   for_each_index(count, [&](std::size_t i) {
     for (std::size_t j = 0; j < i; ++j)
-      ways(i, j) = at[i] != nullptr && at[j] != nullptr ? distance_between(member, at[i]->cell, at[j]->cell)
+      ways(i, j) = at[i] != nullptr && at[j] != nullptr ? member.ways.between(at[i]->cell, at[j]->cell)
                                                         : TourProblem::kNever;
   });
   for (std::size_t i = 0; i < count; ++i)
@@ -376,7 +315,7 @@ void TourPlanning::join_next_stops(const Query& query) {
     return seconds_to(member.robot, start, viewpoints[v], distances[v]);
   };
   const auto between = [&](std::size_t a, std::size_t b) {  // the first one has been measured from
-    double way = distance_between(member, viewpoints[a].cell, viewpoints[b].cell);
+    double way = member.ways.between(viewpoints[a].cell, viewpoints[b].cell);
     if (way == TourProblem::kNever) way = distances[a] + distances[b];  // by where the robot is
     return seconds(member.robot, way, turn_between(viewpoints[a].yaw, viewpoints[b].yaw));
   };
@@ -391,7 +330,7 @@ void TourPlanning::join_next_stops(const Query& query) {
     order.push_back(static_cast<std::uint32_t>(order.size()));
     cells.push_back(viewpoints[stop.viewpoints.front()].cell);
   }
-  measure_from(member, cells);
+  member.ways.measure_from(cells);
   for (std::size_t i = 0; i < joined.size(); ++i)
     for (std::size_t j = i + 1; j < joined.size(); ++j)
       robot.between(i, j) = robot.between(j, i) =
@@ -403,7 +342,7 @@ void TourPlanning::join_next_stops(const Query& query) {
     stages.push_back(joined[order[s]].viewpoints);
     for (const std::size_t v : stages.back()) cells.push_back(viewpoints[v].cell);
   }
-  measure_from(member, std::move(cells));
+  member.ways.measure_from(cells);
   const std::vector<std::size_t> choice = shortest_choice(stages, first, between);
   std::vector<TourStop> tour;
   for (std::size_t s = 0; s < order.size(); ++s) {
@@ -428,8 +367,9 @@ void TourPlanning::update(const Query& query) {
   std::vector<KeyBox> changes = take_changes(members_[query.robot]);
   if (!std::exchange(members_[query.robot].planned, true))
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
-  update_graph(query, changes);
-  for (std::size_t r = 0; r < members_.size(); ++r) find_here(r, query.starts[r]);
+  update_ways(query, changes);
+  for (std::size_t r = 0; r < members_.size(); ++r)
+    members_[r].ways.start_from(lattice_.key(query.starts[r].pose.position));
   clusters_.update(query.frontiers);
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);

@@ -4,7 +4,7 @@
 #include "tour/cluster_viewpoints.hpp"
 #include "tour/frontier_clusters.hpp"
 #include "tour/tour_search.hpp"
-#include "tour/travel_graph.hpp"
+#include "tour/travel_ways.hpp"
 
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/trajectory.hpp>
@@ -12,8 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,23 +82,18 @@ class TourPlanning {
   struct Member {
     Robot robot;
     ViewRegion region;
-    TravelGraph graph;
+    TravelWays ways;                     // from where it is when its trajectory begins
     bool planned = false;                // before
-    std::vector<VoxelKey> changed = {};  // since its graph was updated
-    std::optional<VoxelKey> here = {};   // where it fits when its trajectory begins
-    std::vector<double> from_here = {};  // [m] to each node of the graph
-    std::map<std::uint32_t, std::vector<TravelGraph::Distance>> near = {};  // from other nodes
+    std::vector<VoxelKey> changed = {};  // since its ways were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> first_view = {};
   };
 
-  void find_here(std::size_t robot, const MotionState& start);
-  [[nodiscard]] double distance_to(const Member& member, const VoxelKey& cell) const;
   [[nodiscard]] double own_distance_to(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
-  void update_graph(const Query& query, std::span<const KeyBox> changes);
+  void update_ways(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] ViewpointQuery sight_of(const Query& query) const;
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;
@@ -109,14 +102,11 @@ class TourPlanning {
   [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
                                                 std::span<const Stop> stops);
-  void measure_from(Member& member, std::vector<VoxelKey> cells) const;
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
   void join_next_stops(const Query& query);
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
-  [[nodiscard]] double way_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
-  [[nodiscard]] double distance_between(const Member& member, const VoxelKey& a, const VoxelKey& b) const;
 
   Lattice lattice_;
   Options options_;

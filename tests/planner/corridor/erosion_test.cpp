@@ -30,7 +30,7 @@ void read(VoxelColumns& columns, Erosion& erosion, const VoxelGrid& grid,
   else
     columns.read(grid, Occupancy::kFree);
   erosion.erode(columns);
-  std::ranges::fill(columns.stale, std::uint8_t{0});
+  columns.settle();
 }
 
 // Boxes of up to four words a column, on bricks and off them, at both ends of the key range and in its

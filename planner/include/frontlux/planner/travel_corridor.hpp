@@ -28,6 +28,11 @@ enum class Motion : std::uint8_t {
   kGround,  ///< on the ground, up and down slopes and steps
 };
 
+/// As in robots' files: "plane", "space", "ground".
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(Motion motion);
+/// Nothing if there is no motion of this name.
+[[nodiscard]] FRONTLUX_EXPORT std::optional<Motion> motion_named(std::string_view name);
+
 /// What a step from cell to cell costs.
 enum class PathMetric : std::uint8_t {
   kEuclidean,  ///< also diagonal steps that cut no corner, by their own length; right to 1 in 20,000

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "tour/travel_graph.hpp"
+
+#include <frontlux/planner/travel_corridor.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace frontlux::planner::detail {
+
+/// How long one robot's ways are: from where it starts to everywhere, and between places that are not far
+/// from each other.
+class TravelWays {
+ public:
+  /// @param measured  nearest nodes of the graph to which the ways from a place are known
+  TravelWays(const Lattice& lattice, TravelGraph graph, std::size_t measured);
+
+  [[nodiscard]] const TravelGraph& graph() const { return graph_; }
+
+  /// As `TravelGraph::update`. The start stays.
+  void update(const TravelCorridor& corridor, std::span<const KeyBox> changed);
+  /// Where the robot will be; none if it is not in the map, or does not fit there.
+  void start_from(const std::optional<VoxelKey>& cell);
+  [[nodiscard]] bool has_start() const { return start_.has_value(); }
+  /// Finds the ways from some cells, until the next update.
+  void measure_from(std::span<const VoxelKey> cells);
+
+  /// Whether the robot can get to a cell from its start.
+  [[nodiscard]] bool reaches(const VoxelKey& cell) const;
+  /// [m] from the start; `TravelGraph::kFar` if there is no way.
+  [[nodiscard]] double from_start(const VoxelKey& cell) const;
+  /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no way.
+  /// @param from  has been measured from
+  [[nodiscard]] double between(const VoxelKey& from, const VoxelKey& to) const;
+  /// Whether a cell is near a short way from the start to some cell; for none if there is no way.
+  [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(const VoxelKey& to) const;
+
+ private:
+  [[nodiscard]] double straightened(const VoxelKey& from, const VoxelKey& to, double way) const;
+
+  Lattice lattice_;
+  TravelGraph graph_;
+  std::size_t measured_;
+  std::optional<VoxelKey> start_;
+  std::vector<double> from_start_;  // [m] to each node; empty before they are found
+  std::map<std::uint32_t, std::vector<TravelGraph::Distance>> near_;  // from other nodes
+};
+
+}  // namespace frontlux::planner::detail
