@@ -7,7 +7,7 @@
 #define FRONTLUX_X86_SETS
 #include <immintrin.h>
 #define FRONTLUX_PRAGMA(text) _Pragma(#text)
-#define FRONTLUX_AVX512 "avx512f,avx512vl,avx512dq,avx512bw"
+#define FRONTLUX_AVX512 "avx512f,avx512vl,avx512dq,avx512bw,popcnt"
 #ifdef __clang__
 #define FRONTLUX_BEGIN(set) \
   FRONTLUX_PRAGMA(clang attribute push(__attribute__((target(set))), apply_to = function))
@@ -20,5 +20,5 @@
 #define FRONTLUX_BEGIN_AVX512 FRONTLUX_BEGIN(FRONTLUX_AVX512 ",prefer-vector-width=512")
 #define FRONTLUX_END_TARGET _Pragma("GCC pop_options")
 #endif
-#define FRONTLUX_BEGIN_AVX2 FRONTLUX_BEGIN("avx2,fma")
+#define FRONTLUX_BEGIN_AVX2 FRONTLUX_BEGIN("avx2,fma,popcnt")
 #endif

@@ -1,13 +1,12 @@
 // Lanes of AVX2: masks are lanes of all ones.
 
-struct Int {
+struct Lanes {
   static constexpr int kWidth = 8;
   using V = __m256i;
   using I = __m256i;
   using M = __m256i;
-  using Time = std::int32_t;
 
-  static V time(Time t) { return _mm256_set1_epi32(t); }
+  static V time(std::int32_t t) { return _mm256_set1_epi32(t); }
   static I whole(std::uint32_t i) { return _mm256_set1_epi32(static_cast<int>(i)); }
   static M mask(unsigned bits) {
     const I lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -15,17 +14,16 @@ struct Int {
   }
   static unsigned bits(M m) { return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(m))); }
   static void expand(V& v, unsigned fill, const void* from) {
-    const I order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kExpand8[fill].data()));
+    const I order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kExpand[fill].data()));
     const I loaded = _mm256_loadu_si256(static_cast<const __m256i*>(from));
     v = _mm256_blendv_epi8(v, _mm256_permutevar8x32_epi32(loaded, order), mask(fill));
   }
   static M less(V a, V b) { return _mm256_cmpgt_epi32(b, a); }
   static V min(V a, V b) { return _mm256_min_epi32(a, b); }
   static V add_if(V a, M m, V b) { return _mm256_add_epi32(a, _mm256_and_si256(m, b)); }
-  static M is_over(V& left, V, V) {
-    left = _mm256_sub_epi32(left, _mm256_set1_epi32(1));
-    return _mm256_cmpeq_epi32(left, _mm256_setzero_si256());
-  }
+  static V max(V a, V b) { return _mm256_max_epi32(a, b); }
+  static V subtract(V a, V b) { return _mm256_sub_epi32(a, b); }
+  static M is_zero(V a) { return _mm256_cmpeq_epi32(a, _mm256_setzero_si256()); }
   static I increment(I a) { return _mm256_sub_epi32(a, _mm256_set1_epi32(-1)); }
   static M closed(const void* words, I at, M running) {
     const I word = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(words),
@@ -34,55 +32,16 @@ struct Int {
     return _mm256_cmpeq_epi32(_mm256_and_si256(word, bit), _mm256_setzero_si256());
   }
   static I select(M m, I yes, I no) { return _mm256_blendv_epi8(no, yes, m); }
+  static V choose(M m, V yes, V no) { return select(m, yes, no); }
+  static void store(std::uint32_t* to, I v) { _mm256_store_si256(reinterpret_cast<__m256i*>(to), v); }
   static M none() { return _mm256_setzero_si256(); }
   static M both(M a, M b) { return _mm256_and_si256(a, b); }
   static M any(M a, M b) { return _mm256_or_si256(a, b); }
   static M but_not(M a, M b) { return _mm256_andnot_si256(b, a); }
   static V add_unless(V a, M m, V b) { return _mm256_add_epi32(a, _mm256_andnot_si256(m, b)); }
-  FRONTLUX_COMMON_AVX2
-};
-
-struct Real {
-  static constexpr int kWidth = 4;
-  using V = __m256d;
-  using I = __m256i;
-  using M = __m256d;
-  using Time = double;
-
-  static V time(Time t) { return _mm256_set1_pd(t); }
-  static I whole(std::uint32_t i) { return _mm256_set1_epi64x(static_cast<long long>(i)); }
-  static M mask(unsigned bits) {
-    const I lane = _mm256_setr_epi64x(1, 2, 4, 8);
-    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(whole(bits), lane), lane));
+  static I either(I a, I b) { return _mm256_or_si256(a, b); }
+  static I exclusive(I a, I b) { return _mm256_xor_si256(a, b); }
+  static I merge(I where, I a, I b) {
+    return _mm256_or_si256(_mm256_and_si256(where, a), _mm256_andnot_si256(where, b));
   }
-  static unsigned bits(M m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
-  static void expand(V& v, unsigned fill, const void* from) {
-    const I order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kExpand4[fill].data()));
-    const I loaded = _mm256_loadu_si256(static_cast<const __m256i*>(from));
-    v = _mm256_blendv_pd(v, _mm256_castsi256_pd(_mm256_permutevar8x32_epi32(loaded, order)), mask(fill));
-  }
-  static void expand(I& v, unsigned fill, const void* from) {
-    V as_time = _mm256_castsi256_pd(v);
-    expand(as_time, fill, from);
-    v = _mm256_castpd_si256(as_time);
-  }
-  static void store(std::uint64_t* to, I v) { _mm256_store_si256(reinterpret_cast<__m256i*>(to), v); }
-  static M less(V a, V b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-  static V min(V a, V b) { return _mm256_min_pd(a, b); }
-  static V add_if(V a, M m, V b) { return _mm256_blendv_pd(a, _mm256_add_pd(a, b), m); }
-  static M is_over(V& end, V first, V tz) { return _mm256_cmp_pd(_mm256_min_pd(first, tz), end, _CMP_GT_OQ); }
-  static I increment(I a) { return _mm256_sub_epi64(a, _mm256_set1_epi64x(-1)); }
-  static M closed(const void* words, I at, M running) {
-    const I word = _mm256_mask_i64gather_epi64(_mm256_setzero_si256(), static_cast<const long long*>(words),
-                                               _mm256_srli_epi64(at, 6), _mm256_castpd_si256(running), 8);
-    const I bit = _mm256_sllv_epi64(_mm256_set1_epi64x(1), _mm256_and_si256(at, _mm256_set1_epi64x(63)));
-    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(word, bit), _mm256_setzero_si256()));
-  }
-  static I select(M m, I yes, I no) { return _mm256_blendv_epi8(no, yes, _mm256_castpd_si256(m)); }
-  static M none() { return _mm256_setzero_pd(); }
-  static M both(M a, M b) { return _mm256_and_pd(a, b); }
-  static M any(M a, M b) { return _mm256_or_pd(a, b); }
-  static M but_not(M a, M b) { return _mm256_andnot_pd(b, a); }
-  static V add_unless(V a, M m, V b) { return _mm256_blendv_pd(_mm256_add_pd(a, b), a, m); }
-  FRONTLUX_COMMON_AVX2
 };

@@ -26,12 +26,24 @@ class OpenVoxels {
   /// True for all known voxels and the rest of their bricks.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return words_ && bounds_.contains(key); }
 
+  /// The lowest and highest key along an axis of what `contains` is true for.
+  [[nodiscard]] int bounds_min(std::size_t axis) const {
+    return std::array{bounds_.min.x, bounds_.min.y, bounds_.min.z}[axis];
+  }
+  [[nodiscard]] int bounds_max(std::size_t axis) const {
+    return std::array{bounds_.max.x, bounds_.max.y, bounds_.max.z}[axis];
+  }
+
   /// How an index is put together.
   struct Layout {
     std::array<int, 3> corner{};             ///< key of index 0: in the border, perhaps below the key range
     std::uint32_t y_shift = 0, z_shift = 0;  ///< of what is above the brick; x has 9
     std::array<std::uint32_t, 3> bits{};     ///< that belong to each axis
 
+    /// Of the lowest bit of what is above the brick, on an axis.
+    [[nodiscard]] std::uint32_t shift(std::size_t axis) const {
+      return axis == 0 ? 9U : axis == 1 ? y_shift : z_shift;
+    }
     /// @pre the key lies in the table
     [[nodiscard]] std::uint32_t index(const VoxelKey& key) const {
       const auto x = static_cast<std::uint32_t>(key.x - corner[0]);

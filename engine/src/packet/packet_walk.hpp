@@ -3,49 +3,89 @@
 #include "isa/instruction_set.hpp"
 #include "packet/open_voxels.hpp"
 
+#include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 
 /// castRay's traversal for many rays at a time, a ray to a lane of the processor's vector unit, through a
-/// table of open voxels. Each lane does what `Crossings` and `GridPath` do, operation by operation, so its
-/// path is theirs to the last voxel; only the look-ups differ.
+/// table of open voxels. Time is a whole number of 32 bits. Between voxel centres it is exact (`Crossings`).
+/// Along castRay's rays it is rounded, and a ray that comes so close to an edge that rounding might have
+/// changed its path is told from the others (docs/ray_contract.md).
 namespace frontlux::detail {
 
-/// Lines waiting for a lane, as arrays: `Crossings<Time>` of each, and where it starts and ends.
-template <class Time>
-struct PacketLines {
-  static constexpr std::size_t kMaxSize = 256;
-  using Index = std::conditional_t<sizeof(Time) == 8, std::uint64_t, std::uint32_t>;
+/// Most lines that are walked in one call.
+inline constexpr std::size_t kMaxLines = 256;
 
+template <class T>
+using PerLine = std::array<T, kMaxLines>;
+template <class T>
+using PerAxisAndLine = std::array<PerLine<T>, 3>;
+
+/// Lines waiting for a lane, as arrays: the crossings of each, and where it starts and ends.
+struct PacketLines {
   std::size_t size = 0;
-  alignas(64) std::array<std::array<Time, kMaxSize>, 3> t_max, t_delta;
-  /// The last time at which a step is taken; for whole numbers the number of steps.
-  alignas(64) std::array<Time, kMaxSize> end;
+  alignas(64) PerAxisAndLine<std::int32_t> t_max, t_delta;
+  /// The number of steps to the line's end. Rays end by time, `kEndOfTime`, and have none.
+  alignas(64) PerLine<std::int32_t> steps;
   /// Of the voxel where it starts, in the table's layout, flipped so that every step adds.
-  alignas(64) std::array<Index, kMaxSize> index;
+  alignas(64) PerLine<std::uint32_t> index;
   /// The bits of all axes along which the line descends.
-  alignas(64) std::array<Index, kMaxSize> flip;
+  alignas(64) PerLine<std::uint32_t> flip;
 };
+
+/// Where the walk of a ray ended: the table's index of the closed voxel that stopped it, or one of these.
+enum RayEnd : std::uint32_t {
+  kWentThrough = ~0U,      ///< nothing stopped it within `walked_length`
+  kTooCloseToTell = ~1U,   ///< it passed an edge closer than the rounding of times
+  kNeverStarted = ~2U,     ///< it does not start in an open voxel of the table, or has no unit direction
+  kFirstRayEnd = kNeverStarted
+};
+
+/// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped.
+struct RayBatch {
+  std::size_t size = 0;
+  alignas(64) PerAxisAndLine<float> origin;     ///< [m]
+  alignas(64) PerAxisAndLine<float> direction;  ///< as `normalized_as_octomap` returns it
+  alignas(64) PerLine<double> max_range;        ///< [m]
+
+  alignas(64) PerLine<std::uint32_t> stopped_at;  ///< an index or a `RayEnd`
+  alignas(64) PerAxisAndLine<std::int32_t> cell;  ///< of the voxel, from key 0; may lie outside the key range
+  alignas(64) PerAxisAndLine<float> end;          ///< [m] its centre
+  alignas(64) PerAxisAndLine<float> entry;        ///< [m] where the ray enters it
+  alignas(64) PerLine<float> distance;            ///< [m] from the origin to there
+  alignas(64) PerLine<std::uint8_t> in_range;     ///< whether its centre is
+};
+
+/// How far rays are walked [voxels]. This is where a BVH becomes about as fast (docs/benchmarking.md); times
+/// of longer ones would be too coarse.
+inline constexpr double kLongestWalk = 400.0;
+/// How far a ray is walked [m]: further than any voxel in its range reaches, if that is not too far. A voxel
+/// in range is entered before the range plus half a voxel's diagonal, and left before another diagonal.
+[[nodiscard]] inline double walked_length(double max_range, double resolution) {
+  const double longest = kLongestWalk * resolution, length = max_range + 3.0 * resolution;
+  return max_range > 0.0 && length < longest ? length : longest;
+}
+/// Whether it is walked as far as it may go.
+[[nodiscard]] inline bool is_walked_whole(double max_range, double resolution) {
+  return max_range > 0.0 && max_range + 3.0 * resolution < kLongestWalk * resolution;
+}
 
 /// The walks of one instruction set.
 struct PacketWalk {
   InstructionSet needs;
 
   /// `RayCaster::visible` between voxel centres. Ends lie in the table, at most `kMaxOffset` apart along each
-  /// axis and not in one voxel; at most `PacketLines::kMaxSize` of them.
+  /// axis and not in one voxel; at most `kMaxLines` of them.
   void (*segments)(const OpenVoxels& table, const KeySegment* segments, std::size_t size,
                    std::uint8_t* visible);
   static constexpr int kMaxOffset = 1000;  // (2 n + 1) dy dz has to fit into 31 bits
 
-  /// For each line the table's index of the closed voxel that stopped it, or `kWentThrough` if it ended
-  /// before.
-  void (*rays)(const OpenVoxels& table, const PacketLines<double>& lines, std::uint32_t* stopped_at);
-  static constexpr std::uint32_t kWentThrough = ~std::uint32_t{0};
+  /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`.
+  void (*rays)(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch);
 };
 
 /// Those that may run, the widest first.

@@ -1,35 +1,37 @@
 // The walk itself. Included by packet_walk.cpp once for each instruction set, inside a namespace that defines
-// the lanes: `Int` with 32-bit time and `Real` with double.
+// its `Lanes`.
 
 // A step of all lanes needs no branch. Lanes whose line has ended run on for up to kSteps - 1 steps, which
 // the table's border allows, and then stand still until enough of them are to be filled again.
 constexpr int kSteps = 8;
 
-template <class Lanes>
 struct Packet {
-  using V = typename Lanes::V;
-  using I = typename Lanes::I;
-  V tx, ty, tz, dx, dy, dz, end;
+  using V = Lanes::V;
+  using I = Lanes::I;
+  V tx, ty, tz, dx, dy, dz;
+  V steps;    // left, of segments
+  V closest;  // the shortest time between two crossings that was one too, of rays
   I index, flip, stopped_at;
 };
 
-template <class Lanes, bool kRecordsStop, class Finish>
-[[gnu::always_inline]] inline void walk_lines(const OpenVoxels& table,
-                                              const PacketLines<typename Lanes::Time>& lines,
+enum class LineKind : std::uint8_t { kSegment, kRay };
+
+template <LineKind kKind, class Finish>
+[[gnu::always_inline]] inline void walk_lines(const OpenVoxels& table, const PacketLines& lines,
                                               const Finish& finish) {
-  using I = typename Lanes::I;
-  using M = typename Lanes::M;
+  using V = Lanes::V;
+  using I = Lanes::I;
+  using M = Lanes::M;
   constexpr unsigned kAll = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
   constexpr int kRefill = Lanes::kWidth > 4 ? Lanes::kWidth / 4 : 1;
   const auto& bits = table.layout().bits;
   const I not_x = Lanes::whole(~bits[0]), not_y = Lanes::whole(~bits[1]), not_z = Lanes::whole(~bits[2]);
-  const I zero = Lanes::whole(0);
+  const V end_of_time = Lanes::time(kEndOfTime);
   const void* words = table.words();
 
-  Packet<Lanes> p{};
-  p.tx = p.ty = p.tz = p.dx = p.dy = p.dz = Lanes::time(0);
-  p.end = Lanes::time(0);
-  p.index = p.flip = p.stopped_at = zero;
+  Packet p{};
+  p.tx = p.ty = p.tz = p.dx = p.dy = p.dz = p.steps = p.closest = Lanes::time(0);
+  p.index = p.flip = p.stopped_at = Lanes::whole(0);
   alignas(64) std::uint32_t line[Lanes::kWidth] = {};
   unsigned active = 0;
   std::size_t next = 0;
@@ -45,9 +47,12 @@ template <class Lanes, bool kRecordsStop, class Finish>
       Lanes::expand(p.dx, fill, &lines.t_delta[0][next]);
       Lanes::expand(p.dy, fill, &lines.t_delta[1][next]);
       Lanes::expand(p.dz, fill, &lines.t_delta[2][next]);
-      Lanes::expand(p.end, fill, &lines.end[next]);
       Lanes::expand(p.index, fill, &lines.index[next]);
       Lanes::expand(p.flip, fill, &lines.flip[next]);
+      if constexpr (kKind == LineKind::kSegment)
+        Lanes::expand(p.steps, fill, &lines.steps[next]);
+      else
+        p.closest = Lanes::choose(Lanes::mask(fill), Lanes::time(kNever), p.closest);
       for (unsigned f = fill; f != 0; f &= f - 1) line[__builtin_ctz(f)] = static_cast<std::uint32_t>(next++);
       active |= fill;
     }
@@ -61,10 +66,19 @@ template <class Lanes, bool kRecordsStop, class Finish>
       for (int k = 0; k < kSteps; ++k) {
         // Ties go to z before y before x (rule 5).
         const M x_before_y = Lanes::less(p.tx, p.ty);
-        const auto first = Lanes::min(p.tx, p.ty);
+        const V first = Lanes::min(p.tx, p.ty);
         const M not_z_next = Lanes::less(first, p.tz);
         const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
-        const M over = Lanes::is_over(p.end, first, p.tz);
+        M over;
+        if constexpr (kKind == LineKind::kSegment) {
+          p.steps = Lanes::subtract(p.steps, Lanes::time(1));
+          over = Lanes::is_zero(p.steps);
+        } else {
+          const V now = Lanes::min(first, p.tz);
+          over = Lanes::less(end_of_time, now);
+          const V second = Lanes::max(first, Lanes::min(Lanes::max(p.tx, p.ty), p.tz));
+          p.closest = Lanes::min(p.closest, Lanes::subtract(second, now));
+        }
         p.tx = Lanes::add_if(p.tx, x_next, p.dx);
         p.ty = Lanes::add_if(p.ty, y_next, p.dy);
         p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
@@ -74,7 +88,7 @@ template <class Lanes, bool kRecordsStop, class Finish>
         const M closed = Lanes::closed(words, at, running);
         const M fresh_arrival = Lanes::but_not(over, ended);
         arrived = Lanes::any(arrived, fresh_arrival);
-        if constexpr (kRecordsStop)
+        if constexpr (kKind == LineKind::kRay)
           p.stopped_at = Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
         ended = Lanes::any(ended, Lanes::any(over, closed));
       }
@@ -87,9 +101,8 @@ template <class Lanes, bool kRecordsStop, class Finish>
 
 // The lines of key segments, whose time is a whole number: Crossings<int64_t> in 32 bits.
 [[gnu::always_inline]] inline void segment_lines(const OpenVoxels::Layout& layout, const KeySegment* segments,
-                                                 std::size_t size, PacketLines<std::int32_t>& lines) {
-  constexpr std::size_t kMaxSize = PacketLines<std::int32_t>::kMaxSize;
-  alignas(64) std::int32_t from[3][kMaxSize], offset[3][kMaxSize];
+                                                 std::size_t size, PacketLines& lines) {
+  alignas(64) std::int32_t from[3][kMaxLines], offset[3][kMaxLines];
   for (std::size_t i = 0; i < size; ++i) {
     const KeySegment& s = segments[i];
     from[0][i] = s.from.x;
@@ -103,7 +116,7 @@ template <class Lanes, bool kRecordsStop, class Finish>
   const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
   // The axes written out: with a loop over them GCC 14 vectorises nothing of this.
   const auto time = [](std::int32_t distance, std::int32_t product) {
-    return distance == 0 ? 0x7FFFFFFF : product;
+    return distance == 0 ? kNever : product;
   };
   const auto step = [](std::int32_t distance, std::int32_t product) {
     return distance == 0 ? 0 : 2 * product;
@@ -127,19 +140,18 @@ template <class Lanes, bool kRecordsStop, class Finish>
                kz = static_cast<std::uint32_t>(from[2][i] - layout.corner[2]);
     const std::uint32_t index = (kx & 7U) | (ky & 7U) << 3U | (kz & 7U) << 6U | (kx >> 3U) << 9U |
                                 (ky >> 3U) << layout.y_shift | (kz >> 3U) << layout.z_shift;
-    lines.end[i] = x + y + z;
+    lines.steps[i] = x + y + z;
     lines.index[i] = index ^ flip;
     lines.flip[i] = flip;
   }
 }
 
 void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t size, std::uint8_t* visible) {
-  PacketLines<std::int32_t> lines;
+  PacketLines lines;
   lines.size = size;
   segment_lines(table.layout(), segments, size, lines);
-  walk_lines<Int, false>(
-      table, lines,
-      [visible](const Packet<Int>&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+  walk_lines<LineKind::kSegment>(
+      table, lines, [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
         for (; ended != 0; ended &= ended - 1) {
           const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
           visible[line[lane]] = static_cast<std::uint8_t>((arrived >> lane) & 1U);
@@ -147,15 +159,25 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
       });
 }
 
-void rays(const OpenVoxels& table, const PacketLines<double>& lines, std::uint32_t* stopped_at) {
-  walk_lines<Real, true>(
-      table, lines, [&](const Packet<Real>& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
-        alignas(64) typename PacketLines<double>::Index at[Real::kWidth];
-        Real::store(at, p.stopped_at);
+void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch) {
+  PacketLines lines;
+  alignas(64) PerLine<std::uint32_t> is_good;
+  take(rays, batch);
+  normalize(batch, is_good);
+  start(lattice, table, batch, lines, is_good);
+  walk_lines<LineKind::kRay>(
+      table, lines, [&](const Packet& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+        alignas(64) std::uint32_t at[Lanes::kWidth];
+        Lanes::store(at, p.stopped_at);
+        const unsigned close = Lanes::bits(Lanes::less(p.closest, Lanes::time(kCloseToTell)));
         for (; ended != 0; ended &= ended - 1) {
           const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-          const bool passed = ((arrived >> lane) & 1U) != 0;
-          stopped_at[line[lane]] = passed ? kWentThrough : static_cast<std::uint32_t>(at[lane]);
+          const bool passed = ((arrived >> lane) & 1U) != 0, unclear = ((close >> lane) & 1U) != 0;
+          batch.stopped_at[line[lane]] = is_good[line[lane]] == 0 ? kNeverStarted
+                                         : unclear                ? kTooCloseToTell
+                                         : passed                 ? kWentThrough
+                                                                  : at[lane];
         }
       });
+  end_in_voxels(lattice, table, batch);
 }

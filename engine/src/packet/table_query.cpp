@@ -15,9 +15,7 @@
 namespace frontlux::detail {
 namespace {
 
-// Where a BVH becomes about as fast as the walk (docs/benchmarking.md).
 constexpr int kLongSegment = 1000;  // voxels along the longest axis
-constexpr double kLongRay = 400.0;  // [voxels]
 static_assert(kLongSegment <= PacketWalk::kMaxOffset);
 
 // A ray that starts in an open voxel of the table.
@@ -26,8 +24,6 @@ struct Entrance {
   Eigen::Vector3f direction;
   Crossings<double> line;
   std::uint32_t index, flip;  // as PacketLines has them
-  double end;
-  bool whole;  // the walk goes as far as the ray may
 };
 
 std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
@@ -37,42 +33,50 @@ std::optional<Entrance> enter(const Lattice& lattice, const OpenVoxels& table, c
   const std::uint32_t index = layout.index(*key);
   const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
   if (!table.open(index) || !is_unit(direction)) return std::nullopt;
-  Entrance e{*key, direction, crossings_of(lattice, ray.origin, *key, direction), 0, 0, 0.0, false};
+  Entrance e{*key, direction, crossings_of(lattice, ray.origin, *key, direction), 0, 0};
   for (std::size_t a = 0; a < 3; ++a) e.flip |= e.line.step[a] < 0 ? layout.bits[a] : 0U;
   e.index = index ^ e.flip;
-  // A voxel in range is entered before its centre's distance plus half a diagonal.
-  const double resolution = lattice.resolution(), longest = kLongRay * resolution;
-  e.whole = ray.max_range > 0.0 && ray.max_range + resolution <= longest;
-  e.end = e.whole ? ray.max_range + resolution : longest;
   return e;
 }
 
-#ifdef __SSE2__
-// The walk of a packet, for one ray, where a packet would have one lane in use. Neither step nor look-up
-// branches on which axis is next, and times stay in vector registers.
-std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray) {
+// One ray's walk, in castRay's own times. Neither step nor look-up branches on which axis is next, and where
+// there are vector registers times stay in them.
+std::uint32_t walk_alone(const OpenVoxels& table, const Entrance& ray, double length) {
   const auto& bits = table.layout().bits;
-  const auto load = [](double t) { return _mm_set_sd(t); };
-  __m128d tx = load(ray.line.t_max[0]), ty = load(ray.line.t_max[1]), tz = load(ray.line.t_max[2]);
-  const __m128d dx = load(ray.line.t_delta[0]), dy = load(ray.line.t_delta[1]),
-                dz = load(ray.line.t_delta[2]);
-  const __m128d end = load(ray.end);
   const std::array<std::uint32_t, 4> axis_of = {bits[2], bits[2], bits[1], bits[0]};  // by x_before_y, not_z
   std::uint32_t index = ray.index;
+  const auto& t = ray.line.t_max;
+  const auto& d = ray.line.t_delta;
+#ifdef __SSE2__
+  __m128d tx = _mm_set_sd(t[0]), ty = _mm_set_sd(t[1]), tz = _mm_set_sd(t[2]);
+  const __m128d dx = _mm_set_sd(d[0]), dy = _mm_set_sd(d[1]), dz = _mm_set_sd(d[2]), end = _mm_set_sd(length);
+#else
+  double tx = t[0], ty = t[1], tz = t[2];
+#endif
   while (true) {
+#ifdef __SSE2__
     const __m128d x_before_y = _mm_cmplt_sd(tx, ty), first = _mm_min_sd(tx, ty),
                   not_z = _mm_cmplt_sd(first, tz);
-    if (_mm_comigt_sd(_mm_min_sd(first, tz), end) != 0) return PacketWalk::kWentThrough;
+    if (_mm_comigt_sd(_mm_min_sd(first, tz), end) != 0) return kWentThrough;
     tx = _mm_add_sd(tx, _mm_and_pd(_mm_and_pd(not_z, x_before_y), dx));
     ty = _mm_add_sd(ty, _mm_and_pd(_mm_andnot_pd(x_before_y, not_z), dy));
     tz = _mm_add_sd(tz, _mm_andnot_pd(not_z, dz));
     const auto choice = static_cast<std::size_t>(_mm_movemask_pd(_mm_unpacklo_pd(x_before_y, not_z)));
+#else
+    const bool x_before_y = tx < ty;
+    const double first = x_before_y ? tx : ty;
+    const bool not_z = first < tz;
+    if ((not_z ? first : tz) > length) return kWentThrough;
+    tx += not_z && x_before_y ? d[0] : 0.0;
+    ty += not_z && !x_before_y ? d[1] : 0.0;
+    tz += not_z ? 0.0 : d[2];
+    const std::size_t choice = (x_before_y ? 1U : 0U) | (not_z ? 2U : 0U);
+#endif
     const std::uint32_t axis = axis_of[choice];
     index = (((index | ~axis) + 1) & axis) | (index & ~axis);
     if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
   }
 }
-#endif
 
 }  // namespace
 
@@ -123,68 +127,65 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
     else
       left[left_size++] = static_cast<std::uint16_t>(i);
   };
-#ifdef __SSE2__
   constexpr std::size_t kWorthAPacket = 3;
-  if (walk_ != nullptr && rays.size() < kWorthAPacket) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const auto ray = enter(grid_.lattice(), table_, rays[i]);
-      settle(i, ray ? finish(rays[i], ray->key, ray->direction, walk_alone(table_, *ray), ray->whole)
-                    : std::nullopt);
-    }
+  if (walk_ == nullptr || rays.size() < kWorthAPacket) {
+    for (std::size_t i = 0; i < rays.size(); ++i) settle(i, cast_alone(rays[i]));
     return left_size;
   }
-#endif
-  struct Walking {
-    std::uint32_t ray, origin;  // index of its voxel
-    float direction[3];
-    bool whole;
-  };
-  PacketLines<double> lines;
-  std::array<Walking, kMaxBatch> walking;
-  std::array<std::uint32_t, kMaxBatch> stopped_at;
-  lines.size = 0;
+  RayBatch batch;
+  walk_->rays(grid_.lattice(), table_, rays, batch);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto ray = walk_ == nullptr ? std::nullopt : enter(grid_.lattice(), table_, rays[i]);
-    if (!ray) {
-      left[left_size++] = static_cast<std::uint16_t>(i);
-      continue;
+    const std::uint32_t stopped_at = batch.stopped_at[i];
+    const auto per_axis = [i](const auto& values) {
+      return std::array{values[0][i], values[1][i], values[2][i]};
+    };
+    const std::array<int, 3> cell = per_axis(batch.cell);
+    if (stopped_at < kFirstRayEnd && batch.in_range[i] != 0 && is_inside(cell)) {
+      const VoxelKey key = as_key(cell);
+      const Occupancy state = unknown_ == UnknownPolicy::kPass ? Occupancy::kOccupied : grid_.at(key);
+      const auto end = per_axis(batch.end), entry = per_axis(batch.entry);
+      hits[i] = {stop_in(state), state, key, {end[0], end[1], end[2]}, {entry[0], entry[1], entry[2]},
+                 batch.distance[i]};
+    } else if (stopped_at == kTooCloseToTell) {
+      settle(i, cast_alone(rays[i]));
+    } else if (stopped_at == kNeverStarted) {
+      settle(i, std::nullopt);
+    } else {
+      const auto d = per_axis(batch.direction);
+      settle(i, finish(rays[i], *grid_.lattice().key(rays[i].origin), {d[0], d[1], d[2]}, stopped_at));
     }
-    const std::size_t n = lines.size++;
-    for (std::size_t a = 0; a < 3; ++a) {
-      lines.t_max[a][n] = ray->line.t_max[a];
-      lines.t_delta[a][n] = ray->line.t_delta[a];
-    }
-    lines.end[n] = ray->end;
-    lines.index[n] = ray->index;
-    lines.flip[n] = ray->flip;
-    const Eigen::Vector3f& d = ray->direction;
-    walking[n] = {static_cast<std::uint32_t>(i), ray->index ^ ray->flip, {d.x(), d.y(), d.z()}, ray->whole};
-  }
-  if (lines.size == 0) return left_size;
-  walk_->rays(table_, lines, stopped_at.data());
-  for (std::size_t n = 0; n < lines.size; ++n) {
-    const auto& [i, origin, d, whole] = walking[n];
-    settle(i, finish(rays[i], as_key(table_.layout().key(origin)), {d[0], d[1], d[2]}, stopped_at[n], whole));
   }
   return left_size;
 }
 
+std::optional<Hit> TableQuery::cast_alone(const Ray& ray) const {
+  const auto entrance = enter(grid_.lattice(), table_, ray);
+  if (!entrance) return std::nullopt;
+  const double length = walked_length(ray.max_range, grid_.resolution());
+  return finish(ray, entrance->key, entrance->direction, walk_alone(table_, *entrance, length));
+}
+
 // None if the walk ended before the ray did.
 std::optional<Hit> TableQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                                      std::uint32_t stopped_at, bool whole) const {
-  if (stopped_at == PacketWalk::kWentThrough) {
-    if (!whole) return std::nullopt;
+                                      std::uint32_t stopped_at) const {
+  if (stopped_at == kWentThrough) {
+    if (!is_walked_whole(ray.max_range, grid_.resolution())) return std::nullopt;
     return end_ray(grid_, ray, start, direction, unknown_, std::nullopt);
   }
   const std::array<int, 3> cell = table_.layout().key(stopped_at);
-  const bool is_key =
-      std::all_of(cell.begin(), cell.end(), [](int k) { return k >= 0 && k < Lattice::kKeysPerAxis; });
-  const bool in_border = !is_key || !table_.contains(as_key(cell));
+  if (is_inside(cell)) return end_ray(grid_, ray, start, direction, unknown_, as_key(cell));
   // The border stops every walk, but its voxels are unknown ones like others: under kPass they do not block.
-  if (in_border && unknown_ == UnknownPolicy::kPass)
+  if (unknown_ == UnknownPolicy::kPass)
     return end_ray(grid_, ray, start, direction, unknown_, std::nullopt);
-  if (!is_key) return walk_ray(grid_, ray, unknown_);
+  if (as_array(as_key(cell)) != cell) return walk_ray(grid_, ray, unknown_);  // outside the key range
   return end_ray(grid_, ray, start, direction, unknown_, as_key(cell));
+}
+
+bool TableQuery::is_inside(const std::array<int, 3>& cell) const {
+  bool inside = true;
+  for (std::size_t a = 0; a < 3; ++a)
+    inside &= cell[a] >= table_.bounds_min(a) && cell[a] <= table_.bounds_max(a);
+  return inside;
 }
 
 }  // namespace frontlux::detail

@@ -6,6 +6,7 @@
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -17,7 +18,7 @@ namespace frontlux::detail {
 /// in the table and are not too long.
 class TableQuery {
  public:
-  static constexpr std::size_t kMaxBatch = PacketLines<double>::kMaxSize;  ///< most queries in a call
+  static constexpr std::size_t kMaxBatch = kMaxLines;  ///< most queries in a call
 
   TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
              const PacketWalk& walk = packet_walk())
@@ -31,9 +32,11 @@ class TableQuery {
 
  private:
   [[nodiscard]] bool walks(const KeySegment& segment) const;
+  [[nodiscard]] std::optional<Hit> cast_alone(const Ray& ray) const;
   [[nodiscard]] std::optional<Hit> finish(const Ray& ray, const VoxelKey& start,
-                                          const Eigen::Vector3f& direction, std::uint32_t stopped_at,
-                                          bool whole) const;
+                                          const Eigen::Vector3f& direction, std::uint32_t stopped_at) const;
+  /// Whether a cell, by its key, is one that the table contains.
+  [[nodiscard]] bool is_inside(const std::array<int, 3>& cell) const;
 
   const VoxelGrid& grid_;
   const OpenVoxels& table_;

@@ -1,0 +1,135 @@
+// What happens to rays before and after their walk, for a whole batch: loops that the compiler vectorises.
+// Included by packet_walk.cpp once for each instruction set. All arithmetic is that of walk.hpp and walk.cpp,
+// operation by operation, until times become whole numbers.
+
+// The end of a ray's time. What a crossing behind it adds still fits into 31 bits.
+constexpr std::int32_t kEndOfTime = (1 << 30) - 1;
+constexpr std::int32_t kNever = 0x7FFFFFFF;
+// Times are cut off to whole numbers, and so is what each step adds, so after n steps a time is up to n + 1 too
+// small, and so is the difference of two. A ray crosses at most one plane more than voxels it is long.
+// castRay's own rounding is far below one.
+constexpr std::int32_t kCloseToTell = static_cast<std::int32_t>(kLongestWalk) + 4;
+
+inline void take(std::span<const Ray> rays, RayBatch& batch) {
+  batch.size = rays.size();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      batch.origin[a][i] = rays[i].origin[static_cast<Eigen::Index>(a)];
+      batch.direction[a][i] = rays[i].direction[static_cast<Eigen::Index>(a)];
+    }
+    batch.max_range[i] = rays[i].max_range;
+  }
+}
+
+// normalized_as_octomap and is_unit: a root in float is the root in double, rounded to float.
+inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& is_good) {
+  float *const dx = batch.direction[0].data(), *const dy = batch.direction[1].data(),
+               *const dz = batch.direction[2].data();
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const float length = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+    const float x = dx[i] / length, y = dy[i] / length, z = dz[i] / length;
+    dx[i] = x;
+    dy[i] = y;
+    dz[i] = z;
+    is_good[i] = std::fabs(x * x + y * y + z * z - 1.0F) < 1e-4F ? 1U : 0U;
+  }
+}
+
+// crossings_of and Lattice::key, and where the ray is in the table.
+inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatch& batch, PacketLines& lines,
+                  PerLine<std::uint32_t>& is_good) {
+  const double resolution = lattice.resolution(), factor = 1.0 / resolution;
+  alignas(64) PerLine<double> units;  // of time in a metre
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    units[i] = kEndOfTime / walked_length(batch.max_range[i], resolution);
+    lines.index[i] = lines.flip[i] = 0;
+  }
+  const OpenVoxels::Layout& layout = table.layout();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double lowest = table.bounds_min(a) - Lattice::kOrigin, highest = table.bounds_max(a) - Lattice::kOrigin;
+    const int corner = layout.corner[a] - Lattice::kOrigin;
+    const std::uint32_t low_shift = 3U * static_cast<std::uint32_t>(a), high_shift = layout.shift(a),
+                        bits = layout.bits[a];
+    const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
+    std::int32_t *const t_max = lines.t_max[a].data(), *const t_delta = lines.t_delta[a].data();
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const double o = static_cast<double>(origin[i]), d = static_cast<double>(direction[i]);
+      const double floor = std::floor(factor * o);
+      const std::uint32_t inside = (floor >= lowest ? 1U : 0U) & (floor <= highest ? 1U : 0U);
+      const double cell = inside != 0 ? floor : lowest;
+      const double border = (cell + 0.5) * resolution + (d > 0.0 ? 0.5 * resolution : -0.5 * resolution);
+      const double first = (border - o) / d * units[i];
+      const double between = resolution / std::fabs(d) * units[i];
+      const bool moves = d != 0.0;
+      is_good[i] &= inside & ((moves ? 0U : 1U) | (first >= 0.0 ? 1U : 0U));
+      const double from_now = first > 0.0 ? first : 0.0;
+      const double before_never = from_now < kNever ? from_now : kNever;
+      const double at_most = between < kEndOfTime + 1.0 ? between : kEndOfTime + 1.0;
+      const auto whole_first = static_cast<std::int32_t>(before_never);
+      const auto whole_between = static_cast<std::int32_t>(at_most);
+      t_max[i] = moves ? whole_first : kNever;
+      t_delta[i] = moves ? whole_between : 0;
+      const auto at = static_cast<std::uint32_t>(static_cast<std::int32_t>(cell) - corner);
+      lines.index[i] |= (at & 7U) << low_shift | (at >> 3U) << high_shift;
+      lines.flip[i] |= d < 0.0 ? bits : 0U;
+    }
+  }
+  // A line that is never walked is over at its first step.
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    if (is_good[i] != 0 && table.open(lines.index[i])) {
+      lines.index[i] ^= lines.flip[i];
+      continue;
+    }
+    is_good[i] = 0;
+    lines.index[i] = lines.flip[i] = 0;
+    for (std::size_t a = 0; a < 3; ++a) lines.t_max[a][i] = kNever;
+  }
+  lines.size = batch.size;
+}
+
+// out_of_range and make_hit, for rays that a voxel stopped.
+inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch) {
+  const double resolution = lattice.resolution();
+  const OpenVoxels::Layout& layout = table.layout();
+  alignas(64) PerLine<double> distance_sq, time;
+  for (std::size_t i = 0; i < batch.size; ++i) distance_sq[i] = time[i] = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int corner = layout.corner[a];
+    const std::uint32_t low_shift = 3U * static_cast<std::uint32_t>(a), high_shift = layout.shift(a),
+                        bits = layout.bits[a] & ~511U;
+    const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
+    std::int32_t* const cells = batch.cell[a].data();
+    float* const end = batch.end[a].data();
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const std::uint32_t at = batch.stopped_at[i];
+      const auto key = static_cast<std::int32_t>((at >> low_shift & 7U) | (at & bits) >> high_shift << 3U) + corner;
+      const double cell = static_cast<double>(key - Lattice::kOrigin);
+      cells[i] = key;
+      end[i] = static_cast<float>((cell + 0.5) * resolution);
+      const float offset = end[i] - origin[i], squared = offset * offset;
+      distance_sq[i] += static_cast<double>(squared);
+      const double o = static_cast<double>(origin[i]), d = static_cast<double>(direction[i]);
+      const double face = cell + (d < 0.0 ? 1.0 : 0.0);
+      const double crossing = (face * resolution - o) / d;
+      const double later = crossing > time[i] ? crossing : time[i];
+      time[i] = d != 0.0 ? later : time[i];
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
+    float* const entry = batch.entry[a].data();
+    for (std::size_t i = 0; i < batch.size; ++i)
+      entry[i] = static_cast<float>(static_cast<double>(origin[i]) + time[i] * static_cast<double>(direction[i]));
+  }
+  const float *const dx = batch.direction[0].data(), *const dy = batch.direction[1].data(),
+                     *const dz = batch.direction[2].data();
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const double x = static_cast<double>(dx[i]), y = static_cast<double>(dy[i]), z = static_cast<double>(dz[i]);
+    batch.distance[i] = static_cast<float>(time[i] * std::sqrt(x * x + (y * y + z * z)));
+  }
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const double range = batch.max_range[i];
+    const std::uint8_t unlimited = range > 0.0 ? 0 : 1, too_far = distance_sq[i] > range * range ? 1 : 0;
+    batch.in_range[i] = static_cast<std::uint8_t>(unlimited | (too_far ^ 1));
+  }
+}
