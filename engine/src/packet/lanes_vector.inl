@@ -5,20 +5,67 @@ struct Lanes {
   static constexpr int kWidth = kVectorBytes / 4;
   using V [[gnu::vector_size(kVectorBytes)]] = std::int32_t;
   using I [[gnu::vector_size(kVectorBytes)]] = std::uint32_t;
+  using F [[gnu::vector_size(kVectorBytes)]] = float;
   using M = I;
 
   static V time(std::int32_t t) { return V{} + t; }
+  static V as_time(I a) { return std::bit_cast<V>(a); }
+  // Times may wrap around, which numbers with a sign must not.
+  static V add(V a, V b) { return as_time(as_whole(a) + as_whole(b)); }
+  static V add_if(V a, M m, V b) { return as_time(as_whole(a) + (as_whole(b) & m)); }
+  static V add_unless(V a, M m, V b) { return add_if(a, ~m, b); }
+  static V subtract(V a, V b) { return as_time(as_whole(a) - as_whole(b)); }
+  static V multiply(V a, V b) { return as_time(as_whole(a) * as_whole(b)); }
+  // Cut off to a whole number; 0 if that is too large.
+  static V product(V a, F b) {
+    const F value = __builtin_convertvector(a, F) * b;
+    return __builtin_convertvector(std::bit_cast<F>(std::bit_cast<I>(value) & (value * value < 0x1p62F)), V);
+  }
+  static V min(V a, V b) { return a < b ? a : b; }
+  static V max(V a, V b) { return a < b ? b : a; }
+  static V min_unsigned(V a, V b) { return as_time(as_whole(a) < as_whole(b) ? as_whole(a) : as_whole(b)); }
+  static V choose(M m, V yes, V no) { return as_time(select(m, as_whole(yes), as_whole(no))); }
+  static M less(V a, V b) { return std::bit_cast<M>(a < b); }
+  static M is_zero(V a) { return std::bit_cast<M>(a == 0); }
+
   static I whole(std::uint32_t i) { return I{} + i; }
+  static I as_whole(V a) { return std::bit_cast<I>(a); }
+  static I increment(I a) { return a + 1; }
+  static I either(I a, I b) { return a | b; }
+  static I exclusive(I a, I b) { return a ^ b; }
+  static I merge(I where, I a, I b) { return select(where, a, b); }
+  static I sum(I a, I b) { return a + b; }
+  static I left(I a, std::uint32_t by) { return a << by; }
+  static I right(I a, std::uint32_t by) { return a >> by; }
+  static I right(I a, I by) { return a >> by; }
+  static I select(M m, I yes, I no) { return (yes & m) | (no & ~m); }
+  // Of the lanes of `where`; anything elsewhere.
+  static I gather(const void* words, I at, M where) {
+    const auto* word = static_cast<const std::uint32_t*>(words);
+    const I safe = at & where;
+    I values{};
+    for (int lane = 0; lane < kWidth; ++lane) values[lane] = word[safe[lane]];
+    return values;
+  }
+  static M closed(const void* words, I at, M where) {
+    return (gather(words, at >> 5U, where) >> (at & 31U) & 1U) - 1U;
+  }
+
   static M mask(unsigned bits) {
     M m{};
     for (int lane = 0; lane < kWidth; ++lane) m[lane] = 0U - (bits >> lane & 1U);
     return m;
   }
+  static M none() { return M{}; }
+  static M both(M a, M b) { return a & b; }
+  static M any(M a, M b) { return a | b; }
+  static M but_not(M a, M b) { return a & ~b; }
   static unsigned bits(M m) {
     unsigned all = 0;
     for (int lane = 0; lane < kWidth; ++lane) all |= (m[lane] & 1U) << lane;
     return all;
   }
+
   template <class Vector, class From>
   static void expand(Vector& v, unsigned fill, const From* from) {
     for (int lane = 0; lane < kWidth; ++lane)
@@ -27,32 +74,4 @@ struct Lanes {
   static void store(std::uint32_t* to, I v) {
     for (int lane = 0; lane < kWidth; ++lane) to[lane] = v[lane];
   }
-  static M less(V a, V b) { return std::bit_cast<M>(a < b); }
-  static V min(V a, V b) { return a < b ? a : b; }
-  static V max(V a, V b) { return a < b ? b : a; }
-  static V subtract(V a, V b) { return std::bit_cast<V>(std::bit_cast<I>(a) - std::bit_cast<I>(b)); }
-  static M is_zero(V a) { return std::bit_cast<M>(a == 0); }
-  static V add_if(V a, M m, V b) {
-    return std::bit_cast<V>(std::bit_cast<I>(a) + (std::bit_cast<I>(b) & m));
-  }
-  static V add_unless(V a, M m, V b) { return add_if(a, ~m, b); }
-  static I increment(I a) { return a + 1; }
-  static M closed(const void* words, I at, M running) {
-    const auto* word = static_cast<const std::uint32_t*>(words);
-    const I safe = at & running;
-    I open{};
-    for (int lane = 0; lane < kWidth; ++lane) open[lane] = word[safe[lane] >> 5U] >> (safe[lane] & 31U) & 1U;
-    return open - 1;
-  }
-  static I select(M m, I yes, I no) { return (yes & m) | (no & ~m); }
-  static V choose(M m, V yes, V no) {
-    return std::bit_cast<V>(select(m, std::bit_cast<I>(yes), std::bit_cast<I>(no)));
-  }
-  static M none() { return M{}; }
-  static M both(M a, M b) { return a & b; }
-  static M any(M a, M b) { return a | b; }
-  static M but_not(M a, M b) { return a & ~b; }
-  static I either(I a, I b) { return a | b; }
-  static I exclusive(I a, I b) { return a ^ b; }
-  static I merge(I where, I a, I b) { return select(where, a, b); }
 };

@@ -1,5 +1,7 @@
 #include "packet/open_voxels.hpp"
 
+#include "packet/open_radii.hpp"
+
 #include <frontlux/parallel.hpp>
 
 #include <bit>
@@ -57,6 +59,7 @@ OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) {
           }
         }
   });
+  radii_ = open_radii(words_.get(), std::size_t{1} << x_bits, std::size_t{1} << y_bits, z_bricks);
 }
 
 }  // namespace frontlux::detail

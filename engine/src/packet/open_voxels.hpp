@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace frontlux::detail {
 
@@ -66,7 +67,13 @@ class OpenVoxels {
   [[nodiscard]] bool open(std::uint32_t index) const {
     return ((words_[index >> 6U] >> (index & 63U)) & 1U) != 0;
   }
-  [[nodiscard]] std::size_t memory_bytes() const { return word_count_ * sizeof(std::uint64_t); }
+  /// How far it is open around each cell of 4 x 4 x 4 voxels: a word for each brick, in the order of the bricks in
+  /// `words`, with 4 bits for each of its 2 x 2 x 2 cells, x first. 0: the cell is not open, r: neither it nor any
+  /// cell less than r cells away, along each axis, holds a closed voxel.
+  [[nodiscard]] const std::uint32_t* radii() const { return radii_.data(); }
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return word_count_ * sizeof(std::uint64_t) + radii_.size() * sizeof(std::uint32_t);
+  }
 
  private:
   struct Release {
@@ -76,6 +83,7 @@ class OpenVoxels {
   Layout layout_;
   std::size_t word_count_ = 0;
   std::unique_ptr<std::uint64_t[], Release> words_;
+  std::vector<std::uint32_t> radii_;
 };
 
 }  // namespace frontlux::detail

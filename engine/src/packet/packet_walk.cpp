@@ -2,8 +2,10 @@
 
 #include "isa/targets.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace frontlux::detail {
 namespace {

@@ -29,6 +29,8 @@ using PerAxisAndLine = std::array<PerLine<T>, 3>;
 struct PacketLines {
   std::size_t size = 0;
   alignas(64) PerAxisAndLine<std::int32_t> t_max, t_delta;
+  /// Steps in a unit of time, or a little more: one in `t_delta`.
+  alignas(64) PerAxisAndLine<float> rate;
   /// The number of steps to the line's end. Rays end by time, `kEndOfTime`, and have none.
   alignas(64) PerLine<std::int32_t> steps;
   /// Of the voxel where it starts, in the table's layout, flipped so that every step adds.

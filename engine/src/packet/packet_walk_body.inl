@@ -4,19 +4,89 @@
 // A step of all lanes needs no branch. Lanes whose line has ended run on for up to kSteps - 1 steps, which
 // the table's border allows, and then stand still until enough of them are to be filled again.
 constexpr int kSteps = 8;
+// To look how far it is open around all lanes costs as much as a step. Where this is in vain it is done less often.
+constexpr int kMaxRoundsBetweenLooks = 3;
 
 struct Packet {
   using V = Lanes::V;
   using I = Lanes::I;
   V tx, ty, tz, dx, dy, dz;
   V steps;    // left, of segments
+  Lanes::F rx, ry, rz;  // steps in a unit of time
   V closest;  // the shortest time between two crossings that was one too, of rays
   I index, flip, stopped_at;
 };
 
 enum class LineKind : std::uint8_t { kSegment, kRay };
 
-template <LineKind kKind, class Finish>
+// What does not change during a walk.
+struct Ground {
+  using I = Lanes::I;
+  I not_x, not_y, not_z;  // bits of the index
+  std::uint32_t x_shift, y_shift, z_shift;
+  const void *words, *radii;
+};
+
+// How far the cells around are open, in cells; 0 where the lanes of `where` are not.
+[[gnu::always_inline]] inline Lanes::I open_radius(const Ground& ground, Lanes::I at, Lanes::M where) {
+  using I = Lanes::I;
+  const I word = Lanes::gather(ground.radii, Lanes::right(at, 9), where);
+  const I x = Lanes::both(at, Lanes::whole(4)), y = Lanes::both(Lanes::right(at, 2), Lanes::whole(8)),
+          z = Lanes::both(Lanes::right(at, 4), Lanes::whole(16));
+  return Lanes::both(Lanes::right(word, Lanes::either(Lanes::either(x, y), z)), Lanes::whole(15));
+}
+
+// Moves the lanes of `jumping` ahead through the open cube around them, to shortly before they leave it.
+// @return those whose line ends before
+template <LineKind kKind>
+[[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Ground& ground, Lanes::M jumping, Lanes::I radius) {
+  using V = Lanes::V;
+  using I = Lanes::I;
+  const V zero = Lanes::time(0), one = Lanes::time(1), never = Lanes::time(kNever);
+  const V reach = Lanes::subtract(Lanes::as_time(Lanes::left(radius, 2)), one);
+  // When the line leaves the cube along an axis, if not along another before.
+  const auto leaves = [&](V t, V d, Lanes::F steps_per_time, std::uint32_t low_bit) {
+    const I in_cell = Lanes::both(Lanes::right(p.index, low_bit), Lanes::whole(3));
+    const V steps = Lanes::subtract(reach, Lanes::as_time(in_cell));
+    if constexpr (kKind == LineKind::kSegment)  // fits, as PacketWalk::kMaxOffset says
+      return Lanes::add(t, Lanes::multiply(steps, d));
+    const V enough = Lanes::add(Lanes::product(Lanes::time(kEndOfTime), steps_per_time), one);
+    return Lanes::min_unsigned(Lanes::add(t, Lanes::multiply(Lanes::min(steps, enough), d)), never);
+  };
+  const V end = Lanes::min(Lanes::min(leaves(p.tx, p.dx, p.rx, 0), leaves(p.ty, p.dy, p.ry, 3)),
+                           leaves(p.tz, p.dz, p.rz, 6));
+  // Before the crossing that leaves the cube, and not so close to it that the two could be mistaken.
+  const V until = Lanes::subtract(end, Lanes::time(kKind == LineKind::kSegment ? 1 : kCloseToTell + 1));
+  const auto over = kKind == LineKind::kSegment ? Lanes::none()
+                                                : Lanes::both(jumping, Lanes::less(Lanes::time(kEndOfTime), end));
+  const auto take = [&](V& t, V d, Lanes::F steps_per_time, const I& others, std::uint32_t low_bit,
+                        std::uint32_t high_bit) {
+    const V since = Lanes::subtract(until, t);
+    V steps = Lanes::product(since, steps_per_time);  // never too few; at most one too many
+    V rest = Lanes::subtract(since, Lanes::multiply(steps, d));
+    const auto too_many = Lanes::less(rest, zero);
+    rest = Lanes::add_if(rest, too_many, d);
+    steps = Lanes::add_unless(steps, too_many, one);
+    steps = Lanes::choose(jumping, Lanes::max(steps, zero), zero);
+    if constexpr (kKind == LineKind::kRay)
+      p.closest = Lanes::min(p.closest, Lanes::choose(Lanes::but_not(jumping, over),
+                                                      Lanes::min(rest, Lanes::subtract(d, rest)), never));
+    t = Lanes::add(t, Lanes::multiply(steps, d));
+    const I count = Lanes::as_whole(steps);
+    const I low = Lanes::left(Lanes::both(count, Lanes::whole(7)), low_bit),
+            high = Lanes::left(Lanes::right(count, 3), high_bit);
+    p.index = Lanes::merge(others, p.index,
+                           Lanes::sum(Lanes::either(p.index, others), Lanes::either(low, high)));
+    if constexpr (kKind == LineKind::kSegment) p.steps = Lanes::subtract(p.steps, steps);
+  };
+  take(p.tx, p.dx, p.rx, ground.not_x, 0, ground.x_shift);
+  take(p.ty, p.dy, p.ry, ground.not_y, 3, ground.y_shift);
+  take(p.tz, p.dz, p.rz, ground.not_z, 6, ground.z_shift);
+  if constexpr (kKind == LineKind::kSegment) return Lanes::both(jumping, Lanes::less(p.steps, one));
+  return over;
+}
+
+template <LineKind kKind, bool kJumps, class Finish>
 [[gnu::always_inline]] inline void walk_lines(const OpenVoxels& table, const PacketLines& lines,
                                               const Finish& finish) {
   using V = Lanes::V;
@@ -24,17 +94,20 @@ template <LineKind kKind, class Finish>
   using M = Lanes::M;
   constexpr unsigned kAll = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
   constexpr int kRefill = Lanes::kWidth > 4 ? Lanes::kWidth / 4 : 1;
-  const auto& bits = table.layout().bits;
-  const I not_x = Lanes::whole(~bits[0]), not_y = Lanes::whole(~bits[1]), not_z = Lanes::whole(~bits[2]);
+  constexpr int kWorthAJump = kRefill;
+  const OpenVoxels::Layout& layout = table.layout();
+  const Ground ground{Lanes::whole(~layout.bits[0]), Lanes::whole(~layout.bits[1]), Lanes::whole(~layout.bits[2]),
+                      layout.shift(0), layout.shift(1), layout.shift(2), table.words(), table.radii()};
   const V end_of_time = Lanes::time(kEndOfTime);
-  const void* words = table.words();
 
   Packet p{};
   p.tx = p.ty = p.tz = p.dx = p.dy = p.dz = p.steps = p.closest = Lanes::time(0);
+  p.rx = p.ry = p.rz = Lanes::F{};
   p.index = p.flip = p.stopped_at = Lanes::whole(0);
   alignas(64) std::uint32_t line[Lanes::kWidth] = {};
   unsigned active = 0;
   std::size_t next = 0;
+  int rounds_to_look = 0, rounds_between_looks = 0;
   while (true) {
     const int room = Lanes::kWidth - __builtin_popcount(active);
     if (next < lines.size && room >= kRefill) {
@@ -47,6 +120,11 @@ template <LineKind kKind, class Finish>
       Lanes::expand(p.dx, fill, &lines.t_delta[0][next]);
       Lanes::expand(p.dy, fill, &lines.t_delta[1][next]);
       Lanes::expand(p.dz, fill, &lines.t_delta[2][next]);
+      if constexpr (kJumps) {
+        Lanes::expand(p.rx, fill, &lines.rate[0][next]);
+        Lanes::expand(p.ry, fill, &lines.rate[1][next]);
+        Lanes::expand(p.rz, fill, &lines.rate[2][next]);
+      }
       Lanes::expand(p.index, fill, &lines.index[next]);
       Lanes::expand(p.flip, fill, &lines.flip[next]);
       if constexpr (kKind == LineKind::kSegment)
@@ -61,37 +139,54 @@ template <LineKind kKind, class Finish>
     const M running = Lanes::mask(active);
     M ended = Lanes::none(), arrived = Lanes::none();
     unsigned ended_bits = 0;
-    do {
-#pragma GCC unroll 8
-      for (int k = 0; k < kSteps; ++k) {
-        // Ties go to z before y before x (rule 5).
-        const M x_before_y = Lanes::less(p.tx, p.ty);
-        const V first = Lanes::min(p.tx, p.ty);
-        const M not_z_next = Lanes::less(first, p.tz);
-        const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
-        M over;
-        if constexpr (kKind == LineKind::kSegment) {
-          p.steps = Lanes::subtract(p.steps, Lanes::time(1));
-          over = Lanes::is_zero(p.steps);
-        } else {
-          const V now = Lanes::min(first, p.tz);
-          over = Lanes::less(end_of_time, now);
-          const V second = Lanes::max(first, Lanes::min(Lanes::max(p.tx, p.ty), p.tz));
-          p.closest = Lanes::min(p.closest, Lanes::subtract(second, now));
-        }
-        p.tx = Lanes::add_if(p.tx, x_next, p.dx);
-        p.ty = Lanes::add_if(p.ty, y_next, p.dy);
-        p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
-        const I others = Lanes::select(not_z_next, Lanes::select(x_before_y, not_x, not_y), not_z);
-        p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
-        const I at = Lanes::exclusive(p.index, p.flip);
-        const M closed = Lanes::closed(words, at, running);
-        const M fresh_arrival = Lanes::but_not(over, ended);
-        arrived = Lanes::any(arrived, fresh_arrival);
-        if constexpr (kKind == LineKind::kRay)
-          p.stopped_at = Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
-        ended = Lanes::any(ended, Lanes::any(over, closed));
+    const auto step = [&]() __attribute__((always_inline)) {
+      // Ties go to z before y before x (rule 5).
+      const M x_before_y = Lanes::less(p.tx, p.ty);
+      const V first = Lanes::min(p.tx, p.ty);
+      const M not_z_next = Lanes::less(first, p.tz);
+      const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
+      M over;
+      if constexpr (kKind == LineKind::kSegment) {
+        p.steps = Lanes::subtract(p.steps, Lanes::time(1));
+        over = Lanes::is_zero(p.steps);
+      } else {
+        const V now = Lanes::min(first, p.tz);
+        over = Lanes::less(end_of_time, now);
+        const V second = Lanes::max(first, Lanes::min(Lanes::max(p.tx, p.ty), p.tz));
+        p.closest = Lanes::min(p.closest, Lanes::subtract(second, now));
       }
+      p.tx = Lanes::add_if(p.tx, x_next, p.dx);
+      p.ty = Lanes::add_if(p.ty, y_next, p.dy);
+      p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
+      const I others =
+          Lanes::select(not_z_next, Lanes::select(x_before_y, ground.not_x, ground.not_y), ground.not_z);
+      p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
+      const I at = Lanes::exclusive(p.index, p.flip);
+      const M closed = Lanes::closed(ground.words, at, running);
+      arrived = Lanes::any(arrived, Lanes::but_not(over, ended));
+      if constexpr (kKind == LineKind::kRay)
+        p.stopped_at = Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
+      ended = Lanes::any(ended, Lanes::any(over, closed));
+    };
+    do {
+      if (kJumps && rounds_to_look-- == 0) {
+        const M candidates = Lanes::but_not(running, ended);
+        const I radius = open_radius(ground, Lanes::exclusive(p.index, p.flip), candidates);
+        const M jumping = Lanes::both(candidates, Lanes::less(Lanes::time(1), Lanes::as_time(radius)));
+        if (__builtin_popcount(Lanes::bits(jumping)) >= kWorthAJump) {
+          const M over = jump<kKind>(p, ground, jumping, radius);
+          arrived = Lanes::any(arrived, over);
+          ended = Lanes::any(ended, over);
+          step();
+          ended_bits = Lanes::bits(Lanes::both(ended, running));
+          rounds_to_look = rounds_between_looks = 0;
+          continue;
+        }
+        rounds_between_looks = std::min(2 * rounds_between_looks + 1, kMaxRoundsBetweenLooks);
+        rounds_to_look = rounds_between_looks;
+      }
+#pragma GCC unroll 8
+      for (int k = 0; k < kSteps; ++k) step();
       ended_bits = Lanes::bits(Lanes::both(ended, running));
     } while (ended_bits == 0);
     finish(p, line, ended_bits, Lanes::bits(arrived));
@@ -150,13 +245,21 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
   PacketLines lines;
   lines.size = size;
   segment_lines(table.layout(), segments, size, lines);
-  walk_lines<LineKind::kSegment>(
-      table, lines, [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
-        for (; ended != 0; ended &= ended - 1) {
-          const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-          visible[line[lane]] = static_cast<std::uint8_t>((arrived >> lane) & 1U);
-        }
-      });
+  const auto finish = [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+    for (; ended != 0; ended &= ended - 1) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
+      visible[line[lane]] = static_cast<std::uint8_t>((arrived >> lane) & 1U);
+    }
+  };
+  // Short segments end before a jump is worth its price.
+  constexpr std::size_t kWorthJumps = 32;
+  if (std::accumulate(lines.steps.begin(), lines.steps.begin() + static_cast<std::ptrdiff_t>(size), std::size_t{0}) >=
+      kWorthJumps * size) {
+    rate_steps(lines);
+    walk_lines<LineKind::kSegment, true>(table, lines, finish);
+  } else {
+    walk_lines<LineKind::kSegment, false>(table, lines, finish);
+  }
 }
 
 void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch) {
@@ -165,7 +268,8 @@ void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> 
   take(rays, batch);
   normalize(batch, is_good);
   start(lattice, table, batch, lines, is_good);
-  walk_lines<LineKind::kRay>(
+  rate_steps(lines);
+  walk_lines<LineKind::kRay, true>(
       table, lines, [&](const Packet& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
         alignas(64) std::uint32_t at[Lanes::kWidth];
         Lanes::store(at, p.stopped_at);

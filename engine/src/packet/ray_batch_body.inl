@@ -52,26 +52,28 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
                         bits = layout.bits[a];
     const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
     std::int32_t *const t_max = lines.t_max[a].data(), *const t_delta = lines.t_delta[a].data();
+    // In small loops: of a larger one GCC makes branches, and then no vectors.
+    alignas(64) PerLine<double> cell;
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const float o = origin[i];
+      const double floor = std::floor(factor * static_cast<double>(o));
+      const double below = floor < highest ? floor : highest, inside = below > lowest ? below : lowest;
+      is_good[i] &= inside == floor ? 1U : 0U;
+      cell[i] = inside;
+    }
     for (std::size_t i = 0; i < batch.size; ++i) {
       const double o = static_cast<double>(origin[i]), d = static_cast<double>(direction[i]);
-      const double floor = std::floor(factor * o);
-      const std::uint32_t inside = (floor >= lowest ? 1U : 0U) & (floor <= highest ? 1U : 0U);
-      const double cell = inside != 0 ? floor : lowest;
-      const double border = (cell + 0.5) * resolution + (d > 0.0 ? 0.5 * resolution : -0.5 * resolution);
-      const double first = (border - o) / d * units[i];
+      const double border = (cell[i] + 0.5) * resolution + std::copysign(0.5 * resolution, d);
+      const double first = (border - o) / d * units[i];  // infinite or not a number if the ray moves not
       const double between = resolution / std::fabs(d) * units[i];
-      const bool moves = d != 0.0;
-      is_good[i] &= inside & ((moves ? 0U : 1U) | (first >= 0.0 ? 1U : 0U));
-      const double from_now = first > 0.0 ? first : 0.0;
-      const double before_never = from_now < kNever ? from_now : kNever;
-      const double at_most = between < kEndOfTime + 1.0 ? between : kEndOfTime + 1.0;
-      const auto whole_first = static_cast<std::int32_t>(before_never);
-      const auto whole_between = static_cast<std::int32_t>(at_most);
-      t_max[i] = moves ? whole_first : kNever;
-      t_delta[i] = moves ? whole_between : 0;
-      const auto at = static_cast<std::uint32_t>(static_cast<std::int32_t>(cell) - corner);
+      is_good[i] &= first < 0.0 ? 0U : 1U;
+      t_max[i] = static_cast<std::int32_t>(first < kNever ? first : kNever);
+      t_delta[i] = static_cast<std::int32_t>(between < kEndOfTime + 1.0 ? between : kEndOfTime + 1.0);
+    }
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const auto at = static_cast<std::uint32_t>(static_cast<std::int32_t>(cell[i]) - corner);
       lines.index[i] |= (at & 7U) << low_shift | (at >> 3U) << high_shift;
-      lines.flip[i] |= d < 0.0 ? bits : 0U;
+      lines.flip[i] |= direction[i] < 0.0F ? bits : 0U;
     }
   }
   // A line that is never walked is over at its first step.
@@ -85,6 +87,16 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
     for (std::size_t a = 0; a < 3; ++a) lines.t_max[a][i] = kNever;
   }
   lines.size = batch.size;
+}
+
+// A rate times a time is never less than the steps in it, in spite of rounding, and more by less than one.
+inline void rate_steps(PacketLines& lines) {
+  constexpr float kSurely = 1.0F + 0x1p-21F;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t i = 0; i < lines.size; ++i) {
+      const std::int32_t delta = lines.t_delta[a][i];
+      lines.rate[a][i] = delta == 0 ? 0.0F : kSurely / static_cast<float>(delta);
+    }
 }
 
 // out_of_range and make_hit, for rays that a voxel stopped.

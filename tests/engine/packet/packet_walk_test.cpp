@@ -42,6 +42,25 @@ VoxelGrid corner_grid(int corner, std::uint64_t seed) {
   return grid;
 }
 
+// A hall of 192 x 160 x 96 voxels with posts, slabs and specks, where most space is open.
+VoxelGrid hall_grid(std::uint64_t seed) {
+  VoxelGrid grid(0.1);
+  Random random(seed);
+  const auto key = [](int i) { return static_cast<std::uint16_t>(32700 + i); };
+  const auto put = [&](const std::array<int, 3>& at, const std::array<int, 3>& size, Occupancy state) {
+    for (int x = at[0]; x < std::min(at[0] + size[0], 192); ++x)
+      for (int y = at[1]; y < std::min(at[1] + size[1], 160); ++y)
+        for (int z = at[2]; z < std::min(at[2] + size[2], 96); ++z) grid.set({key(x), key(y), key(z)}, state);
+  };
+  put({0, 0, 0}, {192, 160, 96}, Occupancy::kFree);
+  const auto somewhere = [&] { return std::array{random.below(192), random.below(160), random.below(96)}; };
+  for (int i = 0; i < 6; ++i) put(somewhere(), {2, 3, 90}, Occupancy::kOccupied);
+  for (int i = 0; i < 4; ++i) put(somewhere(), {40, 30, 1}, Occupancy::kOccupied);
+  for (int i = 0; i < 30; ++i)
+    put(somewhere(), {1, 1, 1}, i % 2 == 0 ? Occupancy::kOccupied : Occupancy::kUnknown);
+  return grid;
+}
+
 std::vector<VoxelGrid> grids() {
   std::vector<VoxelGrid> grids;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
@@ -50,6 +69,7 @@ std::vector<VoxelGrid> grids() {
   }
   grids.push_back(corner_grid(0, 5));
   grids.push_back(corner_grid(65535, 6));
+  grids.push_back(hall_grid(7));
   return grids;
 }
 
@@ -76,6 +96,47 @@ TEST(OpenVoxels, EqualTheGridAndAreClosedAroundIt) {
           }
       EXPECT_GT(open, std::size_t{1000});
     }
+}
+
+TEST(OpenVoxels, TellHowFarItIsOpenAroundACell) {
+  for (const VoxelGrid& grid : grids()) {
+    const OpenVoxels table(grid, UnknownPolicy::kBlock);
+    if (table.empty()) continue;
+    const std::array<int, 3> low = table.layout().corner;
+    const auto radius = [&](const std::array<int, 3>& voxel) {
+      const std::uint32_t index = table.layout().index(detail::as_key(voxel));
+      const std::uint32_t cell = (index >> 2U & 1U) | (index >> 4U & 2U) | (index >> 6U & 4U);
+      return static_cast<int>(table.radii()[index >> 9U] >> (4 * cell) & 15U);
+    };
+    const auto is_open = [&](const std::array<int, 3>& corner, int edge) {
+      for (int x = corner[0]; x < corner[0] + edge; ++x)
+        for (int y = corner[1]; y < corner[1] + edge; ++y)
+          for (int z = corner[2]; z < corner[2] + edge; ++z)
+            if (!table.contains(detail::as_key({x, y, z})) ||
+                detail::blocks(grid.at(detail::as_key({x, y, z})), UnknownPolicy::kBlock))
+              return false;
+      return true;
+    };
+    Random random(11);
+    std::size_t wide = 0;
+    for (int i = 0; i < 2'000; ++i) {
+      std::array<int, 3> voxel{};  // of a cell in the table, not in its border
+      for (std::size_t a = 0; a < 3; ++a) {
+        const int cells = (table.bounds_max(a) + 1 - table.bounds_min(a)) / 4;
+        voxel[a] = low[a] + 8 + 4 * random.below(cells);
+      }
+      const int r = radius(voxel);
+      const auto cube = [&](int cells) {
+        return is_open({voxel[0] - 4 * cells, voxel[1] - 4 * cells, voxel[2] - 4 * cells}, 4 + 8 * cells);
+      };
+      EXPECT_TRUE(r == 0 || cube(r - 1));
+      EXPECT_TRUE(r == 15 || !cube(r));
+      wide += r >= 2 ? 1 : 0;
+    }
+    if (grid.resolution() == 0.1) {
+      EXPECT_GT(wide, std::size_t{500});
+    }
+  }
 }
 
 TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {

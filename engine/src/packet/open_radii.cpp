@@ -1,0 +1,107 @@
+#include "packet/open_radii.hpp"
+
+#include <frontlux/parallel.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace frontlux::detail {
+namespace {
+
+// A set of cells, a bit each, in rows along x.
+struct Cells {
+  std::size_t row_words, rows, layers;  // along x, y, z
+  std::vector<std::uint64_t> words;
+
+  Cells(std::size_t x, std::size_t y, std::size_t z)
+      : row_words((x + 63) / 64), rows(y), layers(z), words(row_words * rows * layers) {}
+  [[nodiscard]] std::uint64_t* row(std::size_t y, std::size_t z) { return &words[(z * rows + y) * row_words]; }
+};
+
+// Whether each of a brick's 2 x 2 x 2 cells holds a closed voxel, x first.
+unsigned closed_cells(const std::uint64_t* brick) {
+  unsigned closed = 0;
+  for (unsigned z = 0; z < 2; ++z) {
+    const std::uint64_t layers = ~(brick[4 * z] & brick[4 * z + 1] & brick[4 * z + 2] & brick[4 * z + 3]);
+    constexpr std::uint64_t kCell = 0x0F0F'0F0F;
+    for (unsigned y = 0; y < 2; ++y)
+      for (unsigned x = 0; x < 2; ++x)
+        closed |= (layers & kCell << (4 * x + 32 * y)) != 0 ? 1U << (x + 2 * y + 4 * z) : 0U;
+  }
+  return closed;
+}
+
+// Adds to a set all neighbours, over faces, edges and corners, of what it holds.
+void grow(Cells& cells, Cells& scratch) {
+  const std::size_t width = cells.row_words, layer = width * cells.rows;
+  for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = begin; z < end; ++z) {
+      for (std::size_t y = 0; y < cells.rows; ++y) {  // along x
+        const std::uint64_t* in = cells.row(y, z);
+        std::uint64_t* out = scratch.row(y, z);
+        for (std::size_t w = 0; w < width; ++w) {
+          const std::uint64_t before = w > 0 ? in[w - 1] >> 63 : 0, after = w + 1 < width ? in[w + 1] << 63 : 0;
+          out[w] = in[w] | in[w] << 1 | in[w] >> 1 | before | after;
+        }
+      }
+      const std::uint64_t* in = scratch.row(0, z);  // along y
+      std::uint64_t* out = cells.row(0, z);
+      for (std::size_t i = 0; i < layer; ++i)
+        out[i] = in[i] | (i >= width ? in[i - width] : 0) | (i + width < layer ? in[i + width] : 0);
+    }
+  });
+  for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = begin; z < end; ++z) {
+      const std::uint64_t *in = cells.row(0, z), *below = cells.row(0, z > 0 ? z - 1 : z),
+                          *above = cells.row(0, z + 1 < cells.layers ? z + 1 : z);
+      std::uint64_t* out = scratch.row(0, z);
+      for (std::size_t i = 0; i < layer; ++i) out[i] = in[i] | below[i] | above[i];
+    }
+  });
+  std::swap(cells.words, scratch.words);
+}
+
+// Eight bits as eight numbers of four bits.
+constexpr auto kSpread = [] {
+  std::array<std::uint32_t, 256> spread{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (unsigned i = 0; i < 8; ++i) spread[bits] |= (bits >> i & 1U) << (4 * i);
+  return spread;
+}();
+
+}  // namespace
+
+std::vector<std::uint32_t> open_radii(const std::uint64_t* words, std::size_t x_bricks, std::size_t y_bricks,
+                                      std::size_t z_bricks) {
+  std::vector<std::uint32_t> radii(x_bricks * y_bricks * z_bricks);
+  Cells closed(2 * x_bricks, 2 * y_bricks, 2 * z_bricks), scratch = closed;
+  for_each_chunk(z_bricks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = begin; z < end; ++z)
+      for (std::size_t y = 0; y < y_bricks; ++y)
+        for (std::size_t x = 0; x < x_bricks; ++x) {
+          const std::uint64_t cells = closed_cells(words + 8 * ((z * y_bricks + y) * x_bricks + x));
+          for (std::size_t i = 0; i < 4; ++i)
+            closed.row(2 * y + i % 2, 2 * z + i / 2)[x / 32] |= (cells >> (2 * i) & 3U) << (2 * (x % 32));
+        }
+  });
+  constexpr int kMaxRadius = 15;
+  for (int radius = 1; radius <= kMaxRadius; ++radius) {
+    for_each_chunk(z_bricks, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t z = begin; z < end; ++z)
+        for (std::size_t y = 0; y < y_bricks; ++y)
+          for (std::size_t x = 0; x < x_bricks; ++x) {
+            unsigned open = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+              const std::uint64_t cells = ~closed.row(2 * y + i % 2, 2 * z + i / 2)[x / 32];
+              open |= static_cast<unsigned>(cells >> (2 * (x % 32)) & 3U) << (2 * i);
+            }
+            radii[(z * y_bricks + y) * x_bricks + x] += kSpread[open];
+          }
+    });
+    if (radius < kMaxRadius) grow(closed, scratch);
+  }
+  return radii;
+}
+
+}  // namespace frontlux::detail
