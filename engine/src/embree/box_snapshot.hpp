@@ -3,42 +3,24 @@
 #include "embree/blocker_boxes.hpp"
 #include "embree/box_scene.hpp"
 #include "parallel/by_policy.hpp"
+#include "parallel/spare.hpp"
 
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 namespace frontlux::detail {
 
-/// Keeps a scene that no query uses any more: to update it costs less than to build a new one.
-class SpareScene {
- public:
-  explicit SpareScene(std::shared_ptr<BoxSceneDevice> device) : device_(std::move(device)) {}
-
-  [[nodiscard]] std::unique_ptr<BoxScene> take() {
-    const std::lock_guard lock(mutex_);
-    return scene_ ? std::move(scene_) : std::make_unique<BoxScene>(device_);
-  }
-  void give_back(std::unique_ptr<BoxScene> scene) {
-    const std::lock_guard lock(mutex_);
-    if (!scene_) scene_ = std::move(scene);  // one is enough: updates do not overlap
-  }
-
- private:
-  std::shared_ptr<BoxSceneDevice> device_;
-  std::mutex mutex_;
-  std::unique_ptr<BoxScene> scene_;
-};
-
 /// The blockers under one policy, as a list and in a scene.
 class BlockerScene {
  public:
-  BlockerScene(Blockers blockers, std::shared_ptr<SpareScene> spare)
+  BlockerScene(Blockers blockers, const std::shared_ptr<BoxSceneDevice>& device,
+               std::shared_ptr<Spare<BoxScene>> spare)
       : blockers_(std::move(blockers)), spare_(std::move(spare)), scene_(spare_->take()) {
+    if (!scene_) scene_ = std::make_unique<BoxScene>(device);
     scene_->update(blockers_);
   }
   ~BlockerScene() { spare_->give_back(std::move(scene_)); }
@@ -46,12 +28,12 @@ class BlockerScene {
   BlockerScene& operator=(const BlockerScene&) = delete;
 
   [[nodiscard]] const Blockers& blockers() const { return blockers_; }
-  [[nodiscard]] const std::shared_ptr<SpareScene>& spare() const { return spare_; }
+  [[nodiscard]] const std::shared_ptr<Spare<BoxScene>>& spare() const { return spare_; }
   [[nodiscard]] const BoxScene& scene() const { return *scene_; }
 
  private:
   Blockers blockers_;
-  std::shared_ptr<SpareScene> spare_;
+  std::shared_ptr<Spare<BoxScene>> spare_;
   std::unique_ptr<BoxScene> scene_;
 };
 
@@ -61,8 +43,8 @@ class BoxSnapshot {
   /// @throws std::runtime_error if Embree cannot make a device or a scene
   explicit BoxSnapshot(const VoxelGrid& grid)
       : grid_(grid), device_(make_box_scene_device()), scenes_([this](UnknownPolicy unknown) {
-          return std::make_unique<BlockerScene>(make_blockers(grid_, unknown),
-                                                std::make_shared<SpareScene>(device_));
+          return std::make_unique<BlockerScene>(make_blockers(grid_, unknown), device_,
+                                                std::make_shared<Spare<BoxScene>>());
         }) {}
 
   /// The same as BoxSnapshot(grid), but only what changed since `before` is built.
@@ -70,7 +52,7 @@ class BoxSnapshot {
       : grid_(grid), device_(before.device_), scenes_([&](UnknownPolicy unknown) {
           const BlockerScene& old = before.scenes_[unknown];
           return std::make_unique<BlockerScene>(update_blockers(old.blockers(), before.grid_, grid_, unknown),
-                                                old.spare());
+                                                device_, old.spare());
         }) {}
 
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }

@@ -3,6 +3,7 @@
 #include "packet/open_voxels.hpp"
 #include "packet/table_query.hpp"
 #include "parallel/by_policy.hpp"
+#include "parallel/spare.hpp"
 #include "walk/snapshot_ray_caster.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -10,35 +11,106 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace frontlux {
 namespace {
 
-/// A map as it was at one moment, with its blockers in scenes and its open voxels in tables.
-class FastSnapshot {
- public:
-  explicit FastSnapshot(const VoxelGrid& grid) : boxes_(grid), tables_(tables_of(grid)) {}
-  FastSnapshot(const VoxelGrid& grid, const FastSnapshot& before)
-      : boxes_(grid, before.boxes_), tables_(tables_of(grid)) {}
+using detail::OpenVoxels;
 
-  [[nodiscard]] const VoxelGrid& grid() const { return boxes_.grid(); }
-  [[nodiscard]] const detail::BoxSnapshot& boxes() const { return boxes_; }
-  [[nodiscard]] const detail::OpenVoxels& table(UnknownPolicy unknown) const { return tables_[unknown]; }
-  [[nodiscard]] std::size_t memory_bytes() const {
-    return boxes_.memory_bytes() + table(UnknownPolicy::kBlock).memory_bytes() +
-           table(UnknownPolicy::kPass).memory_bytes();
+/// A table and the map that it was made of.
+struct MapTable {
+  OpenVoxels table;
+  VoxelGrid grid;
+};
+
+/// The open voxels of a map under one policy.
+class TableOfMoment {
+ public:
+  TableOfMoment(const VoxelGrid& grid, UnknownPolicy unknown, std::shared_ptr<detail::Spare<MapTable>> spare)
+      : spare_(std::move(spare)), of_(spare_->take()) {
+    if (of_ && of_->table.update(of_->grid, grid))
+      of_->grid = grid;
+    else
+      of_ = std::make_unique<MapTable>(MapTable{OpenVoxels(grid, unknown), grid});
+  }
+  ~TableOfMoment() { spare_->give_back(std::move(of_)); }
+  TableOfMoment(const TableOfMoment&) = delete;
+  TableOfMoment& operator=(const TableOfMoment&) = delete;
+
+  [[nodiscard]] const OpenVoxels& table() const { return of_->table; }
+  [[nodiscard]] const std::shared_ptr<detail::Spare<MapTable>>& spare() const { return spare_; }
+
+ private:
+  std::shared_ptr<detail::Spare<MapTable>> spare_;
+  std::unique_ptr<MapTable> of_;
+};
+
+/// The blockers of a map in Embree's scenes, made when they are first needed.
+class BoxesOnDemand {
+ public:
+  explicit BoxesOnDemand(const VoxelGrid& grid) : grid_(grid) {}
+  BoxesOnDemand(const VoxelGrid& grid, const BoxesOnDemand& before) : grid_(grid), before_(before.latest()) {}
+
+  /// Null if they have not been made.
+  [[nodiscard]] const detail::BoxSnapshot* made() const { return made_.load(std::memory_order_acquire); }
+  [[nodiscard]] const detail::BoxSnapshot& get() const {
+    if (made() == nullptr) {
+      const std::lock_guard lock(mutex_);
+      // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
+      if (made() == nullptr) run_isolated([this] { make(); });
+    }
+    return *made();
   }
 
  private:
-  static detail::ByPolicy<detail::OpenVoxels> tables_of(const VoxelGrid& grid) {
-    return detail::ByPolicy<detail::OpenVoxels>(
-        [&grid](UnknownPolicy unknown) { return std::make_unique<detail::OpenVoxels>(grid, unknown); });
+  void make() const {
+    boxes_ = before_ ? std::make_shared<const detail::BoxSnapshot>(grid_, *before_)
+                     : std::make_shared<const detail::BoxSnapshot>(grid_);
+    before_.reset();
+    made_.store(boxes_.get(), std::memory_order_release);
+  }
+  [[nodiscard]] std::shared_ptr<const detail::BoxSnapshot> latest() const {
+    const std::lock_guard lock(mutex_);
+    return boxes_ ? boxes_ : before_;
   }
 
-  detail::BoxSnapshot boxes_;
-  detail::ByPolicy<detail::OpenVoxels> tables_;
+  VoxelGrid grid_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const detail::BoxSnapshot> before_, boxes_;
+  mutable std::atomic<const detail::BoxSnapshot*> made_{nullptr};
+};
+
+/// A map as it was at one moment, with its open voxels in tables and its blockers in scenes.
+class FastSnapshot {
+ public:
+  explicit FastSnapshot(const VoxelGrid& grid)
+      : grid_(grid), boxes_(grid), tables_([&](UnknownPolicy unknown) {
+          return std::make_unique<TableOfMoment>(grid, unknown, std::make_shared<detail::Spare<MapTable>>());
+        }) {}
+  FastSnapshot(const VoxelGrid& grid, const FastSnapshot& before)
+      : grid_(grid), boxes_(grid, before.boxes_), tables_([&](UnknownPolicy unknown) {
+          return std::make_unique<TableOfMoment>(grid, unknown, before.tables_[unknown].spare());
+        }) {}
+
+  [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
+  [[nodiscard]] const BoxesOnDemand& boxes() const { return boxes_; }
+  [[nodiscard]] const OpenVoxels& table(UnknownPolicy unknown) const { return tables_[unknown].table(); }
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return (boxes_.made() != nullptr ? boxes_.made()->memory_bytes() : 0) +
+           table(UnknownPolicy::kBlock).memory_bytes() + table(UnknownPolicy::kPass).memory_bytes();
+  }
+
+ private:
+  VoxelGrid grid_;
+  BoxesOnDemand boxes_;
+  detail::ByPolicy<TableOfMoment> tables_;
 };
 
 class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
@@ -55,18 +127,25 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
               const Ask& ask) const {
     const auto now = snapshot();
     const detail::TableQuery table(now->grid(), now->table(unknown), unknown, packets_);
-    const detail::SceneQuery scene(now->boxes(), unknown);
+    std::mutex mutex;
+    std::vector<std::size_t> rest;
     for_each_chunk(queries.size(), kBatch, [&](std::size_t begin, std::size_t end) {
-      const auto some = queries.subspan(begin, end - begin);
-      const auto some_answers = answers.subspan(begin, end - begin);
-      std::array<std::uint16_t, kBatch> rest;
-      const std::size_t size = ask(table, some, some_answers, std::span(rest));
+      std::array<std::uint16_t, kBatch> left;
+      const std::size_t size = ask(table, queries.subspan(begin, end - begin),
+                                   answers.subspan(begin, end - begin), std::span(left));
       if (size == 0) return;
-      std::array<Query, kBatch> long_ones;
+      const std::lock_guard lock(mutex);
+      for (std::size_t i = 0; i < size; ++i) rest.push_back(begin + left[i]);
+    });
+    if (rest.empty()) return;
+    const detail::SceneQuery scene(now->boxes().get(), unknown);
+    for_each_chunk(rest.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      std::array<Query, kBatch> some;
       std::array<Answer, kBatch> their_answers;
-      for (std::size_t i = 0; i < size; ++i) long_ones[i] = some[rest[i]];
-      ask(scene, std::span<const Query>(long_ones.data(), size), std::span(their_answers.data(), size));
-      for (std::size_t i = 0; i < size; ++i) some_answers[rest[i]] = their_answers[i];
+      const std::size_t size = end - begin;
+      for (std::size_t i = 0; i < size; ++i) some[i] = queries[rest[begin + i]];
+      ask(scene, std::span<const Query>(some.data(), size), std::span(their_answers.data(), size));
+      for (std::size_t i = 0; i < size; ++i) answers[rest[begin + i]] = their_answers[i];
     });
   }
 
@@ -76,7 +155,7 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
     const auto now = snapshot();
-    const detail::SceneQuery scene(now->boxes(), unknown);
+    const detail::SceneQuery scene(now->boxes().get(), unknown);
     for_each_chunk(segments.size(), kBatch, [&](std::size_t begin, std::size_t end) {
       scene.visible(segments.subspan(begin, end - begin), visible.subspan(begin, end - begin));
     });
@@ -94,7 +173,7 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
 // To build the fast caster takes time for each brick of mixed states; each ray then saves a tenth to a third
 // of a microsecond (docs/benchmarking.md).
 bool repay_building(std::uint64_t rays, const VoxelGrid& grid) {
-  constexpr std::uint64_t kRaysPerBrick = 12;
+  constexpr std::uint64_t kRaysPerBrick = 4;
   std::uint64_t bricks = 0;
   grid.for_each_block(
       [&](const Block&, const Brick* brick, Occupancy) { bricks += brick != nullptr ? 1 : 0; });

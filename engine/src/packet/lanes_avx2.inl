@@ -32,8 +32,12 @@ struct Lanes {
     return _mm256_or_si256(_mm256_and_si256(where, a), _mm256_andnot_si256(where, b));
   }
   static I sum(I a, I b) { return _mm256_add_epi32(a, b); }
-  static I left(I a, std::uint32_t by) { return _mm256_sll_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by))); }
-  static I right(I a, std::uint32_t by) { return _mm256_srl_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by))); }
+  static I left(I a, std::uint32_t by) {
+    return _mm256_sll_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by)));
+  }
+  static I right(I a, std::uint32_t by) {
+    return _mm256_srl_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by)));
+  }
   static I right(I a, I by) { return _mm256_srlv_epi32(a, by); }
   static I select(M m, I yes, I no) { return _mm256_blendv_epi8(no, yes, m); }
   // Of the lanes of `where`; 0 elsewhere.

@@ -31,8 +31,12 @@ struct Lanes {
   static I exclusive(I a, I b) { return _mm512_xor_si512(a, b); }
   static I merge(I where, I a, I b) { return _mm512_ternarylogic_epi32(where, a, b, 0xCA); }
   static I sum(I a, I b) { return _mm512_add_epi32(a, b); }
-  static I left(I a, std::uint32_t by) { return _mm512_sll_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by))); }
-  static I right(I a, std::uint32_t by) { return _mm512_srl_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by))); }
+  static I left(I a, std::uint32_t by) {
+    return _mm512_sll_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by)));
+  }
+  static I right(I a, std::uint32_t by) {
+    return _mm512_srl_epi32(a, _mm_cvtsi32_si128(static_cast<int>(by)));
+  }
   static I right(I a, I by) { return _mm512_srlv_epi32(a, by); }
   static I select(M m, I yes, I no) { return _mm512_mask_mov_epi32(no, m, yes); }
   // Of the lanes of `where`; 0 elsewhere.

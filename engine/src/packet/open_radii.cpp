@@ -16,7 +16,9 @@ struct Cells {
 
   Cells(std::size_t x, std::size_t y, std::size_t z)
       : row_words((x + 63) / 64), rows(y), layers(z), words(row_words * rows * layers) {}
-  [[nodiscard]] std::uint64_t* row(std::size_t y, std::size_t z) { return &words[(z * rows + y) * row_words]; }
+  [[nodiscard]] std::uint64_t* row(std::size_t y, std::size_t z) {
+    return &words[(z * rows + y) * row_words];
+  }
 };
 
 // Whether each of a brick's 2 x 2 x 2 cells holds a closed voxel, x first.
@@ -41,7 +43,8 @@ void grow(Cells& cells, Cells& scratch) {
         const std::uint64_t* in = cells.row(y, z);
         std::uint64_t* out = scratch.row(y, z);
         for (std::size_t w = 0; w < width; ++w) {
-          const std::uint64_t before = w > 0 ? in[w - 1] >> 63 : 0, after = w + 1 < width ? in[w + 1] << 63 : 0;
+          const std::uint64_t before = w > 0 ? in[w - 1] >> 63 : 0,
+                              after = w + 1 < width ? in[w + 1] << 63 : 0;
           out[w] = in[w] | in[w] << 1 | in[w] >> 1 | before | after;
         }
       }
@@ -70,38 +73,55 @@ constexpr auto kSpread = [] {
   return spread;
 }();
 
+constexpr int kMaxRadius = 15;                        // cells: as much as 4 bits tell
+constexpr std::size_t kReach = (kMaxRadius + 1) / 2;  // bricks
+
+BrickBox grown(BrickBox box, const std::array<std::size_t, 3>& bricks) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.begin[a] -= std::min(box.begin[a], kReach);
+    box.end[a] = std::min(box.end[a] + kReach, bricks[a]);
+  }
+  return box;
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> open_radii(const std::uint64_t* words, std::size_t x_bricks, std::size_t y_bricks,
-                                      std::size_t z_bricks) {
-  std::vector<std::uint32_t> radii(x_bricks * y_bricks * z_bricks);
-  Cells closed(2 * x_bricks, 2 * y_bricks, 2 * z_bricks), scratch = closed;
-  for_each_chunk(z_bricks, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t z = begin; z < end; ++z)
-      for (std::size_t y = 0; y < y_bricks; ++y)
-        for (std::size_t x = 0; x < x_bricks; ++x) {
-          const std::uint64_t cells = closed_cells(words + 8 * ((z * y_bricks + y) * x_bricks + x));
+void measure_open_radii(const std::uint64_t* words, const std::array<std::size_t, 3>& bricks,
+                        const BrickBox& changed, std::span<std::uint32_t> radii) {
+  const BrickBox measured = grown(changed, bricks), needed = grown(measured, bricks);
+  const auto& [x0, y0, z0] = needed.begin;
+  const auto& [x1, y1, z1] = needed.end;
+  const auto number = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return (z * bricks[1] + y) * bricks[0] + x;
+  };
+  Cells closed(2 * (x1 - x0), 2 * (y1 - y0), 2 * (z1 - z0)), scratch = closed;
+  for_each_chunk(z1 - z0, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t z = z0 + begin; z < z0 + end; ++z)
+      for (std::size_t y = y0; y < y1; ++y)
+        for (std::size_t x = x0; x < x1; ++x) {
+          const std::uint64_t cells = closed_cells(words + 8 * number(x, y, z));
           for (std::size_t i = 0; i < 4; ++i)
-            closed.row(2 * y + i % 2, 2 * z + i / 2)[x / 32] |= (cells >> (2 * i) & 3U) << (2 * (x % 32));
+            closed.row(2 * (y - y0) + i % 2, 2 * (z - z0) + i / 2)[(x - x0) / 32] |= (cells >> (2 * i) & 3U)
+                                                                                     << (2 * ((x - x0) % 32));
         }
   });
-  constexpr int kMaxRadius = 15;
   for (int radius = 1; radius <= kMaxRadius; ++radius) {
-    for_each_chunk(z_bricks, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t z = begin; z < end; ++z)
-        for (std::size_t y = 0; y < y_bricks; ++y)
-          for (std::size_t x = 0; x < x_bricks; ++x) {
+    for_each_chunk(measured.end[2] - measured.begin[2], 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t z = measured.begin[2] + begin; z < measured.begin[2] + end; ++z)
+        for (std::size_t y = measured.begin[1]; y < measured.end[1]; ++y)
+          for (std::size_t x = measured.begin[0]; x < measured.end[0]; ++x) {
             unsigned open = 0;
             for (std::size_t i = 0; i < 4; ++i) {
-              const std::uint64_t cells = ~closed.row(2 * y + i % 2, 2 * z + i / 2)[x / 32];
-              open |= static_cast<unsigned>(cells >> (2 * (x % 32)) & 3U) << (2 * i);
+              const std::uint64_t cells =
+                  ~closed.row(2 * (y - y0) + i % 2, 2 * (z - z0) + i / 2)[(x - x0) / 32];
+              open |= static_cast<unsigned>(cells >> (2 * ((x - x0) % 32)) & 3U) << (2 * i);
             }
-            radii[(z * y_bricks + y) * x_bricks + x] += kSpread[open];
+            std::uint32_t& all = radii[number(x, y, z)];
+            all = radius == 1 ? kSpread[open] : all + kSpread[open];
           }
     });
     if (radius < kMaxRadius) grow(closed, scratch);
   }
-  return radii;
 }
 
 }  // namespace frontlux::detail

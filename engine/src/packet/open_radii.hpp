@@ -1,14 +1,22 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace frontlux::detail {
 
-/// `OpenVoxels::radii`, from the table's words.
-/// @param x_bricks, y_bricks, z_bricks  of the table
-[[nodiscard]] std::vector<std::uint32_t> open_radii(const std::uint64_t* words, std::size_t x_bricks,
-                                                    std::size_t y_bricks, std::size_t z_bricks);
+/// Bricks of a table from `begin` to before `end`, along x, y and z.
+struct BrickBox {
+  std::array<std::size_t, 3> begin, end;
+};
+
+/// Measures `OpenVoxels::radii` anew where voxels have changed and as far around as they matter.
+/// @param words    of the table
+/// @param bricks   of the table, along x, y and z
+/// @param changed  where voxels have changed
+void measure_open_radii(const std::uint64_t* words, const std::array<std::size_t, 3>& bricks,
+                        const BrickBox& changed, std::span<std::uint32_t> radii);
 
 }  // namespace frontlux::detail

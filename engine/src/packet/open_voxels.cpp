@@ -4,9 +4,12 @@
 
 #include <frontlux/parallel.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <new>
+#include <optional>
+#include <vector>
 
 namespace frontlux::detail {
 namespace {
@@ -15,51 +18,120 @@ namespace {
 constexpr std::uint64_t kMaxBits = std::uint64_t{1} << 30U;
 constexpr std::size_t kWords = std::tuple_size_v<decltype(Brick::free)>;
 
+// The bricks that hold a box.
+KeyBox in_bricks(const KeyBox& box) {
+  return {make_key(box.min.x & ~7, box.min.y & ~7, box.min.z & ~7),
+          make_key(box.max.x | 7, box.max.y | 7, box.max.z | 7)};
+}
+
+std::size_t bricks_along(int min, int max) { return static_cast<std::size_t>((max - min + 1) / 8); }
+
+// Bits that count up to so many.
+std::uint32_t bits_for(std::size_t count) { return static_cast<std::uint32_t>(std::bit_width(count - 1)); }
+
 }  // namespace
 
 void OpenVoxels::Release::operator()(std::uint64_t* words) const { std::free(words); }
 
-OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) {
+OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) : unknown_(unknown) {
   const auto known = grid.known_bounds();
   if (!known) return;
-  bounds_ = {make_key(known->min.x & ~7, known->min.y & ~7, known->min.z & ~7),
-             make_key(known->max.x | 7, known->max.y | 7, known->max.z | 7)};
-  layout_.corner = {bounds_.min.x - 8, bounds_.min.y - 8, bounds_.min.z - 8};
-
-  // Bricks with the border: rounded up to powers of two along x and y, so that each axis has bits of its own.
-  const auto bricks = [](std::uint16_t min, std::uint16_t max) {
-    return (static_cast<std::uint32_t>(max - min) >> 3U) + 3U;
+  bounds_ = in_bricks(*known);
+  // Powers of two along x and y, so that each axis has bits of its own; with a border on either side.
+  std::array<std::size_t, 3> needed{};
+  for (std::size_t a = 0; a < 3; ++a) needed[a] = bricks_along(bounds_min(a), bounds_max(a)) + 2;
+  const auto size = [](const std::array<std::size_t, 3>& bricks) {
+    return static_cast<std::uint64_t>(bricks[2]) << (9 + bits_for(bricks[0]) + bits_for(bricks[1]));
   };
-  const auto bits = [](std::uint32_t count) { return static_cast<std::uint32_t>(std::bit_width(count - 1)); };
-  const std::uint32_t x_bits = bits(bricks(bounds_.min.x, bounds_.max.x));
-  const std::uint32_t y_bits = bits(bricks(bounds_.min.y, bounds_.max.y));
-  const std::uint32_t z_bricks = bricks(bounds_.min.z, bounds_.max.z);
+  bricks_ = {std::size_t{1} << bits_for(needed[0]), std::size_t{1} << bits_for(needed[1]),
+             needed[2] + std::max<std::size_t>(needed[2] / 4, 4)};
+  if (size(bricks_) > kMaxBits) bricks_ = needed;
+  if (size(bricks_) > kMaxBits) return;
+  for (std::size_t a = 0; a < 3; ++a)
+    layout_.corner[a] = bounds_min(a) - 8 * static_cast<int>(1 + (bricks_[a] - needed[a]) / 2);
+  const std::uint32_t x_bits = bits_for(bricks_[0]), y_bits = bits_for(bricks_[1]);
   layout_.y_shift = 9 + x_bits;
   layout_.z_shift = layout_.y_shift + y_bits;
-  const std::uint64_t size = static_cast<std::uint64_t>(z_bricks) << layout_.z_shift;
-  if (size > kMaxBits) return;
   const auto field = [](std::uint32_t shift, std::uint32_t width) { return ((1U << width) - 1U) << shift; };
   layout_.bits = {field(0, 3) | field(9, x_bits), field(3, 3) | field(layout_.y_shift, y_bits),
-                  field(6, 3) | field(layout_.z_shift, bits(z_bricks))};
+                  field(6, 3) | field(layout_.z_shift, bits_for(bricks_[2]))};
+  bricks_[0] = std::size_t{1} << x_bits;
+  bricks_[1] = std::size_t{1} << y_bits;
 
-  word_count_ = size / 64;
+  word_count_ = size(bricks_) / 64;
   words_.reset(static_cast<std::uint64_t*>(std::calloc(word_count_, sizeof(std::uint64_t))));
   if (!words_) throw std::bad_alloc();
-  const std::size_t layers = z_bricks - 2;
-  for_each_chunk(layers, 1, [&](std::size_t begin, std::size_t end) {
-    for (auto z = bounds_.min.z + 8 * begin; z < bounds_.min.z + 8 * end; z += 8)
-      for (std::uint32_t y = bounds_.min.y; y <= bounds_.max.y; y += 8)
-        for (std::uint32_t x = bounds_.min.x; x <= bounds_.max.x; x += 8) {
+  radii_.assign(word_count_ / kWords, 0);
+  write_bricks(grid, bounds_);
+  measure_radii(bounds_);
+}
+
+bool OpenVoxels::update(const VoxelGrid& before, const VoxelGrid& after) {
+  std::vector<KeyBox> changes;
+  std::optional<KeyBox> changed;
+  for_each_change(before, after, [&](const Block& block) {
+    const KeyBox box = cube(block.corner, 1 << block.log2_edge);
+    changes.push_back(box);
+    const bool is_forgotten = block.log2_edge > Brick::kLog2 && after.at(block.corner) == Occupancy::kUnknown;
+    if (!is_forgotten) changed = changed ? hull(*changed, box) : box;
+  });
+  if (changes.empty()) return true;
+  if (empty() || (changed && !has_room_for(*changed))) return false;
+  const KeyBox old = bounds_;
+  if (changed) bounds_ = hull(bounds_, *changed);
+  // What lies in the larger bounds is no border any more.
+  if (bounds_ != old && unknown_ == UnknownPolicy::kPass) changes = {bounds_};
+  changed.reset();
+  for (const KeyBox& change : changes)
+    if (const auto box = intersection(change, bounds_)) {
+      write_bricks(after, *box);
+      changed = changed ? hull(*changed, *box) : *box;
+    }
+  if (changed) measure_radii(*changed);
+  return true;
+}
+
+std::size_t OpenVoxels::memory_bytes() const {
+  if (empty()) return 0;
+  std::size_t bricks = 1;
+  for (std::size_t a = 0; a < 3; ++a) bricks *= bricks_along(bounds_min(a), bounds_max(a));
+  return bricks * (kWords * sizeof words_[0] + sizeof radii_[0]);
+}
+
+bool OpenVoxels::has_room_for(const KeyBox& bounds) const {
+  const auto fits = [&](std::size_t a, int min, int max) {
+    return min >= layout_.corner[a] + 8 && max < layout_.corner[a] + 8 * (static_cast<int>(bricks_[a]) - 1);
+  };
+  return fits(0, bounds.min.x, bounds.max.x) && fits(1, bounds.min.y, bounds.max.y) &&
+         fits(2, bounds.min.z, bounds.max.z);
+}
+
+// @param box  of whole bricks
+void OpenVoxels::write_bricks(const VoxelGrid& grid, const KeyBox& box) {
+  for_each_chunk(bricks_along(box.min.z, box.max.z), 1, [&](std::size_t begin, std::size_t end) {
+    for (auto z = box.min.z + 8 * begin; z < box.min.z + 8 * end; z += 8)
+      for (std::uint32_t y = box.min.y; y <= box.max.y; y += 8)
+        for (std::uint32_t x = box.min.x; x <= box.max.x; x += 8) {
           const VoxelKey key = make_key(x, y, static_cast<std::int64_t>(z));
           const Brick& brick = grid.brick(key);
           std::uint64_t* out = &words_[layout_.index(key) / 64];
           for (std::size_t w = 0; w < kWords; ++w) {
-            const std::uint64_t open = unknown == UnknownPolicy::kBlock ? brick.free[w] : ~brick.occupied[w];
-            if (open != 0) out[w] = open;
+            const std::uint64_t open = unknown_ == UnknownPolicy::kBlock ? brick.free[w] : ~brick.occupied[w];
+            if (open != out[w]) out[w] = open;
           }
         }
   });
-  radii_ = open_radii(words_.get(), std::size_t{1} << x_bits, std::size_t{1} << y_bits, z_bricks);
+}
+
+void OpenVoxels::measure_radii(const KeyBox& changed) {
+  BrickBox box{};
+  const std::array min{changed.min.x, changed.min.y, changed.min.z},
+      max{changed.max.x, changed.max.y, changed.max.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.begin[a] = static_cast<std::size_t>(min[a] - layout_.corner[a]) / 8;
+    box.end[a] = static_cast<std::size_t>(max[a] - layout_.corner[a]) / 8 + 1;
+  }
+  measure_open_radii(words_.get(), bricks_, box, radii_);
 }
 
 }  // namespace frontlux::detail

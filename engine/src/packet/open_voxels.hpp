@@ -17,11 +17,16 @@ namespace frontlux::detail {
 /// The bits lie brick by brick, so that a walk in any direction stays in a cache line for some steps. The
 /// place of a voxel's bit is its index: 3 bits each of x, y and z in the brick, then the rest of x, y and z.
 /// To step along an axis is to add one to that axis' bits of the index. The table ends with a border of
-/// closed bricks: it stops every walk, and is wide enough for seven steps too many.
+/// closed bricks: it stops every walk, and is wide enough for seven steps too many. There is room for more
+/// than is known, so that the table can follow a map that grows.
 class OpenVoxels {
  public:
   /// Empty if no voxel is known, or if the table would be larger than it is worth.
   OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown);
+
+  /// Makes it the table of `after`, where it is that of `before`.
+  /// @return false if what is known has outgrown it; then another one has to be made
+  [[nodiscard]] bool update(const VoxelGrid& before, const VoxelGrid& after);
 
   [[nodiscard]] bool empty() const { return words_ == nullptr; }
   /// True for all known voxels and the rest of their bricks.
@@ -67,20 +72,29 @@ class OpenVoxels {
   [[nodiscard]] bool open(std::uint32_t index) const {
     return ((words_[index >> 6U] >> (index & 63U)) & 1U) != 0;
   }
-  /// How far it is open around each cell of 4 x 4 x 4 voxels: a word for each brick, in the order of the bricks in
-  /// `words`, with 4 bits for each of its 2 x 2 x 2 cells, x first. 0: the cell is not open, r: neither it nor any
-  /// cell less than r cells away, along each axis, holds a closed voxel.
+  /// How far it is open around each cell of 4 x 4 x 4 voxels: a word for each brick, in the order of the
+  /// bricks in `words`, with 4 bits for each of its 2 x 2 x 2 cells, x first. 0: the cell is not open, r:
+  /// neither it nor any cell less than r cells away, along each axis, holds a closed voxel.
   [[nodiscard]] const std::uint32_t* radii() const { return radii_.data(); }
-  [[nodiscard]] std::size_t memory_bytes() const {
-    return word_count_ * sizeof(std::uint64_t) + radii_.size() * sizeof(std::uint32_t);
+  /// That of the cell of a voxel.
+  [[nodiscard]] std::uint32_t radius(std::uint32_t index) const {
+    return radii_[index >> 9U] >> ((index & 4U) | (index >> 2U & 8U) | (index >> 4U & 16U)) & 15U;
   }
+  /// Of what is written to; the system gives no memory for the rest.
+  [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
+  [[nodiscard]] bool has_room_for(const KeyBox& bounds) const;
+  void write_bricks(const VoxelGrid& grid, const KeyBox& box);
+  void measure_radii(const KeyBox& changed);
+
   struct Release {
     void operator()(std::uint64_t* words) const;
   };
-  KeyBox bounds_;
+  UnknownPolicy unknown_;
+  KeyBox bounds_;  // of whole bricks
   Layout layout_;
+  std::array<std::size_t, 3> bricks_{};  // with the border
   std::size_t word_count_ = 0;
   std::unique_ptr<std::uint64_t[], Release> words_;
   std::vector<std::uint32_t> radii_;

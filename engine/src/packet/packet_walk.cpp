@@ -28,7 +28,6 @@ alignas(64) constexpr auto kExpand = make_expansion();
 FRONTLUX_BEGIN_AVX512
 namespace avx512 {
 #include "packet/lanes_avx512.inl"
-#include "packet/ray_batch_body.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace avx512
 FRONTLUX_END_TARGET
@@ -36,7 +35,6 @@ FRONTLUX_END_TARGET
 FRONTLUX_BEGIN_AVX2
 namespace avx2 {
 #include "packet/lanes_avx2.inl"
-#include "packet/ray_batch_body.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace avx2
 FRONTLUX_END_TARGET
@@ -45,14 +43,12 @@ FRONTLUX_END_TARGET
 namespace vector {
 constexpr int kVectorBytes = 16;
 #include "packet/lanes_vector.inl"
-#include "packet/ray_batch_body.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace vector
 
 namespace single {
 constexpr int kVectorBytes = 4;
 #include "packet/lanes_vector.inl"
-#include "packet/ray_batch_body.inl"
 #include "packet/packet_walk_body.inl"
 }  // namespace single
 

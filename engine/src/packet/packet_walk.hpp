@@ -41,9 +41,9 @@ struct PacketLines {
 
 /// Where the walk of a ray ended: the table's index of the closed voxel that stopped it, or one of these.
 enum RayEnd : std::uint32_t {
-  kWentThrough = ~0U,      ///< nothing stopped it within `walked_length`
-  kTooCloseToTell = ~1U,   ///< it passed an edge closer than the rounding of times
-  kNeverStarted = ~2U,     ///< it does not start in an open voxel of the table, or has no unit direction
+  kWentThrough = ~0U,     ///< nothing stopped it within `walked_length`
+  kTooCloseToTell = ~1U,  ///< it passed an edge closer than the rounding of times
+  kNeverStarted = ~2U,    ///< it does not start in an open voxel of the table, or has no unit direction
   kFirstRayEnd = kNeverStarted
 };
 

@@ -1,19 +1,22 @@
 // The walk itself. Included by packet_walk.cpp once for each instruction set, inside a namespace that defines
 // its `Lanes`.
 
+#include "packet/ray_batch_body.inl"
+
 // A step of all lanes needs no branch. Lanes whose line has ended run on for up to kSteps - 1 steps, which
 // the table's border allows, and then stand still until enough of them are to be filled again.
 constexpr int kSteps = 8;
-// To look how far it is open around all lanes costs as much as a step. Where this is in vain it is done less often.
+// To look how far it is open around all lanes costs as much as a step. Where this is in vain it is done less
+// often.
 constexpr int kMaxRoundsBetweenLooks = 3;
 
 struct Packet {
   using V = Lanes::V;
   using I = Lanes::I;
   V tx, ty, tz, dx, dy, dz;
-  V steps;    // left, of segments
+  V steps;              // left, of segments
   Lanes::F rx, ry, rz;  // steps in a unit of time
-  V closest;  // the shortest time between two crossings that was one too, of rays
+  V closest;            // the shortest time between two crossings that was one too, of rays
   I index, flip, stopped_at;
 };
 
@@ -39,7 +42,8 @@ struct Ground {
 // Moves the lanes of `jumping` ahead through the open cube around them, to shortly before they leave it.
 // @return those whose line ends before
 template <LineKind kKind>
-[[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Ground& ground, Lanes::M jumping, Lanes::I radius) {
+[[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Ground& ground, Lanes::M jumping,
+                                            Lanes::I radius) {
   using V = Lanes::V;
   using I = Lanes::I;
   const V zero = Lanes::time(0), one = Lanes::time(1), never = Lanes::time(kNever);
@@ -57,8 +61,9 @@ template <LineKind kKind>
                            leaves(p.tz, p.dz, p.rz, 6));
   // Before the crossing that leaves the cube, and not so close to it that the two could be mistaken.
   const V until = Lanes::subtract(end, Lanes::time(kKind == LineKind::kSegment ? 1 : kCloseToTell + 1));
-  const auto over = kKind == LineKind::kSegment ? Lanes::none()
-                                                : Lanes::both(jumping, Lanes::less(Lanes::time(kEndOfTime), end));
+  const auto over = kKind == LineKind::kSegment
+                        ? Lanes::none()
+                        : Lanes::both(jumping, Lanes::less(Lanes::time(kEndOfTime), end));
   const auto take = [&](V& t, V d, Lanes::F steps_per_time, const I& others, std::uint32_t low_bit,
                         std::uint32_t high_bit) {
     const V since = Lanes::subtract(until, t);
@@ -75,8 +80,8 @@ template <LineKind kKind>
     const I count = Lanes::as_whole(steps);
     const I low = Lanes::left(Lanes::both(count, Lanes::whole(7)), low_bit),
             high = Lanes::left(Lanes::right(count, 3), high_bit);
-    p.index = Lanes::merge(others, p.index,
-                           Lanes::sum(Lanes::either(p.index, others), Lanes::either(low, high)));
+    p.index =
+        Lanes::merge(others, p.index, Lanes::sum(Lanes::either(p.index, others), Lanes::either(low, high)));
     if constexpr (kKind == LineKind::kSegment) p.steps = Lanes::subtract(p.steps, steps);
   };
   take(p.tx, p.dx, p.rx, ground.not_x, 0, ground.x_shift);
@@ -96,8 +101,14 @@ template <LineKind kKind, bool kJumps, class Finish>
   constexpr int kRefill = Lanes::kWidth > 4 ? Lanes::kWidth / 4 : 1;
   constexpr int kWorthAJump = kRefill;
   const OpenVoxels::Layout& layout = table.layout();
-  const Ground ground{Lanes::whole(~layout.bits[0]), Lanes::whole(~layout.bits[1]), Lanes::whole(~layout.bits[2]),
-                      layout.shift(0), layout.shift(1), layout.shift(2), table.words(), table.radii()};
+  const Ground ground{Lanes::whole(~layout.bits[0]),
+                      Lanes::whole(~layout.bits[1]),
+                      Lanes::whole(~layout.bits[2]),
+                      layout.shift(0),
+                      layout.shift(1),
+                      layout.shift(2),
+                      table.words(),
+                      table.radii()};
   const V end_of_time = Lanes::time(kEndOfTime);
 
   Packet p{};
@@ -253,8 +264,8 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
   };
   // Short segments end before a jump is worth its price.
   constexpr std::size_t kWorthJumps = 32;
-  if (std::accumulate(lines.steps.begin(), lines.steps.begin() + static_cast<std::ptrdiff_t>(size), std::size_t{0}) >=
-      kWorthJumps * size) {
+  if (std::accumulate(lines.steps.begin(), lines.steps.begin() + static_cast<std::ptrdiff_t>(size),
+                      std::size_t{0}) >= kWorthJumps * size) {
     rate_steps(lines);
     walk_lines<LineKind::kSegment, true>(table, lines, finish);
   } else {

@@ -1,12 +1,12 @@
 // What happens to rays before and after their walk, for a whole batch: loops that the compiler vectorises.
-// Included by packet_walk.cpp once for each instruction set. All arithmetic is that of walk.hpp and walk.cpp,
+// Included by packet_walk_body.inl once for each instruction set. All arithmetic is that of walk.hpp and walk.cpp,
 // operation by operation, until times become whole numbers.
 
 // The end of a ray's time. What a crossing behind it adds still fits into 31 bits.
 constexpr std::int32_t kEndOfTime = (1 << 30) - 1;
 constexpr std::int32_t kNever = 0x7FFFFFFF;
-// Times are cut off to whole numbers, and so is what each step adds, so after n steps a time is up to n + 1 too
-// small, and so is the difference of two. A ray crosses at most one plane more than voxels it is long.
+// Times are cut off to whole numbers, and so is what each step adds, so after n steps a time is up to n + 1
+// too small, and so is the difference of two. A ray crosses at most one plane more than voxels it is long.
 // castRay's own rounding is far below one.
 constexpr std::int32_t kCloseToTell = static_cast<std::int32_t>(kLongestWalk) + 4;
 
@@ -46,7 +46,8 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
   }
   const OpenVoxels::Layout& layout = table.layout();
   for (std::size_t a = 0; a < 3; ++a) {
-    const double lowest = table.bounds_min(a) - Lattice::kOrigin, highest = table.bounds_max(a) - Lattice::kOrigin;
+    const double lowest = table.bounds_min(a) - Lattice::kOrigin,
+                 highest = table.bounds_max(a) - Lattice::kOrigin;
     const int corner = layout.corner[a] - Lattice::kOrigin;
     const std::uint32_t low_shift = 3U * static_cast<std::uint32_t>(a), high_shift = layout.shift(a),
                         bits = layout.bits[a];
@@ -114,7 +115,8 @@ inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBa
     float* const end = batch.end[a].data();
     for (std::size_t i = 0; i < batch.size; ++i) {
       const std::uint32_t at = batch.stopped_at[i];
-      const auto key = static_cast<std::int32_t>((at >> low_shift & 7U) | (at & bits) >> high_shift << 3U) + corner;
+      const auto key =
+          static_cast<std::int32_t>((at >> low_shift & 7U) | (at & bits) >> high_shift << 3U) + corner;
       const double cell = static_cast<double>(key - Lattice::kOrigin);
       cells[i] = key;
       end[i] = static_cast<float>((cell + 0.5) * resolution);
@@ -131,12 +133,14 @@ inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBa
     const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
     float* const entry = batch.entry[a].data();
     for (std::size_t i = 0; i < batch.size; ++i)
-      entry[i] = static_cast<float>(static_cast<double>(origin[i]) + time[i] * static_cast<double>(direction[i]));
+      entry[i] =
+          static_cast<float>(static_cast<double>(origin[i]) + time[i] * static_cast<double>(direction[i]));
   }
   const float *const dx = batch.direction[0].data(), *const dy = batch.direction[1].data(),
                      *const dz = batch.direction[2].data();
   for (std::size_t i = 0; i < batch.size; ++i) {
-    const double x = static_cast<double>(dx[i]), y = static_cast<double>(dy[i]), z = static_cast<double>(dz[i]);
+    const double x = static_cast<double>(dx[i]), y = static_cast<double>(dy[i]),
+                 z = static_cast<double>(dz[i]);
     batch.distance[i] = static_cast<float>(time[i] * std::sqrt(x * x + (y * y + z * z)));
   }
   for (std::size_t i = 0; i < batch.size; ++i) {

@@ -98,45 +98,77 @@ TEST(OpenVoxels, EqualTheGridAndAreClosedAroundIt) {
     }
 }
 
-TEST(OpenVoxels, TellHowFarItIsOpenAroundACell) {
-  for (const VoxelGrid& grid : grids()) {
-    const OpenVoxels table(grid, UnknownPolicy::kBlock);
-    if (table.empty()) continue;
-    const std::array<int, 3> low = table.layout().corner;
-    const auto radius = [&](const std::array<int, 3>& voxel) {
-      const std::uint32_t index = table.layout().index(detail::as_key(voxel));
-      const std::uint32_t cell = (index >> 2U & 1U) | (index >> 4U & 2U) | (index >> 6U & 4U);
-      return static_cast<int>(table.radii()[index >> 9U] >> (4 * cell) & 15U);
-    };
-    const auto is_open = [&](const std::array<int, 3>& corner, int edge) {
-      for (int x = corner[0]; x < corner[0] + edge; ++x)
-        for (int y = corner[1]; y < corner[1] + edge; ++y)
-          for (int z = corner[2]; z < corner[2] + edge; ++z)
-            if (!table.contains(detail::as_key({x, y, z})) ||
-                detail::blocks(grid.at(detail::as_key({x, y, z})), UnknownPolicy::kBlock))
-              return false;
+// Compares voxels and radii, at places drawn from the table, with the grid.
+// @return how many cells are open two cells around and more
+std::size_t expect_equal(const OpenVoxels& table, const VoxelGrid& grid, UnknownPolicy unknown,
+                         Random& random, int places = 500) {
+  const auto is_open = [&](const std::array<int, 3>& voxel) {
+    const VoxelKey key = detail::as_key(voxel);
+    return detail::as_array(key) == voxel && table.contains(key) && !detail::blocks(grid.at(key), unknown);
+  };
+  std::size_t wide = 0;
+  for (int i = 0; i < places; ++i) {
+    std::array<int, 3> cell{};
+    for (std::size_t a = 0; a < 3; ++a)
+      cell[a] = table.bounds_min(a) + 4 * random.below((table.bounds_max(a) + 1 - table.bounds_min(a)) / 4);
+    const auto open_cells = [&](int around) {
+      for (int x = cell[0] - 4 * around; x < cell[0] + 4 * around + 4; ++x)
+        for (int y = cell[1] - 4 * around; y < cell[1] + 4 * around + 4; ++y)
+          for (int z = cell[2] - 4 * around; z < cell[2] + 4 * around + 4; ++z)
+            if (!is_open({x, y, z})) return false;
       return true;
     };
-    Random random(11);
-    std::size_t wide = 0;
-    for (int i = 0; i < 2'000; ++i) {
-      std::array<int, 3> voxel{};  // of a cell in the table, not in its border
-      for (std::size_t a = 0; a < 3; ++a) {
-        const int cells = (table.bounds_max(a) + 1 - table.bounds_min(a)) / 4;
-        voxel[a] = low[a] + 8 + 4 * random.below(cells);
-      }
-      const int r = radius(voxel);
-      const auto cube = [&](int cells) {
-        return is_open({voxel[0] - 4 * cells, voxel[1] - 4 * cells, voxel[2] - 4 * cells}, 4 + 8 * cells);
-      };
-      EXPECT_TRUE(r == 0 || cube(r - 1));
-      EXPECT_TRUE(r == 15 || !cube(r));
-      wide += r >= 2 ? 1 : 0;
-    }
-    if (grid.resolution() == 0.1) {
-      EXPECT_GT(wide, std::size_t{500});
-    }
+    const std::uint32_t index = table.layout().index(detail::as_key(cell));
+    EXPECT_EQ(table.open(index), is_open(cell));
+    const int radius = static_cast<int>(table.radius(index));
+    EXPECT_TRUE(radius == 0 || open_cells(radius - 1));
+    EXPECT_TRUE(radius == 15 || !open_cells(radius));
+    wide += radius >= 2 ? 1 : 0;
   }
+  return wide;
+}
+
+TEST(OpenVoxels, TellHowFarItIsOpenAroundACell) {
+  Random random(11);
+  for (const VoxelGrid& grid : grids())
+    for (const UnknownPolicy unknown : kPolicies) {
+      const OpenVoxels table(grid, unknown);
+      if (!table.empty()) expect_equal(table, grid, unknown, random);
+    }
+  const VoxelGrid hall = hall_grid(7);
+  EXPECT_GT(expect_equal(OpenVoxels(hall, UnknownPolicy::kBlock), hall, UnknownPolicy::kBlock, random), 100U);
+}
+
+// Scans that change some voxels, uncover what was unknown, or forget a part; now and then beyond the table.
+TEST(OpenVoxels, FollowAMapThatChangesAndGrows) {
+  for (const UnknownPolicy unknown : kPolicies)
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      Random random(seed);
+      VoxelGrid grid = hall_grid(seed);
+      OpenVoxels table(grid, unknown);
+      KeyBox around = *grid.known_bounds();
+      int followed = 0, outgrown = 0;
+      for (int change = 0; change < 12; ++change) {
+        const VoxelGrid before = grid;
+        if (change % 3 == 2) around = grown(around, 16);
+        const VoxelKey from = random.key_in(around);
+        const KeyBox box = *intersection(
+            {from, make_key(from.x + random.below(30), from.y + random.below(30), from.z + random.below(12))},
+            around);
+        const Occupancy state = detail::kStates[static_cast<std::size_t>(random.below(3))];
+        for_each_key(box, [&](const VoxelKey& key) { grid.set(key, state); });
+        if (random.one_in(3)) grid.fill({make_key(from.x & ~63, from.y & ~63, from.z & ~63), 6}, state);
+        if (table.update(before, grid)) {
+          ++followed;
+        } else {
+          ++outgrown;
+          table = OpenVoxels(grid, unknown);
+        }
+        expect_equal(table, grid, unknown, random, 40);
+      }
+      EXPECT_GT(followed, 4);
+      EXPECT_GT(outgrown, 0);
+    }
 }
 
 TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {

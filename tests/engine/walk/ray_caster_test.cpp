@@ -138,8 +138,8 @@ TEST(RayCaster, RaysThatAreNoneAreAnsweredNotThrown) {
 TEST(RayCaster, IsChosenByHowManyRaysItIsFor) {
   const VoxelGrid grid = make_voxel_grid(*make_noise_tree(1, 0.3, 24));
   EXPECT_EQ(make_ray_caster(grid, 10)->memory_bytes(), 0U);
-  EXPECT_GT(make_ray_caster(grid, 10'000'000)->memory_bytes(), make_embree_ray_caster(grid)->memory_bytes());
-  EXPECT_GT(make_ray_caster(grid)->memory_bytes(), make_embree_ray_caster(grid)->memory_bytes());
+  EXPECT_GT(make_ray_caster(grid, 10'000'000)->memory_bytes(), make_grid_ray_caster(grid)->memory_bytes());
+  EXPECT_GT(make_ray_caster(grid)->memory_bytes(), make_grid_ray_caster(grid)->memory_bytes());
 }
 
 TEST(RayCaster, EmptyAndUniformMaps) {
