@@ -275,10 +275,10 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
 
 void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch) {
   PacketLines lines;
-  alignas(64) PerLine<std::uint32_t> is_good;
+  alignas(64) PerLine<std::uint32_t> fitness;
   take(rays, batch);
-  normalize(batch, is_good);
-  start(lattice, table, batch, lines, is_good);
+  normalize(batch, fitness);
+  start(lattice, table, batch, lines, fitness);
   rate_steps(lines);
   walk_lines<LineKind::kRay, true>(
       table, lines, [&](const Packet& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
@@ -287,11 +287,12 @@ void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> 
         const unsigned close = Lanes::bits(Lanes::less(p.closest, Lanes::time(kCloseToTell)));
         for (; ended != 0; ended &= ended - 1) {
           const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-          const bool passed = ((arrived >> lane) & 1U) != 0, unclear = ((close >> lane) & 1U) != 0;
-          batch.stopped_at[line[lane]] = is_good[line[lane]] == 0 ? kNeverStarted
-                                         : unclear                ? kTooCloseToTell
-                                         : passed                 ? kWentThrough
-                                                                  : at[lane];
+          const std::uint32_t fit = fitness[line[lane]];
+          const bool passed = ((arrived >> lane) & 1U) != 0, is_close = ((close >> lane) & 1U) != 0;
+          batch.stopped_at[line[lane]] = (fit & kStarts) == 0                ? kNeverStarted
+                                         : is_close || (fit & kIsClear) == 0 ? kTooCloseToTell
+                                         : passed                            ? kWentThrough
+                                                                             : at[lane];
         }
       });
   end_in_voxels(lattice, table, batch);

@@ -1,6 +1,6 @@
 // What happens to rays before and after their walk, for a whole batch: loops that the compiler vectorises.
-// Included by packet_walk_body.inl once for each instruction set. All arithmetic is that of walk.hpp and walk.cpp,
-// operation by operation, until times become whole numbers.
+// Included by packet_walk_body.inl once for each instruction set. All arithmetic is that of walk.hpp and
+// walk.cpp, operation by operation, until times become whole numbers.
 
 // The end of a ray's time. What a crossing behind it adds still fits into 31 bits.
 constexpr std::int32_t kEndOfTime = (1 << 30) - 1;
@@ -9,6 +9,10 @@ constexpr std::int32_t kNever = 0x7FFFFFFF;
 // too small, and so is the difference of two. A ray crosses at most one plane more than voxels it is long.
 // castRay's own rounding is far below one.
 constexpr std::int32_t kCloseToTell = static_cast<std::int32_t>(kLongestWalk) + 4;
+
+// What is known of a ray before its walk.
+constexpr std::uint32_t kStarts = 1;   // in an open voxel of the table, in a direction of unit length
+constexpr std::uint32_t kIsClear = 2;  // its first crossings are times to come
 
 inline void take(std::span<const Ray> rays, RayBatch& batch) {
   batch.size = rays.size();
@@ -22,7 +26,7 @@ inline void take(std::span<const Ray> rays, RayBatch& batch) {
 }
 
 // normalized_as_octomap and is_unit: a root in float is the root in double, rounded to float.
-inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& is_good) {
+inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& fitness) {
   float *const dx = batch.direction[0].data(), *const dy = batch.direction[1].data(),
                *const dz = batch.direction[2].data();
   for (std::size_t i = 0; i < batch.size; ++i) {
@@ -31,13 +35,13 @@ inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& is_good) {
     dx[i] = x;
     dy[i] = y;
     dz[i] = z;
-    is_good[i] = std::fabs(x * x + y * y + z * z - 1.0F) < 1e-4F ? 1U : 0U;
+    fitness[i] = std::fabs(x * x + y * y + z * z - 1.0F) < 1e-4F ? kStarts | kIsClear : 0U;
   }
 }
 
 // crossings_of and Lattice::key, and where the ray is in the table.
 inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatch& batch, PacketLines& lines,
-                  PerLine<std::uint32_t>& is_good) {
+                  PerLine<std::uint32_t>& fitness) {
   const double resolution = lattice.resolution(), factor = 1.0 / resolution;
   alignas(64) PerLine<double> units;  // of time in a metre
   for (std::size_t i = 0; i < batch.size; ++i) {
@@ -59,7 +63,7 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
       const float o = origin[i];
       const double floor = std::floor(factor * static_cast<double>(o));
       const double below = floor < highest ? floor : highest, inside = below > lowest ? below : lowest;
-      is_good[i] &= inside == floor ? 1U : 0U;
+      fitness[i] &= inside == floor ? kStarts | kIsClear : 0U;
       cell[i] = inside;
     }
     for (std::size_t i = 0; i < batch.size; ++i) {
@@ -67,8 +71,8 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
       const double border = (cell[i] + 0.5) * resolution + std::copysign(0.5 * resolution, d);
       const double first = (border - o) / d * units[i];  // infinite or not a number if the ray moves not
       const double between = resolution / std::fabs(d) * units[i];
-      is_good[i] &= first < 0.0 ? 0U : 1U;
-      t_max[i] = static_cast<std::int32_t>(first < kNever ? first : kNever);
+      fitness[i] &= first < 0.0 ? kStarts : kStarts | kIsClear;  // by rounding, on a face
+      t_max[i] = static_cast<std::int32_t>(first < kNever ? std::max(first, 0.0) : kNever);
       t_delta[i] = static_cast<std::int32_t>(between < kEndOfTime + 1.0 ? between : kEndOfTime + 1.0);
     }
     for (std::size_t i = 0; i < batch.size; ++i) {
@@ -79,11 +83,11 @@ inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatc
   }
   // A line that is never walked is over at its first step.
   for (std::size_t i = 0; i < batch.size; ++i) {
-    if (is_good[i] != 0 && table.open(lines.index[i])) {
+    if ((fitness[i] & kStarts) != 0 && table.open(lines.index[i])) {
       lines.index[i] ^= lines.flip[i];
       continue;
     }
-    is_good[i] = 0;
+    fitness[i] = 0;
     lines.index[i] = lines.flip[i] = 0;
     for (std::size_t a = 0; a < 3; ++a) lines.t_max[a][i] = kNever;
   }
