@@ -107,12 +107,13 @@ class FRONTLUX_EXPORT RayCaster {
 inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::max();
 
 /// The fast caster. It keeps two things beside the grid: a table of open voxels, through which packets of
-/// rays walk, and Embree's BVH of boxes. Rays longer than 400 voxels, segments between voxels further apart
-/// than 1000, segments between points, and whatever lies outside the table go to the BVH. Where rounding
-/// could change an answer, the grid's walk decides.
+/// rays walk, and Embree's BVH of boxes. Rays that nothing stops within 400 voxels, segments between voxels
+/// further apart than 1000, segments between points, and whatever lies outside the table go to the BVH,
+/// which is made by the first query that needs it. Where rounding could change an answer, castRay's own
+/// arithmetic decides.
 /// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
 ///                       building: `make_grid_ray_caster(grid)`
-/// @throws std::runtime_error if Embree cannot make its device
+/// @throws std::runtime_error (by the first query that needs the BVH) if Embree cannot make its device
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(
     const VoxelGrid& grid, std::uint64_t expected_rays = kManyRays);
 

@@ -117,8 +117,10 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   return step;
 }
 
-// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same.
-void ContinuousExploration::State::note_look(std::size_t robot, ExplorationStep& step) {
+// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has arrived
+// these are also the ones for which it came: planning, between the middles of voxels, may see past an edge that hides
+// them from where it is.
+void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
   RobotStep& now = step.robots[robot];
   if (now.planned.size() < 2) return;  // no scan since the last planning
@@ -130,6 +132,13 @@ void ContinuousExploration::State::note_look(std::size_t robot, ExplorationStep&
   for (const std::uint32_t i : seen.frontiers_of(0)) {
     const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
     if (view.contains(offset, pose.yaw)) now.still_unknown.push_back(frontiers[i]);
+  }
+  const Member& member = members[robot];
+  if (reason == PlanReason::kArrival && member.goal.pose &&
+      team.lattice().key(member.goal.pose->position) == team.lattice().key(pose.position)) {
+    for (const VoxelKey& key : member.goal_frontiers)
+      if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
+    sort_once(now.still_unknown);
   }
   step.rays += counting.rays();
   team.abandoned.visited(now.still_unknown);
@@ -277,7 +286,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
-  note_look(robot, step);
+  note_look(robot, reason, step);
   // Along a tour a robot that has learnt next to nothing has no reason to change its mind: it would turn back
   // and forth between stops that are about as good.
   const bool as_before = !team.tours || static_cast<double>(member.gained) < team.options.epsilon;

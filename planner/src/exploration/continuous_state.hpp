@@ -49,7 +49,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] static bool is_idle(const Member& member);
 
  private:
-  void note_look(std::size_t robot, ExplorationStep& step);
+  void note_look(std::size_t robot, PlanReason reason, ExplorationStep& step);
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory go_back(std::size_t robot, double start, ExplorationStep& step);
