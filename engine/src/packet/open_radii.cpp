@@ -89,36 +89,35 @@ BrickBox grown(BrickBox box, const std::array<std::size_t, 3>& bricks) {
 void measure_open_radii(const std::uint64_t* words, const std::array<std::size_t, 3>& bricks,
                         const BrickBox& changed, std::span<std::uint32_t> radii) {
   const BrickBox measured = grown(changed, bricks), needed = grown(measured, bricks);
-  const auto& [x0, y0, z0] = needed.begin;
-  const auto& [x1, y1, z1] = needed.end;
   const auto number = [&](std::size_t x, std::size_t y, std::size_t z) {
     return (z * bricks[1] + y) * bricks[0] + x;
   };
-  Cells closed(2 * (x1 - x0), 2 * (y1 - y0), 2 * (z1 - z0)), scratch = closed;
-  for_each_chunk(z1 - z0, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t z = z0 + begin; z < z0 + end; ++z)
-      for (std::size_t y = y0; y < y1; ++y)
-        for (std::size_t x = x0; x < x1; ++x) {
-          const std::uint64_t cells = closed_cells(words + 8 * number(x, y, z));
-          for (std::size_t i = 0; i < 4; ++i)
-            closed.row(2 * (y - y0) + i % 2, 2 * (z - z0) + i / 2)[(x - x0) / 32] |= (cells >> (2 * i) & 3U)
-                                                                                     << (2 * ((x - x0) % 32));
-        }
+  const auto for_each_brick = [](const BrickBox& box, const auto& visit) {
+    for_each_chunk(box.end[2] - box.begin[2], 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t z = box.begin[2] + begin; z < box.begin[2] + end; ++z)
+        for (std::size_t y = box.begin[1]; y < box.end[1]; ++y)
+          for (std::size_t x = box.begin[0]; x < box.end[0]; ++x) visit(x, y, z);
+    });
+  };
+  const std::array<std::size_t, 3>& low = needed.begin;
+  Cells closed(2 * (needed.end[0] - low[0]), 2 * (needed.end[1] - low[1]), 2 * (needed.end[2] - low[2]));
+  Cells scratch = closed;
+  // Of a brick's four rows of two cells, the word that holds one; they are the bits from `shift` on.
+  const auto row_of = [&](std::size_t x, std::size_t y, std::size_t z, std::size_t i) -> std::uint64_t& {
+    return closed.row(2 * (y - low[1]) + i % 2, 2 * (z - low[2]) + i / 2)[(x - low[0]) / 32];
+  };
+  const auto shift = [&](std::size_t x) { return 2 * ((x - low[0]) % 32); };
+  for_each_brick(needed, [&](std::size_t x, std::size_t y, std::size_t z) {
+    const std::uint64_t cells = closed_cells(words + 8 * number(x, y, z));
+    for (std::size_t i = 0; i < 4; ++i) row_of(x, y, z, i) |= (cells >> (2 * i) & 3U) << shift(x);
   });
   for (int radius = 1; radius <= kMaxRadius; ++radius) {
-    for_each_chunk(measured.end[2] - measured.begin[2], 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t z = measured.begin[2] + begin; z < measured.begin[2] + end; ++z)
-        for (std::size_t y = measured.begin[1]; y < measured.end[1]; ++y)
-          for (std::size_t x = measured.begin[0]; x < measured.end[0]; ++x) {
-            unsigned open = 0;
-            for (std::size_t i = 0; i < 4; ++i) {
-              const std::uint64_t cells =
-                  ~closed.row(2 * (y - y0) + i % 2, 2 * (z - z0) + i / 2)[(x - x0) / 32];
-              open |= static_cast<unsigned>(cells >> (2 * ((x - x0) % 32)) & 3U) << (2 * i);
-            }
-            std::uint32_t& all = radii[number(x, y, z)];
-            all = radius == 1 ? kSpread[open] : all + kSpread[open];
-          }
+    for_each_brick(measured, [&](std::size_t x, std::size_t y, std::size_t z) {
+      unsigned open = 0;
+      for (std::size_t i = 0; i < 4; ++i)
+        open |= static_cast<unsigned>(~row_of(x, y, z, i) >> shift(x) & 3U) << (2 * i);
+      std::uint32_t& all = radii[number(x, y, z)];
+      all = radius == 1 ? kSpread[open] : all + kSpread[open];
     });
     if (radius < kMaxRadius) grow(closed, scratch);
   }

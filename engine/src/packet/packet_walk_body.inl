@@ -22,8 +22,8 @@ struct Packet {
 
 enum class LineKind : std::uint8_t { kSegment, kRay };
 
-// What does not change during a walk.
-struct Ground {
+// An `OpenVoxels` as the lanes need it.
+struct Table {
   using I = Lanes::I;
   I not_x, not_y, not_z;  // bits of the index
   std::uint32_t x_shift, y_shift, z_shift;
@@ -31,9 +31,9 @@ struct Ground {
 };
 
 // How far the cells around are open, in cells; 0 where the lanes of `where` are not.
-[[gnu::always_inline]] inline Lanes::I open_radius(const Ground& ground, Lanes::I at, Lanes::M where) {
+[[gnu::always_inline]] inline Lanes::I open_radius(const Table& table, Lanes::I at, Lanes::M where) {
   using I = Lanes::I;
-  const I word = Lanes::gather(ground.radii, Lanes::right(at, 9), where);
+  const I word = Lanes::gather(table.radii, Lanes::right(at, 9), where);
   const I x = Lanes::both(at, Lanes::whole(4)), y = Lanes::both(Lanes::right(at, 2), Lanes::whole(8)),
           z = Lanes::both(Lanes::right(at, 4), Lanes::whole(16));
   return Lanes::both(Lanes::right(word, Lanes::either(Lanes::either(x, y), z)), Lanes::whole(15));
@@ -42,7 +42,7 @@ struct Ground {
 // Moves the lanes of `jumping` ahead through the open cube around them, to shortly before they leave it.
 // @return those whose line ends before
 template <LineKind kKind>
-[[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Ground& ground, Lanes::M jumping,
+[[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Table& table, Lanes::M jumping,
                                             Lanes::I radius) {
   using V = Lanes::V;
   using I = Lanes::I;
@@ -84,15 +84,15 @@ template <LineKind kKind>
         Lanes::merge(others, p.index, Lanes::sum(Lanes::either(p.index, others), Lanes::either(low, high)));
     if constexpr (kKind == LineKind::kSegment) p.steps = Lanes::subtract(p.steps, steps);
   };
-  take(p.tx, p.dx, p.rx, ground.not_x, 0, ground.x_shift);
-  take(p.ty, p.dy, p.ry, ground.not_y, 3, ground.y_shift);
-  take(p.tz, p.dz, p.rz, ground.not_z, 6, ground.z_shift);
+  take(p.tx, p.dx, p.rx, table.not_x, 0, table.x_shift);
+  take(p.ty, p.dy, p.ry, table.not_y, 3, table.y_shift);
+  take(p.tz, p.dz, p.rz, table.not_z, 6, table.z_shift);
   if constexpr (kKind == LineKind::kSegment) return Lanes::both(jumping, Lanes::less(p.steps, one));
   return over;
 }
 
 template <LineKind kKind, bool kJumps, class Finish>
-[[gnu::always_inline]] inline void walk_lines(const OpenVoxels& table, const PacketLines& lines,
+[[gnu::always_inline]] inline void walk_lines(const OpenVoxels& open, const PacketLines& lines,
                                               const Finish& finish) {
   using V = Lanes::V;
   using I = Lanes::I;
@@ -100,15 +100,15 @@ template <LineKind kKind, bool kJumps, class Finish>
   constexpr unsigned kAll = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
   constexpr int kRefill = Lanes::kWidth > 4 ? Lanes::kWidth / 4 : 1;
   constexpr int kWorthAJump = kRefill;
-  const OpenVoxels::Layout& layout = table.layout();
-  const Ground ground{Lanes::whole(~layout.bits[0]),
-                      Lanes::whole(~layout.bits[1]),
-                      Lanes::whole(~layout.bits[2]),
-                      layout.shift(0),
-                      layout.shift(1),
-                      layout.shift(2),
-                      table.words(),
-                      table.radii()};
+  const OpenVoxels::Layout& layout = open.layout();
+  const Table table{Lanes::whole(~layout.bits[0]),
+                    Lanes::whole(~layout.bits[1]),
+                    Lanes::whole(~layout.bits[2]),
+                    layout.shift(0),
+                    layout.shift(1),
+                    layout.shift(2),
+                    open.words(),
+                    open.radii()};
   const V end_of_time = Lanes::time(kEndOfTime);
 
   Packet p{};
@@ -170,10 +170,10 @@ template <LineKind kKind, bool kJumps, class Finish>
       p.ty = Lanes::add_if(p.ty, y_next, p.dy);
       p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
       const I others =
-          Lanes::select(not_z_next, Lanes::select(x_before_y, ground.not_x, ground.not_y), ground.not_z);
+          Lanes::select(not_z_next, Lanes::select(x_before_y, table.not_x, table.not_y), table.not_z);
       p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
       const I at = Lanes::exclusive(p.index, p.flip);
-      const M closed = Lanes::closed(ground.words, at, running);
+      const M closed = Lanes::closed(table.words, at, running);
       arrived = Lanes::any(arrived, Lanes::but_not(over, ended));
       if constexpr (kKind == LineKind::kRay)
         p.stopped_at = Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
@@ -182,10 +182,10 @@ template <LineKind kKind, bool kJumps, class Finish>
     do {
       if (kJumps && rounds_to_look-- == 0) {
         const M candidates = Lanes::but_not(running, ended);
-        const I radius = open_radius(ground, Lanes::exclusive(p.index, p.flip), candidates);
+        const I radius = open_radius(table, Lanes::exclusive(p.index, p.flip), candidates);
         const M jumping = Lanes::both(candidates, Lanes::less(Lanes::time(1), Lanes::as_time(radius)));
         if (__builtin_popcount(Lanes::bits(jumping)) >= kWorthAJump) {
-          const M over = jump<kKind>(p, ground, jumping, radius);
+          const M over = jump<kKind>(p, table, jumping, radius);
           arrived = Lanes::any(arrived, over);
           ended = Lanes::any(ended, over);
           step();
