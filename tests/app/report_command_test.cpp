@@ -51,6 +51,26 @@ TEST_F(ReportCommandTest, MakesStills) {
     SCOPED_TRACE(name);
     test::expect_png(content_of(folder_ / "one" / name), 700, 400);
   }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "one" / "coverage.svg"));
+}
+
+TEST_F(ReportCommandTest, MakesTheSameStillsInAllFormatsEachTime) {
+  const std::vector<std::string> names = {"final_map.png", "final_map.svg", "final_map.pdf",
+                                          "coverage.png",  "coverage.svg",  "coverage.pdf"};
+  std::vector<std::string> first;
+  expect_answer({"one", "--png", "--svg", "--pdf"}, names);
+  for (const auto& name : names) first.push_back(content_of(folder_ / "one" / name));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SCOPED_TRACE(names[i]);
+    if (names[i].ends_with(".svg")) test::expect_parts(first[i], {"<svg xmlns=", "</svg>"});
+    if (names[i].ends_with(".pdf")) {
+      test::expect_parts(first[i], {"%PDF-1.5", "DejaVuSans", "%%EOF"});
+      EXPECT_EQ(first[i].find("/CreationDate (20000101"), first[i].rfind("/CreationDate"));
+    }
+  }
+  expect_answer({"one", "--png", "--svg", "--pdf"});
+  for (std::size_t i = 0; i < names.size(); ++i)
+    EXPECT_TRUE(content_of(folder_ / "one" / names[i]) == first[i]) << names[i];
 }
 
 // In motion a planning more changes nothing, and a second more does; in lock-step it is the other way round.

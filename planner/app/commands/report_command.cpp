@@ -1,7 +1,6 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "draw/png_file.hpp"
 #include "draw/stills.hpp"
 #include "explore/run_files.hpp"
 
@@ -22,7 +21,7 @@ namespace {
 struct Options {
   std::vector<std::string> runs;
   std::string output;
-  bool png = false;
+  bool png = false, svg = false, pdf = false;
 };
 
 struct Run {
@@ -75,6 +74,24 @@ std::filesystem::path output_of(const Options& options, const std::vector<Run>& 
   return runs.front().file.parent_path() / "report.html";
 }
 
+// The pictures of a run beside its recording, each drawn once.
+void write_stills(const Options& options, const Run& run) {
+  std::vector<const char*> endings;
+  if (options.png) endings.push_back(".png");
+  if (options.svg) endings.push_back(".svg");
+  if (options.pdf) endings.push_back(".pdf");
+  if (endings.empty()) return;
+  const auto write = [&](const char* name, const Picture& picture) {
+    for (const char* ending : endings) {
+      const std::filesystem::path file = run.file.parent_path() / (std::string(name) + ending);
+      picture.write(file);
+      std::cout << file.string() << '\n';
+    }
+  };
+  write("final_map", draw_final_map(run.recording, run.name));
+  write("coverage", draw_coverage(run.recording, run.name));
+}
+
 void report(const Options& options) {
   const std::vector<Run> runs = read_runs(options);
   const std::filesystem::path output = output_of(options, runs);
@@ -83,13 +100,7 @@ void report(const Options& options) {
     reported.push_back({run.name, &run.recording, read_run_json(run.file.parent_path())});
   report::write_report(output, reported, FRONTLUX_VERSION);
   std::cout << output.string() << '\n';
-  if (!options.png) return;
-  for (const Run& run : runs) {
-    const std::filesystem::path folder = run.file.parent_path();
-    write_png(folder / "final_map.png", draw_final_map(run.recording, run.name));
-    write_png(folder / "coverage.png", draw_coverage(run.recording, run.name));
-    std::cout << (folder / "final_map.png").string() << '\n' << (folder / "coverage.png").string() << '\n';
-  }
+  for (const Run& run : runs) write_stills(options, run);
 }
 
 }  // namespace
@@ -104,6 +115,8 @@ void add_report_command(CLI::App& app) {
       .required();
   command.add("-o,--output", options->output, "FILE.html", "Page to write [report.html beside a single run]");
   command.add_flag("--png", options->png, "Also write final_map.png and coverage.png beside each recording");
+  command.add_flag("--svg", options->svg, "The same as .svg, with lines and letters as vectors");
+  command.add_flag("--pdf", options->pdf, "The same as .pdf");
   command.examples(R"(Examples:
   frontlux report runs/station --png
   frontlux report runs/team runs/uav_alone -o comparison.html

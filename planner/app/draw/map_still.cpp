@@ -1,5 +1,6 @@
 #include "draw/colors.hpp"
 #include "draw/counts_seconds.hpp"
+#include "draw/round_length.hpp"
 #include "draw/stills.hpp"
 #include "text.hpp"
 
@@ -9,15 +10,21 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace frontlux::app {
 namespace {
 
-constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kLow{86, 106, 140}, kMiddle{172, 178, 176},
-    kHigh{233, 220, 180};
-constexpr int kMargin = 24, kLine = 24, kMaxWidth = 1800, kMaxHeight = 1400;
+constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kMuted{86, 97, 112}, kLow{86, 106, 140},
+    kMiddle{172, 178, 176}, kHigh{233, 220, 180};
+constexpr int kMargin = 28, kLine = 34, kMaxWidth = 1600, kMaxHeight = 1200;
+constexpr int kFooter = 130;  // [px] for the keys below the map
+constexpr int kFine = 3;      // the map is drawn so many times as large, for soft edges
+constexpr TextStyle kTitle{.size = 26.0, .color = kInk, .bold = true}, kText{.size = 22.0, .color = kInk},
+    kName{.size = 22.0, .color = kInk, .bold = true, .halo = true};
 
 // Seen from 18 degrees aside and 48 degrees above the ground; y and x point away from the viewer.
 struct Projection {
@@ -27,16 +34,13 @@ struct Projection {
          cos_rise = std::cos(48.0 * std::numbers::pi / 180.0);
   double scale = 1.0, left = 0.0, top = 0.0;  // [px] of a voxel; of the origin
 
-  struct Spot {
-    double x, y;  // [px]
-  };
   // A point in voxels.
   [[nodiscard]] Spot spot(const Eigen::Vector3d& p) const {
     const double away = p.x() * sin_turn + p.y() * cos_turn;
     return {left + scale * (p.x() * cos_turn - p.y() * sin_turn),
             top - scale * (p.z() * cos_rise + away * sin_rise)};
   }
-  // Of what covers each other, the nearer has the greater one.
+  // Of what covers each other, the nearer has the greater one [voxels].
   [[nodiscard]] double nearness(const Eigen::Vector3d& p) const {
     return p.z() * sin_rise - (p.x() * sin_turn + p.y() * cos_turn) * cos_rise;
   }
@@ -77,35 +81,85 @@ Color mixed(Color a, Color b, double fraction) {
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
 
+// The colour of a height, 0 to 1 of the map's.
+Color height_color(double fraction) {
+  return fraction < 0.5 ? mixed(kLow, kMiddle, 2 * fraction) : mixed(kMiddle, kHigh, 2 * fraction - 1);
+}
+
 Color face_color(const Face& face, double low, double high) {
   constexpr std::array<double, 3> kShade = {0.3, 0.18, 0.0};
   const double fraction = high > low ? std::clamp((face.middle.z() - low) / (high - low), 0.0, 1.0) : 0.0;
-  const Color lit =
-      fraction < 0.5 ? mixed(kLow, kMiddle, 2 * fraction) : mixed(kMiddle, kHigh, 2 * fraction - 1);
-  return mixed(lit, {0, 0, 0}, kShade.at(face.axis));
+  return mixed(height_color(fraction), {0, 0, 0}, kShade.at(face.axis));
 }
 
-// Pixels whose middle lies in the parallelogram of the face.
-void fill_face(Canvas& canvas, const Projection& projection, const Face& face, Color color) {
-  const auto unit = [](std::size_t axis) {
-    return Eigen::Vector3d(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)));
-  };
-  const Eigen::Vector3d u = 0.5 * unit((face.axis + 1) % 3), v = 0.5 * unit((face.axis + 2) % 3);
-  const auto middle = projection.spot(face.middle), to_u = projection.spot(face.middle + u),
-             to_v = projection.spot(face.middle + v);
-  const double ux = to_u.x - middle.x, uy = to_u.y - middle.y, vx = to_v.x - middle.x, vy = to_v.y - middle.y;
-  const double area = ux * vy - uy * vx, reach_x = std::fabs(ux) + std::fabs(vx),
-               reach_y = std::fabs(uy) + std::fabs(vy);
-  if (area == 0.0) return;
-  constexpr double kInside = 1.0 + 1e-9;
-  for (int y = static_cast<int>(std::floor(middle.y - reach_y)); y <= middle.y + reach_y; ++y)
-    for (int x = static_cast<int>(std::floor(middle.x - reach_x)); x <= middle.x + reach_x; ++x) {
-      const double dx = x + 0.5 - middle.x, dy = y + 0.5 - middle.y;
-      if (std::fabs(dx * vy - dy * vx) <= kInside * std::fabs(area) &&
-          std::fabs(ux * dy - uy * dx) <= kInside * std::fabs(area))
-        canvas.set(x, y, color);
-    }
-}
+// The map's surface in pixels, and how near it is in each.
+class Surface {
+ public:
+  // Of a picture, kFine times as fine.
+  Surface(int width, int height, Projection projection)
+      : raster_(kFine * width, kFine * height),
+        nearest_(raster_.pixels().size(), std::numeric_limits<float>::lowest()),
+        projection_(projection) {
+    projection_.scale *= kFine;
+    projection_.left *= kFine;
+    projection_.top *= kFine;
+  }
+
+  // Pixels whose middle lies in the parallelogram of the face.
+  void add(const Face& face, Color color) {
+    const auto unit = [](std::size_t axis) {
+      return Eigen::Vector3d(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)));
+    };
+    const Eigen::Vector3d u = 0.5 * unit((face.axis + 1) % 3), v = 0.5 * unit((face.axis + 2) % 3);
+    const Spot middle = projection_.spot(face.middle), to_u = projection_.spot(face.middle + u),
+               to_v = projection_.spot(face.middle + v);
+    const double ux = to_u.x - middle.x, uy = to_u.y - middle.y, vx = to_v.x - middle.x,
+                 vy = to_v.y - middle.y;
+    const double area = ux * vy - uy * vx, reach_x = std::fabs(ux) + std::fabs(vx),
+                 reach_y = std::fabs(uy) + std::fabs(vy);
+    if (area == 0.0) return;
+    const double near = projection_.nearness(face.middle),
+                 near_u = projection_.nearness(face.middle + u) - near,
+                 near_v = projection_.nearness(face.middle + v) - near;
+    constexpr double kInside = 1.0 + 1e-9;
+    for (int y = first(middle.y - reach_y); y <= last(middle.y + reach_y, raster_.height()); ++y)
+      for (int x = first(middle.x - reach_x); x <= last(middle.x + reach_x, raster_.width()); ++x) {
+        const double dx = x + 0.5 - middle.x, dy = y + 0.5 - middle.y;
+        const double along_u = (dx * vy - dy * vx) / area, along_v = (ux * dy - uy * dx) / area;
+        if (std::fabs(along_u) > kInside || std::fabs(along_v) > kInside) continue;
+        const auto here = static_cast<float>(near + along_u * near_u + along_v * near_v);
+        float& nearest = nearest_[place(x, y)];
+        if (here <= nearest) continue;
+        nearest = here;
+        raster_.set(x, y, color);
+      }
+  }
+
+  // Whether no face covers a point in voxels. What a face lies closer to than a voxel counts as in front of
+  // it.
+  [[nodiscard]] bool shows(const Eigen::Vector3d& point) const {
+    const Spot spot = projection_.spot(point);
+    if (!(spot.x >= 0.0 && spot.y >= 0.0 && spot.x < raster_.width() && spot.y < raster_.height()))
+      return true;
+    constexpr double kClose = 1.0;
+    return nearest_[place(static_cast<int>(spot.x), static_cast<int>(spot.y))] <=
+           projection_.nearness(point) + kClose;
+  }
+
+  [[nodiscard]] Raster raster() const { return raster_.reduced(kFine); }
+
+ private:
+  static int first(double pixel) { return std::max(0, static_cast<int>(std::floor(pixel))); }
+  static int last(double pixel, int size) { return std::min(size - 1, static_cast<int>(std::ceil(pixel))); }
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(raster_.width()) +
+           static_cast<std::size_t>(x);
+  }
+
+  Raster raster_;
+  std::vector<float> nearest_;
+  Projection projection_;
+};
 
 // Fits all faces and paths between the margins.
 Projection fit(const std::vector<Eigen::Vector3d>& points, int header, int& width, int& height) {
@@ -120,11 +174,10 @@ Projection fit(const std::vector<Eigen::Vector3d>& points, int header, int& widt
     max_y = first ? y + 1 : std::max(max_y, y + 1);
     first = false;
   }
-  projection.scale = std::clamp(std::min((kMaxWidth - 2 * kMargin) / (max_x - min_x),
-                                         (kMaxHeight - 2 * kMargin - header) / (max_y - min_y)),
-                                1.0, 24.0);
-  width = std::max(760, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
-  height = static_cast<int>(std::ceil(projection.scale * (max_y - min_y))) + 2 * kMargin + header;
+  constexpr double kMaxScale = 24.0;
+  projection.scale = std::min({kMaxWidth / (max_x - min_x), kMaxHeight / (max_y - min_y), kMaxScale});
+  width = std::max(900, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
+  height = static_cast<int>(std::ceil(projection.scale * (max_y - min_y))) + 2 * kMargin + header + kFooter;
   projection.left = (width - projection.scale * (max_x + min_x)) / 2;
   projection.top = kMargin + header - projection.scale * min_y;
   return projection;
@@ -141,22 +194,79 @@ std::vector<Eigen::Vector3d> path_of(const planner::Recording& recording, std::s
   return path;
 }
 
-void draw_path(Canvas& canvas, const Projection& projection, const std::vector<Eigen::Vector3d>& path,
-               Color color) {
-  const auto pass = [&](double thickness, Color with) {
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      const auto a = projection.spot(path[i - 1]), b = projection.spot(path[i]);
-      canvas.line(a.x, a.y, b.x, b.y, thickness, with);
+// What is seen of a path: the pieces that no face covers.
+std::vector<std::vector<Spot>> seen_pieces(const Surface& surface, const Projection& projection,
+                                           const std::vector<Eigen::Vector3d>& path) {
+  std::vector<std::vector<Spot>> pieces;
+  bool seen = false;
+  const auto add = [&](const Eigen::Vector3d& point) {
+    if (!surface.shows(point)) {
+      seen = false;
+      return;
     }
+    if (!seen) pieces.emplace_back();
+    seen = true;
+    pieces.back().push_back(projection.spot(point));
   };
-  pass(5.0, kPaper);
-  pass(2.6, color);
+  constexpr double kStep = 2.0, kMostSteps = 10000.0;  // [px]
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (i > 0) {
+      const Spot a = projection.spot(path[i - 1]), b = projection.spot(path[i]);
+      const double steps = std::clamp(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / kStep), 1.0, kMostSteps);
+      for (double k = 1.0; k < steps; ++k) add(path[i - 1] + k / steps * (path[i] - path[i - 1]));
+    }
+    add(path[i]);
+  }
+  return pieces;
+}
+
+// Starts and ends stand above everything; the robot's name tells the paths of a grey print apart.
+void draw_ends(Picture& picture, const Projection& projection, const std::vector<Eigen::Vector3d>& path,
+               const std::string& name, Color color) {
   if (path.empty()) return;
-  const auto begin = projection.spot(path.front()), end = projection.spot(path.back());
-  canvas.disc(begin.x, begin.y, 8, kPaper);
-  canvas.ring(begin.x, begin.y, 5, 3, color);
-  canvas.disc(end.x, end.y, 9, kPaper);
-  canvas.disc(end.x, end.y, 6.5, color);
+  const Spot begin = projection.spot(path.front()), end = projection.spot(path.back());
+  picture.disc(begin, 10, kPaper);
+  picture.ring(begin, 6.5, 4, color);
+  picture.disc(end, 12, kPaper);
+  picture.disc(end, 9, color);
+  const bool left = end.x < picture.width() - 150;
+  picture.text({end.x + (left ? 18.0 : -18.0), end.y}, name,
+               {kName.size, kName.color, left ? Align::kLeft : Align::kRight, kName.bold, kName.halo});
+}
+
+// What the colours of heights are.
+void draw_height_key(Picture& picture, double y, double low, double high, double resolution) {
+  constexpr int kBar = 240, kThick = 20;
+  double x = kMargin;
+  picture.text({x, y}, "height", kText);
+  x += picture.text_width("height", kText) + 20;
+  const std::string lowest = fixed(low * resolution, 1) + " m";
+  picture.text({x, y}, lowest, kText);
+  x += picture.text_width(lowest, kText) + 12;
+  Raster bar(kBar, kThick);
+  for (int i = 0; i < kBar; ++i) bar.fill(i, 0, 1, kThick, height_color(i / (kBar - 1.0)));
+  picture.image(std::round(x), std::round(y) - kThick / 2.0, std::move(bar));
+  picture.text({x + kBar + 12, y}, fixed(high * resolution, 1) + " m", kText);
+}
+
+// Three legs of the same length, since a length is drawn shorter the more it points at the viewer.
+void draw_scale(Picture& picture, const Projection& projection, double resolution) {
+  constexpr double kLongest = 160.0;  // [px]
+  const double length = round_length(kLongest / projection.scale * resolution);
+  const Spot origin = projection.spot(Eigen::Vector3d::Zero());
+  const Spot corner{picture.width() - kMargin - kLongest - 20.0, picture.height() - kMargin - 10.0};
+  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    const Eigen::Vector3d leg = length / resolution * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis));
+    const Spot end = projection.spot(leg);
+    const double x = end.x - origin.x, y = end.y - origin.y, size = std::hypot(x, y);
+    const std::array<Spot, 2> line = {corner, {corner.x + x, corner.y + y}};
+    picture.line(line, 3.0, kInk);
+    picture.text({line[1].x + 14 * x / size, line[1].y + 14 * y / size}, kAxes[axis],
+                 {.size = 18.0, .color = kMuted, .align = Align::kMiddle});
+  }
+  picture.text({corner.x - 60.0, corner.y - 8.0}, short_number(length) + " m along each axis",
+               {.size = kText.size, .color = kInk, .align = Align::kRight});
 }
 
 std::string summary_of(const planner::Recording& recording) {
@@ -178,12 +288,13 @@ std::string title_of(const std::string& name, const planner::Recording& recordin
 
 }  // namespace
 
-Canvas draw_final_map(const planner::Recording& recording, const std::string& name) {
-  VoxelGrid grid(recording.head.resolution);
+Picture draw_final_map(const planner::Recording& recording, const std::string& name) {
+  const double resolution = recording.head.resolution;
+  VoxelGrid grid(resolution);
   for (const planner::RecordedStep& step : recording.steps)
     for (const planner::RobotStep& robot : step.step.robots)
       for (const planner::VoxelChange& change : robot.changed) grid.set(change.key, change.after);
-  std::vector<Face> faces = visible_faces(grid);
+  const std::vector<Face> faces = visible_faces(grid);
   std::vector<std::vector<Eigen::Vector3d>> paths;
   for (std::size_t r = 0; r < recording.head.robots.size(); ++r) paths.push_back(path_of(recording, r));
 
@@ -198,24 +309,37 @@ Canvas draw_final_map(const planner::Recording& recording, const std::string& na
   const int header = kLine * (1 + static_cast<int>(paths.size()));
   int width = 0, height = 0;
   const Projection projection = fit(points, header, width, height);
-  Canvas canvas(width, height, kPaper);
 
-  std::sort(faces.begin(), faces.end(), [&](const Face& a, const Face& b) {
-    return projection.nearness(a.middle) < projection.nearness(b.middle);
-  });
-  for (const Face& face : faces) fill_face(canvas, projection, face, face_color(face, low, high));
+  Surface surface(width, height, projection);
+  for (const Face& face : faces) surface.add(face, face_color(face, low, high));
+  Picture picture(width, height);
+  picture.image(0, 0, surface.raster());
   const std::vector<Color> colors = robot_colors(recording.head.robots);
-  for (std::size_t r = 0; r < paths.size(); ++r) draw_path(canvas, projection, paths[r], colors[r]);
+  for (const auto& [thickness, halo] : {std::pair{8.0, true}, std::pair{4.5, false}})
+    for (std::size_t r = 0; r < paths.size(); ++r)
+      for (const auto& piece : seen_pieces(surface, projection, paths[r]))
+        picture.line(piece, thickness, halo ? kPaper : colors[r]);
+  for (std::size_t r = 0; r < paths.size(); ++r)
+    draw_ends(picture, projection, paths[r], recording.head.robots[r].robot.name, colors[r]);
 
-  canvas.text(kMargin, kMargin, title_of(name, recording) + summary_of(recording), kInk);
+  picture.text({kMargin, kMargin + 8.0}, title_of(name, recording) + summary_of(recording), kTitle);
   for (std::size_t r = 0; r < paths.size(); ++r) {
-    const int y = kMargin + kLine * (1 + static_cast<int>(r));
-    canvas.fill(kMargin, y + 4, 26, 6, colors[r]);
+    const double y = kMargin + 8.0 + kLine * (1.0 + static_cast<double>(r));
+    const std::array<Spot, 2> sample = {Spot{kMargin + 3.0, y}, Spot{kMargin + 40.0, y}};
+    picture.line(sample, 6.0, colors[r]);
     double length = 0.0;
     for (const planner::RecordedStep& step : recording.steps) length += step.step.robots[r].length;
-    canvas.text(kMargin + 36, y, recording.head.robots[r].robot.name + "  " + fixed(length, 0) + " m", kInk);
+    picture.text({kMargin + 56.0, y}, recording.head.robots[r].robot.name + ", " + fixed(length, 0) + " m",
+                 kText);
   }
-  return canvas;
+  const double below = height - kMargin - 18.0;
+  draw_height_key(picture, below, low, high, resolution);
+  picture.ring({kMargin + 10.0, below - kLine}, 6.5, 4, kMuted);
+  picture.text({kMargin + 28.0, below - kLine}, "start", kText);
+  picture.disc({kMargin + 120.0, below - kLine}, 9, kMuted);
+  picture.text({kMargin + 138.0, below - kLine}, "end", kText);
+  draw_scale(picture, projection, resolution);
+  return picture;
 }
 
 }  // namespace frontlux::app
