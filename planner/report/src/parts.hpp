@@ -26,7 +26,7 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 [[nodiscard]] std::span<const RobotColor> aerial_colors();
 [[nodiscard]] std::span<const RobotColor> ground_colors();
 
-/// Changed voxels, images, paths and tours of a run, as bytes that web/src/run_data.js reads. Of a robot with
+/// Changed voxels, images, paths, tours, trajectories and assigned frontiers of a run, as bytes that web/src/run_data.js reads. Of a robot with
 /// more than 400 images, only every second one is in it, or every third one, and so on. For each step and
 /// each robot:
 ///
