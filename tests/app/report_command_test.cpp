@@ -73,6 +73,37 @@ TEST_F(ReportCommandTest, MakesTheSameStillsInAllFormatsEachTime) {
     EXPECT_TRUE(content_of(folder_ / "one" / names[i]) == first[i]) << names[i];
 }
 
+// A stand-in for ffmpeg is first on the path: one that does nothing, or one that makes a file of its last
+// word.
+TEST_F(ReportCommandTest, MakesAFilmWhereThereIsFfmpegAndElseItsFrames) {
+  std::filesystem::create_directories(path("bin"));
+  const auto stand_in = [&](const std::string& script) {
+    write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(path("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    return in_folder_ + " PATH=" + test::quoted(path("bin")) + ":$PATH";
+  };
+  const std::string none = stand_in("exit 127");
+  CommandTest::expect_answer({"one", "--video"}, {"one/video/\n"}, none);
+  std::string first;
+  for (const char* name : {"frame_0001.png", "frame_0090.png", "frame_0180.png", "frame_0210.png"}) {
+    const std::string frame = content_of(folder_ / "one" / "video" / name);
+    test::expect_png(frame, 700, 400);
+    EXPECT_NE(frame, first) << name;
+    if (first.empty()) first = frame;
+  }
+  EXPECT_EQ(content_of(path("one/video/frame_0180.png")), content_of(path("one/video/frame_0210.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0211.png")));
+  CommandTest::expect_refused({"one", "--gif"}, {"--gif: needs ffmpeg"}, none);
+
+  const std::string there = stand_in("for last; do :; done; [ \"$last\" = - ] || echo \"$@\" > \"$last\"");
+  write("one/video/mine", "a user's");
+  CommandTest::expect_answer({"one", "--video", "--gif"}, {"one/video.mp4\n", "one/video.gif\n"}, there);
+  test::expect_parts(content_of(path("one/video.mp4")), {"libx264"});
+  test::expect_parts(content_of(path("one/video.gif")), {"palettegen"});
+  EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0001.png")));
+  EXPECT_EQ(content_of(path("one/video/mine")), "a user's");
+}
+
 // In motion a planning more changes nothing, and a second more does; in lock-step it is the other way round.
 TEST_F(ReportCommandTest, DrawsCoverageOverSecondsInMotionAndOverStepsInLockstep) {
   const planner::Recording recording = planner::read_recording(folder_ / "one" / "run.frontlux");

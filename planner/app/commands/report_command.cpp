@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "draw/film.hpp"
 #include "draw/stills.hpp"
 #include "explore/run_files.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 struct Options {
   std::vector<std::string> runs;
   std::string output;
-  bool png = false, svg = false, pdf = false;
+  bool png = false, svg = false, pdf = false, video = false, gif = false;
 };
 
 struct Run {
@@ -92,7 +93,26 @@ void write_stills(const Options& options, const Run& run) {
   write("coverage", draw_coverage(run.recording, run.name));
 }
 
+// Films of a run beside its recording; its frames where there is no ffmpeg.
+void write_films(const Options& options, const Run& run) {
+  constexpr int kWidth = 1200;  // [px]
+  const std::filesystem::path folder = run.file.parent_path(), frames = folder / "video";
+  write_frames(frames, run.recording, run.name, kWidth);
+  if (!has_ffmpeg()) {
+    std::cout << (frames / "").string() << '\n';
+    return;
+  }
+  const auto write = [&](const char* name) {
+    write_film(folder / name, frames);
+    std::cout << (folder / name).string() << '\n';
+  };
+  if (options.video) write("video.mp4");
+  if (options.gif) write("video.gif");
+  remove_frames(frames);
+}
+
 void report(const Options& options) {
+  if (options.gif && !has_ffmpeg()) throw BadInput("--gif: needs ffmpeg, which is not installed here");
   const std::vector<Run> runs = read_runs(options);
   const std::filesystem::path output = output_of(options, runs);
   std::vector<report::ReportedRun> reported;
@@ -100,7 +120,10 @@ void report(const Options& options) {
     reported.push_back({run.name, &run.recording, read_run_json(run.file.parent_path())});
   report::write_report(output, reported, FRONTLUX_VERSION);
   std::cout << output.string() << '\n';
-  for (const Run& run : runs) write_stills(options, run);
+  for (const Run& run : runs) {
+    write_stills(options, run);
+    if (options.video || options.gif) write_films(options, run);
+  }
 }
 
 }  // namespace
@@ -117,6 +140,10 @@ void add_report_command(CLI::App& app) {
   command.add_flag("--png", options->png, "Also write final_map.png and coverage.png beside each recording");
   command.add_flag("--svg", options->svg, "The same as .svg, with lines and letters as vectors");
   command.add_flag("--pdf", options->pdf, "The same as .pdf");
+  command.add_flag(
+      "--video", options->video,
+      "Also write how the map grows: video.mp4 where ffmpeg is installed, else the frames video/*.png");
+  command.add_flag("--gif", options->gif, "The same as a small video.gif; needs ffmpeg");
   command.examples(R"(Examples:
   frontlux report runs/station --png
   frontlux report runs/team runs/uav_alone -o comparison.html
