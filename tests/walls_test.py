@@ -38,7 +38,7 @@ LIBRARIES = [
     (r"nlohmann/", r"planner/(app|io/src|report/src)/.*\.cpp"),
     (r"CLI/", r"planner/app/"),
     (r"pybind11/", r"(engine|planner)/python/"),
-    (r"png\.h", r"planner/app/draw/png_file\.cpp"),
+    (r"cairo.*\.h", r"planner/app/draw/picture\.cpp"),
     (r"zlib\.h", r"planner/src/recording/.*\.cpp|planner/report/src/report\.cpp"),
     (r"(oneapi/)?tbb/", r"(engine|planner)/.*src/|planner/app/"),
 ]

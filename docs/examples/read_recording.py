@@ -22,7 +22,7 @@ class Bytes:
     def doubles(self, how_many): return struct.unpack(f"<{how_many}d", self.take(8 * how_many))
 
 
-def step_line(step, has_tours):
+def step_line(step, version):
     number, frontiers, _unassigned, _abandoned, _rays, _collisions = step.counts(6)
     (time,) = step.doubles(1)
     step.doubles(6)  # that each phase took
@@ -44,17 +44,19 @@ def step_line(step, has_tours):
         step.counts(3 * step.count())  # blocked cells
         cells = step.count()
         step.counts(3 * cells), step.doubles(5 * cells), step.counts(cells)  # the image
-        stops = [(step.doubles(4), step.counts(2)) for _ in range(step.count())] if has_tours else []
+        stops = [(step.doubles(4), step.counts(2)) for _ in range(step.count())] if version > 3 else []
+        trajectory = [step.doubles(4) for _ in range(step.count())] if version > 4 else []
+        step.counts(3 * step.count() if version > 4 else 0)  # frontiers that have become its own, or ceased to be
         line += (f"; robot {robot}: {length:.2f} m, {len(planned)} viewpoints, {after.count(1)} voxels free, "
-                 f"{after.count(2)} occupied, knows {known[robot][0]}, tour of {len(stops)} stops")
+                 f"{after.count(2)} occupied, knows {known[robot][0]}, tour of {len(stops)} stops, trajectory of {len(trajectory)} poses")
     return line
 
 
 with open(sys.argv[1], "rb") as file:
     title = file.readline()
-    if title not in (b"frontlux recording, format 3\n", b"frontlux recording, format 4\n"):
-        sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 3' or 4; read it with the frontlux that wrote it")
-    has_tours = b"4" in title
+    if title not in [b"frontlux recording, format %d\n" % version for version in (3, 4, 5)]:
+        sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 3' to 5; read it with the frontlux that wrote it")
+    version = int(title.split()[-1])
     while len(header := file.read(16)) == 16:
         tag, packed, _plain, _checksum = struct.unpack("<4s3I", header)
         payload, checksum = file.read(packed), file.read(4)
@@ -64,6 +66,6 @@ with open(sys.argv[1], "rb") as file:
             sys.exit(f"{sys.argv[1]}: damaged before byte {file.tell()}")
         record = Bytes(zlib.decompress(payload))
         if tag == b"step":
-            print(step_line(record, has_tours))
+            print(step_line(record, version))
         elif tag == b"end ":
             print("end:", record.take(record.count()).decode())

@@ -109,6 +109,17 @@ TEST_F(RenderCommand, PicturesArePngsWideEnoughAndTheSameEachTime) {
     }
 }
 
+TEST_F(RenderCommand, PicturesAreVectorsToo) {
+  for (const std::string ending : {".svg", ".pdf"}) {
+    const std::string file = "room" + ending;
+    expect_answer(words("ugv", kStart, file, {"--show", "layer"}), {"goal         "});
+    const std::string picture = content_of(path(file));
+    expect_parts(picture, {ending == ".svg" ? "</svg>" : "%%EOF"});
+    expect_answer(words("ugv", kStart, file, {"--show", "layer"}));
+    EXPECT_TRUE(content_of(path(file)) == picture) << file;
+  }
+}
+
 TEST_F(RenderCommand, PointsHoldAllCells) {
   for (const char* file : {"room.csv", "room.ply"}) expect_answer(words("uav", "5.25,5.25,1.35", file));
   const auto rows = table_of(content_of(path("room.csv")));
@@ -150,7 +161,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("ugv", "1,2", {}, {"--at: '1,2' is not three finite numbers"});
   refuse("ugv", "1e9,0,0", {}, {"--at: 1e+09, 0, 0", "key range"});
   refuse("boat", kStart, {}, {"--robot: 'boat' is none of ugv, uav"});
-  expect_refused(words("ugv", kStart, "x.jpg"), {"--output", "x.jpg does not end in .png or .ply or .csv"});
+  expect_refused(words("ugv", kStart, "x.jpg"),
+                 {"--output", "x.jpg does not end in .png or .svg or .pdf or .ply or .csv"});
   expect_refused(words("ugv", kStart, "no/x.png"), {"--output", "there is no folder"});
   expect_refused(words("ugv", kStart, "x.csv", {"--show", "layer"}), {"--show: "});
   for (const std::string samples : {"0", "x", "1.5", ""})

@@ -51,6 +51,57 @@ TEST_F(ReportCommandTest, MakesStills) {
     SCOPED_TRACE(name);
     test::expect_png(content_of(folder_ / "one" / name), 700, 400);
   }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "one" / "coverage.svg"));
+}
+
+TEST_F(ReportCommandTest, MakesTheSameStillsInAllFormatsEachTime) {
+  const std::vector<std::string> names = {"final_map.png", "final_map.svg", "final_map.pdf",
+                                          "coverage.png",  "coverage.svg",  "coverage.pdf"};
+  std::vector<std::string> first;
+  expect_answer({"one", "--png", "--svg", "--pdf"}, names);
+  for (const auto& name : names) first.push_back(content_of(folder_ / "one" / name));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SCOPED_TRACE(names[i]);
+    if (names[i].ends_with(".svg")) test::expect_parts(first[i], {"<svg xmlns=", "</svg>"});
+    if (names[i].ends_with(".pdf")) {
+      test::expect_parts(first[i], {"%PDF-1.5", "DejaVuSans", "%%EOF"});
+      EXPECT_EQ(first[i].find("/CreationDate (20000101"), first[i].rfind("/CreationDate"));
+    }
+  }
+  expect_answer({"one", "--png", "--svg", "--pdf"});
+  for (std::size_t i = 0; i < names.size(); ++i)
+    EXPECT_TRUE(content_of(folder_ / "one" / names[i]) == first[i]) << names[i];
+}
+
+// A stand-in for ffmpeg is first on the path: one that does nothing, or one that makes a file of its last
+// word.
+TEST_F(ReportCommandTest, MakesAFilmWhereThereIsFfmpegAndElseItsFrames) {
+  std::filesystem::create_directories(path("bin"));
+  const auto stand_in = [&](const std::string& script) {
+    write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(path("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    return in_folder_ + " PATH=" + test::quoted(path("bin")) + ":$PATH";
+  };
+  const std::string none = stand_in("exit 127");
+  CommandTest::expect_answer({"one", "--video"}, {"one/video/\n"}, none);
+  std::string first;
+  for (const char* name : {"frame_0001.png", "frame_0090.png", "frame_0180.png", "frame_0210.png"}) {
+    const std::string frame = content_of(folder_ / "one" / "video" / name);
+    test::expect_png(frame, 700, 400);
+    EXPECT_NE(frame, first) << name;
+    if (first.empty()) first = frame;
+  }
+  EXPECT_EQ(content_of(path("one/video/frame_0180.png")), content_of(path("one/video/frame_0210.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0211.png")));
+  CommandTest::expect_refused({"one", "--gif"}, {"--gif: needs ffmpeg"}, none);
+
+  const std::string there = stand_in("for last; do :; done; [ \"$last\" = - ] || echo \"$@\" > \"$last\"");
+  write("one/video/mine", "a user's");
+  CommandTest::expect_answer({"one", "--video", "--gif"}, {"one/video.mp4\n", "one/video.gif\n"}, there);
+  test::expect_parts(content_of(path("one/video.mp4")), {"libx264"});
+  test::expect_parts(content_of(path("one/video.gif")), {"palettegen"});
+  EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0001.png")));
+  EXPECT_EQ(content_of(path("one/video/mine")), "a user's");
 }
 
 // In motion a planning more changes nothing, and a second more does; in lock-step it is the other way round.

@@ -84,6 +84,13 @@ class Recordings(unittest.TestCase):
         np.testing.assert_allclose(tours["pose"], [[float(row[name]) for name in ("x_m", "y_m", "z_m", "yaw_rad")] for row in rows])
         for name in ("clusters", "frontiers"):
             np.testing.assert_array_equal(tours[name], [int(row[name]) for row in rows])
+        plans, handed = recording.trajectories, recording.reassigned
+        steps = set(recording.steps["number"])
+        self.assertEqual(steps - {max(steps)} - set(plans["step"]), {0}, "steps in which nobody planned")
+        self.assertEqual(plans["pose"].shape, (len(plans["step"]), 4))
+        self.assertGreater(len(handed["keys"]), 100)
+        low, high = recording.bounds
+        self.assertTrue(((handed["keys"] >= low) & (handed["keys"] <= high)).all())
 
     def test_damage_is_found_and_named(self):
         whole = (self.run_folder / "run.frontlux").read_bytes()
@@ -94,7 +101,7 @@ class Recordings(unittest.TestCase):
             with self.assertRaisesRegex(RuntimeError, "damaged.frontlux"):
                 frontlux.read_recording(file)
         file.write_bytes(b"frontlux recording, format 2\n")
-        with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3 and 4"):
+        with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3 to 5"):
             frontlux.read_recording(file)
 
     def test_a_recording_that_is_cut_off_is_read_up_to_there(self):

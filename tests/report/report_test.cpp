@@ -91,6 +91,14 @@ struct Reader {
     return static_cast<std::int64_t>(number / 2) * (number % 2 != 0 ? -1 : 1) -
            static_cast<std::int64_t>(number % 2);
   }
+  std::vector<VoxelKey> keys(std::size_t size) {
+    std::vector<VoxelKey> list(size);
+    for (const auto axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
+      std::int64_t key = 0;
+      for (VoxelKey& voxel : list) voxel.*axis = static_cast<std::uint16_t>(key += difference());
+    }
+    return list;
+  }
   float f32() {
     std::uint32_t bits = 0;
     for (unsigned i = 0; i < 4; ++i) bits |= std::uint32_t{u8()} << 8 * i;
@@ -174,7 +182,7 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   Decoded run = decode(packed_runs(page_of({{"room", &room()}})).at(0));
   planner::RecordedMap map(room().head.resolution);
   Changes shown;
-  std::size_t images = 0;
+  std::size_t images = 0, reassigned = 0;
   for (const planner::RecordedStep& recorded : room().steps) {
     map.apply(recorded);
     for (const planner::RobotStep& robot : recorded.step.robots) {
@@ -189,6 +197,10 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
         EXPECT_EQ(run.data.f32(), static_cast<float>(pose.yaw));
       }
       EXPECT_EQ(run.data.count(), 0U) << "in lock-step there are no tours";
+      EXPECT_EQ(run.data.count(), 0U) << "and no trajectories";
+      ASSERT_EQ(run.data.count(), robot.reassigned.size());
+      EXPECT_EQ(run.data.keys(robot.reassigned.size()), robot.reassigned);
+      reassigned += robot.reassigned.size();
     }
     std::array<std::uint64_t, 3> counted{};
     for (const auto& [key, state] : shown) {
@@ -200,6 +212,7 @@ TEST_F(ReportTest, VoxelsImagesAndPathsAreThoseOfTheRecording) {
   }
   EXPECT_EQ(run.data.at, run.data.bytes.size());
   EXPECT_GT(images, 2U);
+  EXPECT_GT(reassigned, 100U);
   EXPECT_GT(shown.size(), 10'000U);
 }
 
@@ -211,7 +224,9 @@ TEST_F(ReportTest, ToursAreThoseOfTheRecording) {
     robot.image.clear();
     robot.planned.clear();
     robot.travelled = 0;
+    robot.reassigned = {{5, 6, 7}, {5, 65535, 0}, {6, 1, 2}};
   }
+  recording.steps[0].step.robots[0].trajectory = {{{1.0, 2.0, 0.5}, 0.1}, {{-3.0, 2.5, 0.5}, 0.2}};
   recording.steps[0].step.robots[1].tour = {{{{1.5, -2.0, 3.25}, 0.5}, 3, 400},
                                             {{{0.1, 0.2, 0.3}, -4.0}, 1, 10}};
   Reader data = decode(packed_runs(page_of({{"room", &recording}})).at(0)).data;
@@ -225,6 +240,11 @@ TEST_F(ReportTest, ToursAreThoseOfTheRecording) {
       EXPECT_EQ(data.count(), stop.clusters);
       EXPECT_EQ(data.count(), stop.frontiers);
     }
+    ASSERT_EQ(data.count(), robot.trajectory.size());
+    for (const planner::Pose& pose : robot.trajectory)
+      for (const double coordinate : pose.position) EXPECT_EQ(data.f32(), static_cast<float>(coordinate));
+    ASSERT_EQ(data.count(), robot.reassigned.size());
+    EXPECT_EQ(data.keys(robot.reassigned.size()), robot.reassigned);
   }
   EXPECT_EQ(data.at, data.bytes.size());
 }
@@ -249,7 +269,9 @@ TEST_F(ReportTest, OfManyImagesSomeAreShown) {
       const std::uint64_t poses = run.data.count();
       run.data.count();  // of them, those that it reached
       run.data.at += 16 * poses;
-      EXPECT_EQ(run.data.count(), 0U);
+      EXPECT_EQ(run.data.count(), 0U);  // no tour
+      EXPECT_EQ(run.data.count(), 0U);  // no trajectory
+      run.data.keys(run.data.count());
     }
   EXPECT_EQ(run.data.at, run.data.bytes.size());
   // Of a thousand, every third one.

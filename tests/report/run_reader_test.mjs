@@ -79,6 +79,9 @@ function dataOf(steps, robots, roll) {
     const stops = roll(3);
     bytes.push(...counts(stops));
     for (let i = 0; i < stops; ++i) bytes.push(...f32(i, roll(9), 2, i / 3), ...counts(1 + roll(3), roll(300)));
+    const points = roll(4), keys = roll(4);
+    bytes.push(...counts(points), ...f32(...Array.from({ length: 3 * points }, () => roll(9))), ...counts(keys));
+    for (let axis = 0; axis < 3; ++axis) for (let i = 0; i < keys; ++i) bytes.push(...counts(i === 0 ? 2 * 32768 : roll(9)));
   }
   return bytes;
 }
@@ -166,12 +169,14 @@ async function refused(text, message) {
 {
   const roll = dice(1), run = await readRun(textOf(factsOf(2, 1), [
     ...counts(1, 1024, 1023, 7, 2, 4 * 33 + 1, 4 * 2 + 2), ...counts(1), ...f32(8, 4), ...counts(65536, 65534, 0), 9, 255, ...counts(2, 1), ...f32(1, 2, 3, 4, 5, 6, 7, 8),
-    ...counts(1), ...f32(9, 10, 11, 12), ...counts(2, 300), ...counts(0, 0, 0, 0, 0)]));
+    ...counts(1), ...f32(9, 10, 11, 12), ...counts(2, 300),
+    ...counts(2), ...f32(1, 2, 3, 4, 5, 6), ...counts(2, 10, 2, 20, 1, 0, 0), ...counts(0, 0, 0, 0, 0, 0, 0)]));
   assert.deepEqual([[...run.locals], [...run.states], [...run.begins], [...run.blocks]], [[33, 35], [1, 2], [0, 2], [0, 1, 1]]);
   assert.deepEqual([...run.chunks.corners.items.subarray(0, 3)], [32768, 32736, 224]);
   assert.deepEqual([run.images[0].x[0], run.images[0].y[0], run.images[0].z[0], run.images[0].gain[0], run.images[0].quality[0]], [32768, 32767, 0, 9, 255]);
   assert.deepEqual([...run.poses], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
   assert.deepEqual(run.tours, Array(2).fill({ begin: 8, count: 1, clusters: [2], frontiers: [300] }), "a tour holds until the next planning");
+  assert.deepEqual([run.trajectories.map((points) => points && [...points]), run.reassigned.map((keys) => keys.map((axis) => [...axis]))], [[[1, 2, 3, 4, 5, 6], null], [[[5, 6], [10, 9], [0, 0]], [[], [], []]]]);
   for (let i = 0; i < 20; ++i) use(await readRun(textOf(factsOf(3, 2), dataOf(3, 2, roll))));
 }
 
@@ -191,18 +196,23 @@ await refused(textOf(one, counts(1, 2048, 0, 0, 0)), /place of a chunk is 2048/)
 await refused(textOf(one, counts(1, 0, 0, 0, 1, 4 * 32768)), /place of a voxel/);
 await refused(textOf(one, counts(1, 0, 0, 0, 1, 3)), /state is 3/);
 await refused(textOf(one, counts(0, huge)), /too early/); // an image of so many cells
-await refused(textOf(one, [...counts(0, 1), ...f32(1, 1), ...counts(2 * 65536, 0, 0, 0, 0, 0, 0)]), /key of a cell/);
+await refused(textOf(one, [...counts(0, 1), ...f32(1, 1), ...counts(2 * 65536, 0, 0, 0, 0, 0, 0)]), /key of a voxel/);
 await refused(textOf(one, counts(0, 0, huge, 0)), /too early/); // a path of so many poses
 await refused(textOf(one, counts(0, 0, 0, 1)), /travelled/);
 await refused(textOf(one, counts(0, 0, 0, 0, huge)), /too early/); // a tour of so many stops
-await refused(textOf(one, counts(0, 0, 0, 0, 0, 0)), /after the last step/);
+await refused(textOf(one, counts(0, 0, 0, 0, 0, huge)), /too early/); // a trajectory of so many points
+await refused(textOf(one, counts(0, 0, 0, 0, 0, 0, huge)), /too early/); // so many frontiers that change hands
+await refused(textOf(one, counts(0, 0, 0, 0, 0, 0, 1, 1, 0, 0)), /key of a voxel is -1/);
+await refused(textOf(one, counts(0, 0, 0, 0, 0, 0, 0, 0)), /after the last step/);
 await refused(textOf(one, [0, ...Array(3000).fill(255)]), /too early/);
 { // Few bytes that become many: data, facts, cubes. Each was more than a gigabyte, or near it.
   await refused(textOf(one, new Uint8Array(80e6)), /more than \d+ bytes/);
   await refused(textOf(`[${"{},".repeat(5e6)}0]`, []), /facts/);
-  const spread = (groups) => [...counts(groups), ...Array.from({ length: groups }, (_, i) => counts(2 * (i & 1023), (i >> 10) * 2, 7, 1, 1)).flat(), 0, 0, 0, 0];
+  const spread = (groups) => [...counts(groups), ...Array.from({ length: groups }, (_, i) => counts(2 * (i & 1023), (i >> 10) * 2, 7, 1, 1)).flat(), 0, 0, 0, 0, 0, 0];
   await refused(textOf(one, spread(40000)), /more than 32768 cubes/);
   await read(textOf(one, spread(11000)), "cubes apart"); // 100 kB of them
+  const most = 2 ** 22, handed = async (count) => (await readRun(textOf(one, Buffer.concat([Buffer.from(counts(0, 0, 0, 0, 0, 0, count)), Buffer.alloc(3 * count)])))).reassigned[0][0].length;
+  assert.deepEqual([await handed(most), await handed(most + 1)], [most, 0], "of too many frontiers that change hands none has a robot");
 }
 
 // ---- damages

@@ -21,11 +21,14 @@ function dice(seed) {
   };
 }
 
+/** With the robot if it was without, and without it if it was with it. */
+const turnedOver = (robots, r) => (robots.includes(r) ? robots.filter((other) => other !== r) : [...robots, r]);
+
 /** A run in the shape that readRun gives, and the map at the end of each step. */
 function makeRun(seed) {
   const roll = dice(seed), chunks = new ChunkTable(), maps = [];
-  const run = { robots: kRobots, steps: kSteps, chunks, groups: [], begins: [], blocks: [], locals: [], states: [] };
-  const map = new Map();
+  const run = { robots: kRobots, steps: kSteps, chunks, groups: [], begins: [], blocks: [], locals: [], states: [], reassigned: [] };
+  const map = new Map(), owned = new Map(); // the robots, by voxel, whose frontier it is
   const edge = () => kBase + [0, 15, 30, 31, 32, 33, 63][roll(7)];
   for (let block = 0; block < kSteps * kRobots; ++block) {
     run.blocks.push(run.groups.length);
@@ -40,7 +43,10 @@ function makeRun(seed) {
       const old = map.get(name), owner = old?.state ? old.owner : block % kRobots;
       map.set(name, { state, owner });
     }
-    if (block % kRobots === kRobots - 1) maps.push(new Map(map));
+    const turned = new Set(Array.from({ length: roll(40) }, () => [edge() + roll(3) - 1, edge(), edge()].join()));
+    for (const name of turned) owned.set(name, turnedOver(owned.get(name) ?? [], block % kRobots));
+    run.reassigned.push([0, 1, 2].map((k) => [...turned].map((name) => Number(name.split(",")[k]))));
+    if (block % kRobots === kRobots - 1) maps.push({ voxels: new Map(map), owned: new Map(owned) });
   }
   run.blocks.push(run.groups.length);
   run.begins.push(run.locals.length);
@@ -61,12 +67,12 @@ function drawn(mesher, corner) {
     const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
     assert.ok(normal[axis] * (side & 1 ? 1 : -1) > 0, "a face has the wrong orientation");
   }
-  for (let i = 0; i < mesher.frontiers; ++i) out.push(`frontier ${[0, 1, 2].map((k) => corner[k] + mesher.points[4 * i + k])}`);
+  for (let i = 0; i < mesher.frontiers; ++i) out.push(`frontier ${[0, 1, 2].map((k) => corner[k] + mesher.points[4 * i + k])} of ${mesher.points[4 * i + 3]}`);
   return out.sort();
 }
 
 /** The same by a look at every voxel of the map. */
-function expected(map, bounds, cut, closed) {
+function expected({ voxels: map, owned }, bounds, cut, closed) {
   const out = [], state = (key) => map.get(key.join())?.state ?? 0;
   const frontiers = new Set();
   for (const [name, { state: here, owner }] of map) {
@@ -74,7 +80,7 @@ function expected(map, bounds, cut, closed) {
     kSides.forEach((side, s) => {
       const next = key.map((k, i) => k + side[i]), there = state(next), opened = next[2] >= cut;
       if (here === 2 && key[2] < cut && (opened || there === 1 || (closed && there === 0))) out.push(`face ${key} ${s} ${owner + 1}`);
-      if (here === 1 && there === 0 && next[2] < cut && next.every((k, i) => k >= bounds[0][i] && k <= bounds[1][i])) frontiers.add(`frontier ${next}`);
+      if (here === 1 && there === 0 && next[2] < cut && next.every((k, i) => k >= bounds[0][i] && k <= bounds[1][i])) frontiers.add(`frontier ${next} of ${owned.get(next.join())?.length === 1 ? owned.get(next.join())[0] + 1 : 0}`);
     });
   }
   return [...out, ...frontiers].sort();

@@ -11,7 +11,7 @@ import numpy as np
 from ._engine import VoxelGrid
 
 _TITLE = b"frontlux recording, format "
-_FORMATS = (3, 4)  # 3 has no tours
+_FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no assigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "collisions")
@@ -41,6 +41,10 @@ class Recording:
     tours         dict of arrays, one row for each stop of the tour of a robot that planned in a step, in the tour's order:
                   step, robot (t,) int64; pose (t, 4) float64; clusters, frontiers (t,) int64, seen from there. Empty
                   without tours and in recordings of format 3
+    trajectories  dict of arrays, one row for each pose along the trajectory of a robot in motion that planned in a step:
+                  step, robot (p,) int64, pose (p, 4) float64. Empty in lock-step, and in formats before 5
+    reassigned    dict of arrays, one row for each frontier that became a robot's own to look at in a step, or ceased to be:
+                  step, robot (f,) int64; keys (f, 3) uint16. Empty in formats before 5
     end           str, why the run ended; None if it was cut off
     truncated     bool, an unfinished step at the end of the file was left out
     """
@@ -55,6 +59,8 @@ class Recording:
     poses: Dict[str, np.ndarray]
     changes: Dict[str, np.ndarray]
     tours: Dict[str, np.ndarray]
+    trajectories: Dict[str, np.ndarray]
+    reassigned: Dict[str, np.ndarray]
     end: Optional[str]
     truncated: bool
 
@@ -188,6 +194,9 @@ def _read_step(record, number, run, version):
         stops = [(record.doubles(4), record.counts(2)) for _ in range(record.length())] if version > 3 else []
         run["tours"].append((number, robot, np.array([pose for pose, _ in stops]).reshape(-1, 4),
                              *np.array([seen for _, seen in stops], np.int64).reshape(-1, 2).T))
+        if version > 4:
+            run["trajectories"].append((number, robot, record.doubles(record.length(), 4)))
+            run["reassigned"].append((number, robot, record.keys(record.length())))
         robots.append(of_robot)
     for name in (*_ROBOT_COUNTS, "length"):
         step[name] = np.array([of_robot[name] for of_robot in robots])
@@ -201,7 +210,7 @@ def _records(file, title):
         raise ValueError("is no recording of frontlux")
     version = line[len(title):-1].decode("ascii", "replace")
     if version not in map(str, _FORMATS):
-        raise ValueError(f"has format {version}, but this frontlux reads {' and '.join(map(str, _FORMATS))}")
+        raise ValueError(f"has format {version}, but this frontlux reads {_FORMATS[0]} to {_FORMATS[-1]}")
     yield int(version)
     while header := file.read(16):
         # What a file grew by before the machine lost its power may read as zeros.
@@ -239,7 +248,7 @@ def read_recording(file):
     if it cannot be opened.
     """
     head, end, truncated = None, None, False
-    run = {"steps": [], "poses": [], "changes": [], "tours": []}
+    run = {"steps": [], "poses": [], "changes": [], "tours": [], "trajectories": [], "reassigned": []}
     with open(file, "rb") as opened:
         try:
             parts = _records(opened, _TITLE)
@@ -274,4 +283,7 @@ def read_recording(file):
                        _columns(run["changes"], ((3,), np.uint16), ((), np.uint8), ((), np.uint8))))
     tours = dict(zip(("step", "robot", "pose", "clusters", "frontiers"),
                      _columns(run["tours"], ((4,), np.float64), ((), np.int64), ((), np.int64))))
-    return Recording(steps=steps, poses=poses, changes=changes, tours=tours, end=end, truncated=truncated, **head)
+    trajectories = dict(zip(("step", "robot", "pose"), _columns(run["trajectories"], ((4,), np.float64))))
+    reassigned = dict(zip(("step", "robot", "keys"), _columns(run["reassigned"], ((3,), np.uint16))))
+    return Recording(steps=steps, poses=poses, changes=changes, tours=tours, trajectories=trajectories,
+                     reassigned=reassigned, end=end, truncated=truncated, **head)

@@ -2,7 +2,6 @@
 #include "cell_table.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "draw/png_file.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
@@ -63,7 +62,8 @@ void check_options(const Options& options) {
     throw BadInput("--floor: a ugv stays on the plane of --at; leave the option out");
   if (options.robot == RobotKind::kUav && options.any_ground)
     throw BadInput("--any-ground: a uav needs no ground; leave the option out");
-  if (options.show && std::filesystem::path(options.output).extension() != ".png")
+  const auto ending = std::filesystem::path(options.output).extension();
+  if (options.show && (ending == ".csv" || ending == ".ply"))
     throw BadInput("--show: a table holds all cells; leave the option out, or write a .png");
 }
 
@@ -201,8 +201,8 @@ void write_picture(const VoxelGrid& grid, const Options& options, const View& vi
     title.push_back("gain " + gain_of(goal) + ", " + fixed(goal.distance, 1) + " m away, view quality " +
                     fixed(goal.quality, 1));
   try {
-    write_png(options.output, draw_view({grid, view.member.robot, view.pose, cells, edge, view.targets, goal,
-                                         std::move(title)}));
+    draw_view({grid, view.member.robot, view.pose, cells, edge, view.targets, goal, std::move(title)})
+        .write(options.output);
   } catch (const std::invalid_argument& error) {
     throw BadInput("--output: " + std::string(error.what()));
   }
@@ -230,7 +230,7 @@ void print(const Options& options, const View& view, double write_ms) {
 
 void render(const Options& options) {
   check_options(options);
-  check_output(options.output, {".png", ".ply", ".csv"});
+  check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"});
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_voxel_grid(map.tree);
   const View view = look(map, grid, options, make_member(options));
@@ -255,7 +255,9 @@ void add_render_command(CLI::App& app) {
   Command command(app, "render", "Show how many frontiers a robot would see from each place it can reach");
   const auto options = std::make_shared<Options>();
   command.add("MAP", options->map, "", "OctoMap file, .bt or .ot").required();
-  command.add("-o,--output", options->output, "FILE", "Picture (.png) or table (.csv, .ply) to write")
+  command
+      .add("-o,--output", options->output, "FILE",
+           "Picture (.png, .svg, .pdf) or table (.csv, .ply) to write")
       .required();
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Part of the map to look at: its lowest and its highest corner [all]");

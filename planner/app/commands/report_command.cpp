@@ -1,7 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "draw/png_file.hpp"
+#include "draw/film.hpp"
 #include "draw/stills.hpp"
 #include "explore/run_files.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 struct Options {
   std::vector<std::string> runs;
   std::string output;
-  bool png = false;
+  bool png = false, svg = false, pdf = false, video = false, gif = false;
 };
 
 struct Run {
@@ -75,7 +75,44 @@ std::filesystem::path output_of(const Options& options, const std::vector<Run>& 
   return runs.front().file.parent_path() / "report.html";
 }
 
+// The pictures of a run beside its recording, each drawn once.
+void write_stills(const Options& options, const Run& run) {
+  std::vector<const char*> endings;
+  if (options.png) endings.push_back(".png");
+  if (options.svg) endings.push_back(".svg");
+  if (options.pdf) endings.push_back(".pdf");
+  if (endings.empty()) return;
+  const auto write = [&](const char* name, const Picture& picture) {
+    for (const char* ending : endings) {
+      const std::filesystem::path file = run.file.parent_path() / (std::string(name) + ending);
+      picture.write(file);
+      std::cout << file.string() << '\n';
+    }
+  };
+  write("final_map", draw_final_map(run.recording, run.name));
+  write("coverage", draw_coverage(run.recording, run.name));
+}
+
+// Films of a run beside its recording; its frames where there is no ffmpeg.
+void write_films(const Options& options, const Run& run) {
+  constexpr int kWidth = 1200;  // [px]
+  const std::filesystem::path folder = run.file.parent_path(), frames = folder / "video";
+  write_frames(frames, run.recording, run.name, kWidth);
+  if (!has_ffmpeg()) {
+    std::cout << (frames / "").string() << '\n';
+    return;
+  }
+  const auto write = [&](const char* name) {
+    write_film(folder / name, frames);
+    std::cout << (folder / name).string() << '\n';
+  };
+  if (options.video) write("video.mp4");
+  if (options.gif) write("video.gif");
+  remove_frames(frames);
+}
+
 void report(const Options& options) {
+  if (options.gif && !has_ffmpeg()) throw BadInput("--gif: needs ffmpeg, which is not installed here");
   const std::vector<Run> runs = read_runs(options);
   const std::filesystem::path output = output_of(options, runs);
   std::vector<report::ReportedRun> reported;
@@ -83,12 +120,9 @@ void report(const Options& options) {
     reported.push_back({run.name, &run.recording, read_run_json(run.file.parent_path())});
   report::write_report(output, reported, FRONTLUX_VERSION);
   std::cout << output.string() << '\n';
-  if (!options.png) return;
   for (const Run& run : runs) {
-    const std::filesystem::path folder = run.file.parent_path();
-    write_png(folder / "final_map.png", draw_final_map(run.recording, run.name));
-    write_png(folder / "coverage.png", draw_coverage(run.recording, run.name));
-    std::cout << (folder / "final_map.png").string() << '\n' << (folder / "coverage.png").string() << '\n';
+    write_stills(options, run);
+    if (options.video || options.gif) write_films(options, run);
   }
 }
 
@@ -104,6 +138,12 @@ void add_report_command(CLI::App& app) {
       .required();
   command.add("-o,--output", options->output, "FILE.html", "Page to write [report.html beside a single run]");
   command.add_flag("--png", options->png, "Also write final_map.png and coverage.png beside each recording");
+  command.add_flag("--svg", options->svg, "The same as .svg, with lines and letters as vectors");
+  command.add_flag("--pdf", options->pdf, "The same as .pdf");
+  command.add_flag(
+      "--video", options->video,
+      "Also write how the map grows: video.mp4 where ffmpeg is installed, else the frames video/*.png");
+  command.add_flag("--gif", options->gif, "The same as a small video.gif; needs ffmpeg");
   command.examples(R"(Examples:
   frontlux report runs/station --png
   frontlux report runs/team runs/uav_alone -o comparison.html

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "draw/canvas.hpp"
+#include "draw/picture.hpp"
 
 #include <frontlux/planner/robot.hpp>
 

@@ -1,9 +1,11 @@
 #include "draw/colors.hpp"
 #include "draw/counts_seconds.hpp"
+#include "draw/round_length.hpp"
 #include "draw/stills.hpp"
 #include "text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +15,14 @@ namespace frontlux::app {
 namespace {
 
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kGrid{217, 223, 231}, kMuted{86, 97, 112};
-constexpr int kWidth = 1000, kHeight = 560, kLeft = 96, kRight = 30, kTop = 96, kBottom = 70;
+constexpr int kWidth = 1000, kHeight = 560, kLeft = 96, kRight = 30, kBottom = 78, kLine = 32;
+constexpr TextStyle kTitle{.size = 20.0, .color = kInk, .bold = true}, kText{.size = 18.0, .color = kInk};
 
 struct Curve {
   std::string name;
   Color color;
   double thickness;
+  std::vector<double> dashes;  // [px] strokes and gaps; they tell robots apart in grey, too
   std::vector<double> fractions;
 };
 
@@ -33,10 +37,11 @@ std::vector<Curve> curves_of(const planner::Recording& recording, std::string& o
   if (total == 0.0)
     for (const planner::KnownVoxels& known : recording.steps.back().known) total += count(known);
   total = std::max(total, 1.0);
-  std::vector<Curve> curves = {{"team", kInk, 3.5, {}}};
+  std::vector<Curve> curves = {{"team", kInk, 3.5, {}, {}}};
   const std::vector<Color> colors = robot_colors(head.robots);
+  const std::array<std::vector<double>, 4> kDashes = {{{}, {12, 6}, {3, 6}, {16, 6, 3, 6}}};
   for (std::size_t r = 0; r < head.robots.size(); ++r)
-    curves.push_back({head.robots[r].robot.name, colors[r], 2.5, {}});
+    curves.push_back({head.robots[r].robot.name, colors[r], 2.8, kDashes.at(r % kDashes.size()), {}});
   for (const planner::RecordedStep& step : recording.steps) {
     double sum = 0.0;
     for (std::size_t r = 0; r < head.robots.size(); ++r) {
@@ -71,59 +76,79 @@ Axis axis_of(const planner::Recording& recording) {
   return axis;
 }
 
-// 1, 2 or 5 times a power of ten, so that there are at most ten.
-std::uint64_t tick_of(std::uint64_t most) {
-  for (std::uint64_t power = 1;; power *= 10)
-    for (const std::uint64_t factor : {1U, 2U, 5U})
-      if (most <= 10 * power * factor) return power * factor;
+// Each curve's name and last value, in as many lines as they need.
+struct Legend {
+  struct Entry {
+    Spot at;
+    std::string text;
+  };
+  std::vector<Entry> entries;
+  double bottom = 0.0;
+};
+
+Legend legend_of(const std::vector<Curve>& curves, double top) {
+  constexpr double kSample = 44.0, kGap = 30.0;
+  Picture measure(1, 1);
+  Legend legend;
+  Spot at{24.0, top};
+  for (const Curve& curve : curves) {
+    const std::string text = curve.name + " " + percent(curve.fractions.back(), 1);
+    const double width = kSample + measure.text_width(text, kText);
+    if (at.x > 24.0 && at.x + width > kWidth - kRight) at = {24.0, at.y + kLine};
+    legend.entries.push_back({at, text});
+    at.x += width + kGap;
+  }
+  legend.bottom = at.y + kLine;
+  return legend;
 }
 
 }  // namespace
 
-Canvas draw_coverage(const planner::Recording& recording, const std::string& name) {
+Picture draw_coverage(const planner::Recording& recording, const std::string& name) {
   std::string of;
   const std::vector<Curve> curves = curves_of(recording, of);
   const Axis axis = axis_of(recording);
+  const Legend legend = legend_of(curves, 68.0);
+  const double top = legend.bottom, height = top + kHeight - 100;
   const double end = std::max(1.0, axis.places.back());
   const auto pixel_x = [&](double place) { return kLeft + (kWidth - kLeft - kRight) * place / end; };
-  const auto pixel_y = [](double fraction) {
-    return kHeight - kBottom - (kHeight - kTop - kBottom) * fraction;
+  const auto pixel_y = [&](double fraction) {
+    return height - kBottom - (height - top - kBottom) * fraction;
   };
 
-  Canvas canvas(kWidth, kHeight, kPaper);
-  canvas.text(24, 24,
-              (name == recording.head.world ? name : name + ": " + recording.head.world) + ", mapped " + of,
-              kInk);
-  int x = 24;
-  for (const Curve& curve : curves) {
-    canvas.fill(x, 58, 24, 5, curve.color);
-    const std::string text = curve.name + " " + percent(curve.fractions.back(), 1);
-    canvas.text(x + 32, 54, text, kInk);
-    x += 32 + Canvas::text_width(text) + 28;
+  Picture picture(kWidth, static_cast<int>(height));
+  picture.text({24, 30},
+               (name == recording.head.world ? name : name + ": " + recording.head.world) + ", mapped " + of,
+               kTitle);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const auto& [at, text] = legend.entries[i];
+    const std::array<Spot, 2> sample = {at, {at.x + 34, at.y}};
+    picture.line(sample, curves[i].thickness + 1.0, curves[i].color, curves[i].dashes);
+    picture.text({at.x + 44, at.y}, text, kText);
   }
   for (int tick = 0; tick <= 4; ++tick) {
-    const int y = static_cast<int>(std::lround(pixel_y(tick / 4.0)));
-    canvas.fill(kLeft, y, kWidth - kLeft - kRight, 1, kGrid);
-    const std::string text = percent(tick / 4.0, 0);
-    canvas.text(kLeft - 10 - Canvas::text_width(text), y - Canvas::kTextHeight / 2, text, kMuted);
+    const double y = std::round(pixel_y(tick / 4.0));
+    picture.fill(kLeft, y, kWidth - kLeft - kRight, 1, kGrid);
+    picture.text({kLeft - 10.0, y}, percent(tick / 4.0, 0), {kText.size, kMuted, Align::kRight});
   }
-  const auto most = static_cast<std::uint64_t>(axis.places.back()), each = tick_of(most);
-  for (std::uint64_t tick = 0; tick <= most; tick += each) {
-    const auto place = static_cast<double>(tick);
-    const int at = static_cast<int>(std::lround(pixel_x(place)));
-    canvas.fill(at, kTop, 1, kHeight - kTop - kBottom, kGrid);
-    const std::string text = fixed(axis.first + place, 0);
-    canvas.text(at - Canvas::text_width(text) / 2, kHeight - kBottom + 10, text, kMuted);
+  const auto most = static_cast<std::uint64_t>(axis.places.back());
+  const double each = std::max(1.0, round_length(static_cast<double>(most) / 4.0));
+  for (double tick = 0.0; tick <= static_cast<double>(most); tick += each) {
+    const double at = std::round(pixel_x(tick));
+    picture.fill(at, top, 1, height - top - kBottom, kGrid);
+    picture.text({at, height - kBottom + 20.0}, fixed(axis.first + tick, 0),
+                 {kText.size, kMuted, Align::kMiddle});
   }
-  canvas.text(kWidth - kRight - Canvas::text_width(axis.unit), kHeight - 30, axis.unit, kMuted);
+  picture.text({kWidth - kRight * 1.0, height - 24.0}, axis.unit, {kText.size, kMuted, Align::kRight});
   std::for_each(curves.rbegin(), curves.rend(), [&](const Curve& curve) {
-    for (std::size_t from = 0, to = 1; to < curve.fractions.size(); from = to++) {
-      const auto x0 = pixel_x(axis.places[from]), y0 = pixel_y(curve.fractions[from]);
-      const auto x1 = pixel_x(axis.places[to]), y1 = pixel_y(curve.fractions[to]);
-      if (x0 != x1 || y0 != y1) canvas.line(x0, y0, x1, y1, curve.thickness, curve.color);
+    std::vector<Spot> spots;
+    for (std::size_t i = 0; i < curve.fractions.size(); ++i) {
+      const Spot spot{pixel_x(axis.places[i]), pixel_y(curve.fractions[i])};
+      if (spots.empty() || spot.x != spots.back().x || spot.y != spots.back().y) spots.push_back(spot);
     }
+    picture.line(spots, curve.thickness, curve.color, curve.dashes);
   });
-  return canvas;
+  return picture;
 }
 
 }  // namespace frontlux::app

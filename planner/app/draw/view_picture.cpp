@@ -1,11 +1,11 @@
 #include "draw/view_picture.hpp"
 
 #include "draw/colors.hpp"
+#include "draw/round_length.hpp"
 #include "text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -16,7 +16,8 @@ namespace {
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kUnknown{150, 150, 156}, kFree{226, 226, 230},
     kOccupied{38, 38, 44}, kFrontier{238, 120, 20}, kFarFrontier{226, 184, 150}, kGoal{214, 18, 92},
     kRobot{255, 255, 255};
-constexpr int kMargin = 24, kPanel = 250, kLine = 26;
+constexpr int kMargin = 24, kPanel = 260, kLine = 28;
+constexpr TextStyle kText{.size = 19.0, .color = kInk};
 constexpr int kWidth = 900;                   // [px] of the longer edge of the map, about
 constexpr int kMinScale = 3, kMaxScale = 24;  // [px] of a voxel
 constexpr int kMaxPixels = 12000;             // of an edge
@@ -25,16 +26,17 @@ constexpr double kAround = 2.0;               // [m] shown around cells and fron
 // The part of the map that is shown, in columns of voxels; y grows upwards in it.
 struct Window {
   int min_x, max_x, min_y, max_y;
-  int scale = 1;  // [px] of a voxel
-  int left = kMargin, top = 0;
+  int scale = 1;                // [px] of a voxel
+  int left = kMargin, top = 0;  // of the map in the picture
 
   [[nodiscard]] int columns() const { return max_x - min_x + 1; }
   [[nodiscard]] int rows() const { return max_y - min_y + 1; }
   [[nodiscard]] std::size_t place(int x, int y) const {
     return static_cast<std::size_t>((y - min_y) * columns() + x - min_x);
   }
-  [[nodiscard]] int pixel_x(int key) const { return left + (key - min_x) * scale; }
-  [[nodiscard]] int pixel_y(int key) const { return top + (max_y - key) * scale; }
+  // In the map.
+  [[nodiscard]] int pixel_x(int key) const { return (key - min_x) * scale; }
+  [[nodiscard]] int pixel_y(int key) const { return (max_y - key) * scale; }
 };
 
 Window choose_window(const ViewScene& scene) {
@@ -65,7 +67,7 @@ Window choose_window(const ViewScene& scene) {
   return window;
 }
 
-void draw_map(Canvas& canvas, const ViewScene& scene, const Window& window) {
+void draw_map(Raster& map, const ViewScene& scene, const Window& window) {
   const auto z = scene.grid.lattice().key(scene.pose.position.z()).value();
   for (int x = window.min_x; x <= window.max_x; ++x)
     for (int y = window.min_y; y <= window.max_y; ++y) {
@@ -74,7 +76,7 @@ void draw_map(Canvas& canvas, const ViewScene& scene, const Window& window) {
       const Color color = state == Occupancy::kFree       ? kFree
                           : state == Occupancy::kOccupied ? kOccupied
                                                           : kUnknown;
-      canvas.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale, color);
+      map.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale, color);
     }
 }
 
@@ -96,27 +98,23 @@ std::vector<double> columns_of(const ViewScene& scene, const Window& window) {
 // On a scale of square roots, so that low qualities, which are far away, stay visible.
 double fraction_of(double quality, double most) { return most > 0.0 ? std::sqrt(quality / most) : 0.0; }
 
-void draw_cells(Canvas& canvas, const ViewScene& scene, const Window& window, double most) {
+void draw_cells(Raster& map, const ViewScene& scene, const Window& window, double most) {
   const std::vector<double> columns = columns_of(scene, window);
   const auto quality = [&](int x, int y) { return columns[window.place(x, y)]; };
   for (int x = window.min_x; x <= window.max_x; ++x)
     for (int y = window.min_y; y <= window.max_y; ++y)
       if (quality(x, y) >= 0.0)
-        canvas.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale,
-                    color_of(fraction_of(quality(x, y), most)));
+        map.fill(window.pixel_x(x), window.pixel_y(y), window.scale, window.scale,
+                 color_of(fraction_of(quality(x, y), most)));
   // Frontiers of all heights, those far above or below faintly, and none over cells.
   const int inset = window.scale >= 5 ? window.scale / 5 : 0;
   const int layer = scene.grid.lattice().key(scene.pose.position.z()).value();
   for (const bool near : {false, true})
     for (const VoxelKey& key : scene.frontiers)
       if (near == (std::abs(key.z - layer) <= 1) && quality(key.x, key.y) < 0.0)
-        canvas.fill(window.pixel_x(key.x) + inset, window.pixel_y(key.y) + inset, window.scale - 2 * inset,
-                    window.scale - 2 * inset, near ? kFrontier : kFarFrontier);
+        map.fill(window.pixel_x(key.x) + inset, window.pixel_y(key.y) + inset, window.scale - 2 * inset,
+                 window.scale - 2 * inset, near ? kFrontier : kFarFrontier);
 }
-
-struct Spot {
-  double x, y;  // [px]
-};
 
 Spot spot_of(const ViewScene& scene, const Window& window, const Eigen::Vector3d& point) {
   const double resolution = scene.grid.resolution();
@@ -124,118 +122,107 @@ Spot spot_of(const ViewScene& scene, const Window& window, const Eigen::Vector3d
           window.top + (window.max_y + 1 - point.y() / resolution - Lattice::kOrigin) * window.scale};
 }
 
-void draw_robot_mark(Canvas& canvas, const Spot& at) {
-  canvas.disc(at.x, at.y, 9, kInk);
-  canvas.disc(at.x, at.y, 6.5, kRobot);
-  canvas.disc(at.x, at.y, 3, kInk);
+void draw_robot_mark(Picture& picture, const Spot& at) {
+  picture.disc(at, 9, kInk);
+  picture.disc(at, 6.5, kRobot);
+  picture.disc(at, 3, kInk);
 }
 
-void draw_goal_mark(Canvas& canvas, const Spot& at) {
-  canvas.ring(at.x, at.y, 10, 7, kPaper);
-  canvas.ring(at.x, at.y, 10, 4, kGoal);
-  canvas.disc(at.x, at.y, 4.5, kPaper);
-  canvas.disc(at.x, at.y, 3, kGoal);
+void draw_goal_mark(Picture& picture, const Spot& at) {
+  picture.ring(at, 10, 7, kPaper);
+  picture.ring(at, 10, 4, kGoal);
+  picture.disc(at, 4.5, kPaper);
+  picture.disc(at, 3, kGoal);
 }
 
-void draw_robot_and_goal(Canvas& canvas, const ViewScene& scene, const Window& window) {
-  draw_robot_mark(canvas, spot_of(scene, window, scene.pose.position));
+void draw_robot_and_goal(Picture& picture, const ViewScene& scene, const Window& window) {
+  draw_robot_mark(picture, spot_of(scene, window, scene.pose.position));
   if (!scene.goal.pose) return;
   const Spot goal = spot_of(scene, window, scene.goal.pose->position);
   const FieldOfView& view = scene.robot.view;
   const auto ray = [&](double yaw, double length, double thickness) {
     const double px = length / scene.grid.resolution() * window.scale;
-    const double x = goal.x + px * std::cos(yaw), y = goal.y - px * std::sin(yaw);
-    canvas.line(goal.x, goal.y, x, y, thickness + 2.5, kPaper);
-    canvas.line(goal.x, goal.y, x, y, thickness, kGoal);
+    const std::array<Spot, 2> ends = {goal, {goal.x + px * std::cos(yaw), goal.y - px * std::sin(yaw)}};
+    picture.line(ends, thickness + 2.5, kPaper);
+    picture.line(ends, thickness, kGoal);
   };
   if (view.shape != FieldOfView::Shape::kSpinning) {
     const double length = 0.35 * view.max_range;
     ray(scene.goal.pose->yaw - view.horizontal / 2, length, 2.5);
     ray(scene.goal.pose->yaw + view.horizontal / 2, length, 2.5);
   }
-  draw_goal_mark(canvas, goal);
+  draw_goal_mark(picture, goal);
 }
 
-std::string short_number(double number) {
-  std::array<char, 32> buffer{};
-  char *const begin = buffer.data(), *const end = begin + buffer.size();
-  const bool whole = number >= 1000.0 && number < 1e7;
-  const auto written = whole ? std::to_chars(begin, end, std::llround(number))
-                             : std::to_chars(begin, end, number, std::chars_format::general, 3);
-  return {begin, written.ptr};
-}
-
-void draw_panel(Canvas& canvas, const ViewScene& scene, const Window& window, int left, int height,
+void draw_panel(Picture& picture, const ViewScene& scene, const Window& window, int left, int height,
                 double most) {
   constexpr int kBar = 28, kBarHeight = 300;
-  canvas.text(left, window.top, "view quality", kInk);
+  picture.text({static_cast<double>(left), window.top + 5.0}, "view quality", kText);
   const int top = window.top + kLine;
-  for (int y = 0; y < kBarHeight; ++y)
-    canvas.fill(left, top + y, kBar, 1, color_of(1.0 - y / (kBarHeight - 1.0)));
-  canvas.frame(left - 1, top - 1, kBar + 2, kBarHeight + 2, 1, kInk);
+  Raster bar(kBar, kBarHeight);
+  for (int y = 0; y < kBarHeight; ++y) bar.fill(0, y, kBar, 1, color_of(1.0 - y / (kBarHeight - 1.0)));
+  picture.image(left, top, std::move(bar));
+  picture.frame(left - 1, top - 1, kBar + 2, kBarHeight + 2, 1, kInk);
   for (int tick = 0; tick <= 4; ++tick) {
     const int y = top + (kBarHeight - 1) * (4 - tick) / 4;
-    canvas.fill(left + kBar, y, 6, 1, kInk);
-    canvas.text(left + kBar + 12, y - Canvas::kTextHeight / 2, short_number(most * tick * tick / 16), kInk);
+    picture.fill(left + kBar, y, 6, 1, kInk);
+    picture.text({left + kBar + 12.0, y + 0.5}, short_number(most * tick * tick / 16), kText);
   }
   int y = top + kBarHeight + kMargin;
   const auto entry = [&](const char* name, const auto& draw) {
     draw(left + 10, y + 9);
-    canvas.text(left + 32, y + 2, name, kInk);
+    picture.text({left + 32.0, y + 9.0}, name, kText);
     y += kLine;
   };
   const auto patch = [&](Color color) {
-    return [&canvas, color](int x, int middle) {
-      canvas.fill(x - 9, middle - 8, 18, 18, color);
-      canvas.frame(x - 9, middle - 8, 18, 18, 1, kInk);
+    return [&picture, color](int x, int middle) {
+      picture.fill(x - 9, middle - 9, 18, 18, color);
+      picture.frame(x - 9, middle - 9, 18, 18, 1, kInk);
     };
   };
   entry("unknown", patch(kUnknown));
   entry("free", patch(kFree));
   entry("occupied", patch(kOccupied));
   entry("frontier", patch(kFrontier));
-  entry("above/below", patch(kFarFrontier));
-  entry("robot", [&](int x, int middle) { draw_robot_mark(canvas, {double(x), double(middle)}); });
-  entry("goal", [&](int x, int middle) { draw_goal_mark(canvas, {double(x), double(middle)}); });
+  entry("frontier above, below", patch(kFarFrontier));
+  entry("robot", [&](int x, int middle) { draw_robot_mark(picture, {double(x), double(middle)}); });
+  entry("goal", [&](int x, int middle) { draw_goal_mark(picture, {double(x), double(middle)}); });
 
-  // A length of 1, 2 or 5 times a power of ten that fits into the panel.
   const double metres_per_pixel = scene.grid.resolution() / window.scale;
-  const double longest = (kPanel - kMargin - 40) * metres_per_pixel;
-  double length = std::pow(10.0, std::floor(std::log10(longest)));
-  for (const double factor : {5.0, 2.0})
-    if (length * factor <= longest) {
-      length *= factor;
-      break;
-    }
+  const double length = round_length((kPanel - kMargin - 40) * metres_per_pixel);
   const int pixels = static_cast<int>(std::lround(length / metres_per_pixel));
   const int bar_y = std::max(y + kMargin, std::min(height - kMargin - 8, y + 3 * kMargin));
-  canvas.fill(left, bar_y, pixels, 4, kInk);
-  canvas.fill(left, bar_y - 6, 2, 16, kInk);
-  canvas.fill(left + pixels - 2, bar_y - 6, 2, 16, kInk);
-  canvas.text(left, bar_y - 26, short_number(length) + " m", kInk);
+  picture.fill(left, bar_y, pixels, 4, kInk);
+  picture.fill(left, bar_y - 6, 2, 16, kInk);
+  picture.fill(left + pixels - 2, bar_y - 6, 2, 16, kInk);
+  picture.text({static_cast<double>(left), bar_y - 18.0}, short_number(length) + " m", kText);
 }
 
 }  // namespace
 
-Canvas draw_view(const ViewScene& scene) {
-  constexpr int kPanelHeight = 640;
+Picture draw_view(const ViewScene& scene) {
+  constexpr int kPanelHeight = 660;
   const Window window = choose_window(scene);
   const int map_width = window.columns() * window.scale, map_height = window.rows() * window.scale;
-  int title_width = 0;
-  for (const std::string& line : scene.title) title_width = std::max(title_width, Canvas::text_width(line));
-  const int width = std::max({kWidth, 3 * kMargin + map_width + kPanel, 2 * kMargin + title_width});
+  double title_width = 0.0;
+  for (const std::string& line : scene.title)
+    title_width = std::max(title_width, Picture(1, 1).text_width(line, kText));
+  const int width = std::max(3 * kMargin + map_width + kPanel,
+                             std::max(kWidth, 2 * kMargin + static_cast<int>(std::ceil(title_width))));
   const int height = window.top + std::max(map_height, kPanelHeight) + kMargin;
-  Canvas canvas(width, height, kPaper);
+  Picture picture(width, height);
   for (std::size_t i = 0; i < scene.title.size(); ++i)
-    canvas.text(kMargin, kMargin + kLine * static_cast<int>(i), scene.title[i], kInk);
+    picture.text({kMargin, kMargin + kLine * (static_cast<double>(i) + 0.4)}, scene.title[i], kText);
   double most = 0.0;
   for (const auto& cell : scene.cells) most = std::max(most, cell.quality);
-  draw_map(canvas, scene, window);
-  draw_cells(canvas, scene, window, most);
-  canvas.frame(window.left - 1, window.top - 1, map_width + 2, map_height + 2, 1, kInk);
-  draw_robot_and_goal(canvas, scene, window);
-  draw_panel(canvas, scene, window, window.left + map_width + kMargin, height, most);
-  return canvas;
+  Raster map(map_width, map_height);
+  draw_map(map, scene, window);
+  draw_cells(map, scene, window, most);
+  picture.image(window.left, window.top, std::move(map));
+  picture.frame(window.left - 1, window.top - 1, map_width + 2, map_height + 2, 1, kInk);
+  draw_robot_and_goal(picture, scene, window);
+  draw_panel(picture, scene, window, window.left + map_width + kMargin, height, most);
+  return picture;
 }
 
 }  // namespace frontlux::app

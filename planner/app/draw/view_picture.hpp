@@ -1,6 +1,6 @@
 #pragma once
 
-#include "draw/canvas.hpp"
+#include "draw/picture.hpp"
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -26,6 +26,6 @@ struct ViewScene {
 /// A map seen from above: the robot's layer in greys, view quality in colours, and robot, goal and frontiers
 /// on it. At least 900 pixels wide.
 /// @throws std::invalid_argument if what is to be shown is too wide for an image
-[[nodiscard]] Canvas draw_view(const ViewScene& scene);
+[[nodiscard]] Picture draw_view(const ViewScene& scene);
 
 }  // namespace frontlux::app

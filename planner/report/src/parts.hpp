@@ -26,9 +26,9 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 [[nodiscard]] std::span<const RobotColor> aerial_colors();
 [[nodiscard]] std::span<const RobotColor> ground_colors();
 
-/// Changed voxels, images, paths and tours of a run, as bytes that web/src/run_data.js reads. Of a robot with
-/// more than 400 images, only every second one is in it, or every third one, and so on. For each step and
-/// each robot:
+/// Changed voxels, images, paths, tours, trajectories and assigned frontiers of a run, as bytes that
+/// web/src/run_data.js reads. Of a robot with more than 400 images, only every second one is in it, or every
+/// third one, and so on. For each step and each robot:
 ///
 ///     count of chunks (cubes of 32^3 voxels that hold a change), sorted by x, then y, then z; for each:
 ///       x, y, z of the chunk (key / 32) as counts; count of voxels; for each, sorted by

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -85,6 +86,18 @@ std::uint8_t byte_of(double fraction) {
   return static_cast<std::uint8_t>(fraction > 0.0 ? std::lround(255.0 * std::min(fraction, 1.0)) : 0);
 }
 
+// x of all, as differences from the one before; then y, then z.
+template <class Element, class Key = std::identity>
+void write_keys(ByteWriter& out, const std::vector<Element>& list, const Key& key = {}) {
+  for (const auto axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
+    int last = 0;
+    for (const Element& element : list) {
+      out.difference(std::invoke(key, element).*axis - last);
+      last = std::invoke(key, element).*axis;
+    }
+  }
+}
+
 void write_image(ByteWriter& out, std::vector<planner::RenderedCell> cells) {
   out.count(cells.size());
   if (cells.empty()) return;
@@ -98,13 +111,7 @@ void write_image(ByteWriter& out, std::vector<planner::RenderedCell> cells) {
   }
   out.f32(gain);
   out.f32(quality);
-  for (const auto axis : {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z}) {
-    int last = 0;
-    for (const planner::RenderedCell& cell : cells) {
-      out.difference(cell.cell.*axis - last);
-      last = cell.cell.*axis;
-    }
-  }
+  write_keys(out, cells, &planner::RenderedCell::cell);
   for (const planner::RenderedCell& cell : cells) out.u8(byte_of(gain > 0.0 ? cell.gain / gain : 0.0));
   for (const planner::RenderedCell& cell : cells)
     out.u8(byte_of(quality > 0.0 ? std::sqrt(cell.quality / quality) : 0.0));
@@ -127,6 +134,14 @@ void write_tour(ByteWriter& out, std::span<const planner::PlannedStop> tour) {
     out.count(stop.clusters);
     out.count(stop.frontiers);
   }
+}
+
+void write_plan(ByteWriter& out, const planner::RobotStep& robot) {
+  out.count(robot.trajectory.size());
+  for (const planner::Pose& pose : robot.trajectory)
+    for (const double coordinate : pose.position) out.f32(coordinate);
+  out.count(robot.reassigned.size());
+  write_keys(out, robot.reassigned);
 }
 
 // Of each robot, every how many-th image goes into the report.
@@ -153,6 +168,7 @@ std::string run_data(const planner::Recording& recording) {
       write_image(out, shown ? robot.image : std::vector<planner::RenderedCell>());
       write_path(out, robot);
       write_tour(out, robot.tour);
+      write_plan(out, robot);
     }
   return out.bytes();
 }

@@ -29,6 +29,30 @@ bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) 
           std::abs(std::remainder(scanned.yaw - end.yaw, 2 * std::numbers::pi)) < kAligned);
 }
 
+// Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
+// about straight.
+std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
+  constexpr double kStep = 0.1, kOff = 0.03, kMost = 1000.0;  // [s], [m], poses
+  const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
+  const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
+  std::vector<Pose> all, some;
+  for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
+  const auto straight = [&](std::size_t a, std::size_t b) {
+    const Eigen::Vector3d along = (all[b].position - all[a].position).stableNormalized();
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const Eigen::Vector3d to = all[i].position - all[a].position;
+      if ((to - to.dot(along) * along).norm() > kOff) return false;
+    }
+    return true;
+  };
+  for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
+    if (i > 0 && i + 1 < all.size() && straight(kept, i + 1)) continue;
+    some.push_back(all[i]);
+    kept = i;
+  }
+  return some;
+}
+
 void sort_once(Keys& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -301,6 +325,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     team.plan_tours(robot, starts, step);
   else
     team.select_goals(step, robot);
+  if (team.tours) team.note_assignment(step);
   if (!keeps) member.chosen = time;
 
   Trajectory trajectory = find_trajectory(robot, start, step);
@@ -310,6 +335,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.blocked = member.stopped = false;
   judge(robot, step.robots[robot]);
   ++team.number;
+  step.robots[robot].trajectory = poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))

@@ -92,6 +92,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   }
   selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
   targets.resize(size());
+  assigned.resize(size());
   trails.resize(size());
   went_back_to.resize(size());
 }
@@ -153,6 +154,16 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
     step.robots[r].goal = std::move(goals.goals[r]);
     if (options.team[r].robot.travel.motion == Motion::kPlane && (!choosing || *choosing == r))
       step.robots[r].image = selection->rendered_cells(r);
+  }
+  note_assignment(step);
+}
+
+void ExplorationState::note_assignment(ExplorationStep& step) {
+  for (std::size_t r = 0; r < size(); ++r) {
+    Keys now = tours ? tours->frontiers_of(r) : targets[r];
+    step.robots[r].reassigned.clear();
+    std::ranges::set_symmetric_difference(assigned[r], now, std::back_inserter(step.robots[r].reassigned));
+    assigned[r] = std::move(now);
   }
 }
 

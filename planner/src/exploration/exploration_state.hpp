@@ -38,6 +38,7 @@ struct ExplorationState {
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
   std::vector<Goal> last_goals = {};           // of the last step
   std::vector<Keys> went_back_to = {};         // by robots that had no goal since
+  std::vector<Keys> assigned = {};             // frontiers that are each robot's, as last noted; sorted
   Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
   Keys changed = {};                           // by the last step, sorted
   std::uint64_t number = 0;                    // of the next step
@@ -57,6 +58,8 @@ struct ExplorationState {
   void update_views(ExplorationStep& step);
   /// @param choosing  if given: the robot that chooses; the others keep their goals
   void select_goals(ExplorationStep& step, std::optional<std::size_t> choosing = std::nullopt);
+  /// Notes which frontiers have become or ceased to be a robot's.
+  void note_assignment(ExplorationStep& step);
   /// Brings a robot's corridor up to date; all robots keep their goals.
   void keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent = CorridorExtent::kAllCells);
   /// Leaves a robot the stop of its tour that it has for a goal.

@@ -13,7 +13,7 @@ namespace frontlux::planner::detail {
 namespace {
 
 constexpr std::size_t kKeyBytes = 3;  // at least
-constexpr int kFormatWithTours = 4;
+constexpr int kFormatWithTours = 4, kFormatWithPlans = 5;
 
 void code_finite(RecordBytes& bytes, double& value, const char* what) {
   bytes.number(value);
@@ -210,6 +210,10 @@ void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds, int 
   code_sorted_keys(bytes, robot.blocked, "the blocked cells are not sorted, each once");
   code_image(bytes, robot.image);
   if (format >= kFormatWithTours) code_tour(bytes, robot.tour);
+  if (format < kFormatWithPlans) return;
+  bytes.length(robot.trajectory, 4 * sizeof(double));
+  for (Pose& pose : robot.trajectory) code_pose(bytes, pose);
+  code_sorted_keys(bytes, robot.reassigned, "the reassigned frontiers are not sorted, each once");
 }
 
 void code_known(RecordBytes& bytes, std::vector<KnownVoxels>& known, const RecordingHead& head) {

@@ -10,7 +10,7 @@ namespace frontlux::planner::detail {
 
 /// The first line of a recording, but for the number of its format and the line's end.
 inline constexpr std::string_view kRecordingTitle = "frontlux recording, format ";
-/// The oldest format that is read; its steps have no tours.
+/// The oldest format that is read: see `Recording::format`.
 inline constexpr int kOldestRecordingFormat = 3;
 
 /// The bytes of a recording's records. What writes them throws std::invalid_argument naming the value that is

@@ -113,6 +113,9 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
                                static_cast<std::uint32_t>(random.bits())});
       for (int i = random.below(5); i > 0; --i)
         robot.tour.push_back({random_pose(random), random.bits() % 9, random.bits() % 1000});
+      for (int i = random.below(5); i > 0; --i) robot.trajectory.push_back(random_pose(random));
+      for (int i = random.below(size); i > 0; --i) robot.reassigned.push_back(random.key_in(kAllVoxels));
+      sort(robot.reassigned);
     }
     step.robots.push_back(robot);
   }
@@ -187,6 +190,10 @@ class Listing {
         add(stop.pose);
         line("stop", stop.clusters, stop.frontiers);
       }
+      line("trajectory", r.trajectory.size());
+      for (const auto& pose : r.trajectory) add(pose);
+      line("reassigned", r.reassigned.size());
+      for (const auto& key : r.reassigned) add(key);
     }
   }
 

@@ -89,11 +89,11 @@ TEST_F(RecordingTest, AnyNumberOfRobots) {
 
 TEST_F(RecordingTest, FirstLineSaysWhatItIs) {
   record(0, 0, false);
-  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 4\n"));
+  EXPECT_TRUE(bytes().starts_with("frontlux recording, format 5\n"));
 }
 
 // format_3.frontlux: frontlux explore room --seed 1 --max-steps 6 --resolution 1, before there were tours.
-TEST_F(RecordingTest, ReadsAndGoesOnWithTheFormatBefore) {
+TEST_F(RecordingTest, ReadsAndGoesOnWithTheFormatWithoutTours) {
   save(test::content_of(FRONTLUX_DATA_DIR "/../tests/planner/recording/format_3.frontlux"));
   const Recording old = read_recording(file_);
   EXPECT_EQ(old.format, 3);
@@ -115,6 +115,33 @@ TEST_F(RecordingTest, ReadsAndGoesOnWithTheFormatBefore) {
   next.step.robots[1].tour.clear();
   ASSERT_EQ(longer.steps.size(), 8U);
   EXPECT_EQ(listed(longer.steps.back()), listed(next)) << "the format has no place for tours";
+}
+
+// format_4.frontlux: the same, before trajectories and assigned frontiers were recorded.
+TEST_F(RecordingTest, ReadsAndGoesOnWithTheFormatWithoutPlans) {
+  save(test::content_of(FRONTLUX_DATA_DIR "/../tests/planner/recording/format_4.frontlux"));
+  const Recording old = read_recording(file_);
+  EXPECT_EQ(old.format, 4);
+  ASSERT_EQ(old.steps.size(), 7U);
+  std::size_t stops = 0;
+  for (const RecordedStep& step : old.steps)
+    for (const RobotStep& robot : step.step.robots) {
+      stops += robot.tour.size();
+      EXPECT_TRUE(robot.trajectory.empty() && robot.reassigned.empty());
+    }
+  EXPECT_GT(stops, 0U);
+
+  RecordedStep next = old.steps.back();
+  next.step.number = 7;
+  next.step.robots[1].trajectory.push_back({{1.0, 2.0, 3.0}, 0.5});
+  next.step.robots[1].reassigned.push_back({1, 2, 3});
+  RecordingWriter(file_, old).write(next);
+  const Recording longer = read_recording(file_);
+  EXPECT_EQ(longer.format, 4);
+  next.step.robots[1].trajectory.clear();
+  next.step.robots[1].reassigned.clear();
+  ASSERT_EQ(longer.steps.size(), 8U);
+  EXPECT_EQ(listed(longer.steps.back()), listed(next)) << "the format has no place for plans";
 }
 
 TEST_F(RecordingTest, EveryTruncationIsAPrefix) {
@@ -147,8 +174,10 @@ TEST_F(RecordingTest, EveryFlippedByteIsFound) {
       flipped[at] = static_cast<char>(flipped[at] ^ mask);
       const std::string said = complaint(flipped);
       ASSERT_NE(said, "") << "byte " << at << ", mask " << mask;
-      const bool in_title = at < std::string("frontlux recording, format 4\n").size();
-      ASSERT_EQ(said.find("damaged at byte ") == std::string::npos, in_title) << said;
+      const bool in_title = at < std::string("frontlux recording, format 5\n").size();
+      // As format 4 the file can be begun to be read.
+      const bool other_format = flipped.starts_with("frontlux recording, format 4\n");
+      ASSERT_EQ(said.find("damaged at byte ") == std::string::npos, in_title && !other_format) << said;
     }
 }
 
@@ -366,12 +395,12 @@ TEST_F(RecordingTest, AFailedWriteLeavesTheStepsBefore) {
 TEST_F(RecordingTest, ForeignFiles) {
   expect_refused("", "ends in its first line");
   expect_refused("frontl", "ends in its first line");
-  expect_refused("frontlux recording, format 4", "ends in its first line");
-  expect_refused("frontlux recording, format 4\n", "ends before the run began");
+  expect_refused("frontlux recording, format 5", "ends in its first line");
+  expect_refused("frontlux recording, format 5\n", "ends before the run began");
   expect_refused("frontlux recording, format 1\nanything",
-                 "is a recording of format 1, and this program reads formats 3 to 4");
+                 "is a recording of format 1, and this program reads formats 3 to 5");
   expect_refused("frontlux recording, format 12\n",
-                 "reads formats 3 to 4; read it with the frontlux that wrote it");
+                 "reads formats 3 to 5; read it with the frontlux that wrote it");
   expect_refused("frontlux recording, format x\n", "is not a recording");
   expect_refused("frontlux recording, format 99999999999999999999\n", "is not a recording");
   expect_refused("# Octomap OcTree file\nid OcTree\n", "is not a recording");
@@ -418,7 +447,8 @@ TEST_F(RecordingTest, PythonExampleReadsIt) {
       std::snprintf(length, sizeof length, "%.2f", step.robots[i].length);
       expected << "; robot " << i << ": " << length << " m, " << step.robots[i].planned.size()
                << " viewpoints, " << after[1] << " voxels free, " << after[2] << " occupied, knows "
-               << recorded.known[i].observable << ", tour of " << step.robots[i].tour.size() << " stops";
+               << recorded.known[i].observable << ", tour of " << step.robots[i].tour.size()
+               << " stops, trajectory of " << step.robots[i].trajectory.size() << " poses";
     }
     expected << "\n";
   }

@@ -103,6 +103,11 @@ struct RobotStep {
   /// Where it means to look from, in order, if it planned in this step; the first one is its goal. Empty
   /// without tours.
   std::vector<PlannedStop> tour;
+  /// In motion, if it planned in this step: where its trajectory leads, from its begin to its end, a few
+  /// centimetres at most from the lines between these poses.
+  std::vector<Pose> trajectory;
+  /// Frontiers that are its own to look at from this step on and were not, or the other way round; sorted.
+  std::vector<VoxelKey> reassigned;
 };
 
 /// What a step spends its time on. All but the last are planning.

@@ -16,7 +16,7 @@
 namespace frontlux::planner {
 
 /// The format that recordings are written in; docs/recording.md describes it.
-inline constexpr int kRecordingFormat = 4;
+inline constexpr int kRecordingFormat = 5;
 
 /// The head of a recording: what holds for the whole run.
 struct RecordingHead {
@@ -52,7 +52,8 @@ struct Recording {
   std::vector<RecordedStep> steps;  ///< from step 0
   std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
   bool truncated = false;           ///< an unfinished step at the end of the file was left out
-  int format = kRecordingFormat;    ///< of the file; the steps of format 3 have no tours
+  int format = kRecordingFormat;    ///< of the file; steps of format 4 have no trajectories and no assigned
+                                    ///< frontiers, of 3 no tours
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 

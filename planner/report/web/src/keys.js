@@ -27,7 +27,7 @@ function actions(page) {
   };
   return {
     ...always,
-    ...Object.fromEntries(Array.from({ length: 9 }, (_, i) => [String(i + 1), () => toolbar.toggleLayer(i)])),
+    ...Object.fromEntries(Array.from({ length: 10 }, (_, i) => [String((i + 1) % 10), () => toolbar.toggleLayer(i)])),
     h: look(() => scene.home()), t: look(() => scene.top()), f: () => toolbar.nextFollow(), p: () => page.savePicture(),
     w: () => scene.pan(0, MOVE), s: () => scene.pan(0, -MOVE), a: () => scene.pan(-MOVE, 0), d: () => scene.pan(MOVE, 0),
     q: () => scene.orbit(-TURN, 0), e: () => scene.orbit(TURN, 0), r: () => scene.orbit(0, -TURN), v: () => scene.orbit(0, TURN),

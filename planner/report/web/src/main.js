@@ -261,7 +261,7 @@ class Page {
 
 function keyTable() {
   const keys = [
-    ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 9", "layers on and off"],
+    ["Space", "play, pause"], ["← →", "previous step, next step"], ["Home End", "first, last step"], ["1 to 9, 0", "layers on and off"],
     ["H T", "show the whole map, view from above"], ["F", "camera: next robot or none"], ["P", "save the view as a picture"], ["W A S D", "move over the map"], ["Q E, R V", "turn, tilt"], ["+ −", "zoom in, out"],
     ["Mouse", "drag to turn, right-drag to move, wheel to zoom, click for details of a voxel, viewpoint or cell"],
   ];

@@ -78,6 +78,8 @@ export function describePick(scene, hit) {
   const metres = (key) => key.map((k) => ((k - ORIGIN + 0.5) * size).toFixed(2)).join(", ") + " m";
   if (hit.kind === "voxel" || hit.kind === "frontier") {
     const rows = [[hit.kind === "voxel" ? "Occupied voxel" : "Frontier", metres(hit.key)], ["Key", hit.key.join(", ")]];
+    const owner = hit.kind === "frontier" ? store.assignment.ownerOf(...hit.key) : 0;
+    if (owner > 0) rows.push(["Assigned to", facts.robots[owner - 1].name]);
     if (hit.kind === "voxel") {
       const owner = (hit.voxel >> 2) - 1, since = store.since(...hit.key);
       rows.push(["First seen by", facts.robots[owner]?.name ?? "?"]);

@@ -4,6 +4,7 @@ import { inMotion } from "./run_numbers.js";
 
 export const CHUNK = 32; // edge of a chunk in voxels; src/run_data.cpp cuts them
 export const UNKNOWN = 0, FREE = 1, OCCUPIED = 2;
+const MOST_REASSIGNED = 2 ** 22; // frontiers, in all steps: Assignment takes some 50 bytes for each
 const MOST_CHUNKS = 2 ** 15; // VoxelStore takes 32 KiB for each
 const INFLATED = 2 ** 24, TIMES = 100; // bytes that the data may take: so many, and this many for each packed one
 
@@ -99,7 +100,9 @@ export async function readRun(text) {
   const groups = new Pool(Int32Array), begins = new Pool(Int32Array), blocks = new Pool(Int32Array);
   const locals = new Pool(Uint16Array), states = new Pool(Uint8Array);
   const poses = new Pool(Float32Array);
-  const images = [], paths = [], tours = [];
+  const motion = inMotion(facts);
+  const images = [], paths = [], tours = [], trajectories = [], reassigned = [];
+  let assignments = 0;
   for (let block = 0; block < steps * robots; ++block) {
     blocks.push(groups.length);
     for (let left = reader.count(); left > 0; --left) {
@@ -122,14 +125,18 @@ export async function readRun(text) {
     paths.push({ begin: poses.length, count, travelled });
     for (let i = 0; i < 4 * count; ++i) poses.push(reader.f32());
     tours.push(readTour(reader, poses));
+    trajectories.push(readTrajectory(reader));
+    const keys = reader.count();
+    reassigned.push(readKeys(reader, keys));
+    assignments += keys;
   }
   if (reader.at !== reader.bytes.length) throw damaged("there is something after the last step");
   blocks.push(groups.length);
   begins.push(locals.length);
-  const motion = inMotion(facts);
+  if (assignments > MOST_REASSIGNED) reassigned.fill([[], [], []]); // frontiers without their robots
   if (motion) for (const list of [images, tours]) hold(facts, list);
   return {
-    facts, motion, steps, robots, chunks, images, paths, tours,
+    facts, motion, steps, robots, chunks, images, paths, tours, trajectories, reassigned,
     groups: groups.done(), begins: begins.done(), blocks: blocks.done(),
     locals: locals.done(), states: states.done(), poses: poses.done(),
     size: reader.bytes.length,
@@ -141,6 +148,29 @@ function hold(facts, list) {
   const robots = facts.robots.length;
   for (let i = robots; i < list.length; ++i)
     if (facts.steps[Math.floor(i / robots)].robots[i % robots].goal) list[i] ??= list[i - robots];
+}
+
+/** Points x, y, z of the trajectory that a robot in motion planned; null if it planned none. */
+function readTrajectory(reader) {
+  const count = reader.count();
+  reader.need(count, 12);
+  const points = Float32Array.from({ length: 3 * count }, () => reader.f32());
+  return count > 1 ? points : null;
+}
+
+/** Keys x, y, z of so many voxels, each in an array. */
+function readKeys(reader, count) {
+  reader.need(count, 3);
+  return [0, 1, 2].map(() => {
+    const keys = new Uint16Array(count);
+    let key = 0;
+    for (let i = 0; i < count; ++i) {
+      key += reader.difference();
+      if (!(key >= 0 && key < 65536)) throw damaged(`the key of a voxel is ${key}`);
+      keys[i] = key;
+    }
+    return keys;
+  });
 }
 
 /** The stops of a planned tour; null if there are none. */
@@ -162,16 +192,7 @@ function readImage(reader) {
   if (count === 0) return null;
   reader.need(count, 5);
   const gainMost = reader.f32(), qualityMost = reader.f32();
-  const axes = [0, 1, 2].map(() => {
-    const keys = new Uint16Array(count);
-    let key = 0;
-    for (let i = 0; i < count; ++i) {
-      key += reader.difference();
-      if (!(key >= 0 && key < 65536)) throw damaged(`the key of a cell is ${key}`);
-      keys[i] = key;
-    }
-    return keys;
-  });
+  const axes = readKeys(reader, count);
   return { count, gainMost, qualityMost, x: axes[0], y: axes[1], z: axes[2], gain: reader.take(count), quality: reader.take(count) };
 }
 

@@ -4,6 +4,7 @@ import { ImageView } from "./image_view.js";
 import { RobotView } from "./robot_view.js";
 import { SensorView } from "./sensor_view.js";
 import { TourView } from "./tour_view.js";
+import { TrajectoryView } from "./trajectory_view.js";
 import { VoxelStore } from "./voxel_store.js";
 import { VoxelView } from "./voxel_view.js";
 import { SCENE, robotColor } from "./palette.js";
@@ -12,7 +13,7 @@ import { el } from "./dom.js";
 const ORIGIN = 32768;
 const SLOPE = Math.tan((40 / 2 / 180) * Math.PI);
 
-export const LAYERS = ["voxels", "frontiers", "quality", "robots", "views", "travelled", "planned", "goals", "tours"];
+export const LAYERS = ["voxels", "frontiers", "quality", "robots", "views", "travelled", "planned", "goals", "tours", "trajectories"];
 
 /** Thrown where the browser cannot draw in three dimensions. */
 export class NoWebGL extends Error {}
@@ -64,10 +65,12 @@ export class ReplayScene {
     this.robots = run.facts.robots.map((_, r) => new RobotView(run, r));
     const { half } = this.extent(), dash = Math.hypot(...half) / 35;
     this.tours = run.tours.some(Boolean) ? run.facts.robots.map((_, r) => new TourView(run, r, dash)) : [];
+    this.trajectories = run.trajectories.some(Boolean) ? run.facts.robots.map((_, r) => new TrajectoryView(run, r, dash / 4)) : [];
     this.images = run.facts.robots.map((_, r) => new ImageView(run, r)).filter((image) => image.box);
     this.scene.add(this.voxels.voxels, this.voxels.frontiers);
     for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.recent, robot.plan, robot.goal);
     for (const tour of this.tours) this.scene.add(tour.group);
+    for (const trajectory of this.trajectories) this.scene.add(trajectory.line);
     for (const image of this.images) this.scene.add(image.mesh);
     this.labels = run.facts.robots.map((robot) => el("div", { class: "robot-label", "aria-hidden": "true", text: robot.name }));
     this.host.append(...this.labels);
@@ -80,7 +83,7 @@ export class ReplayScene {
   unload() {
     if (!this.run) return;
     this.voxels.dispose();
-    for (const part of [...this.robots, ...this.images, ...this.tours]) part.dispose();
+    for (const part of [...this.robots, ...this.images, ...this.tours, ...this.trajectories]) part.dispose();
     for (const label of this.labels) label.remove();
     this.scene.clear();
     this.scene.add(new AmbientLight(0xffffff, 1.9), makeSun());
@@ -96,6 +99,7 @@ export class ReplayScene {
     for (const robot of this.robots) robot.show(step, along, (this.store.heights[0] + 1 - ORIGIN) * this.run.facts.resolution);
     // A robot in motion plans at the end of a step.
     for (const tour of this.tours) tour.show(along < 1 ? step - 1 : step, this.robots[tour.r].pose);
+    for (const trajectory of this.trajectories) trajectory.show(along < 1 ? step - 1 : step);
     for (const image of this.images) image.show(step);
     if (old) this.moveBy(this.robots[this.follow].pose, old);
     this.applyLayers();
@@ -134,6 +138,7 @@ export class ReplayScene {
       robot.goal.visible = layers.goals && robot.goal.userData.there;
     }
     for (const tour of this.tours) tour.group.visible = layers.tours && tour.there;
+    for (const trajectory of this.trajectories) trajectory.line.visible = layers.trajectories && trajectory.there;
     for (const image of this.images)
       image.mesh.visible = layers.quality && this.run.images[this.position.step * this.run.robots + image.robot] !== null;
     this.labels.forEach((label) => (label.hidden = !layers.robots));
@@ -151,6 +156,7 @@ export class ReplayScene {
     if (!this.run) return;
     this.voxels.setColors(theme, this.byOwner);
     for (const robot of this.robots) robot.setColor(robotColor(robot.robot, theme), SCENE[theme].ink);
+    for (const trajectory of this.trajectories) trajectory.setColor(robotColor(this.run.facts.robots[trajectory.r], theme));
     for (const tour of this.tours) tour.setColor(robotColor(this.run.facts.robots[tour.r], theme), SCENE[theme].background);
     this.labels.forEach((label, r) => (label.style.borderColor = robotColor(this.run.facts.robots[r], theme)));
     this.draw();
@@ -309,7 +315,7 @@ export class ReplayScene {
   drawSensorView() {
     const robot = this.robots[this.sensor];
     if (!robot) return this.sensorView.hide();
-    const hidden = [this.voxels.frontiers, robot.body, ...this.robots.flatMap(({ view, trail, recent, plan, goal }) => [view, trail, recent, plan, goal]), ...this.tours.map((tour) => tour.group), ...this.images.map((image) => image.mesh)];
+    const hidden = [this.voxels.frontiers, robot.body, ...this.robots.flatMap(({ view, trail, recent, plan, goal }) => [view, trail, recent, plan, goal]), ...this.tours.map((tour) => tour.group), ...this.trajectories.map((trajectory) => trajectory.line), ...this.images.map((image) => image.mesh)];
     this.sensorView.draw(this.renderer, this.scene, hidden, robot.robot, robot.pose, this.host.clientWidth, this.host.clientHeight);
   }
 

@@ -1,4 +1,4 @@
-// A corner's bytes: x, y, z within the chunk, then side | owner << 3.
+// A corner's bytes: x, y, z within the chunk, then side | owner << 3; of a frontier, owner.
 export const VOXEL_VERTEX = `
 precision highp float;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -46,7 +46,9 @@ precision highp float;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform float size;
 in vec4 corner;
+flat out int owner;
 void main() {
+  owner = int(corner.w + 0.5);
   vec4 seen = viewMatrix * modelMatrix * vec4(corner.xyz + 0.5, 1.0);
   gl_Position = projectionMatrix * seen;
   gl_PointSize = clamp(size / -seen.z, 1.5, 24.0);
@@ -54,12 +56,13 @@ void main() {
 
 export const POINT_FRAGMENT = `
 precision mediump float;
-uniform vec3 tint;
+uniform vec3 tints[16];
 uniform float glow;
+flat in int owner;
 out vec4 color;
 void main() {
   float r = length(gl_PointCoord - 0.5) * 2.0;
   float light = 1.0 - smoothstep(0.35, 1.0, r);
   if (light <= 0.02) discard;
-  color = vec4(tint, light * glow);
+  color = vec4(tints[owner], light * glow);
 }`;

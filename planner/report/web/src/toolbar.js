@@ -5,18 +5,19 @@ import { SCENE, scaleGradient, qualityStops, robotColor } from "./palette.js";
 const NAMES = {
   voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
   views: "Fields of view", travelled: "Travelled paths", planned: "Planned paths", goals: "Goals",
-  tours: "Tours",
+  tours: "Tours", trajectories: "Trajectories",
 };
 
 /** Controls for layers, colours and the camera. */
 export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
-  const boxes = {}, absent = { tours: scene.tours.length === 0, quality: scene.images.length === 0 };
+  const assigned = scene.run.reassigned.some(([x]) => x.length > 0);
+  const boxes = {}, absent = { tours: scene.tours.length === 0, trajectories: scene.trajectories.length === 0, quality: scene.images.length === 0 };
   const layer = (name, i) => {
     if (absent[name]) return null; // the keys of the others stay
     boxes[name] = el("input", { type: "checkbox", id: `layer-${name}`, on: { change: (event) => scene.setLayer(name, event.target.checked) } });
     boxes[name].checked = scene.layers[name];
     const [text, title] = motion && name === "planned" ? ["Scans", "where robots took scans since the planning before, "] : [NAMES[name], ""];
-    return el("label", { class: "chip", title: `${title}key ${i + 1}` }, boxes[name], el("span", { text }));
+    return el("label", { class: "chip", title: `${title}key ${(i + 1) % 10}` }, boxes[name], el("span", { text }));
   };
   const select = (id, label, choices, change) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text }))));
   const check = (id, label, title, change) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));
@@ -44,8 +45,9 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
     key.replaceChildren(
       ...(scene.byOwner ? [] : [bar(SCENE[theme].heights, `${((low - 32768) * size).toFixed(1)} m`, `${((high + 1 - 32768) * size).toFixed(1)} m`, "height")]),
       ...(scene.images.length > 0 ? [bar(qualityStops(), "low", "high", "view quality")] : []),
-      el("div", { class: "names" }, dot(SCENE[theme].frontier, "frontier", "dot"), ...facts.robots.map((robot) => dot(robotColor(robot, theme), robot.name))),
+      el("div", { class: "names" }, dot(SCENE[theme].frontier, assigned ? "frontier of nobody or several" : "frontier", "dot"), ...(assigned ? facts.robots.map((robot) => dot(robotColor(robot, theme), `of ${robot.name}`, "dot")) : []), ...facts.robots.map((robot) => dot(robotColor(robot, theme), robot.name))),
       el("div", { class: "names" }, dot(ink, "travelled", "line"), dot(ink, motion ? "scan" : "planned", "thin"),
+        scene.trajectories.length > 0 ? dot(ink, "planned trajectory", "dotted") : null,
         scene.tours.length > 0 ? dot(ink, "planned tour", "dashed") : null, dot(ink, "goal", "diamond")));
   };
   drawKey();

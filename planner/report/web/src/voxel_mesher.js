@@ -133,17 +133,18 @@ export class VoxelMesher {
         for (let x = from[0]; x <= to[0]; ++x, ++at) {
           if ((padded[at] & STATE) !== UNKNOWN) continue;
           if ((padded[at - 1] & STATE) === FREE || (padded[at + 1] & STATE) === FREE || (padded[at - P] & STATE) === FREE || (padded[at + P] & STATE) === FREE || (padded[at - P * P] & STATE) === FREE || (padded[at + P * P] & STATE) === FREE)
-            this.addPoint(x, y, z);
+            this.addPoint(x, y, z, this.store.assignment.ownerOf(corner[0] + x, corner[1] + y, corner[2] + z));
         }
       }
   }
 
-  addPoint(x, y, z) {
+  /** @param owner as Assignment.ownerOf says it */
+  addPoint(x, y, z, owner) {
     if (4 * (this.frontiers + 1) > this.points.length) {
       const larger = new Uint8Array(2 * this.points.length);
       larger.set(this.points);
       this.points = larger;
     }
-    this.points.set([x, y, z, 0], 4 * this.frontiers++);
+    this.points.set([x, y, z, Math.min(owner, 15)], 4 * this.frontiers++);
   }
 }

@@ -1,3 +1,4 @@
+import { Assignment } from "./assignment.js";
 import { CHUNK, OCCUPIED } from "./run_data.js";
 
 const VOXELS = CHUNK ** 3;
@@ -24,6 +25,7 @@ export class VoxelStore {
     this.before = new Uint8Array(run.locals.length); // a voxel before and after each change
     this.after = new Uint8Array(run.locals.length);
     this.dirty = new Uint8Array(chunks.length);
+    this.assignment = new Assignment(run);
     this.step = -1; // nothing is known
     for (let s = 0; s < run.steps; ++s) this.learn(s);
     this.measure();
@@ -96,6 +98,7 @@ export class VoxelStore {
   seek(s) {
     while (this.step < s) this.go(++this.step, this.after, 1);
     while (this.step > s) this.go(this.step--, this.before, -1);
+    this.assignment.seek(s, (x, y, z) => mark(this.dirty, this.run.chunks.find(x, y, z)));
   }
 
   go(s, bytes, sign) {

@@ -27,7 +27,7 @@ export class VoxelView {
     });
     this.pointsMaterial = new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
-      uniforms: { size: { value: 100 }, tint: { value: new Vector3() }, glow: { value: 0.8 } },
+      uniforms: { size: { value: 100 }, tints: { value: Array.from({ length: 16 }, () => new Vector3()) }, glow: { value: 0.8 } },
       transparent: true, depthWrite: false,
     });
     this.index = makeIndex(4096);
@@ -120,7 +120,8 @@ export class VoxelView {
     }
     uniforms.shade.value = scene.shade;
     uniforms.by_owner.value = byOwner;
-    setVector(this.pointsMaterial.uniforms.tint.value, scene.frontier);
+    const { tints } = this.pointsMaterial.uniforms;
+    tints.value.forEach((tint, i) => setVector(tint, i === 0 ? scene.frontier : robotColor(robots[(i - 1) % robots.length], theme)));
     this.pointsMaterial.uniforms.glow.value = scene.additive ? 0.55 : 0.7;
     this.pointsMaterial.blending = scene.additive ? AdditiveBlending : NormalBlending;
     this.pointsMaterial.needsUpdate = true;
