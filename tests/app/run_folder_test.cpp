@@ -144,7 +144,7 @@ TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
     fs::create_directory(path("run"));
     expect_refused({"--resume", path("run")}, {"--resume: ", "had not begun", "begin it anew"});
     write("run/run.frontlux", bytes.substr(0, size));
-    expect_refused({"--resume", path("run")}, {"--resume: ", "before the run began", "explore anew"});
+    expect_refused({"--resume", path("run")}, {"--resume: ", "before the run began", "begin it anew"});
     expect_explored("run");
     expect_same_runs("whole", "run");
   }
