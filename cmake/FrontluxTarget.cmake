@@ -28,6 +28,8 @@ function(frontlux_target name)
   if(FRONTLUX_PRECOMPILE_HEADERS)
     # Without the option ccache cannot tell what a precompiled header holds.
     target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    # As TBB's target defines it for those that link it: GCC takes a precompiled header only where macros are the same.
+    target_compile_definitions(${name} PRIVATE $<$<CONFIG:Debug>:TBB_USE_DEBUG>)
     if(arg_PRECOMPILE)
       target_precompile_headers(${name} PRIVATE <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem>
         <functional> <map> <memory> <optional> <span> <stdexcept> <string> <string_view> <vector> ${arg_PRECOMPILE})

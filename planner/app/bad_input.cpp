@@ -32,6 +32,8 @@ void check_output(const std::filesystem::path& file, std::initializer_list<std::
   }
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) refuse("is a folder; name a file in it");
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    refuse("is not a regular file; name a file");
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (!std::filesystem::is_directory(folder, error))
     refuse("cannot be written: there is no folder " + folder.string() + "; create it first");

@@ -118,7 +118,8 @@ TEST_F(ExploreOutput, SigtermIsLikeCtrlC) {
   ASSERT_GT(child, 0);
   kill(child, SIGTERM);
   EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
-  expect_parts(content_of(path("err")), {"stopped; frontlux explore --resume " + path("stopped")});
+  expect_parts(content_of(path("err")),
+               {"stopped; the recorded steps are kept: frontlux explore --resume " + path("stopped")});
   expect_parts(content_of(path("out")), {"end          stopped: by Ctrl-C or SIGTERM"});
   EXPECT_EQ(json_in("stopped").at("end"), "stopped");
 }

@@ -90,6 +90,25 @@ TEST_F(RunFolder, IsMissedWhenItIsGone) {
   }
 }
 
+// A damage within the recording does not stop the run, but nobody is told to resume it.
+TEST_F(RunFolder, SaysThatTheRecordingIsDamaged) {
+  for (const bool is_longer : {false, true}) {
+    fs::remove_all(path("run"));
+    const pid_t child = start_and_wait(
+        {"storage", "--lockstep", "--max-steps", "60", "--report", "off", "-o", path("run")}, 2);
+    const int file = ::open(path("run/run.frontlux").c_str(), O_WRONLY | O_CLOEXEC);
+    ASSERT_GE(file, 0);
+    const auto size = static_cast<off_t>(fs::file_size(path("run/run.frontlux")));
+    EXPECT_EQ(::pwrite(file, "damage", 6, is_longer ? size : size / 2), 6);
+    ::close(file);
+    kill(child, SIGTERM);
+    EXPECT_EQ(test::exit_code(test::status_of(child)), is_longer ? 2 : 130) << "what is too long is noticed";
+    const std::string said = content_of(path("err"));
+    expect_parts(said, {path("run/run.frontlux") + " is damaged: the run cannot be continued"});
+    EXPECT_EQ(said.find("--resume"), std::string::npos) << said;
+  }
+}
+
 // Nobody is told to resume what cannot be written. Root may write anything, so the command runs as nobody
 // then.
 TEST_F(RunFolder, SaysThatTheRecordingIsReadOnly) {
@@ -125,7 +144,7 @@ TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
     fs::create_directory(path("run"));
     expect_refused({"--resume", path("run")}, {"--resume: ", "had not begun", "begin it anew"});
     write("run/run.frontlux", bytes.substr(0, size));
-    expect_refused({"--resume", path("run")}, {"--resume: ", "before the run began", "explore anew"});
+    expect_refused({"--resume", path("run")}, {"--resume: ", "before the run began", "begin it anew"});
     expect_explored("run");
     expect_same_runs("whole", "run");
   }

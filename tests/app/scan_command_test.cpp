@@ -6,6 +6,8 @@
 
 #include <octomap/OcTree.h>
 
+#include <sys/stat.h>
+
 namespace frontlux::sim {
 namespace {
 
@@ -96,6 +98,8 @@ TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
   expect_refused({"station", "-o", path("no/folder/map.bt")}, {"--output", "no/folder"});
   std::filesystem::create_directories(path("folder.bt"));
   expect_refused({"station", "-o", path("folder.bt")}, {"--output", "folder.bt", "folder"});
+  ASSERT_EQ(mkfifo(path("pipe.bt").c_str(), 0600), 0);
+  expect_refused({"station", "-o", path("pipe.bt")}, {"--output", "pipe.bt", "not a regular file"});
   expect_refused({"station"}, {"--output"});
 }
 

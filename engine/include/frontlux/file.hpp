@@ -35,7 +35,7 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 /// Removes what processes that were killed while they wrote this file have left beside it.
 FRONTLUX_EXPORT void remove_unfinished(const std::filesystem::path& file);
 
-/// Writes a file complete or not at all: into a file beside it first, which then takes its name.
+/// Writes a file complete or not at all: one beside it takes its name. It replaces regular files only.
 /// @param write  writes the bytes
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws
 FRONTLUX_EXPORT void write_file(const std::filesystem::path& file,

@@ -86,6 +86,9 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   };
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) cannot("it is a folder", "name a file in it");
+  // The new file would take the name of a device or a pipe.
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    cannot("it is not a regular file", "name a file");
   remove_unfinished(file);
   const UnfinishedFile part(file);
   errno = 0;

@@ -84,13 +84,14 @@ void remove_old_files(const fs::path& folder) {
     if (file != kRecording) fs::remove(folder / file, ignored);
 }
 
-// What is left of a run that could not go on, as the end of a message.
+// What is left of a run that was stopped or could not go on, as the end of a message.
 std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head, std::size_t steps) {
   const fs::path file = run.folder / kRecording;
   std::error_code error;
+  const std::string nothing = "; no step of the run is left there";
   try {
     const Recording left = fs::exists(file, error) ? planner::read_recording(file) : Recording{};
-    if (left.steps.empty() || left.head.options != head.options) return "; no step of the run is left there";
+    if (left.steps.empty() || left.head.options != head.options) return nothing;
     const std::string kept = left.steps.size() < steps
                                  ? "; " + std::to_string(left.steps.size()) + " of its " +
                                        std::to_string(steps) + " recorded steps are kept"
@@ -98,8 +99,10 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
     if (::access(file.c_str(), W_OK) != 0)
       return kept + ", but " + file.string() + " is read-only: make it writable to continue the run";
     return kept + ": frontlux explore --resume " + run.folder.string() + " continues the run";
+  } catch (const planner::UnbegunRecording&) {
+    return nothing;
   } catch (const std::runtime_error&) {
-    return "; no step of the run is left there";
+    return "; " + file.string() + " is damaged: the run cannot be continued";
   }
 }
 
@@ -230,7 +233,8 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   if (recording) check_same(recording->head, setup.head, run);
 
   const InterruptNote note;
-  bool stopped = false;
+  const planner::RecordingHead& head = recording ? recording->head : setup.head;
+  std::optional<std::string> stopped;  // what to say then
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {
     std::optional<std::size_t> recorded;  // steps, once they are this process's to lose
@@ -266,7 +270,6 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         record();
       }
       const auto reason = loop.end();
-      stopped = !reason;
       const std::string end = reason ? reason->word : kStopped;
       writer.write_end(end);
       loop.mapping().write(run.folder / "map.ot");
@@ -284,17 +287,16 @@ void explore(ExploreOptions options, const ExploreRun& run) {
         report::write_report(report_of(run), {&reported, 1}, FRONTLUX_VERSION);
       }
       display.result(result, reason, json);
+      if (!reason) stopped = "stopped" + what_is_kept(run, head, *recorded);
     } catch (const BadInput&) {
       throw;
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::runtime_error& error) {
-      const planner::RecordingHead& head = recording ? recording->head : setup.head;
       throw BadInput(error.what() + (recorded ? what_is_kept(run, head, *recorded) : ""));
     }
   });
-  if (stopped)
-    throw Interrupted("stopped; frontlux explore --resume " + run.folder.string() + " continues the run");
+  if (stopped) throw Interrupted(*stopped);
 }
 
 }  // namespace frontlux::app

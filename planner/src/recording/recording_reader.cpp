@@ -16,7 +16,7 @@ namespace {
 using detail::kRecordingTitle;
 
 [[noreturn]] void fail_unbegun(const std::filesystem::path& file, const std::string& where) {
-  throw UnbegunRecording(file.string() + ": ends " + where + "; explore anew");
+  throw UnbegunRecording(file.string() + ": ends " + where + "; begin it anew");
 }
 
 // The file's format, and where the records begin.

@@ -2,6 +2,8 @@
 
 #include <frontlux/file.hpp>
 
+#include <sys/stat.h>
+
 #include <atomic>
 #include <thread>
 
@@ -56,6 +58,17 @@ TEST_F(FileTest, RefusesWhatIsTooLargeOrNoFile) {
   EXPECT_NE(said([&] { static_cast<void>(read_file(path("none"))); }).find("no such file"),
             std::string::npos);
   EXPECT_NE(said([&] { static_cast<void>(read_file(folder_)); }).find("is a directory"), std::string::npos);
+}
+
+// A pipe or a device does not become a file by being named as one.
+TEST_F(FileTest, LeavesWhatIsNoFileAsItIs) {
+  const std::string pipe = path("pipe"), link = path("link");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink(pipe, link);
+  for (const std::string& file : {pipe, link}) {
+    EXPECT_THROW(write_file(file, "bytes"), std::runtime_error);
+    EXPECT_TRUE(std::filesystem::is_fifo(file)) << file;
+  }
 }
 
 }  // namespace
