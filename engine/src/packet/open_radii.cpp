@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace frontlux::detail {
 namespace {
