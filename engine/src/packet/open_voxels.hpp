@@ -32,10 +32,8 @@ class OpenVoxels {
   /// True for all known voxels and the rest of their bricks.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return words_ && bounds_.contains(key); }
 
-  /// True for those and the voxels of the bricks around them, which are closed.
-  [[nodiscard]] bool contains_or_borders(const VoxelKey& key) const {
-    return words_ && grown(bounds_, 8).contains(key);
-  }
+  /// What `contains` is true for, unless it is empty.
+  [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
   /// The lowest and highest key along an axis of what `contains` is true for.
   [[nodiscard]] int bounds_min(std::size_t axis) const {
     return std::array{bounds_.min.x, bounds_.min.y, bounds_.min.z}[axis];

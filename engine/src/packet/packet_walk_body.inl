@@ -206,8 +206,10 @@ template <LineKind kKind, bool kJumps, class Finish>
 }
 
 // The lines of key segments, whose time is a whole number: Crossings<int64_t> in 32 bits.
-[[gnu::always_inline]] inline void segment_lines(const OpenVoxels::Layout& layout, const KeySegment* segments,
-                                                 std::size_t size, PacketLines& lines) {
+// @return how many steps they have in all
+[[gnu::always_inline]] inline std::int32_t segment_lines(const OpenVoxels::Layout& layout,
+                                                         const KeySegment* segments, std::size_t size,
+                                                         PacketLines& lines) {
   alignas(64) std::int32_t from[3][kMaxLines], offset[3][kMaxLines];
   for (std::size_t i = 0; i < size; ++i) {
     const KeySegment& s = segments[i];
@@ -228,6 +230,7 @@ template <LineKind kKind, bool kJumps, class Finish>
     return distance == 0 ? 0 : 2 * product;
   };
   const auto down = [](std::int32_t d, std::uint32_t bits) { return d < 0 ? bits : 0U; };
+  std::int32_t steps = 0;
   const std::uint32_t bits_x = layout.bits[0], bits_y = layout.bits[1], bits_z = layout.bits[2];
   for (std::size_t i = 0; i < size; ++i) {
     const std::int32_t x = length(offset[0][i]), y = length(offset[1][i]), z = length(offset[2][i]);
@@ -247,15 +250,17 @@ template <LineKind kKind, bool kJumps, class Finish>
     const std::uint32_t index = (kx & 7U) | (ky & 7U) << 3U | (kz & 7U) << 6U | (kx >> 3U) << 9U |
                                 (ky >> 3U) << layout.y_shift | (kz >> 3U) << layout.z_shift;
     lines.steps[i] = x + y + z;
+    steps += lines.steps[i];
     lines.index[i] = index ^ flip;
     lines.flip[i] = flip;
   }
+  return steps;
 }
 
 void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t size, std::uint8_t* visible) {
   PacketLines lines;
   lines.size = size;
-  segment_lines(table.layout(), segments, size, lines);
+  const std::int32_t steps = segment_lines(table.layout(), segments, size, lines);
   const auto finish = [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
     for (; ended != 0; ended &= ended - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
@@ -263,9 +268,8 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
     }
   };
   // Short segments end before a jump is worth its price.
-  constexpr std::size_t kWorthJumps = 32;
-  if (std::accumulate(lines.steps.begin(), lines.steps.begin() + static_cast<std::ptrdiff_t>(size),
-                      std::size_t{0}) >= kWorthJumps * size) {
+  constexpr std::int32_t kWorthJumps = 32;
+  if (steps >= kWorthJumps * static_cast<std::int32_t>(size)) {
     rate_steps(lines);
     walk_lines<LineKind::kSegment, true>(table, lines, finish);
   } else {

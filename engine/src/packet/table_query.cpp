@@ -20,10 +20,8 @@ static_assert(kLongSegment <= PacketWalk::kMaxOffset);
 
 bool TableQuery::walks(const KeySegment& s) const {
   const int x = std::abs(s.to.x - s.from.x), y = std::abs(s.to.y - s.from.y), z = std::abs(s.to.z - s.from.z);
-  // The border stops segments as the unknown voxels there do, if they do. Their ends never block.
-  const bool lies_in_table =
-      unknown_ == UnknownPolicy::kBlock ? table_.contains_or_borders(s.to) : table_.contains(s.to);
-  return lies_in_table && table_.contains(s.from) && std::max({x, y, z}) <= kLongSegment && x + y + z > 0;
+  return bounds_.contains(s.from) && ends_in_.contains(s.to) && std::max({x, y, z}) <= kLongSegment &&
+         x + y + z > 0;
 }
 
 std::size_t TableQuery::visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,

@@ -3,6 +3,7 @@
 #include "packet/open_voxels.hpp"
 #include "packet/packet_walk.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/ray.hpp>
 #include <frontlux/voxel_grid.hpp>
 
@@ -22,7 +23,12 @@ class TableQuery {
 
   TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
              const PacketWalk& walk = packet_walk())
-      : grid_(grid), table_(table), walk_(table.empty() ? nullptr : &walk), unknown_(unknown) {}
+      : grid_(grid),
+        table_(table),
+        walk_(table.empty() ? nullptr : &walk),
+        unknown_(unknown),
+        bounds_(table.bounds()),
+        ends_in_(unknown == UnknownPolicy::kBlock ? grown(bounds_, 8) : bounds_) {}
 
   /// @param left  as many places as queries; gets the indices of those not answered
   /// @return how many they are
@@ -42,6 +48,8 @@ class TableQuery {
   const OpenVoxels& table_;
   const PacketWalk* walk_;  // null: no query is answered
   UnknownPolicy unknown_;
+  KeyBox bounds_;   // of the table
+  KeyBox ends_in_;  // a segment may end in the border if this stops it as the unknown voxels there do
 };
 
 }  // namespace frontlux::detail
