@@ -46,6 +46,11 @@ class TableOfMoment {
 
   [[nodiscard]] const OpenVoxels& table() const { return of_->table; }
   [[nodiscard]] const std::shared_ptr<detail::Spare<MapTable>>& spare() const { return spare_; }
+  /// With the spare one.
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return table().memory_bytes() +
+           spare_->measured([](const MapTable& spare) { return spare.table.memory_bytes(); });
+  }
 
  private:
   std::shared_ptr<detail::Spare<MapTable>> spare_;
@@ -58,15 +63,18 @@ class BoxesOnDemand {
   explicit BoxesOnDemand(const VoxelGrid& grid) : grid_(grid) {}
   BoxesOnDemand(const VoxelGrid& grid, const BoxesOnDemand& before) : grid_(grid), before_(before.latest()) {}
 
-  /// Null if they have not been made.
-  [[nodiscard]] const detail::BoxSnapshot* made() const { return made_.load(std::memory_order_acquire); }
   [[nodiscard]] const detail::BoxSnapshot& get() const {
-    if (made() == nullptr) {
+    if (made_.load(std::memory_order_acquire) == nullptr) {
       const std::lock_guard lock(mutex_);
       // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
-      if (made() == nullptr) run_isolated([this] { make(); });
+      if (!boxes_) run_isolated([this] { make(); });
     }
-    return *made();
+    return *made_.load(std::memory_order_acquire);
+  }
+  /// Of those that are kept, be they of an earlier moment.
+  [[nodiscard]] std::size_t memory_bytes() const {
+    const auto kept = latest();
+    return kept ? kept->memory_bytes() : 0;
   }
 
  private:
@@ -103,8 +111,8 @@ class FastSnapshot {
   [[nodiscard]] const BoxesOnDemand& boxes() const { return boxes_; }
   [[nodiscard]] const OpenVoxels& table(UnknownPolicy unknown) const { return tables_[unknown].table(); }
   [[nodiscard]] std::size_t memory_bytes() const {
-    return (boxes_.made() != nullptr ? boxes_.made()->memory_bytes() : 0) +
-           table(UnknownPolicy::kBlock).memory_bytes() + table(UnknownPolicy::kPass).memory_bytes();
+    return boxes_.memory_bytes() + tables_[UnknownPolicy::kBlock].memory_bytes() +
+           tables_[UnknownPolicy::kPass].memory_bytes();
   }
 
  private:

@@ -93,9 +93,10 @@ bool OpenVoxels::update(const VoxelGrid& before, const VoxelGrid& after) {
 
 std::size_t OpenVoxels::memory_bytes() const {
   if (empty()) return 0;
-  std::size_t bricks = 1;
-  for (std::size_t a = 0; a < 3; ++a) bricks *= bricks_along(bounds_min(a), bounds_max(a));
-  return bricks * (kWords * sizeof words_[0] + sizeof radii_[0]);
+  // Rows along x follow each other too closely for a page between their bricks to stay untouched.
+  const std::size_t rows =
+      bricks_along(bounds_.min.y, bounds_.max.y) * bricks_along(bounds_.min.z, bounds_.max.z);
+  return rows * bricks_[0] * kWords * sizeof words_[0] + radii_.size() * sizeof radii_[0];
 }
 
 bool OpenVoxels::has_room_for(const KeyBox& bounds) const {

@@ -73,7 +73,7 @@ inline constexpr double kLongestWalk = 400.0;
 }
 /// Whether it is walked as far as it may go.
 [[nodiscard]] inline bool is_walked_whole(double max_range, double resolution) {
-  return max_range > 0.0 && max_range + 3.0 * resolution < kLongestWalk * resolution;
+  return walked_length(max_range, resolution) < kLongestWalk * resolution;
 }
 
 /// The walks of one instruction set.

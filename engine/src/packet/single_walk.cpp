@@ -14,15 +14,44 @@ namespace {
 
 constexpr std::array kLowBit = {0U, 3U, 6U};  // of each axis in an index
 
+// Times stay in vector registers where there are such for single numbers.
 #ifdef __SSE2__
 using Time = __m128d;
+using Mask = __m128d;
 Time time(double t) { return _mm_set_sd(t); }
+double number(Time t) { return _mm_cvtsd_f64(t); }
+Time min(Time a, Time b) { return _mm_min_sd(a, b); }
+Time max(Time a, Time b) { return _mm_max_sd(a, b); }
+Time add(Time a, Time b) { return _mm_add_sd(a, b); }
+Time subtract(Time a, Time b) { return _mm_sub_sd(a, b); }
+Mask less(Time a, Time b) { return _mm_cmplt_sd(a, b); }
+Mask both(Mask a, Mask b) { return _mm_and_pd(a, b); }
+Mask but_not(Mask a, Mask b) { return _mm_andnot_pd(b, a); }
+Time only_if(Mask m, Time t) { return _mm_and_pd(m, t); }
+Time only_unless(Mask m, Time t) { return _mm_andnot_pd(m, t); }
+bool is_less(Time a, Time b) { return _mm_comilt_sd(a, b) != 0; }
+std::size_t bits(Mask low, Mask high) {
+  return static_cast<std::size_t>(_mm_movemask_pd(_mm_unpacklo_pd(low, high)));
+}
 #else
 using Time = double;
+using Mask = bool;
+Time time(double t) { return t; }
+double number(Time t) { return t; }
+Time min(Time a, Time b) { return a < b ? a : b; }
+Time max(Time a, Time b) { return a > b ? a : b; }
+Time add(Time a, Time b) { return a + b; }
+Time subtract(Time a, Time b) { return a - b; }
+Mask less(Time a, Time b) { return a < b; }
+Mask both(Mask a, Mask b) { return a && b; }
+Mask but_not(Mask a, Mask b) { return a && !b; }
+Time only_if(Mask m, Time t) { return m ? t : 0.0; }
+Time only_unless(Mask m, Time t) { return m ? 0.0 : t; }
+bool is_less(Time a, Time b) { return a < b; }
+std::size_t bits(Mask low, Mask high) { return (low ? 1U : 0U) | (high ? 2U : 0U); }
 #endif
 
-// The next crossing of a ray with the planes across each axis. No branch depends on which axis is next, and
-// where there are vector registers times stay in them.
+// The next crossing of a ray with the planes across each axis. No branch depends on which axis is next.
 class NextCrossings {
  public:
   NextCrossings(const Crossings<double>& line, double end)
@@ -34,32 +63,30 @@ class NextCrossings {
         dz_(time(line.t_delta[2])),
         end_(time(end)) {}
 
-  [[nodiscard]] bool is_over() const { return _mm_comigt_sd(_mm_min_sd(_mm_min_sd(x_, y_), z_), end_) != 0; }
-  /// How much later than the next crossing the one after it comes, on another axis.
+  [[nodiscard]] bool is_over() const { return is_less(end_, min(min(x_, y_), z_)); }
+  /// Whether between the next crossing and the one after it, on another axis, there is less than a time.
   [[nodiscard]] bool closer_than(const Time& time) const {
-    const Time first = _mm_min_sd(x_, y_), last = _mm_max_sd(x_, y_);
-    const Time gap = _mm_sub_sd(_mm_max_sd(first, _mm_min_sd(last, z_)), _mm_min_sd(first, z_));
-    return _mm_comilt_sd(gap, time) != 0;
+    const Time first = min(x_, y_), last = max(x_, y_);
+    return is_less(subtract(max(first, min(last, z_)), min(first, z_)), time);
   }
   /// @return 0 or 1: z, 2: y, 3: x
   std::size_t take() {
-    const Time x_before_y = _mm_cmplt_sd(x_, y_), not_z = _mm_cmplt_sd(_mm_min_sd(x_, y_), z_);
-    x_ = _mm_add_sd(x_, _mm_and_pd(_mm_and_pd(not_z, x_before_y), dx_));
-    y_ = _mm_add_sd(y_, _mm_and_pd(_mm_andnot_pd(x_before_y, not_z), dy_));
-    z_ = _mm_add_sd(z_, _mm_andnot_pd(not_z, dz_));
-    return static_cast<std::size_t>(_mm_movemask_pd(_mm_unpacklo_pd(x_before_y, not_z)));
+    const Mask x_before_y = less(x_, y_), not_z = less(min(x_, y_), z_);
+    x_ = add(x_, only_if(both(not_z, x_before_y), dx_));
+    y_ = add(y_, only_if(but_not(not_z, x_before_y), dy_));
+    z_ = add(z_, only_unless(not_z, dz_));
+    return bits(x_before_y, not_z);
   }
-  [[nodiscard]] double at(std::size_t axis) const {
-    return _mm_cvtsd_f64(axis == 0 ? x_ : axis == 1 ? y_ : z_);
-  }
-  void set(std::size_t axis, double t) { (axis == 0 ? x_ : axis == 1 ? y_ : z_) = _mm_set_sd(t); }
+  [[nodiscard]] double at(std::size_t axis) const { return number(axis == 0 ? x_ : axis == 1 ? y_ : z_); }
+  void set(std::size_t axis, double t) { (axis == 0 ? x_ : axis == 1 ? y_ : z_) = time(t); }
 
  private:
   Time x_, y_, z_, dx_, dy_, dz_, end_;
 };
 
-std::uint32_t next_index(std::uint32_t index, std::uint32_t axis) {
-  return (((index | ~axis) + 1) & axis) | (index & ~axis);
+// What is added below an axis' bits carries up to them.
+std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t steps) {
+  return (((index | ~axis) + steps) & axis) | (index & ~axis);
 }
 std::array<std::uint32_t, 4> axes_by_choice(const OpenVoxels::Layout& layout) {
   return {layout.bits[2], layout.bits[2], layout.bits[1], layout.bits[0]};
@@ -71,7 +98,7 @@ std::uint32_t walk_exactly(const OpenVoxels& table, const TableRay& ray, double 
   NextCrossings next(ray.line, length);
   std::uint32_t index = ray.index;
   while (!next.is_over()) {
-    index = next_index(index, axes[next.take()]);
+    index = advanced(index, axes[next.take()], 1);
     if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
   }
   return kWentThrough;
@@ -119,16 +146,15 @@ std::uint32_t walk_alone(const OpenVoxels& table, const TableRay& ray, double le
         next.set(a, t);
         closest = std::min(closest, std::min(t - until, until - (t - d[a])));
         const auto count = static_cast<std::uint32_t>(steps);
-        const std::uint32_t axis = layout.bits[a];
-        const std::uint32_t add = (count & 7U) << kLowBit[a] | (count >> 3U) << layout.shift(a);
-        index = (((index | ~axis) + add) & axis) | (index & ~axis);
+        index =
+            advanced(index, layout.bits[a], (count & 7U) << kLowBit[a] | (count >> 3U) << layout.shift(a));
       }
       if (closest < too_close) return walk_exactly(table, ray, length);
     }
     for (int step = 0; step < 4; ++step) {
       if (next.is_over()) return kWentThrough;
       if (next.closer_than(close)) return walk_exactly(table, ray, length);
-      index = next_index(index, axes[next.take()]);
+      index = advanced(index, axes[next.take()], 1);
       if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
     }
   }

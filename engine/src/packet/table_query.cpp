@@ -20,7 +20,7 @@ static_assert(kLongSegment <= PacketWalk::kMaxOffset);
 
 bool TableQuery::walks(const KeySegment& s) const {
   const int x = std::abs(s.to.x - s.from.x), y = std::abs(s.to.y - s.from.y), z = std::abs(s.to.z - s.from.z);
-  return bounds_.contains(s.from) && ends_in_.contains(s.to) && std::max({x, y, z}) <= kLongSegment &&
+  return table_.contains(s.from) && ends_in_.contains(s.to) && std::max({x, y, z}) <= kLongSegment &&
          x + y + z > 0;
 }
 

@@ -27,8 +27,7 @@ class TableQuery {
         table_(table),
         walk_(table.empty() ? nullptr : &walk),
         unknown_(unknown),
-        bounds_(table.bounds()),
-        ends_in_(unknown == UnknownPolicy::kBlock ? grown(bounds_, 8) : bounds_) {}
+        ends_in_(unknown == UnknownPolicy::kBlock ? grown(table.bounds(), 8) : table.bounds()) {}
 
   /// @param left  as many places as queries; gets the indices of those not answered
   /// @return how many they are
@@ -48,7 +47,6 @@ class TableQuery {
   const OpenVoxels& table_;
   const PacketWalk* walk_;  // null: no query is answered
   UnknownPolicy unknown_;
-  KeyBox bounds_;   // of the table
   KeyBox ends_in_;  // a segment may end in the border if this stops it as the unknown voxels there do
 };
 

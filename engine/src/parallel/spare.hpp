@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -15,13 +16,19 @@ class Spare {
     const std::lock_guard lock(mutex_);
     return std::move(value_);
   }
+  /// What `measure` returns for it, or 0 if there is none.
+  template <class Measure>
+  [[nodiscard]] std::size_t measured(const Measure& measure) const {
+    const std::lock_guard lock(mutex_);
+    return value_ ? measure(*value_) : 0;
+  }
   void give_back(std::unique_ptr<T> value) {
     const std::lock_guard lock(mutex_);
     if (!value_) value_ = std::move(value);  // one is enough: updates do not overlap
   }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::unique_ptr<T> value_;
 };
 
