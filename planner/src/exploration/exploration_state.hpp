@@ -82,10 +82,8 @@ struct ExplorationState {
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
   }
-  /// For a robot without a goal: back along the way it came, from its last place on; empty if that leads to
-  /// nothing.
-  /// @param tried  cells that it does not go back to
-  [[nodiscard]] std::vector<Pose> way_back(std::size_t robot, const Goal& goal, const Keys& tried) const;
+  /// For a robot without a goal: back to the last place of its trail from which it could go on, from where it
+  /// is; empty if there is none.
   [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
   /// Whether a robot cannot get to where it came from, although there is something to see.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
@@ -95,6 +93,11 @@ struct ExplorationState {
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
+  // The place of the robot's trail to which it goes back, but for cells that it has tried.
+  [[nodiscard]] std::optional<std::size_t> place_to_go_back_to(std::size_t robot, const Goal& goal,
+                                                               const Keys& tried) const;
+  [[nodiscard]] std::vector<Pose> way_back_to(std::size_t robot, std::size_t place);
+  [[nodiscard]] bool can_get_to(std::size_t robot, const VoxelKey& cell) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                     double length) const;
   void remember(std::size_t robot, const RobotStep& step);

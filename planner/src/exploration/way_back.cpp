@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <optional>
 
@@ -30,11 +31,14 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> wa
 
 }  // namespace
 
-// Whether a robot sees enough from somewhere that it can go to from a cell, to which its way has this length
-// [m]. What other robots see anyhow is worth less from afar, as eq. 1 has it.
+// Whether a robot would have a goal if it were in a cell, to which its way has this length [m]. Without tours
+// what other robots see anyhow is worth less from afar, as eq. 1 has it.
 bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                       double length) const {
   elsewhere.update({mapping.grid()}, cell);
+  if (tours)
+    return tours->would_see_from(robot, *caster,
+                                 [&](const VoxelKey& key) { return elsewhere.contains(key); });
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
   const Keys others = frontiers_of_others(robot);
   const double from_afar = std::exp(-options.team[robot].options.lambda * length);
@@ -44,46 +48,77 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
   return gain > 0.0 && gain >= options.epsilon;
 }
 
+bool ExplorationState::can_get_to(std::size_t robot, const VoxelKey& cell) const {
+  const TravelCorridor& corridor = path_corridor(robot);
+  return corridor.extent() == CorridorExtent::kAllCells ? corridor.contains(cell)
+                                                        : tours->gets_to(robot, cell);
+}
+
 // A robot beside which a closer look has found something is in no corridor; it goes back to the last place
 // that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes
 // back through the passage, if there is something to see from beyond.
-std::vector<Pose> ExplorationState::way_back(std::size_t robot, const Goal& goal, const Keys& tried) const {
+std::optional<std::size_t> ExplorationState::place_to_go_back_to(std::size_t robot, const Goal& goal,
+                                                                 const Keys& tried) const {
   const std::vector<Pose>& trail = trails[robot];
-  const TravelCorridor& corridor = path_corridor(robot);
   const bool lost = goal.state == GoalState::kNoCorridor;
   TravelOptions by_voxels = options.team[robot].robot.travel;
   by_voxels.node_edge = 0.0;
   std::optional<TravelCorridor> elsewhere;
-  for (auto place = trail.rbegin(); place != trail.rend(); ++place) {
-    const auto cell = lattice().key(place->position);
-    if (!cell || !corridor.passable(*cell)) continue;
-    if (corridor.extent() == CorridorExtent::kAllCells ? corridor.contains(*cell)
-                                                       : tours->gets_to(robot, *cell))
-      continue;
-    if (lost && place->position == poses[robot].position) return {};
+  double length = 0.0;  // [m] of the trail from the place on
+  for (std::size_t place = trail.size(); place-- > 0;) {
+    if (place + 1 < trail.size()) length += (trail[place + 1].position - trail[place].position).norm();
+    const auto cell = lattice().key(trail[place].position);
+    if (!cell || !path_corridor(robot).passable(*cell) || can_get_to(robot, *cell)) continue;
+    if (lost && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
-    if (!lost) {
-      if (elsewhere && elsewhere->contains(*cell)) continue;
-      if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
-    }
-    std::vector<Pose> way = without_loops(lattice(), std::vector<Pose>(trail.rbegin(), place + 1));
-    if (lost || worth_going_to(*elsewhere, robot, *cell, path_length(way))) return way;
+    if (lost) return place;
+    if (elsewhere && elsewhere->contains(*cell)) continue;
+    if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
+    if (worth_going_to(*elsewhere, robot, *cell, length)) return place;
   }
-  return {};
+  return std::nullopt;
+}
+
+// By a short way to where the robot has last left what it can get to; from there on, or if it can get
+// nowhere, as it came.
+std::vector<Pose> ExplorationState::way_back_to(std::size_t robot, std::size_t place) {
+  const std::vector<Pose>& trail = trails[robot];
+  const auto back_from = [&](std::size_t last) {
+    const auto first = trail.begin() + static_cast<std::ptrdiff_t>(place);
+    std::vector<Pose> way(first, trail.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    std::ranges::reverse(way);
+    return without_loops(lattice(), way);
+  };
+  for (std::size_t i = place; i < trail.size(); ++i) {
+    const auto cell = lattice().key(trail[i].position);
+    if (!cell || !can_get_to(robot, *cell)) continue;
+    if (path_corridor(robot).extent() == CorridorExtent::kNearby &&
+        !selection->find_way(robot, *cell, tours->around_way_to(robot, *cell)))
+      break;
+    std::vector<Pose> way = plan_path(path_corridor(robot), lattice(), poses[robot], trail[i],
+                                      {options.seed, number, robot}, options.path)
+                                .viewpoints;
+    if (way.empty()) break;
+    const std::vector<Pose> rest = back_from(i);
+    way.insert(way.end(), rest.begin(), rest.end());
+    return way;
+  }
+  return back_from(trail.size() - 1);
 }
 
 // To each place once for each goal that the robot had, or it would go back and forth, or try for ever.
 std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
-  std::vector<Pose> way = way_back(robot, goal, went_back_to[robot]);
-  if (!way.empty()) went_back_to[robot].push_back(lattice().key(way.back().position).value());
-  return way;
+  const auto place = place_to_go_back_to(robot, goal, went_back_to[robot]);
+  if (!place) return {};
+  went_back_to[robot].push_back(lattice().key(trails[robot][*place].position).value());
+  return way_back_to(robot, *place);
 }
 
 bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
     return std::ranges::any_of(trails[robot],
                                [&](const Pose& place) { return place.position != poses[robot].position; });
-  return !went_back_to[robot].empty() && !way_back(robot, goal, {}).empty();
+  return !went_back_to[robot].empty() && place_to_go_back_to(robot, goal, {}).has_value();
 }
 
 }  // namespace frontlux::planner::detail

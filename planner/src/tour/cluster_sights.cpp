@@ -9,8 +9,7 @@
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr std::size_t kSample = 16;  // frontiers of a cluster by which cells all over the graph are compared
-constexpr int kLongestPause = 8;     // [plannings]
+constexpr int kLongestPause = 8;  // [plannings]
 
 }  // namespace
 
@@ -58,10 +57,7 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    std::vector<VoxelKey> cells =
-        query.view.graph.spread_cells(grown(cluster->box, query.view.region.reach()));
-    std::erase_if(cells, [&](const VoxelKey& cell) { return !query.reaches(cell); });
-    sight->viewpoints = best_viewpoints(query.view, *cluster, cells, kSample);
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, query.reaches);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->stale = false;
     sight->in_vain = sight->viewpoints.empty() ? std::min(sight->in_vain + 1, 30) : 0;

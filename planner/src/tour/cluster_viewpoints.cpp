@@ -16,10 +16,10 @@ constexpr std::array kRadii = {0.125, 0.25, 0.375, 0.5};
 constexpr int kAzimuths = 16;
 constexpr std::array kHeights = {0.0, -0.15, 0.15};  // of the range, above the middle
 constexpr std::size_t kSample = 48;                  // frontiers that candidates are compared by
-constexpr std::size_t kSmallSample = 16;             // and of other clusters, what a viewpoint sees of them
-constexpr std::size_t kKept = 6;                     // viewpoints
-constexpr double kAsGood = 0.7;                      // of what the best one sees
-constexpr double kApart = 0.1;                       // of the range
+constexpr std::size_t kSmallSample = 16;  // of many candidates, or of other clusters than their own
+constexpr std::size_t kKept = 6;          // viewpoints
+constexpr double kAsGood = 0.7;           // of what the best one sees
+constexpr double kApart = 0.1;            // of the range
 
 Eigen::Vector3d middle_of(const Lattice& lattice, std::span<const VoxelKey> keys) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -165,6 +165,13 @@ std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const
   for (const ClusterViewpoint& viewpoint : before)
     if (query.graph.node(viewpoint.cell)) cells.push_back(viewpoint.cell);
   return best_viewpoints(query, cluster, cells, kSample);
+}
+
+std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                                  const std::function<bool(const VoxelKey&)>& reaches) {
+  std::vector<VoxelKey> cells = query.graph.spread_cells(grown(cluster.box, query.region.reach()));
+  std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(cell); });
+  return best_viewpoints(query, cluster, cells, kSmallSample);
 }
 
 }  // namespace frontlux::planner::detail

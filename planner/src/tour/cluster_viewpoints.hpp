@@ -9,6 +9,7 @@
 #include <frontlux/view_region.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,11 @@ struct ViewpointQuery {
 [[nodiscard]] std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query,
                                                             const FrontierCluster& cluster,
                                                             std::span<const ClusterViewpoint> before);
+
+/// The same of cells all over the graph that the robot can get to.
+[[nodiscard]] std::vector<ClusterViewpoint> viewpoints_anywhere(
+    const ViewpointQuery& query, const FrontierCluster& cluster,
+    const std::function<bool(const VoxelKey&)>& reaches);
 
 /// The same of some cells.
 /// @param sample  of the cluster's frontiers, so many are what cells are compared by

@@ -152,9 +152,23 @@ bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
   return members_[robot].ways.reaches(cell);
 }
 
-ViewpointQuery TourPlanning::sight_of(const Query& query) const {
-  const Member& member = members_[query.robot];
-  return {query.caster, lattice_, member.ways.graph(), member.robot.view, member.region, options_.least_gain};
+bool TourPlanning::would_see_from(std::size_t robot, const RayCaster& caster,
+                                  const std::function<bool(const VoxelKey&)>& among) const {
+  const auto is_others = [&](const FrontierCluster& cluster) {
+    for (std::size_t r = 0; r < members_.size(); ++r)
+      for (const TourStop& stop : members_[r].tour)
+        if (r != robot && std::ranges::find(stop.clusters, cluster.id) != stop.clusters.end()) return true;
+    return false;
+  };
+  const ViewpointQuery view = sight_of(robot, caster);
+  return std::ranges::any_of(clusters_.clusters(), [&](const FrontierCluster& cluster) {
+    return !is_others(cluster) && !viewpoints_anywhere(view, cluster, among).empty();
+  });
+}
+
+ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster) const {
+  const Member& member = members_[robot];
+  return {caster, lattice_, member.ways.graph(), member.robot.view, member.region, options_.least_gain};
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] by its way.
@@ -309,7 +323,7 @@ void TourPlanning::join_next_stops(const Query& query) {
         views.found_for.push_back(c);
       }
   }
-  views.parts = parts_seen(sight_of(query), viewpoints, clusters);
+  views.parts = parts_seen(sight_of(query.robot, query.caster), viewpoints, clusters);
   const std::vector<JoinedStop> joined = join_clusters(views);
   const auto first = [&](std::size_t v) {
     return seconds_to(member.robot, start, viewpoints[v], distances[v]);
@@ -374,7 +388,7 @@ void TourPlanning::update(const Query& query) {
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };
-  const ViewpointQuery view = sight_of(query);
+  const ViewpointQuery view = sight_of(query.robot, query.caster);
   members_[query.robot].sights.update(
       {view, clusters_.clusters(), changes, can_go, query.corridor.state() == CorridorState::kReady});
   const auto clusters = clusters_.clusters();
@@ -424,7 +438,8 @@ void TourPlanning::update(const Query& query) {
   if (member.tour.empty()) return;
   const TourStop& first = member.tour.front();
   for (const std::uint32_t id : first.clusters) {
-    const Keys seen = visible_from(sight_of(query), cluster(id).keys, first.cell, first.pose.yaw);
+    const Keys seen =
+        visible_from(sight_of(query.robot, query.caster), cluster(id).keys, first.cell, first.pose.yaw);
     member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
   }
   std::ranges::sort(member.first_view);

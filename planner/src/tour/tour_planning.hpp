@@ -75,6 +75,10 @@ class TourPlanning {
   /// Whether a cell is near a short way of the robot to some cell; for none if there is no way.
   [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(std::size_t robot,
                                                                    const VoxelKey& cell) const;
+  /// Whether the robot would have a stop among some cells if it could get to them: it sees a cluster from
+  /// there that is in no tour of another robot.
+  [[nodiscard]] bool would_see_from(std::size_t robot, const RayCaster& caster,
+                                    const std::function<bool(const VoxelKey&)>& among) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
 
@@ -94,7 +98,7 @@ class TourPlanning {
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   void update_ways(const Query& query, std::span<const KeyBox> changes);
-  [[nodiscard]] ViewpointQuery sight_of(const Query& query) const;
+  [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster) const;
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;
   [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;

@@ -1,0 +1,135 @@
+// Robots behind a passage that has closed, and what they do about it.
+
+#include "exploration/exploration_state.hpp"
+#include "planner/exploration/team_in_world.hpp"
+#include "support/voxel_keys.hpp"
+
+#include <frontlux/planner/path_planner.hpp>
+
+namespace frontlux::planner::detail {
+namespace {
+
+using test::key_at;
+using Keys = std::vector<VoxelKey>;
+
+constexpr double kResolution = 0.3;
+
+// Two rooms of 18 x 9 x 3 m and 9 x 9 x 3 m, and a wall with a door of 1.5 m between them. At the far end of
+// the first one is what there is to see; the robot has gone into the second one, where it has been in all
+// corners.
+struct TwoRooms {
+  static constexpr KeyBox kFirst{key_at(-30, 0, 0), key_at(29, 29, 9)},
+      kSecond{key_at(31, 0, 0), key_at(60, 29, 9)}, kWall{key_at(30, 0, 0), key_at(30, 29, 9)},
+      kDoor{key_at(30, 13, 0), key_at(30, 17, 9)};
+  ExplorationState state;
+  ExplorationStep step;
+  Pose start = at(10, 15);
+
+  static Pose at(int x, int y) { return {Lattice(kResolution).exact_center(key_at(x, y, 5)), 0.0}; }
+
+  /// @param beyond  [voxels] how thick the unknown space beyond the first room is
+  /// @param holes  voxels of the rooms that are unknown
+  TwoRooms(bool tours, int beyond, const Keys& holes = {})
+      : state(options(tours), Mapping({kResolution, bounds(beyond)})) {
+    const ExplorationStart begins{start, {}};
+    state.start_from({&begins, 1});
+    for (const KeyBox& part : {kFirst, kSecond, kDoor})
+      for_each_key(part, [&](const VoxelKey& key) {
+        if (std::ranges::find(holes, key) == holes.end()) state.changed.push_back(key);
+      });
+    state.mapping.mark_free(state.changed);
+    for_each_key(kWall, [&](const VoxelKey& key) {
+      if (kDoor.contains(key)) return;
+      const Eigen::Vector3f middle = state.lattice().exact_center(key).cast<float>();
+      state.mapping.insert(middle, {&middle, 1});
+      state.changed.push_back(key);
+    });
+    std::ranges::sort(state.changed);
+    if (tours) state.solid = state.mapping.grid();
+    state.frontiers.update(state.change());
+    for (const Pose& place :
+         {start, at(26, 15), at(34, 15), at(56, 26), at(34, 26), at(56, 4), at(34, 4), at(56, 15)})
+      go_to(place);
+    step = state.new_step();
+    state.update_views(step);
+  }
+  static ExplorationOptions options(bool tours) {
+    ExplorationOptions options = exploration_options();
+    options.team.push_back({uav(), goal_options(uav())});
+    options.tours = tours;
+    return options;
+  }
+  static KeyBox bounds(int beyond) { return {key_at(-30 - beyond, 0, 0), kSecond.max}; }
+  void go_to(const Pose& place) {
+    state.trails[0].push_back(place);
+    state.poses[0] = place;
+  }
+  void close_door() { state.block(0, test::keys_of(kDoor)); }
+  Goal choose() {
+    MotionState now;
+    now.pose = state.poses[0];
+    if (state.tours)
+      state.plan_tours(0, {&now, 1}, step);
+    else
+      state.select_goals(step);
+    return step.robots[0].goal;
+  }
+};
+
+class WayBack : public testing::TestWithParam<bool> {};
+
+TEST_P(WayBack, IsForRobotsThatCannotGoOn) {
+  TwoRooms rooms(GetParam(), 5);
+  const Goal goal = rooms.choose();
+  ASSERT_TRUE(goal.pose);
+  EXPECT_LT(goal.pose->position.x(), TwoRooms::at(30, 0).position.x());
+  EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
+}
+
+TEST_P(WayBack, LeadsThroughTheClosedPassageAndNowhereElse) {
+  TwoRooms rooms(GetParam(), 5);
+  rooms.close_door();
+  const Goal goal = rooms.choose();
+  ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
+  const std::vector<Pose> way = rooms.state.take_way_back(0, goal);
+  ASSERT_GE(way.size(), 2U);
+  EXPECT_EQ(way.front().position, rooms.state.poses[0].position);
+  EXPECT_EQ(way.back().position, TwoRooms::at(26, 15).position) << "its last place in the first room";
+  const double straight = (way.back().position - way.front().position).norm();
+  EXPECT_LT(path_length(way), 1.05 * straight) << "not by way of the corners where it has been";
+  // If it still stands here, it tries the place before; after that it is cut off.
+  const std::vector<Pose> longer = rooms.state.take_way_back(0, goal);
+  ASSERT_FALSE(longer.empty());
+  EXPECT_EQ(longer.back().position, rooms.start.position);
+  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_TRUE(rooms.state.is_cut_off(0, goal));
+}
+
+TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
+  TwoRooms rooms(GetParam(), 0);
+  rooms.close_door();
+  const Goal goal = rooms.choose();
+  ASSERT_FALSE(goal.pose);
+  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
+}
+
+// Where single voxels have stayed unknown there is no stop for a tour, however many they are.
+TEST(WayBackWithTours, IsNotWorthTakingForWhatIsNoStop) {
+  Keys holes;
+  for (int y = 3; y < 30; y += 6)
+    for (int x = 3; x < 30; x += 6) holes.push_back(key_at(x, y, 5));
+  TwoRooms rooms(true, 0, holes);
+  ASSERT_GT(rooms.state.frontiers.size(), 20U);
+  rooms.close_door();
+  const Goal goal = rooms.choose();
+  ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
+  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
+}
+
+INSTANTIATE_TEST_SUITE_P(Planners, WayBack, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "Tours" : "Render"; });
+
+}  // namespace
+}  // namespace frontlux::planner::detail
