@@ -325,6 +325,26 @@ TEST(ContinuousExploration, SeesNoFrontiersBehindSurfaces) {
   EXPECT_EQ(frontiers(), all.size() - hidden);
 }
 
+// Planning takes for visible what the camera, which looks the other way, does not see.
+TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  Scan nothing;
+  nothing.max_range = 10.0;
+  nothing.directions = {{1, 0, 0}};
+  nothing.ranges = {std::numeric_limits<float>::quiet_NaN()};
+  for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
+    Pose pose = exploration.at(0, time).pose;
+    pose.yaw = turn(std::numbers::pi, pose.yaw);
+    nothing.origin = pose.position.cast<float>();
+    exploration.insert(0, pose, nothing);
+    while (exploration.plan(time)) {
+    }
+  }
+  EXPECT_TRUE(exploration.end());
+}
+
 TEST(ContinuousExploration, EndsAtItsLimitOfPlannings) {
   const TeamInWorld team("room", 1, {small_uav()});
   ExplorationOptions options = TeamInMotion::options(team);
