@@ -34,7 +34,7 @@ SUBTITLES = {
     "density": "Random cubes in a box of free voxels, rays of 20 m; numbers: fast as a multiple of castRay",
     "size": "Equal rooms side by side and on top of each other, rays of 5 m; numbers: fast as a multiple of castRay",
     "order": "Hollow: 1 thread; filled: all threads; numbers: speed-up by threads, Mrays/s",
-    "cost": "Memory and time from the octree to the caster; every caster includes the grid",
+    "cost": "Memory and time from the octree to the caster, the grid included; updates without it",
 }
 X_TITLES = {
     "resolution": "edge of a voxel [m]",
@@ -250,10 +250,10 @@ def rate_panels(axis, rows):
 
 
 def cost_panels(rows):
-    """Memory and build time of the maps of every axis that varies them."""
+    """Memory, build time and time of an update of the maps of every axis that varies them."""
     panels = []
     for axis in ("size", "density", "resolution"):
-        memory, build = defaultdict(dict), defaultdict(dict)
+        memory, build, update = defaultdict(dict), defaultdict(dict), defaultdict(dict)
         for row in rows:
             if row.axis != axis:
                 continue
@@ -262,9 +262,12 @@ def cost_panels(rows):
             else:
                 memory[row.caster][row.x] = row.facts["memory_bytes"] / row.known
                 build[row.caster][row.x] = row.facts["build_seconds"] * 1e9 / row.known
+                if row.caster != "grid" and axis == "size":  # it refers to the map itself
+                    update[row.caster][row.x] = row.facts["update_seconds"] * 1e3
         what = {"size": "rooms", "density": "box of random cubes", "resolution": "building"}[axis]
         for kind, unit, curves in (("Memory", "bytes per known voxel", memory),
-                                   ("Build time", "nanoseconds per known voxel", build)):
+                                   ("Build time", "nanoseconds per known voxel", build),
+                                   ("After a look all around, 6 m", "milliseconds for an update", update)):
             if curves:
                 points = {c: sorted(v.items()) for c, v in curves.items()}
                 panels.append(Panel(axis, f"{kind}, {what}", unit, points, {}))

@@ -1,18 +1,25 @@
 #include "rays/subject.hpp"
 
 #include "rays/castray_loop.hpp"
+#include "rays/free_voxels.hpp"
 #include "table.hpp"
 
 #include <frontlux/caster_kind.hpp>
 #include <frontlux/stopwatch.hpp>
 #include <frontlux/synthetic/maps.hpp>
 
+#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
 
 namespace frontlux::bench {
 namespace {
+
+constexpr std::size_t kLooks = 12;
+constexpr double kLookRange = 6.0;         // [m]
+constexpr double kMostVoxels = 60.0;       // of the range, in maps finer than 0.1 m
+constexpr std::uint64_t kLookPlace = 301;  // stream of random numbers
 
 template <class Build>
 double median_seconds(Build&& build) {
@@ -23,6 +30,59 @@ double median_seconds(Build&& build) {
     build();
     s = watch.seconds();
   }
+  return median(std::move(seconds));
+}
+
+// What a look all around shows.
+std::vector<VoxelKey> seen_from(const VoxelKey& place, const VoxelGrid& grid, const RayCaster& caster) {
+  const double range = std::min(kLookRange / grid.resolution(), kMostVoxels);
+  std::vector<KeySegment> segments;
+  for_each_key(grown({place, place}, static_cast<int>(range)), [&](const VoxelKey& key) {
+    const Eigen::Vector3d way(key.x - place.x, key.y - place.y, key.z - place.z);
+    if (way.norm() <= range && grid.at(key) != Occupancy::kUnknown) segments.push_back({place, key});
+  });
+  std::vector<std::uint8_t> visible(segments.size());
+  caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  std::vector<VoxelKey> seen;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    if (visible[i] != 0) seen.push_back(segments[i].to);
+  return seen;
+}
+
+// A map that is complete but for what some looks show, and then after each of them.
+struct Looks {
+  std::vector<VoxelGrid> maps;
+  std::vector<double> voxels;  // that each one has shown
+};
+
+Looks make_looks(const VoxelGrid& grid) {
+  const auto caster = make_grid_ray_caster(grid);
+  Looks looks{{grid}, {}};
+  for (const VoxelKey& place : sample_free_voxels(grid, kLooks, std::nullopt, kLookPlace)) {
+    VoxelGrid before = looks.maps.back();
+    double voxels = 0.0;
+    for (const VoxelKey& key : seen_from(place, grid, *caster)) {
+      voxels += before.at(key) == Occupancy::kUnknown ? 0.0 : 1.0;
+      before.set(key, Occupancy::kUnknown);
+    }
+    looks.maps.push_back(std::move(before));
+    looks.voxels.push_back(voxels);
+  }
+  std::ranges::reverse(looks.maps);
+  return looks;
+}
+
+// How long it takes to follow a look. The first one is not counted: it may have to set up what the others
+// use.
+double update_seconds(CasterKind kind, const Subject& subject, const Looks& looks) {
+  const auto rays = make_ray_caster(kind, looks.maps.front(), subject.tree);
+  std::vector<double> seconds;
+  for (const VoxelGrid& map : looks.maps) {
+    const Stopwatch watch;
+    rays->update(map);
+    seconds.push_back(watch.seconds());
+  }
+  seconds.erase(seconds.begin(), seconds.begin() + std::min<std::ptrdiff_t>(2, std::ssize(seconds) - 1));
   return median(std::move(seconds));
 }
 
@@ -41,7 +101,9 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
     grid = make_voxel_grid(tree);
   });
   auto subject =
-      std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, {}});
+      std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, 0, {}});
+  const Looks looks = make_looks(subject->grid);
+  if (!looks.voxels.empty()) subject->look_voxels = median(looks.voxels);
   // The baseline first: the others are compared with it.
   for (const CasterKind kind :
        {CasterKind::kOctomap, CasterKind::kFast, CasterKind::kEmbree, CasterKind::kGrid}) {
@@ -53,6 +115,7 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
     if (kind != CasterKind::kOctomap) {
       contender.build_seconds = grid_seconds + seconds;
       contender.bytes = subject->grid.memory_bytes() + contender.rays->memory_bytes();
+      contender.update_seconds = update_seconds(kind, *subject, looks);
     }
     subject->contenders.push_back(std::move(contender));
   }
@@ -74,11 +137,13 @@ std::string describe(const Subject& subject) {
   std::string text = subject.name + ": voxels of " + format("%.2f m, ", subject.grid.resolution()) +
                      millions(count[1]) + " free, " + millions(count[2]) + " occupied, " +
                      megabytes(memory_bytes(subject.tree)) + " as OctoMap";
-  for (const Contender& c : subject.contenders)
-    if (c.bytes != 0)
-      text +=
-          "; " + c.caster + ": built in " + format("%.1f ms, ", c.build_seconds * 1e3) + megabytes(c.bytes);
-  return text;
+  for (const Contender& c : subject.contenders) {
+    if (c.caster == kOctomap) continue;
+    text += "; " + c.caster + ": built in " + format("%.1f ms, ", c.build_seconds * 1e3) + megabytes(c.bytes);
+    // The grid is the map itself.
+    if (c.caster != kGrid) text += format(", follows a look in %.2f ms", c.update_seconds * 1e3);
+  }
+  return text + format("; a look shows %.0f voxels", subject.look_voxels);
 }
 
 std::filesystem::path generate_map(const std::string& name, const std::filesystem::path& cache) {

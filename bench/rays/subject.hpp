@@ -18,8 +18,9 @@ inline constexpr const char *kOctomap = "octomap", *kFast = "fast", *kEmbree = "
 /// The name of a caster and what it costs.
 struct CasterCost {
   std::string caster;
-  double build_seconds = 0;  ///< from the octree to the caster, the grid included
-  std::size_t bytes = 0;     ///< in addition to the octree
+  double build_seconds = 0;   ///< from the octree to the caster, the grid included
+  double update_seconds = 0;  ///< after one of the map's looks, the grid not included
+  std::size_t bytes = 0;      ///< in addition to the octree
 };
 
 /// A caster on one map.
@@ -32,7 +33,9 @@ struct Subject {
   std::string name;
   Octree tree;
   VoxelGrid grid;
-  std::vector<Contender> contenders;         ///< octomap, fast, embree, grid
+  std::vector<Contender> contenders;  ///< octomap, fast, embree, grid
+  double look_voxels =
+      0;  ///< that a look all around shows from some place, within 6 m or 60 voxels; the median
   std::unique_ptr<OctreeRayCaster> drop_in;  ///< null unless the map was loaded from a file
 
   /// The caster of this name. @throws std::invalid_argument if there is none

@@ -100,6 +100,8 @@ std::map<std::string, double> Trial::counters(const Entry& entry) const {
           {"hit_fraction", positive_fraction_},
           {"mean_voxels", mean_voxels_},
           {"build_seconds", entry.build_seconds},
+          {"update_seconds", entry.update_seconds},
+          {"look_voxels", subject_.look_voxels},
           {"memory_bytes", static_cast<double>(entry.bytes)}};
 }
 

@@ -43,12 +43,14 @@ void print_rates(const std::vector<Point>& points, const GoogleBenchmark& timed)
   std::cout << '\n' << table.text();
 }
 
-/// One line per map: memory and build time per known voxel.
+/// One line per map: memory and build time per known voxel, and the time to follow a change.
 void print_costs(const std::vector<Point>& points) {
   Table table;
-  table.add_columns("Memory and build time", {"", "M known", "M occupied"});
+  table.add_columns("Memory, build and update", {"", "M known", "M occupied"});
   table.add_columns("bytes/voxel", {"octree", kFast, kEmbree, kGrid});
   table.add_columns("ns/voxel", {kFast, kEmbree, kGrid});
+  table.add_columns("", {"look"});
+  table.add_columns("ms to follow it", {kFast, kEmbree});
   std::set<std::string> listed;
   for (const Point& point : points) {
     if (!listed.insert(point.trial->map()).second) continue;
@@ -57,20 +59,24 @@ void print_costs(const std::vector<Point>& points) {
     std::vector<std::string> row{point.trial->map(), format("%.2f", known * 1e-6),
                                  format("%.2f", occupied * 1e-6),
                                  digits(point.counters.at("octree_bytes") / known)};
-    std::vector<std::string> times;
+    std::vector<std::string> times,
+        updates{format("%.0f", point.trial->counters(point.trial->entries().front()).at("look_voxels"))};
     for (const Entry& entry : point.trial->entries()) {
       if (entry.caster == kOctomap) continue;
       row.push_back(digits(static_cast<double>(entry.bytes) / known));
       times.push_back(digits(entry.build_seconds * 1e9 / known));
+      if (entry.caster != kGrid) updates.push_back(digits(entry.update_seconds * 1e3));
     }
     row.insert(row.end(), times.begin(), times.end());
+    row.insert(row.end(), updates.begin(), updates.end());
     table.add_row(std::move(row));
   }
   std::cout << '\n'
             << table.text() << R"(
 voxels: entered per ray. hits: visible, or stopped by an occupied voxel. agrees: with castRay bit for bit, or between
 voxel keys with the integer rule, from which castRay itself differs by rounding. bytes and ns per known voxel: from the
-octree to the caster; every caster includes the grid.
+octree to the caster; every caster includes the grid. look: voxels that a look all around shows within 6 m; to follow it
+is an update of the caster to a map that has these as well.
 )";
 }
 

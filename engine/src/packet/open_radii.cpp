@@ -69,6 +69,22 @@ void grow(Cells& cells, Cells& scratch) {
   std::swap(cells.words, scratch.words);
 }
 
+// How often each cell has been counted, up to 15 times: a set for each bit of the number.
+struct Counts {
+  std::array<Cells, 4> bits;
+
+  // Counts the cells that a set lacks.
+  void add_others(const Cells& cells) {
+    const std::size_t layer = cells.row_words * cells.rows;
+    for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin * layer; i < end * layer; ++i) {
+        std::uint64_t carry = ~cells.words[i];
+        for (Cells& bit : bits) carry &= std::exchange(bit.words[i], bit.words[i] ^ carry);
+      }
+    });
+  }
+};
+
 // Eight bits as eight numbers of four bits.
 constexpr auto kSpread = [] {
   std::array<std::uint32_t, 256> spread{};
@@ -105,26 +121,32 @@ void measure_open_radii(const std::uint64_t* words, const std::array<std::size_t
   };
   const std::array<std::size_t, 3>& low = needed.begin;
   Cells closed(2 * (needed.end[0] - low[0]), 2 * (needed.end[1] - low[1]), 2 * (needed.end[2] - low[2]));
+  Counts radius{{closed, closed, closed, closed}};
   Cells scratch = closed;
   // Of a brick's four rows of two cells, the word that holds one; they are the bits from `shift` on.
-  const auto row_of = [&](std::size_t x, std::size_t y, std::size_t z, std::size_t i) -> std::uint64_t& {
-    return closed.row(2 * (y - low[1]) + i % 2, 2 * (z - low[2]) + i / 2)[(x - low[0]) / 32];
+  const auto row_of = [&](Cells& cells, std::size_t x, std::size_t y, std::size_t z,
+                          std::size_t i) -> std::uint64_t& {
+    return cells.row(2 * (y - low[1]) + i % 2, 2 * (z - low[2]) + i / 2)[(x - low[0]) / 32];
   };
   const auto shift = [&](std::size_t x) { return 2 * ((x - low[0]) % 32); };
   for_each_brick(needed, [&](std::size_t x, std::size_t y, std::size_t z) {
     const std::uint64_t cells = closed_cells(words + 8 * number(x, y, z));
-    for (std::size_t i = 0; i < 4; ++i) row_of(x, y, z, i) |= (cells >> (2 * i) & 3U) << shift(x);
+    for (std::size_t i = 0; i < 4; ++i) row_of(closed, x, y, z, i) |= (cells >> (2 * i) & 3U) << shift(x);
   });
-  for (int radius = 1; radius <= kMaxRadius; ++radius) {
-    for_each_brick(measured, [&](std::size_t x, std::size_t y, std::size_t z) {
-      unsigned open = 0;
-      for (std::size_t i = 0; i < 4; ++i)
-        open |= static_cast<unsigned>(~row_of(x, y, z, i) >> shift(x) & 3U) << (2 * i);
-      std::uint32_t& all = radii[number(x, y, z)];
-      all = radius == 1 ? kSpread[open] : all + kSpread[open];
-    });
-    if (radius < kMaxRadius) grow(closed, scratch);
+  for (int grows = 0; grows < kMaxRadius; ++grows) {
+    if (grows > 0) grow(closed, scratch);
+    radius.add_others(closed);
   }
+  for_each_brick(measured, [&](std::size_t x, std::size_t y, std::size_t z) {
+    std::uint32_t all = 0;
+    for (std::size_t bit = 0; bit < 4; ++bit) {
+      std::uint64_t cells = 0;
+      for (std::size_t i = 0; i < 4; ++i)
+        cells |= (row_of(radius.bits[bit], x, y, z, i) >> shift(x) & 3U) << (2 * i);
+      all |= kSpread[cells] << bit;
+    }
+    radii[number(x, y, z)] = all;
+  });
 }
 
 }  // namespace frontlux::detail
