@@ -176,7 +176,13 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
       expect_refused(with({option, number}),
                      {option + std::string(": '") + number + "' is not a number of at least 0"});
   expect_refused(with({"--samples", "0"}), {"--samples"});
-  expect_refused(with({"--dropout", "1.01"}), {"--dropout"});
+  for (const char* option : {"--dropout", "--drift"}) expect_refused(with({option, "1.01"}), {option});
+  expect_refused(with({"--fix-every", "-1"}), {"--fix-every"});
+  for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})
+    expect_refused(with({"--fail", word}), {"--fail", "NAME=SECONDS"});
+  expect_refused(with({"--fail", "car=3"}), {"--fail: 'car=3'", "not in the team", "ugv, uav"});
+  expect_refused(with({"--fail", "uav=3", "--lockstep"}), {"--fail is not for --lockstep"});
+  expect_refused(with({"--drift", "0.1", "--lockstep"}), {"--drift", "not for --lockstep"});
   expect_refused(with({"--what"}), {"--what"});
   expect_refused(with({"--resume", output}), {"--resume"});
 }

@@ -185,6 +185,32 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
 
 // After 28 s, when it had mapped a twelfth, this team once ended its run: two robots rested in the third
 // one's way.
+TEST_F(ExploreMotion, RobotsFailAndDriftAsAsked) {
+  const auto words = [&](const std::string& output, const std::string& seconds) {
+    return joined(quick(output, seconds), {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2"});
+  };
+  const test::Answer answer = run(joined(words("run", "6"), {"--threads", "1"}));
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_NE(answer.out.find("failed after 3"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.err.find("warning: the robot 'two' failed after 3"), std::string::npos) << answer.err;
+  const nlohmann::json json = json_in("run");
+  EXPECT_FALSE(json.at("by_robot").at("one").contains("failed_s"));
+  EXPECT_NEAR(json.at("by_robot").at("two").at("failed_s").get<double>(), 3.0, 0.2);
+  EXPECT_EQ(json.at("task").at("options").at("fail"), "two=3");
+  EXPECT_EQ(json.at("task").at("options").at("drift"), "0.02");
+  EXPECT_GT(json.at("map").at("surface_found"), 0.1);
+  EXPECT_GT(json.at("map").at("false_free"), 0.0);
+  const Table events(path("run/events.csv"));
+  for (std::size_t i = 0; i < events.size(); ++i)
+    EXPECT_TRUE(events.number(i, "time_s") < 3.2 || events.text(i, "robot") == "one");
+  // The same on more threads, and in two parts.
+  ASSERT_EQ(run(joined(words("threads", "6"), {"--threads", "2"})).code, 0);
+  expect_same_motions("run", "threads");
+  ASSERT_EQ(run(joined(words("parts", "6"), {"--max-steps", "12"})).code, 0);
+  ASSERT_EQ(run({"--resume", path("parts"), "--max-steps", "1000000", "--report", "off"}).code, 0);
+  EXPECT_TRUE(content_of(path("run/motion.csv")) == content_of(path("parts/motion.csv")));
+}
+
 TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
   expect_answer({"maze", "--seed", "1", "--team", "3uav", "--latency", "0.25", "--stop-time", "45",
                  "--report", "off", "-o", path("run")});

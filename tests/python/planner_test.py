@@ -228,6 +228,15 @@ class InMotion(unittest.TestCase):
         np.testing.assert_array_equal(exploration.at(0, 1.3)["pose"], pose)
         self.assertEqual(exploration.plan(1.3).reason, "stopped")
 
+    def test_a_lost_robot_plans_no_more(self):
+        exploration = in_motion()
+        planner.run(exploration, sense_for(exploration), until=1.0)
+        pose = exploration.at(0, 1.2)["pose"]
+        exploration.lose(0, pose, 1.2)
+        np.testing.assert_array_equal(exploration.at(0, 9.0)["pose"], pose)
+        self.assertIsNone(exploration.plan(9.0))
+        self.assertIsNotNone(exploration.end)
+
     def test_a_ground_robot(self):
         lidar = frontlux.FieldOfView.spinning(0.9, 5.0)
         robot = planner.Robot("cart", "plane", (0.5, 0.5, 0.5), lidar, 240, 24, 4.0, sensor_height=0.5)
@@ -339,7 +348,7 @@ class Refusals(unittest.TestCase):
         exploration = planner.ContinuousExploration([drone()], room().bounds)
         for call in (lambda: exploration.plan(0.0), lambda: exploration.insert_points(0, room().start, np.ones((1, 3))),
                      lambda: exploration.at(0, 0.0), lambda: exploration.finish(0.0),
-                     lambda: exploration.stopped(0, room().start, 0.0)):
+                     lambda: exploration.stopped(0, room().start, 0.0), lambda: exploration.lose(0, room().start, 0.0)):
             self.refuses(ValueError, "has not begun", call)
         begin = exploration.begin
         self.refuses(ValueError, r"starts: shape \(4,\), but has to be \(1, 4\)", begin, room().start)

@@ -141,6 +141,12 @@ void add_explore_command(CLI::App& app) {
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
+  command.add("--drift", options.pose_errors.drift, "PART",
+              "By which part of its way a robot is elsewhere than it believes, 0 to 1", kProbability);
+  command.add("--fix-every", options.pose_errors.fix_every, "SECONDS",
+              "After how long it learns where it is; 0: never", kFromZero);
+  command.add("--fail", options.failures, "NAME=SECONDS",
+              "A robot fails after this time, and stays where it is; more with commas between");
   const auto [mode, goal] = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
   command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report", "--quiet", "--json"});

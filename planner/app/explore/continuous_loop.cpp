@@ -30,7 +30,7 @@ bool same_step(const ExplorationStep& a, const ExplorationStep& b) {
 ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
     : setup_(setup),
       robots_(setup.sourced.world, *setup.truth, setup.head.robots, start_poses(setup), setup.errors,
-              setup.exploration.seed, setup.at_contact),
+              setup.exploration.seed, setup.at_contact, setup.pose_errors),
       exploration_(setup.exploration,
                    planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
       known_(setup.head.resolution) {
@@ -55,17 +55,35 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
     if (robots_.next_time() > time_)
       if (auto planned = exploration_.plan(time_)) {
         note_plan(*planned, recorded != nullptr ? *recorded : planned->step);
-        if (const auto end = exploration_.end())
-          end_ = {std::string(planner::name_of(*end)),
-                  planner::describe(*end, exploration_.options(), "plannings")};
+        note_end();
         return std::move(planned->step);
       }
+    if (lose_robots()) note_end();
+    if (end_) return exploration_.finish(time_);
     sense();
     if (auto limit = limit_reached(setup_, numbers_.mapped.back())) {
       end_ = std::move(limit);
       return exploration_.finish(time_);
     }
   }
+}
+
+void ContinuousLoop::note_end() {
+  if (const auto end = exploration_.end())
+    end_ = {std::string(planner::name_of(*end)),
+            planner::describe(*end, exploration_.options(), "plannings")};
+}
+
+// Those whose time has come. Where they are they stay.
+bool ContinuousLoop::lose_robots() {
+  bool any = false;
+  for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
+    if (!setup_.failures[r] || *setup_.failures[r] > time_ || numbers_.robots[r].failed) continue;
+    exploration_.lose(r, exploration_.at(r, time_).pose, time_);
+    numbers_.robots[r].failed = time_;
+    any = true;
+  }
+  return any;
 }
 
 void ContinuousLoop::sense() {
@@ -76,7 +94,8 @@ void ContinuousLoop::sense() {
   const sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
   time_ = next;
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
-  count(exploration_.insert(sensed.robot, sensed.pose, sensed.scan));
+  if (!numbers_.robots[sensed.robot].failed)
+    count(exploration_.insert(sensed.robot, sensed.pose, sensed.scan));
 }
 
 void ContinuousLoop::count(const MapChange& change) {
@@ -94,7 +113,7 @@ void ContinuousLoop::count(const MapChange& change) {
   double clearance = 1.0;
   for (std::size_t r = 0; r < robots_.records().size(); ++r) {
     const sim::MotionRecord& record = robots_.records()[r];
-    numbers_.robots[r] = {record.length, record.idle, record.held_back};
+    numbers_.robots[r] = {record.length, record.idle, record.held_back, numbers_.robots[r].failed};
     numbers_.contacts += record.contacts;
     mapped.length += record.length;
     clearance = std::min(clearance, record.clearance);

@@ -25,6 +25,8 @@ class ContinuousLoop final : public RunLoop {
  private:
   // The next step; `recorded` if it is taken again, with the times that it took then.
   planner::ExplorationStep go_on(const planner::ExplorationStep* recorded);
+  void note_end();
+  bool lose_robots();
   void sense();
   void count(const MapChange& change);
   void note_motion(double until);

@@ -53,6 +53,9 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("resolution", options.source.resolution);
   visit("noise", options.errors.sigma);
   visit("dropout", options.errors.dropout);
+  visit("drift", options.pose_errors.drift);
+  visit("fix_every", options.pose_errors.fix_every);
+  visit("fail", options.failures);
 }
 
 // A file's name is bytes, and JSON is Unicode: what is not plain in a URI is written as %41.
@@ -79,6 +82,7 @@ Json json_of(const Value& value) {
     return value;
 }
 Json json_of(const StartPose& start) { return start.word; }
+Json json_of(const RobotFailures& failures) { return failures.each.empty() ? Json() : Json(failures.word); }
 Json json_of(const Eigen::Vector3f& point) {
   return {as_written(point.x()), as_written(point.y()), as_written(point.z())};
 }
@@ -117,6 +121,7 @@ void take(const Json& json, Value& value) {
     json.get_to(value);
 }
 void take(const Json& json, StartPose& start) { read(json.get<std::string>(), start); }
+void take(const Json& json, RobotFailures& failures) { read(json.get<std::string>(), failures); }
 void take(const Json& json, Eigen::Vector3f& point) {
   for (int i = 0; i < 3; ++i) point[i] = json.at(static_cast<std::size_t>(i)).get<float>();
 }
@@ -173,6 +178,23 @@ void read(std::string_view word, StartPose& start) {
   }
   start.word = word;
   start.robot = word.substr(0, equals);
+}
+
+void read(std::string_view word, RobotFailures& failures) {
+  failures = {std::string(word), {}};
+  for (std::string_view rest = word;; rest.remove_prefix(rest.find(',') + 1)) {
+    const std::string_view part = rest.substr(0, rest.find(','));
+    const std::size_t equals = part.find('=');
+    RobotFailures::Failure& failure = failures.each.emplace_back(std::string(part.substr(0, equals)), 0.0);
+    try {
+      if (equals == std::string_view::npos || equals == 0) throw BadInput("");
+      read(part.substr(equals + 1), failure.time, kFromZero);
+    } catch (const BadInput&) {
+      throw BadInput(quote(word) +
+                     " does not say who fails; give NAME=SECONDS, as in uav2=120, with commas between");
+    }
+    if (rest.find(',') == std::string_view::npos) return;
+  }
 }
 
 bool makes_tours(const ExploreOptions& options) {

@@ -6,6 +6,7 @@
 #include <frontlux/io/task_file.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/pose.hpp>
+#include <frontlux/sim/moving_robots.hpp>
 #include <frontlux/sim/sensor.hpp>
 
 #include <cstdint>
@@ -24,6 +25,18 @@ struct StartPose {
 };
 /// @throws BadInput
 void read(std::string_view word, StartPose& start);
+
+/// Robots that fail, and when.
+struct RobotFailures {
+  struct Failure {
+    std::string robot;
+    double time;  ///< [s]
+  };
+  std::string word;  ///< as the user gives it: NAME=SECONDS[,NAME=SECONDS]...
+  std::vector<Failure> each;
+};
+/// @throws BadInput
+void read(std::string_view word, RobotFailures& failures);
 
 /// Where a file was when a run began; empty: not known. Recorded byte for byte, whatever the name.
 struct AbsolutePath {
@@ -57,6 +70,8 @@ struct ExploreOptions {
   bool bumper = true;
   std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
+  sim::PoseErrors pose_errors;
+  RobotFailures failures;
 };
 
 /// Whether robots go on tours, the default in motion.

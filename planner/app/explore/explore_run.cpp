@@ -276,8 +276,11 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       loop.mapping().write(run.folder / "map.bt");
       const RunSums& sums = exploring.files().sums();
       const std::optional<sim::Unseen> unseen = unseen_of(setup, loop);
-      const std::vector<std::string> warnings = run_warnings(setup, sums, reason, unseen);
-      const RunResult result{sums, loop.numbers(), end, warnings, unseen, watch.seconds()};
+      const std::vector<std::string> warnings = run_warnings(setup, sums, loop.numbers(), reason, unseen);
+      const RunResult result{
+          sums,           loop.numbers(), end,
+          warnings,       unseen,         sim::measure_accuracy(*setup.truth, loop.mapping().grid()),
+          watch.seconds()};
       const std::string json = write_run_json(run, options, setup, result);
       if (run.report) {
         const Recording whole = planner::read_recording(file);

@@ -60,6 +60,30 @@ struct GivenStarts {
   std::vector<std::optional<Pose>> poses;
   std::vector<std::string> givers;
 };
+// @param giver  for messages
+std::size_t robot_named(const std::string& name, const std::string& giver,
+                        std::span<const RobotDescription> robots) {
+  const auto robot = std::find_if(robots.begin(), robots.end(),
+                                  [&](const RobotDescription& r) { return r.robot.name == name; });
+  if (robot != robots.end()) return static_cast<std::size_t>(robot - robots.begin());
+  std::string names;
+  for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
+  throw BadInput(giver + " is for a robot that is not in the team; its robots are " + names);
+}
+
+// When each robot fails [s].
+std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
+                                               std::span<const RobotDescription> robots) {
+  const bool drifts = options.pose_errors.drift > 0.0 || options.pose_errors.fix_every > 0.0;
+  if (options.lockstep && (drifts || !options.failures.each.empty()))
+    throw BadInput(std::string(drifts ? "--drift and --fix-every are" : "--fail is") +
+                   " not for --lockstep, in which robots stop and wait; leave one of the options out");
+  std::vector<std::optional<double>> times(robots.size());
+  for (const auto& [name, time] : options.failures.each)
+    times[robot_named(name, "--fail: " + quote(options.failures.word), robots)] = time;
+  return times;
+}
+
 GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
   GivenStarts given{std::vector<std::optional<Pose>>(robots.size()), std::vector<std::string>(robots.size())};
   std::size_t driving = 0, flying = static_cast<std::size_t>(std::count_if(
@@ -72,15 +96,7 @@ GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDes
     given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }
   for (const StartPose& start : options.poses) {
-    const auto robot = std::find_if(robots.begin(), robots.end(),
-                                    [&](const RobotDescription& r) { return r.robot.name == start.robot; });
-    if (robot == robots.end()) {
-      std::string names;
-      for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
-      throw BadInput("--pose: " + quote(start.word) +
-                     " is for a robot that is not in the team; its robots are " + names);
-    }
-    const auto r = static_cast<std::size_t>(robot - robots.begin());
+    const std::size_t r = robot_named(start.robot, "--pose: " + quote(start.word), robots);
     given.poses[r] = start.pose;
     given.givers[r] = "--pose: " + quote(start.word);
   }
@@ -257,6 +273,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
                         const std::optional<std::vector<RobotDescription>>& robots) {
   ExploreSetup setup;
   setup.errors = options.errors;
+  setup.pose_errors = options.pose_errors;
   setup.lockstep = options.lockstep;
   setup.at_contact = options.bumper ? sim::AtContact::kStay : sim::AtContact::kGoOn;
   setup.stop_coverage = options.stop_coverage;
@@ -264,6 +281,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
   work_on(options.task.empty() ? options.source.world : options.task, "give a coarser --resolution", [&] {
     setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
     setup.exploration = exploration_options(options, setup.head.robots);
+    setup.failures = failures_of(options, setup.head.robots);
     const GivenStarts given = given_starts(options, setup.head.robots);
     const WorldSource source = source_of(options, given);
     setup.given_starts = given.poses;

@@ -24,6 +24,8 @@ struct ExploreSetup {
   SourcedWorld sourced;
   std::unique_ptr<const sim::GroundTruth> truth;
   sim::RangeErrors errors;
+  sim::PoseErrors pose_errors;
+  std::vector<std::optional<double>> failures;  // [s] of each robot
   bool lockstep = false;
   sim::AtContact at_contact = sim::AtContact::kStay;
   std::optional<double> stop_coverage;  // 0 to 1, of the observable voxels

@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 19> kFurther = {
-    "start",        "ground",    "scale",    "up",     "goal",   "planner", "renderer",
-    "samples",      "assign",    "optimize", "caster", "lambda", "advance", "epsilon",
-    "min-distance", "max-steps", "bumper",   "noise",  "dropout"};
+constexpr std::array<std::string_view, 22> kFurther = {
+    "start",  "ground",   "scale",   "up",     "goal",      "planner", "renderer",     "samples",
+    "assign", "optimize", "caster",  "lambda", "advance",   "epsilon", "min-distance", "max-steps",
+    "bumper", "noise",    "dropout", "drift",  "fix-every", "fail"};
 
 void set_method(TaskMethod method, ExploreOptions& options) {
   options.mode = method == TaskMethod::kPaper ? Method::kPaper : Method::kDefault;
@@ -107,6 +107,9 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add_choice("bumper", options.bumper, other.bumper);
   add_number("noise", options.errors.sigma, other.errors.sigma);
   add_number("dropout", options.errors.dropout, other.errors.dropout);
+  add_number("drift", options.pose_errors.drift, other.pose_errors.drift);
+  add_number("fix-every", options.pose_errors.fix_every, other.pose_errors.fix_every);
+  if (!options.failures.each.empty()) words.emplace_back("fail", options.failures.word);
   return words;
 }
 

@@ -102,7 +102,7 @@ void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& en
 }
 
 void RunDisplay::print_summary(const RunResult& result, const std::optional<RunEnd>& end) const {
-  const auto& [sums, numbers, word, warnings, unseen, seconds] = result;
+  const auto& [sums, numbers, word, warnings, unseen, accuracy, seconds] = result;
   std::string times;
   for (const int part : {50, 90, 95, 99})
     if (const auto time = time_to(numbers, setup_.head.observable, part / 100.0))
@@ -121,12 +121,16 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
                                   " see it, " + percent(unseen->hidden) + " hidden from everywhere, " +
                                   percent(unseen->in_view) + " that they could have seen")
               : "") +
+      row("map", percent(accuracy.surface_part()) + " of the surface voxels occupied, " +
+                     percent(accuracy.false_free_part()) + " of the free ones hold a surface, " +
+                     percent(accuracy.false_occupied_part()) + " of the occupied ones are in free space") +
       row("clock", times + fixed(numbers.mapped.back().time, 1) + " s to the end");
   for (std::size_t r = 0; r < setup_.head.robots.size(); ++r) {
     const RobotNumbers& robot = numbers.robots[r];
-    out += row(setup_.head.robots[r].robot.name, "travelled " + fixed(robot.length, 1) + " m, idle " +
-                                                     fixed(robot.idle, 1) + " s, held back " +
-                                                     std::to_string(robot.held_back) + " times");
+    out += row(setup_.head.robots[r].robot.name,
+               "travelled " + fixed(robot.length, 1) + " m, idle " + fixed(robot.idle, 1) + " s, held back " +
+                   std::to_string(robot.held_back) + " times" +
+                   (robot.failed ? ", failed after " + fixed(*robot.failed, 1) + " s" : ""));
   }
   out += row("contacts",
              std::to_string(numbers.contacts) +

@@ -215,7 +215,7 @@ double mean_coverage(const RunNumbers& numbers, std::uint64_t observable) {
 
 std::string write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
                            const RunResult& result) {
-  const auto& [sums, numbers, end, warnings, unseen, seconds] = result;
+  const auto& [sums, numbers, end, warnings, unseen, accuracy, seconds] = result;
   const planner::ExplorationOptions& exploration = setup.exploration;
   Json names = Json::array(), phases = Json::object(), lengths = Json::object(), robots = Json::object(),
        times = Json::object();
@@ -230,6 +230,7 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
     lengths[name] = sums.travelled[r];
     const RobotNumbers& robot = numbers.robots[r];
     robots[name] = {{"length_m", robot.length}, {"idle_s", robot.idle}, {"held_back", robot.held_back}};
+    if (robot.failed) robots[name]["failed_s"] = *robot.failed;
     held_back += robot.held_back;
   }
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
@@ -262,6 +263,10 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
       {"unseen",
        unseen ? Json{{"in_view", unseen->in_view}, {"narrow", unseen->narrow}, {"hidden", unseen->hidden}}
               : Json()},
+      {"map",
+       {{"false_free", accuracy.false_free_part()},
+        {"false_occupied", accuracy.false_occupied_part()},
+        {"surface_found", accuracy.surface_part()}}},
       {"lockstep", setup.lockstep},
       {"time_s", times},
       {"auc", mean_coverage(numbers, setup.head.observable)},

@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/accuracy.hpp>
 #include <frontlux/sim/unseen.hpp>
 
 #include <cstdint>
@@ -72,6 +73,7 @@ struct RunResult {
   std::string end;                           ///< why it ended, in one word
   const std::vector<std::string>& warnings;  ///< what its reader has to know, see `run_warnings`
   const std::optional<sim::Unseen>& unseen;  ///< why, if it ended by itself
+  sim::Accuracy accuracy;                    ///< of the map
   double seconds = 0.0;                      ///< that it took
 };
 

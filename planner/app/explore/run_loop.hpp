@@ -28,9 +28,10 @@ struct Mapped {
 
 /// What one robot did, up to now.
 struct RobotNumbers {
-  double length = 0.0;          ///< [m]
-  double idle = 0.0;            ///< [s] at rest without turning
-  std::uint64_t held_back = 0;  ///< times that its bumper stopped it
+  double length = 0.0;                ///< [m]
+  double idle = 0.0;                  ///< [s] at rest without turning
+  std::uint64_t held_back = 0;        ///< times that its bumper stopped it
+  std::optional<double> failed = {};  ///< [s] when it did
 };
 
 /// What a run comes to in seconds and metres, up to now.

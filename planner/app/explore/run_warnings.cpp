@@ -45,7 +45,7 @@ bool ends_badly(const RunSums& sums, const RunEnd& end) {
 }
 
 std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
-                                      const std::optional<RunEnd>& end,
+                                      const RunNumbers& numbers, const std::optional<RunEnd>& end,
                                       const std::optional<sim::Unseen>& unseen) {
   std::vector<std::string> warnings;
   if (end && end->word == planner::name_of(planner::ExplorationEnd::kCutOff))
@@ -54,6 +54,10 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
     warnings.push_back("the run has ended with " + percent(sums.observable) +
                        " of the observable space mapped; the robots found no way to see the rest" +
                        (unseen && unseen->narrow >= kWorthAHint ? too_narrow(*unseen, setup) : ""));
+  for (std::size_t r = 0; r < numbers.robots.size(); ++r)
+    if (const auto& failed = numbers.robots[r].failed)
+      warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +
+                         rounded(*failed) + " s, as --fail says");
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
   if (!setup.lockstep && planning > latency) warnings.push_back(late_planning(planning, latency));
   return warnings;

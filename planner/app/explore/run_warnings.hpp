@@ -18,10 +18,12 @@ namespace frontlux::app {
 [[nodiscard]] std::string others_than(std::span<const planner::RobotDescription> robots);
 
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
-/// far from done, or that plannings took longer than the clock charges robots in motion for them.
+/// far from done, that a robot failed, or that plannings took longer than the clock charges robots in motion
+/// for them.
 /// @param end     none: its user has stopped it
 /// @param unseen  why the rest was not seen, if that is known
 [[nodiscard]] std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,
+                                                    const RunNumbers& numbers,
                                                     const std::optional<RunEnd>& end,
                                                     const std::optional<sim::Unseen>& unseen);
 

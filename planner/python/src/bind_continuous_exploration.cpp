@@ -104,6 +104,16 @@ void stopped(const Self& self, std::size_t robot, const py::object& pose_object,
   });
 }
 
+void lose(const Self& self, std::size_t robot, const py::object& pose_object, double time) {
+  const Lattice lattice = with_robot(
+      self, robot, [](const Continuous& state, const auto& /*robot*/) { return state.team.lattice(); });
+  const SensorPose pose = sensor_pose("pose", pose_object, lattice);
+  self->use([&](Continuous& state) {
+    state.pass(time);
+    state.exploration.lose(robot, pose.upright, time);
+  });
+}
+
 PlanPointer plan(const Self& self, double time) {
   return self->use([&](Continuous& state) {
     state.expect_begun();
@@ -212,6 +222,10 @@ were not measured.)")
            R"(A robot rests at a pose since it could not go on: something that no sensor saw is in its way.
 
 blocked: uint16 (..., 3), cells that it could not enter; None: the one that it is in will not be entered again.)")
+      .def("lose", &lose, py::arg("robot"), py::arg("pose"), py::arg("time"),
+           "A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a "
+           "pose, "
+           "where the others keep apart from it, and what it was to see becomes theirs.")
       .def(
           "finish",
           [](const Self& self, double time) {

@@ -80,6 +80,17 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   state.team.block(robot, cells);
 }
 
+void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double time) {
+  stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
+  State::Member& member = state_->members[robot];
+  member.lost = true;
+  member.going = member.goes_back = member.blocked = false;
+  member.goal = {};
+  member.goal_frontiers.clear();
+  member.needed.clear();
+  if (state_->team.tours) state_->team.tours->lose(robot);
+}
+
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a planning before its beginning");
@@ -106,11 +117,14 @@ MotionState ContinuousExploration::at(std::size_t robot, double time) const {
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
-  const auto low = [&](const auto& member) { return member.low_gains >= state.team.options.low_gain_steps; };
+  const auto low = [&](const auto& member) {
+    return member.lost || member.low_gains >= state.team.options.low_gain_steps;
+  };
   const bool all_idle = std::ranges::all_of(state.members, State::is_idle);
   if (all_idle || std::ranges::all_of(state.members, low)) {
     for (std::size_t r = 0; r < state.members.size(); ++r)
-      if (state.team.is_cut_off(r, state.members[r].goal)) return ExplorationEnd::kCutOff;
+      if (!state.members[r].lost && state.team.is_cut_off(r, state.members[r].goal))
+        return ExplorationEnd::kCutOff;
     return all_idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
   }
   if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))

@@ -16,7 +16,7 @@ namespace {
 
 using Keys = std::vector<VoxelKey>;
 
-constexpr double kGap = 0.1;      // [m] that robots keep between their bodies
+constexpr double kGap = 0.32;     // [m] that robots keep between their bodies
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
 
@@ -69,6 +69,7 @@ void ContinuousExploration::State::settle(double time) {
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
                                                                        double time) const {
+  if (member.lost) return std::nullopt;
   if (!member.planned) return PlanReason::kStart;
   if (member.motion.next) return std::nullopt;  // its next trajectory has not begun yet
   const double age = time - *member.planned;
@@ -141,9 +142,9 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   return step;
 }
 
-// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has arrived
-// these are also the ones for which it came: planning, between the middles of voxels, may see past an edge that hides
-// them from where it is.
+// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has
+// arrived these are also the ones for which it came: planning, between the middles of voxels, may see past an
+// edge that hides them from where it is.
 void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
   RobotStep& now = step.robots[robot];
@@ -390,6 +391,7 @@ void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& ste
 
 bool ContinuousExploration::State::is_idle(const Member& member) {
   constexpr int kPatience = 10;  // plannings, about a second each
+  if (member.lost) return true;
   return member.planned && !member.going && (member.waits == 0 || member.waits > kPatience);
 }
 

@@ -24,6 +24,7 @@ struct ContinuousExploration::State {
     double chosen = 0.0;                 // [s] when it chose its goal
     std::uint64_t gained = 0;            // frontiers that it has mapped since it planned last
     bool stopped = false, blocked = false;
+    bool lost = false;              // takes no more part
     bool goes_back = false;         // on the way on which it came
     bool going = false;             // it has a goal, or goes back
     int low_gains = 0;              // plannings in a row that expect to see next to nothing

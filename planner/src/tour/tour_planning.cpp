@@ -82,6 +82,14 @@ void TourPlanning::note(std::span<const VoxelKey> changed) {
   for (Member& member : members_) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
 }
 
+// Only its own plannings give a robot viewpoints.
+void TourPlanning::lose(std::size_t robot) {
+  Member& member = members_[robot];
+  member.sights = {};
+  member.tour.clear();
+  member.first_view.clear();
+}
+
 const FrontierCluster& TourPlanning::cluster(std::uint32_t id) const {
   return *std::ranges::find(clusters_.clusters(), id, &FrontierCluster::id);
 }

@@ -59,6 +59,9 @@ class TourPlanning {
   /// Shares the frontiers out anew, with the robot's part of it worked out.
   void update(const Query& query);
 
+  /// A robot takes no more part: what it was to look at is left to the others.
+  void lose(std::size_t robot);
+
   /// From the next planning on these voxels have changed.
   void note(std::span<const VoxelKey> changed);
 

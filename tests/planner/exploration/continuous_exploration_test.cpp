@@ -194,7 +194,7 @@ void expect_apart(std::size_t count, double seconds, GoalChoice choice) {
         }
   };
   scene.explore(seconds, {}, look);
-  EXPECT_GT(least, 0.0);
+  EXPECT_GT(least, 0.3);
   EXPECT_LT(least, 3.0) << "they are never near each other";
   for (std::size_t r = 0; r < count; ++r) EXPECT_GT(scene.robots().records()[r].length, 1.0);
 }
@@ -325,6 +325,41 @@ TEST(ContinuousExploration, SeesNoFrontiersBehindSurfaces) {
   EXPECT_EQ(frontiers(), all.size() - hidden);
 }
 
+TEST_P(ContinuousExplorationBy, LeavesToTheOthersWhatALostRobotWasToSee) {
+  TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
+  ContinuousExploration& exploration = scene.exploration();
+  scene.explore(5.0);
+  const double before = share_mapped(scene.team(), scene.grid());
+  ASSERT_LT(before, 0.95);
+  const Pose rests = exploration.at(1, scene.time()).pose;
+  exploration.lose(1, rests, scene.time());
+  const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
+  double least = std::numeric_limits<double>::infinity();
+  scene.explore(
+      kLong, [&](const PlannedMotion& now) { EXPECT_EQ(now.robot, 0U); },
+      [&](double from, double to) {
+        for (double time = from; time < to; time += kSample)
+          least = std::min(least, body.translated(exploration.at(0, time).pose.position)
+                                      .exteriorDistance(body.translated(rests.position)));
+      });
+  EXPECT_TRUE(exploration.end());
+  EXPECT_TRUE(test::same(exploration.at(1, scene.time()).pose, rests));
+  EXPECT_GT(share_mapped(scene.team(), scene.grid()), 0.98);
+  EXPECT_GT(least, 0.3);
+}
+
+TEST(ContinuousExploration, EndsWithItsLastRobot) {
+  TeamInMotion scene("room", {small_uav(), small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  scene.explore(1.0);
+  for (const std::size_t robot : {1U, 0U}) {
+    EXPECT_FALSE(exploration.end());
+    exploration.lose(robot, exploration.at(robot, scene.time()).pose, scene.time());
+  }
+  EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
+  EXPECT_FALSE(exploration.plan(scene.time() + 10.0));
+}
+
 // Planning takes for visible what the camera, which looks the other way, does not see.
 TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
   const TeamInWorld team("room", 1, {small_uav()});
@@ -374,6 +409,7 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   };
   refuses([&] { exploration.insert(0, pose, scan); }, "no robot 0");
   refuses([&] { exploration.stopped(0, pose, 0.0, {}); }, "no robot 0");
+  refuses([&] { exploration.lose(0, pose, 0.0); }, "no robot 0");
   refuses([&] { static_cast<void>(exploration.plan(0.0)); }, "before its beginning");
   refuses([&] { static_cast<void>(exploration.finish(0.0)); }, "before its beginning");
   refuses([&] { exploration.begin({}, 0.0); }, "0 starts for 1 robots");

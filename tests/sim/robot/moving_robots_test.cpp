@@ -41,10 +41,11 @@ struct Moving {
   std::vector<MovingRobots::Stopped> stopped = {};
 
   Moving(const BoxRoom& room, std::vector<RobotDescription> team, std::vector<Pose> at,
-         AtContact at_contact = AtContact::kGoOn, const RangeErrors& errors = {}, std::uint64_t seed = 1)
+         AtContact at_contact = AtContact::kGoOn, const RangeErrors& errors = {}, std::uint64_t seed = 1,
+         const PoseErrors& pose_errors = {})
       : truth(room.world, 0.3, {1.05, 1.05, 1.05}),
         starts(std::move(at)),
-        robots(room.world, truth, std::move(team), starts, errors, seed, at_contact) {}
+        robots(room.world, truth, std::move(team), starts, errors, seed, at_contact, pose_errors) {}
 
   // Up to the last scan that is not later.
   void go_on(double until, const MovingRobots::Where& where) {
@@ -273,6 +274,68 @@ TEST(MovingRobots, RefuseWhatCannotBe) {
   RobotDescription blind = uav();
   blind.rows = 0;
   EXPECT_REFUSED(Moving(room, {blind}, {{{1, 1, 1}}}));
+}
+
+// How far a robot is from where it believes to be, by what its scans say of the walls and the floor.
+Vector3d error_by(const planner::Scan& scan) {
+  const Vector3d far(6, 6, 3);
+  Vector3d error = Vector3d::Constant(std::nan(""));
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const Vector3d way = scan.directions[i].cast<double>() * static_cast<double>(scan.ranges[i]);
+    const Vector3d hit = scan.origin.cast<double>() + way;
+    if (!hit.allFinite()) continue;
+    for (int a = 0; a < 3; ++a) {
+      const double wall = way[a] > 0 ? far[a] : 0.0;
+      bool first = std::abs(hit[a] - wall) < 0.4;  // of the axes, this wall is the one that was hit
+      for (int b = 0; b < 3; ++b) first = first && (b == a || (hit[b] > 0.5 && hit[b] < far[b] - 0.5));
+      if (first) error[a] = wall - hit[a];
+    }
+  }
+  return error;
+}
+
+TEST(MovingRobots, DriftByAPartOfTheirWayUntilTheyKnowTheirPlace) {
+  constexpr double kDrift = 0.04, kFix = 3.0;
+  const BoxRoom room;
+  RobotDescription lidar = planner::uav_description();
+  lidar.robot.view = {FieldOfView::Shape::kSpinning, 0.0, 2.8, 10.0};
+  lidar.columns = 180;
+  lidar.rows = 60;
+  lidar.rate = 10.0;
+  const Vector3d from(2, 2, 1.2), to(2, 2.75, 1.2);
+  // Back and forth, 0.5 m/s.
+  const auto way = [](double time) { return 0.5 * time; };
+  const auto where = [&](std::size_t, double time) {
+    const double along = std::fmod(way(time), 1.5);
+    return at(from + (along < 0.75 ? along : 1.5 - along) / 0.75 * (to - from));
+  };
+  for (const double fix : {0.0, kFix}) {
+    Moving scene(room, {lidar}, {{from, 0.0}}, AtContact::kGoOn, {}, 1, {kDrift, fix});
+    std::vector<Vector3d> directions;
+    for (double time = 0.0; time < 8.9;) {
+      const auto sensed = scene.robots.advance(where, scene.stopped);
+      time = sensed.time;
+      EXPECT_EQ(sensed.pose.position, where(0, time).pose.position) << "it believes to be on its way";
+      EXPECT_EQ(sensed.scan.origin, sensed.pose.position.cast<float>());
+      const double since = fix == 0.0 ? time : std::fmod(time, kFix);
+      const Vector3d error = error_by(sensed.scan);
+      if (fix > 0.0 && time >= kFix && since < 1.05) continue;  // on its way back
+      EXPECT_NEAR(error.norm(), kDrift * way(since), 0.005) << time;
+      if (since > 2.5) directions.push_back(error.normalized());
+    }
+    ASSERT_GT(directions.size(), 10U);
+    for (const Vector3d& one : directions) EXPECT_TRUE(fix > 0.0 || one.dot(directions.front()) > 0.99);
+    EXPECT_EQ(directions.back().dot(directions.front()) < 0.9, fix > 0.0) << "then it is drawn anew";
+    // It moves by its errors, too.
+    EXPECT_NEAR(scene.record().length, way(8.9), 0.5);
+  }
+}
+
+TEST(MovingRobots, RefusePoseErrorsThatAreNone) {
+  const BoxRoom room;
+  for (const PoseErrors& wrong : {PoseErrors{-0.1, 0.0}, PoseErrors{1.1, 0.0}, PoseErrors{std::nan(""), 0.0},
+                                  PoseErrors{0.1, -1.0}, PoseErrors{0.1, std::nan("")}})
+    EXPECT_REFUSED(Moving(room, {uav()}, {{{1, 1, 1}, 0.0}}, AtContact::kGoOn, {}, 1, wrong));
 }
 
 }  // namespace

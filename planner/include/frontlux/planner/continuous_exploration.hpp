@@ -74,6 +74,10 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ///                 entered again
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
+  /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose, where
+  /// the others keep apart from it, and what it was to see becomes theirs. There is no way back for it.
+  void lose(std::size_t robot, const Pose& pose, double time);
+
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.
   [[nodiscard]] std::optional<PlannedMotion> plan(double time);
 
@@ -85,7 +89,7 @@ class FRONTLUX_EXPORT ContinuousExploration {
 
   /// Why the exploration is over; nothing while it goes on. Of low gain is an
   /// exploration in which each robot has had a goal of low gain, or none, for `low_gain_steps` plannings in a
-  /// row.
+  /// row. Robots that are lost have nothing to do.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   /// As given.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,14 +41,22 @@ double distance_between(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d&
 
 MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
                            std::vector<planner::RobotDescription> robots, std::span<const Pose> starts,
-                           const RangeErrors& errors, std::uint64_t seed, AtContact at_contact)
+                           const RangeErrors& errors, std::uint64_t seed, AtContact at_contact,
+                           const PoseErrors& pose_errors)
     : truth_(&truth),
       surface_(world.mesh),
       solids_(world.mesh),
       robots_(std::move(robots)),
       records_(robots_.size()),
       seed_(seed),
-      at_contact_(at_contact) {
+      at_contact_(at_contact),
+      pose_errors_(pose_errors) {
+  if (!(pose_errors.drift >= 0.0 && pose_errors.drift <= 1.0))
+    refuse("the drift is " + std::to_string(pose_errors.drift) +
+           " of the way, but has to lie between 0 and 1");
+  if (!(pose_errors.fix_every >= 0.0 && std::isfinite(pose_errors.fix_every)))
+    refuse("robots know their places every " + std::to_string(pose_errors.fix_every) +
+           " s, but the time has to be finite and at least 0");
   if (starts.size() != robots_.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(robots_.size()) + " robots");
   for (std::size_t r = 0; r < robots_.size(); ++r) {
@@ -55,7 +64,8 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
       refuse("robot '" + robots_[r].robot.name + "' takes " + std::to_string(robots_[r].rate) +
              " scans a second, but it has to be a positive number");
     sensors_.push_back(sensor_of(robots_[r], errors));
-    progress_.push_back({starts[r]});
+    progress_.push_back({starts[r], starts[r]});
+    draw_direction(r);
     measure_clearance(r);
   }
   measure_separation();
@@ -75,24 +85,54 @@ Eigen::AlignedBox3d MovingRobots::body(std::size_t robot, const Eigen::Vector3d&
   return {box.min() + margin, box.max() - margin};
 }
 
-void MovingRobots::move(std::size_t robot, const planner::MotionState& to, double seconds,
+void MovingRobots::draw_direction(std::size_t robot) {
+  constexpr std::uint64_t kDirections = 0x506F7365;  // a stream apart from that of the sensors
+  Progress& now = progress_[robot];
+  SplitMix64 random = random_of(random_of(seed_ + kDirections, robot).bits(), now.fixes);
+  const bool level = robots_[robot].robot.travel.motion == Motion::kPlane;
+  const double azimuth = 2 * std::numbers::pi * random.unit(), z = level ? 0.0 : 2 * random.unit() - 1;
+  now.direction = {std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z};
+}
+
+// How far a robot is from where it believes to be [m]. What it has learnt of is gone after a second.
+Eigen::Vector3d MovingRobots::error(std::size_t robot, double time) const {
+  const Progress& now = progress_[robot];
+  const double since = time - static_cast<double>(now.fixes) * pose_errors_.fix_every;
+  return pose_errors_.drift * now.way * now.direction + std::max(0.0, 1.0 - since) * now.known;
+}
+
+// @param time  when it gets there
+void MovingRobots::move(std::size_t robot, const planner::MotionState& to, double time,
                         std::vector<Stopped>& stopped) {
   Progress& now = progress_[robot];
   MotionRecord& record = records_[robot];
-  const Eigen::Vector3d from = now.pose.position, motion = to.pose.position - from;
+  const double seconds = time - time_;
+  if (pose_errors_.fix_every > 0.0 && time >= static_cast<double>(now.fixes + 1) * pose_errors_.fix_every) {
+    now.known = error(robot, time);
+    now.way = 0.0;
+    ++now.fixes;
+    draw_direction(robot);
+  }
+  const double step = (to.pose.position - now.believed.position).norm();
+  now.way += step;
+  const Eigen::Vector3d at = to.pose.position + error(robot, time);
+  const Eigen::Vector3d from = now.pose.position, motion = at - from;
   const bool contact = !motion.isZero(0.0) && solids_.count({body(robot, from), motion}) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
+    now.way -= step;
     ++record.held_back;
     record.idle += seconds;
     now.halted = true;
-    stopped.push_back({robot, now.pose, cells_ahead(truth_->lattice(), from, to.pose.position)});
+    stopped.push_back(
+        {robot, now.believed, cells_ahead(truth_->lattice(), now.believed.position, to.pose.position)});
     return;
   }
   if (contact && !now.touching) ++record.contacts;
   if (!motion.isZero(0.0)) now.touching = contact;
   record.length += motion.norm();
   if (motion.isZero(0.0) && to.pose.yaw == now.pose.yaw) record.idle += seconds;
-  now.pose = to.pose;
+  now.pose = {at, to.pose.yaw};
+  now.believed = to.pose;
   if (!motion.isZero(0.0)) measure_clearance(robot);
 }
 
@@ -141,7 +181,7 @@ MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopp
       if (progress_[r].halted)
         records_[r].idle += time - time_;
       else
-        move(r, where(r, time), time - time_, stopped);
+        move(r, where(r, time), time, stopped);
     measure_separation();
     time_ = time;
   }
@@ -149,7 +189,9 @@ MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopp
   while (static_cast<double>(progress_[robot].scans) / robots_[robot].rate != next) ++robot;
   Progress& now = progress_[robot];
   const std::uint64_t errors = random_of(random_of(seed_, robot).bits(), now.scans++).bits();
-  return {next, robot, now.pose, sense(surface_, sensors_[robot], now.pose, errors)};
+  planner::Scan scan = sense(surface_, sensors_[robot], now.pose, errors);
+  if (now.pose.position != now.believed.position) scan.origin = now.believed.position.cast<float>();
+  return {next, robot, now.believed, std::move(scan)};
 }
 
 }  // namespace frontlux::sim

@@ -33,6 +33,15 @@ struct MotionRecord {
   double clearance = 1.0;
 };
 
+/// Errors of the poses that robots take for theirs; none by default. A robot follows its trajectory by where
+/// it believes to be, and is elsewhere: off by a part of the way since it last knew its place, in a direction
+/// that is drawn anew each time, on a plane a horizontal one. Headings are exact.
+struct PoseErrors {
+  double drift = 0.0;  ///< of the way, 0 to 1
+  double fix_every =
+      0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
+};
+
 /// Robots that follow trajectories in a simulated world, under a clock that the simulation keeps. Each takes
 /// scans at its own rate. Robots do not see each other.
 class MovingRobots {
@@ -44,24 +53,24 @@ class MovingRobots {
   struct Sensed {
     double time = 0.0;  ///< [s]
     std::size_t robot = 0;
-    planner::Pose pose;  ///< of the sensor
-    planner::Scan scan;
+    planner::Pose pose;  ///< of the sensor, as the robot believes
+    planner::Scan scan;  ///< begins there
   };
   /// A robot whose bumper stopped it.
   struct Stopped {
     std::size_t robot = 0;
-    planner::Pose pose;             ///< where it rests
+    planner::Pose pose;             ///< where it rests, as it believes
     std::vector<VoxelKey> blocked;  ///< cells that it was about to enter; sorted
   };
 
   /// The clock begins at 0, with the robots at their starts.
   /// @param world  its mesh is copied
   /// @param truth  of the same world @pre lives as long as the robots
-  /// @param seed   of the sensors' errors
+  /// @param seed   of the errors
   /// @throws std::invalid_argument if the mesh, a sensor, a rate or an error is not valid
   MovingRobots(const World& world, const GroundTruth& truth, std::vector<planner::RobotDescription> robots,
                std::span<const planner::Pose> starts, const RangeErrors& errors, std::uint64_t seed,
-               AtContact at_contact = AtContact::kGoOn);
+               AtContact at_contact = AtContact::kGoOn, const PoseErrors& pose_errors = {});
 
   /// [s] of the next scan
   [[nodiscard]] double next_time() const;
@@ -76,13 +85,19 @@ class MovingRobots {
 
  private:
   struct Progress {
-    planner::Pose pose;
+    planner::Pose pose, believed;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // of the error
+    double way = 0.0;                                     // [m] since it last knew its place
+    Eigen::Vector3d known = Eigen::Vector3d::Zero();      // [m] the error that it learnt of then
+    std::uint64_t fixes = 0;
     std::uint64_t scans = 0;
     bool touching = false, halted = false;
   };
 
   [[nodiscard]] Eigen::AlignedBox3d body(std::size_t robot, const Eigen::Vector3d& at) const;
-  void move(std::size_t robot, const planner::MotionState& to, double seconds, std::vector<Stopped>& stopped);
+  void move(std::size_t robot, const planner::MotionState& to, double time, std::vector<Stopped>& stopped);
+  [[nodiscard]] Eigen::Vector3d error(std::size_t robot, double time) const;
+  void draw_direction(std::size_t robot);
   void measure_clearance(std::size_t robot);
   void measure_separation();
 
@@ -97,6 +112,7 @@ class MovingRobots {
   double separation_ = std::numeric_limits<double>::infinity();
   std::uint64_t seed_;
   AtContact at_contact_;
+  PoseErrors pose_errors_;
 };
 
 }  // namespace frontlux::sim
