@@ -4,8 +4,8 @@ from claims import our_lines, paper_lines
 from explore import LONGEST
 from intervals import FEWEST, LEVEL, RESAMPLES
 from markdown import plain
-from tables import (bumpers_table, failures_list, lines_table, main_table, missing_table, optimisation_table,
-                    pairs_table, planning_table, steps_table, variants_table)
+from tables import (bumpers_table, failures_list, lines_table, main_table, maps_table, missing_table,
+                    optimisation_table, pairs_table, planning_table, steps_table, variants_table)
 
 METHODS = """\
 - **tours** (`--goal tour`, the default): tours over all that is left to see, shared out to the robots.
@@ -19,9 +19,8 @@ All have the same map, sensors, robots, limits and clock. The paper's tables fur
 printed (`--mode paper --lockstep`)."""
 
 LIMITS = f"""\
-- Worlds are simulated: nothing moves in them, sensors have no noise unless a row says so, poses are exact, robots follow
-  their trajectories exactly and hear each other always. Drift, tracking errors, lost messages and robots that fail are
-  not simulated; nor is measured what noise does to the map.
+- Worlds are simulated: nothing moves in them, sensors and poses have no errors unless a row says so, and robots hear each
+  other always: lost and late messages are not simulated.
 - In worlds of others nothing is random but the start, which is moved by up to 0.6 m: their intervals say how far
   that moves a result, not how other worlds would do.
 - Percentile intervals of few values are too narrow: of normal values they hold the mean in about 87 % of cases for six,
@@ -103,9 +102,12 @@ View quality:
 {variants_table(results, "render")}
 ## What reality adds
 
-Errors of the simulated sensors, otherwise as above; tours:
+Errors of sensors and poses, and a robot that fails, otherwise as above; tours:
 
 {variants_table(results, "tour", of_reality=True)}
+What that does to the map:
+
+{maps_table(results, "tour")}
 ## Contacts and bumpers
 
 Without bumpers contacts are counted. With them, the default of `explore`, a robot that would touch a surface rests, and

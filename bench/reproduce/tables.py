@@ -10,7 +10,7 @@ from results import LEVELS
 MAIN = ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "render_uav", "tour_2uav", "tour_3uav",
         "tour_4uav")
 BUMPERS = {"tour_bumper": "tour", "render_bumper": "render"}  # with bumpers: the same without
-REALITY = ("tour_noise", "tour_dropout")
+REALITY = ("tour_noise", "tour_dropout", "tour_drift", "tour_lost_place", "tour_fail")
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):
@@ -99,6 +99,20 @@ def variants_table(results, base, of_reality=False):
             rows.append([results.experiments.title(method), str(found.count if found else 0), str(failures), *ratios,
                          str(contacts)])
     return table(["changed", "pairs", "failed", "time to 90 %", "to 99 %", "to the end", "metres", "contacts"], rows)
+
+
+def maps_table(results, base):
+    """How right maps are by the true world, with and without the errors of reality; built-in tasks together."""
+    rows = []
+    tasks = results.tasks(of_files=False)
+    for method in (base, *REALITY):
+        runs = [r for task in tasks for r in with_facts(results.of(task, method)) if r.facts.get("map")]
+        if runs:
+            rows.append([results.experiments.title(method), str(len(runs)),
+                         *(parts(runs, lambda r, k=kind: r.facts["map"][k])
+                           for kind in ("false_free", "false_occupied", "surface_found"))])
+    return table(["", "runs", "free voxels that hold a surface", "occupied ones in free space",
+                  "surface voxels found"], rows)
 
 
 def bumpers_table(results):
