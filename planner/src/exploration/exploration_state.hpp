@@ -85,7 +85,8 @@ struct ExplorationState {
   /// For a robot without a goal: back to the last place of its trail from which it could go on, from where it
   /// is; empty if there is none.
   [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
-  /// Whether a robot cannot get to where it came from, although there is something to see.
+  /// Whether a robot cannot get to where it came from, although there is something to see, and is in the
+  /// smaller part of what it has been in.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
   [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
 
@@ -97,6 +98,7 @@ struct ExplorationState {
   [[nodiscard]] std::optional<std::size_t> place_to_go_back_to(std::size_t robot, const Goal& goal,
                                                                const Keys& tried) const;
   [[nodiscard]] std::vector<Pose> way_back_to(std::size_t robot, std::size_t place);
+  [[nodiscard]] bool gets_to_as_many_as(std::size_t robot, std::size_t count) const;
   [[nodiscard]] bool can_get_to(std::size_t robot, const VoxelKey& cell) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                     double length) const;

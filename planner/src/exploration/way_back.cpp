@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -118,7 +119,32 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
     return std::ranges::any_of(trails[robot],
                                [&](const Pose& place) { return place.position != poses[robot].position; });
-  return !went_back_to[robot].empty() && place_to_go_back_to(robot, goal, {}).has_value();
+  if (went_back_to[robot].empty()) return false;
+  const auto place = place_to_go_back_to(robot, goal, {});
+  if (!place) return false;
+  // What has closed off a part that is smaller than that where it is has not locked it in.
+  TravelOptions by_voxels = options.team[robot].robot.travel;
+  by_voxels.node_edge = 0.0;
+  TravelCorridor elsewhere(by_voxels, lattice(), mapping.bounds());
+  elsewhere.update({mapping.grid()}, lattice().key(trails[robot][*place].position).value());
+  return !gets_to_as_many_as(robot, elsewhere.cells().size());
+}
+
+// Whether a robot can get to so many cells, wherever other robots are.
+bool ExplorationState::gets_to_as_many_as(std::size_t robot, std::size_t count) const {
+  const TravelCorridor& corridor = path_corridor(robot);
+  const auto here = lattice().key(poses[robot].position);
+  if (!here) return false;
+  std::set<VoxelKey> known{*here};
+  std::vector<VoxelKey> rest{*here};
+  while (!rest.empty() && known.size() < count) {
+    const VoxelKey at = rest.back();
+    rest.pop_back();
+    for_each_key(grown({at, at}, 1), [&](const VoxelKey& next) {
+      if (corridor.fits(next) && known.insert(next).second) rest.push_back(next);
+    });
+  }
+  return known.size() >= count;
 }
 
 }  // namespace frontlux::planner::detail

@@ -105,6 +105,28 @@ TEST_P(WayBack, LeadsThroughTheClosedPassageAndNowhereElse) {
   EXPECT_TRUE(rooms.state.is_cut_off(0, goal));
 }
 
+// What it has left closed is smaller than where it is: it has lost something to see, and not its way.
+TEST_P(WayBack, ThatIsClosedToASmallPartCutsNobodyOff) {
+  TwoRooms rooms(GetParam(), 5);
+  rooms.close_door();
+  Keys pane;  // the first room but for its end
+  for_each_key({key_at(-26, 0, 0), key_at(-26, 29, 9)}, [&](const VoxelKey& key) { pane.push_back(key); });
+  for (const VoxelKey& key : pane) {
+    const Eigen::Vector3f middle = rooms.state.lattice().exact_center(key).cast<float>();
+    for (int i = 0; i < 5; ++i) rooms.state.mapping.insert(middle, {&middle, 1});
+  }
+  rooms.state.trails[0].insert(rooms.state.trails[0].begin(), TwoRooms::at(-28, 15));
+  rooms.state.changed = pane;
+  if (rooms.state.solid) rooms.state.solid = rooms.state.mapping.grid();
+  rooms.state.update_views(rooms.step);
+  const Goal goal = rooms.choose();
+  ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
+  const std::vector<Pose> way = rooms.state.take_way_back(0, goal);
+  ASSERT_FALSE(way.empty());
+  EXPECT_EQ(way.back().position, TwoRooms::at(-28, 15).position);
+  EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
+}
+
 TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   TwoRooms rooms(GetParam(), 0);
   rooms.close_door();
