@@ -153,9 +153,7 @@ void ExplorationState::note_assignment(ExplorationStep& step) {
 
 void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent) {
   const PhaseClock clock(step, Phase::kGoals);
-  // A robot that does not move measures the same again and again; if beams that graze the floor had freed it
-  // before the robot, it would never go on.
-  selection->keep_goal({tours ? *solid : mapping.grid(), changed}, robot, poses[robot], extent);
+  selection->keep_goal({travel_map(), changed}, robot, poses[robot], extent);
   step.frontiers = frontiers.size();
 }
 

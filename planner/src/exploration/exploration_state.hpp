@@ -48,6 +48,9 @@ struct ExplorationState {
 
   ExplorationState(ExplorationOptions given, Mapping map);
 
+  /// What robots find their ways in. On tours it is `solid`: a robot that does not move measures the same
+  /// again and again, and if beams that graze the floor had freed it before the robot, it would never go on.
+  [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *solid : mapping.grid(); }
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
   [[nodiscard]] ExplorationStep new_step() const;

@@ -36,7 +36,7 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> wa
 // what other robots see anyhow is worth less from afar, as eq. 1 has it.
 bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                       double length) const {
-  elsewhere.update({mapping.grid()}, cell);
+  elsewhere.update({travel_map()}, cell);
   if (tours)
     return tours->would_see_from(robot, *caster,
                                  [&](const VoxelKey& key) { return elsewhere.contains(key); });
@@ -126,7 +126,7 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   TravelOptions by_voxels = options.team[robot].robot.travel;
   by_voxels.node_edge = 0.0;
   TravelCorridor elsewhere(by_voxels, lattice(), mapping.bounds());
-  elsewhere.update({mapping.grid()}, lattice().key(trails[robot][*place].position).value());
+  elsewhere.update({travel_map()}, lattice().key(trails[robot][*place].position).value());
   return !gets_to_as_many_as(robot, elsewhere.cells().size());
 }
 
