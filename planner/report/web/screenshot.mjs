@@ -4,13 +4,13 @@ import { createRequire } from "node:module";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [report, place, picture, part = "html"] = process.argv.slice(2);
+const [report, place, picture, part] = process.argv.slice(2);
 const { chromium } = createRequire(import.meta.url)("playwright-core");
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
-const page = await browser.newPage({ viewport: { width: 1280, height: 740 } });
+const page = await browser.newPage({ viewport: { width: 1280, height: 820 } });
 await page.goto(`${pathToFileURL(resolve(report)).href}#${place}`);
 await page.waitForFunction(() => window.frontlux.ready);
 await page.waitForTimeout(500);  // until the camera rests
-await page.locator(part).screenshot({ path: picture });
+await (part ? page.locator(part) : page).screenshot({ path: picture });
 await browser.close();
