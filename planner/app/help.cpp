@@ -66,8 +66,7 @@ std::string man_page(const CLI::App& app, const std::string& name, const CLI::Ap
   std::string arguments;
   for (const CLI::Option* option :
        app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
-    const bool needed = option->get_required();
-    page += (needed ? " \\fI" : " [\\fI") + roff(option->get_name(true)) + (needed ? "\\fR" : "\\fR]");
+    page += " \\fI" + roff(formatter.make_option_usage(option)) + "\\fR";
     arguments += option_entry(formatter, *option);
   }
   page += root == nullptr ? " \\fICOMMAND\\fR ...\n" : "\n";
@@ -187,6 +186,12 @@ std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
   if (option->get_required()) return option->get_description() + " (required)";
   const std::string value = option->get_default_str();
   return option->get_description() + (value.empty() ? "" : " [" + value + "]");
+}
+
+// An argument in the usage: "MAP", "[WORLD]", "RUN...".
+std::string HelpFormatter::make_option_usage(const CLI::Option* option) const {
+  const std::string name = option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
+  return option->get_required() ? name : "[" + name + "]";
 }
 
 std::string HelpFormatter::make_group(std::string group, bool positional,

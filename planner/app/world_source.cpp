@@ -23,6 +23,10 @@ constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;
 
 WorldKind kind_of(const std::string& name) {
   if (is_built_in_world(name)) return WorldKind::kBuiltIn;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(name, ignored))
+    throw BadInput(quote(name) +
+                   " is a directory; name a built-in world (see frontlux world), or a file in it");
   const auto ending = std::filesystem::path(name).extension();
   if (ending == ".bt" || ending == ".ot") return WorldKind::kMap;
   if (ending.empty() && !std::filesystem::exists(name)) {

@@ -95,6 +95,9 @@ TEST_F(ReportCommandTest, MakesAFilmWhereThereIsFfmpegAndElseItsFrames) {
   EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0211.png")));
   CommandTest::expect_refused({"one", "--gif"}, {"--gif: needs ffmpeg"}, none);
 
+  // All frames of a run that has no more than a start are one.
+  planner::Recording recording = planner::read_recording(folder_ / "one" / "run.frontlux");
+  planner::RecordingWriter(folder_ / "one" / "run.frontlux", recording.head).write(recording.steps[0]);
   const std::string there = stand_in("for last; do :; done; [ \"$last\" = - ] || echo \"$@\" > \"$last\"");
   write("one/video/mine", "a user's");
   CommandTest::expect_answer({"one", "--video", "--gif"}, {"one/video.mp4\n", "one/video.gif\n"}, there);

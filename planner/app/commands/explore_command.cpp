@@ -158,7 +158,8 @@ void add_explore_command(CLI::App& app) {
 Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv, motion.csv and tours.csv (of
 robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C or SIGTERM ends a run
 after the current step. --help-all has more options.)");
-  command.run([given, team, lockstep, mode = mode, goal = goal] {
+  command.run([given, resume, team, lockstep, mode = mode, goal = goal] {
+    if (resume.given() && given->resume.empty()) throw BadInput("--resume: name the folder of the run");
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);
   });

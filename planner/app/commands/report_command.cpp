@@ -40,7 +40,8 @@ std::filesystem::path recording_of(const std::filesystem::path& run) {
     return run / "run.frontlux";
   }
   if (!std::filesystem::exists(run, error))
-    throw BadInput(run.string() + ": there is no such folder or recording");
+    throw BadInput((run.empty() ? "''" : run.string()) +
+                   ": there is no such folder or recording; check the path");
   return run;
 }
 

@@ -28,6 +28,14 @@ Color from_oklab(double lightness, double green_red, double blue_yellow) {
           encoded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
+Color on_paper(const report::ColorPair& color) {
+  constexpr int kHexadecimal = 16;
+  unsigned rgb = 0;
+  std::from_chars(color.light.data() + 1, color.light.data() + color.light.size(), rgb, kHexadecimal);
+  return {static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U),
+          static_cast<std::uint8_t>(rgb)};
+}
+
 }  // namespace
 
 Color color_of(double fraction) {
@@ -41,14 +49,10 @@ Color color_of(double fraction) {
 
 std::vector<Color> robot_colors(const std::vector<planner::RobotDescription>& team) {
   std::vector<Color> colors;
-  for (const report::RobotColor& color : report::robot_colors(team)) {
-    constexpr int kHexadecimal = 16;
-    unsigned rgb = 0;
-    std::from_chars(color.light.data() + 1, color.light.data() + color.light.size(), rgb, kHexadecimal);
-    colors.push_back({static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U),
-                      static_cast<std::uint8_t>(rgb)});
-  }
+  for (const report::ColorPair& color : report::robot_colors(team)) colors.push_back(on_paper(color));
   return colors;
 }
+
+Color frontier_color() { return on_paper(report::frontier_color()); }
 
 }  // namespace frontlux::app

@@ -15,5 +15,7 @@ namespace frontlux::app {
 
 /// The colours of a team's robots, as in its report: see `report::robot_colors`.
 [[nodiscard]] std::vector<Color> robot_colors(const std::vector<planner::RobotDescription>& team);
+/// Of frontiers, as in reports.
+[[nodiscard]] Color frontier_color();
 
 }  // namespace frontlux::app

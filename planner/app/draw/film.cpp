@@ -9,6 +9,7 @@
 #include <spawn.h>
 #include <stdexcept>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace frontlux::app {
@@ -61,15 +62,17 @@ void write_frames(const std::filesystem::path& folder, const planner::Recording&
   const double end = map.end();
   RunMap all(recording);
   all.go_to(end);
-  const MapView view(recording, all, {.width = width, .height = width * 3 / 4, .fine = 2});
+  MapView view(recording, all, {.width = width, .height = width * 3 / 4, .fine = 2});
+  double shown = -1.0;
   for (int i = 1; i <= kFrames + kLast; ++i) {
-    map.go_to(i >= kFrames ? end : end * i / kFrames);
+    const double moment = i >= kFrames ? end : end * i / kFrames;
     const std::string file = frame_name(i);
-    if (i <= kFrames) {
+    if (std::exchange(shown, moment) != moment) {
+      map.go_to(moment);
       view.draw(map, map.title(name)).write(folder / file);
       continue;
     }
-    std::filesystem::copy_file(folder / frame_name(kFrames), folder / file,
+    std::filesystem::copy_file(folder / frame_name(i - 1), folder / file,
                                std::filesystem::copy_options::overwrite_existing, error);
     if (error) throw std::runtime_error((folder / file).string() + ": cannot be written: " + error.message());
   }

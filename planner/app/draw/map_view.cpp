@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -267,6 +268,12 @@ void draw_scale(Picture& picture, const Projection& projection, double resolutio
 }  // namespace
 
 struct MapView::State {
+  // The surface of a map, which many frames of a film share.
+  struct Drawn {
+    VoxelGrid grid;
+    Surface surface;
+    Raster raster;
+  };
   std::vector<std::string> names;
   std::vector<Color> colors;
   double resolution;
@@ -274,6 +281,7 @@ struct MapView::State {
   int width = 0, height = 0;     // [px]
   double low = 0.0, high = 0.0;  // [voxels] of the map
   Projection projection;
+  std::optional<Drawn> drawn;  // last
 };
 
 MapView::MapView(const planner::Recording& recording, const RunMap& all, const Size& most) {
@@ -281,7 +289,8 @@ MapView::MapView(const planner::Recording& recording, const RunMap& all, const S
               .colors = robot_colors(recording.head.robots),
               .resolution = recording.head.resolution,
               .fine = most.fine,
-              .projection = {}};
+              .projection = {},
+              .drawn = {}};
   for (const auto& description : recording.head.robots) state.names.push_back(description.robot.name);
   std::vector<Eigen::Vector3d> points;
   for (const Face& face : visible_faces(all.grid())) {
@@ -292,15 +301,20 @@ MapView::MapView(const planner::Recording& recording, const RunMap& all, const S
   for (const auto& path : all.paths()) points.insert(points.end(), path.begin(), path.end());
   const int header = kLine * (1 + static_cast<int>(state.names.size()));
   state.projection = fit(points, most, header, state.width, state.height);
-  state_ = std::make_shared<const State>(std::move(state));
+  state_ = std::make_shared<State>(std::move(state));
 }
 
-Picture MapView::draw(const RunMap& map, const std::string& title) const {
-  const auto& [names, colors, resolution, fine, width, height, low, high, projection] = *state_;
-  Surface surface(width, height, fine, projection);
-  for (const Face& face : visible_faces(map.grid())) surface.add(face, face_color(face, low, high));
+Picture MapView::draw(const RunMap& map, const std::string& title) {
+  auto& [names, colors, resolution, fine, width, height, low, high, projection, drawn] = *state_;
+  if (!drawn || !(drawn->grid == map.grid())) {
+    Surface surface(width, height, fine, projection);
+    for (const Face& face : visible_faces(map.grid())) surface.add(face, face_color(face, low, high));
+    Raster raster = surface.raster();
+    drawn.emplace(State::Drawn{map.grid(), std::move(surface), std::move(raster)});
+  }
+  const Surface& surface = drawn->surface;
   Picture picture(width, height);
-  picture.image(0, 0, surface.raster());
+  picture.image(0, 0, drawn->raster);
   for (const auto& [thickness, halo] : {std::pair{8.0, true}, std::pair{4.5, false}})
     for (std::size_t r = 0; r < names.size(); ++r)
       for (const auto& piece : seen_pieces(surface, projection, map.paths()[r]))

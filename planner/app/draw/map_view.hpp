@@ -25,11 +25,11 @@ class MapView {
   /// @param all  the run at its end
   MapView(const planner::Recording& recording, const RunMap& all, const Size& most);
 
-  [[nodiscard]] Picture draw(const RunMap& map, const std::string& title) const;
+  [[nodiscard]] Picture draw(const RunMap& map, const std::string& title);
 
  private:
   struct State;
-  std::shared_ptr<const State> state_;
+  std::shared_ptr<State> state_;
 };
 
 }  // namespace frontlux::app

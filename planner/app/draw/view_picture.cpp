@@ -14,8 +14,7 @@ namespace frontlux::app {
 namespace {
 
 constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kUnknown{150, 150, 156}, kFree{226, 226, 230},
-    kOccupied{38, 38, 44}, kFrontier{238, 120, 20}, kFarFrontier{226, 184, 150}, kGoal{214, 18, 92},
-    kRobot{255, 255, 255};
+    kOccupied{38, 38, 44};
 constexpr int kMargin = 24, kPanel = 260, kLine = 28;
 constexpr TextStyle kText{.size = 19.0, .color = kInk};
 constexpr int kWidth = 900;                   // [px] of the longer edge of the map, about
@@ -80,6 +79,12 @@ void draw_map(Raster& map, const ViewScene& scene, const Window& window) {
     }
 }
 
+// Half way to what is free.
+Color pale(Color color) {
+  const auto mixed = [](int a, int b) { return static_cast<std::uint8_t>((a + b) / 2); };
+  return {mixed(color.red, kFree.red), mixed(color.green, kFree.green), mixed(color.blue, kFree.blue)};
+}
+
 // The best quality of each column of voxels, -1 where there is no cell.
 std::vector<double> columns_of(const ViewScene& scene, const Window& window) {
   std::vector<double> columns(window.place(window.max_x, window.max_y) + 1, -1.0);
@@ -113,7 +118,7 @@ void draw_cells(Raster& map, const ViewScene& scene, const Window& window, doubl
     for (const VoxelKey& key : scene.frontiers)
       if (near == (std::abs(key.z - layer) <= 1) && quality(key.x, key.y) < 0.0)
         map.fill(window.pixel_x(key.x) + inset, window.pixel_y(key.y) + inset, window.scale - 2 * inset,
-                 window.scale - 2 * inset, near ? kFrontier : kFarFrontier);
+                 window.scale - 2 * inset, near ? frontier_color() : pale(frontier_color()));
 }
 
 Spot spot_of(const ViewScene& scene, const Window& window, const Eigen::Vector3d& point) {
@@ -122,21 +127,25 @@ Spot spot_of(const ViewScene& scene, const Window& window, const Eigen::Vector3d
           window.top + (window.max_y + 1 - point.y() / resolution - Lattice::kOrigin) * window.scale};
 }
 
-void draw_robot_mark(Picture& picture, const Spot& at) {
+// In reports and stills as well.
+Color color_everywhere(const planner::Robot& robot) { return robot_colors({{robot}}).front(); }
+
+void draw_robot_mark(Picture& picture, const Spot& at, Color color) {
   picture.disc(at, 9, kInk);
-  picture.disc(at, 6.5, kRobot);
-  picture.disc(at, 3, kInk);
+  picture.disc(at, 7, kPaper);
+  picture.disc(at, 5, color);
 }
 
-void draw_goal_mark(Picture& picture, const Spot& at) {
+void draw_goal_mark(Picture& picture, const Spot& at, Color color) {
   picture.ring(at, 10, 7, kPaper);
-  picture.ring(at, 10, 4, kGoal);
+  picture.ring(at, 10, 4, color);
   picture.disc(at, 4.5, kPaper);
-  picture.disc(at, 3, kGoal);
+  picture.disc(at, 3, color);
 }
 
 void draw_robot_and_goal(Picture& picture, const ViewScene& scene, const Window& window) {
-  draw_robot_mark(picture, spot_of(scene, window, scene.pose.position));
+  const Color color = color_everywhere(scene.robot);
+  draw_robot_mark(picture, spot_of(scene, window, scene.pose.position), color);
   if (!scene.goal.pose) return;
   const Spot goal = spot_of(scene, window, scene.goal.pose->position);
   const FieldOfView& view = scene.robot.view;
@@ -144,14 +153,14 @@ void draw_robot_and_goal(Picture& picture, const ViewScene& scene, const Window&
     const double px = length / scene.grid.resolution() * window.scale;
     const std::array<Spot, 2> ends = {goal, {goal.x + px * std::cos(yaw), goal.y - px * std::sin(yaw)}};
     picture.line(ends, thickness + 2.5, kPaper);
-    picture.line(ends, thickness, kGoal);
+    picture.line(ends, thickness, color);
   };
   if (view.shape != FieldOfView::Shape::kSpinning) {
     const double length = 0.35 * view.max_range;
     ray(scene.goal.pose->yaw - view.horizontal / 2, length, 2.5);
     ray(scene.goal.pose->yaw + view.horizontal / 2, length, 2.5);
   }
-  draw_goal_mark(picture, goal);
+  draw_goal_mark(picture, goal, color);
 }
 
 void draw_panel(Picture& picture, const ViewScene& scene, const Window& window, int left, int height,
@@ -183,10 +192,11 @@ void draw_panel(Picture& picture, const ViewScene& scene, const Window& window, 
   entry("unknown", patch(kUnknown));
   entry("free", patch(kFree));
   entry("occupied", patch(kOccupied));
-  entry("frontier", patch(kFrontier));
-  entry("frontier above, below", patch(kFarFrontier));
-  entry("robot", [&](int x, int middle) { draw_robot_mark(picture, {double(x), double(middle)}); });
-  entry("goal", [&](int x, int middle) { draw_goal_mark(picture, {double(x), double(middle)}); });
+  entry("frontier", patch(frontier_color()));
+  entry("frontier above, below", patch(pale(frontier_color())));
+  const Color color = color_everywhere(scene.robot);
+  entry("robot", [&](int x, int middle) { draw_robot_mark(picture, {double(x), double(middle)}, color); });
+  entry("goal", [&](int x, int middle) { draw_goal_mark(picture, {double(x), double(middle)}, color); });
 
   const double metres_per_pixel = scene.grid.resolution() / window.scale;
   const double length = round_length((kPanel - kMargin - 40) * metres_per_pixel);

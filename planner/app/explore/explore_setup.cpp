@@ -233,9 +233,10 @@ WorldSource source_of(const ExploreOptions& options, const GivenStarts& given) {
   // The floors of worlds that others have made may lie at any height. Who gives a box knows the floor.
   if (!source.ground) source.ground = GroundAlignment{!source.box};
   if (source.start_otherwise) return source;
-  std::error_code ignored;  // of a file that is missing make_world says so
-  if (std::filesystem::exists(source.world, ignored) && source.ground->align && !source.ground->height &&
-      !source.start)
+  std::error_code ignored;  // of a file that is missing, or a directory, make_world says so
+  const auto file = std::filesystem::status(source.world, ignored);
+  if (std::filesystem::exists(file) && !std::filesystem::is_directory(file) && source.ground->align &&
+      !source.ground->height && !source.start)
     throw BadInput(source.world + ": no start is known; give --start in free space, x,y,z in metres");
   return source;
 }

@@ -23,8 +23,8 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 [[nodiscard]] std::string run_facts(const ReportedRun& run, const std::string& version);
 
 /// The robots' colours of data/palette.json.
-[[nodiscard]] std::span<const RobotColor> aerial_colors();
-[[nodiscard]] std::span<const RobotColor> ground_colors();
+[[nodiscard]] std::span<const ColorPair> aerial_colors();
+[[nodiscard]] std::span<const ColorPair> ground_colors();
 
 /// Changed voxels, images, paths, tours, trajectories and assigned frontiers of a run, as bytes that
 /// web/src/run_data.js reads. Of a robot with more than 400 images, only every second one is in it, or every
@@ -39,6 +39,8 @@ inline constexpr std::string_view kRunsMark = "@@frontlux-runs@@";
 ///       sqrt(quality / greatest) as a byte
 ///     count of planned viewpoints, those travelled, and of each x, y, z, yaw as f32
 ///     count of stops of the planned tour, and of each x, y, z, yaw as f32, clusters and frontiers in view
+///     count of points of the trajectory, and of each x, y, z as f32
+///     count of frontiers that have become the robot's own or ceased to be: differences of x, of y, of z
 ///
 /// A count takes seven bits a byte, the lowest first; the top bit says that another byte follows. A
 /// difference d is written as the count 2 d, or -2 d - 1 if negative. f32 is a float, lowest byte first.

@@ -20,14 +20,14 @@ std::size_t number_of(const std::string& name) {
 
 }  // namespace
 
-std::vector<RobotColor> robot_colors(std::span<const planner::RobotDescription> team) {
-  std::vector<RobotColor> colors;
-  const auto taken = [&](const RobotColor& color) {
-    return std::ranges::find(colors, color.light, &RobotColor::light) != colors.end();
+std::vector<ColorPair> robot_colors(std::span<const planner::RobotDescription> team) {
+  std::vector<ColorPair> colors;
+  const auto taken = [&](const ColorPair& color) {
+    return std::ranges::find(colors, color.light, &ColorPair::light) != colors.end();
   };
   for (const planner::RobotDescription& description : team) {
     const bool ground = description.robot.travel.drives();
-    const std::span<const RobotColor> choice = ground ? detail::ground_colors() : detail::aerial_colors();
+    const std::span<const ColorPair> choice = ground ? detail::ground_colors() : detail::aerial_colors();
     const std::size_t own = (number_of(description.robot.name) - 1) % choice.size();
     std::size_t i = 0;
     while (i < choice.size() && taken(choice[(own + i) % choice.size()])) ++i;

@@ -101,7 +101,7 @@ void write_keys(ByteWriter& out, const std::vector<Element>& list, const Key& ke
 void write_image(ByteWriter& out, std::vector<planner::RenderedCell> cells) {
   out.count(cells.size());
   if (cells.empty()) return;
-  std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+  std::stable_sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
     return std::tie(a.cell.z, a.cell.y, a.cell.x) < std::tie(b.cell.z, b.cell.y, b.cell.x);
   });
   double gain = 0.0, quality = 0.0;

@@ -122,7 +122,7 @@ std::string run_facts(const ReportedRun& run, const std::string& version) {
   if (recording.end) facts["end"] = *recording.end;
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
     facts["phases"].push_back(name_of(static_cast<planner::Phase>(phase)));
-  const std::vector<RobotColor> colors = robot_colors(head.robots);
+  const std::vector<ColorPair> colors = robot_colors(head.robots);
   for (std::size_t i = 0; i < head.robots.size(); ++i) {
     facts["robots"].push_back(facts_of(head.robots[i]));
     facts["robots"][i]["colors"] = {std::string(colors[i].light), std::string(colors[i].dark)};

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -33,6 +34,25 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
+}
+
+// The goal's cell and the best others by eq. 1, sorted by cell. There are thousands in space, and most are
+// worth next to nothing.
+std::vector<RenderedCell> best_candidates(std::vector<RenderedCell> cells, const Goal& goal) {
+  constexpr std::size_t kMost = 1000;
+  if (cells.size() <= kMost) return cells;
+  const auto by_cell = [](const RenderedCell& a, const RenderedCell& b) {
+    return std::tie(a.cell, a.yaw) < std::tie(b.cell, b.yaw);
+  };
+  const auto worth = [&](const RenderedCell& cell) {
+    return std::pair(cell.cell == goal.cell, cell.quality);
+  };
+  std::ranges::nth_element(cells, cells.begin() + kMost, [&](const RenderedCell& a, const RenderedCell& b) {
+    return worth(a) != worth(b) ? worth(a) > worth(b) : by_cell(a, b);
+  });
+  cells.resize(kMost);
+  std::ranges::sort(cells, by_cell);
+  return cells;
 }
 
 }  // namespace
@@ -136,8 +156,11 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   for (std::size_t r = 0; r < size(); ++r) {
     targets[r].assign(selection->targets(r).begin(), selection->targets(r).end());
     step.robots[r].goal = std::move(goals.goals[r]);
-    if (options.team[r].robot.travel.motion == Motion::kPlane && (!choosing || *choosing == r))
-      step.robots[r].image = selection->rendered_cells(r);
+    if (choosing && *choosing != r) continue;
+    const bool on_plane = options.team[r].robot.travel.motion == Motion::kPlane;
+    std::vector<RenderedCell> cells = selection->rendered_cells(r);
+    step.robots[r].image =
+        on_plane ? std::move(cells) : best_candidates(std::move(cells), step.robots[r].goal);
   }
   note_assignment(step);
 }
@@ -199,6 +222,9 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   update(extent_of_tours(robot));
   if (extent_of_tours(robot) == CorridorExtent::kNearby && !has_way()) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();
+  const auto quality = [lambda = options.team[robot].options.lambda](double distance, double gain) {
+    return std::exp(-lambda * distance) * gain;  // eq. 1
+  };
   const PhaseClock clock(step, Phase::kGoals);
   targets[robot].clear();
   std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
@@ -219,10 +245,13 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     goal.distance = tours->first_distance(robot);
     goal.gain = static_cast<double>(first.seen);
     goal.assigned = tours->frontiers_of(robot).size();
-    goal.quality = std::exp(-options.team[robot].options.lambda * goal.distance) * goal.gain;
+    goal.quality = quality(goal.distance, goal.gain);
     goal.reason =
         "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
   }
+  std::vector<RenderedCell> candidates = tours->candidates(robot);
+  for (RenderedCell& cell : candidates) cell.quality = quality(cell.distance, cell.gain);
+  step.robots[robot].image = best_candidates(std::move(candidates), goal);
 }
 
 // What the other robots are going to see.

@@ -111,6 +111,21 @@ double TourPlanning::first_distance(std::size_t robot) const {
   return distance == TourProblem::kNever ? 0.0 : distance;
 }
 
+std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
+  const Member& member = members_[robot];
+  std::vector<RenderedCell> cells;
+  for (const FrontierCluster& cluster : clusters_.clusters())
+    for (const auto& [cell, yaw, seen] : member.sights.viewpoints(cluster.id))
+      if (const double distance = member.ways.from_start(cell); distance != TourProblem::kNever)
+        cells.push_back({.cell = cell,
+                         .distance = distance,
+                         .gain = static_cast<double>(seen),
+                         .yaw = yaw,
+                         .hits = static_cast<std::uint32_t>(seen)});
+  std::ranges::stable_sort(cells, {}, &RenderedCell::cell);
+  return cells;
+}
+
 std::function<bool(const VoxelKey&)> TourPlanning::around_way_to(std::size_t robot,
                                                                  const VoxelKey& to) const {
   return members_[robot].ways.around_way_to(to);

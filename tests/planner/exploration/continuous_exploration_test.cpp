@@ -155,6 +155,26 @@ TEST_P(ContinuousExplorationBy, StepsAddUpToTheMap) {
   }
 }
 
+// A robot that keeps its goal weighs none.
+TEST_P(ContinuousExplorationBy, TellsTheCandidatesAmongWhichGoalsAreChosen) {
+  TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
+  int chosen = 0;
+  scene.explore(8.0, [&](const PlannedMotion& now) {
+    for (std::size_t r = 0; r < 2; ++r) {
+      const RobotStep& robot = now.step.robots[r];
+      if (robot.image.empty()) continue;
+      EXPECT_EQ(r, now.robot) << "the other one did not plan";
+      if (!robot.goal.pose) continue;
+      ++chosen;
+      EXPECT_TRUE(std::ranges::binary_search(robot.image, robot.goal.cell, {}, &RenderedCell::cell));
+      const double lambda = scene.exploration().options().team[r].options.lambda;
+      for (const RenderedCell& cell : robot.image)
+        EXPECT_LE(cell.quality, std::exp(-lambda * cell.distance) * cell.gain + 1e-9);
+    }
+  });
+  EXPECT_GT(chosen, 4);
+}
+
 TEST_P(ContinuousExplorationBy, IsTheSameOnOneAndTwoThreads) {
   const auto told = [](int threads) {
     return tbb::task_arena(threads).execute([] {

@@ -28,7 +28,8 @@ bool body_is_free(const VoxelGrid& grid, const TravelOptions& body, const Eigen:
 // What a run comes to.
 struct Sums {
   std::size_t steps = 0, goals = 0, turned = 0, backed_off = 0, gained = 0;
-  bool shared = false;  // a step in which robots went for the same frontiers
+  bool shared = false;                  // a step in which robots went for the same frontiers
+  std::vector<std::size_t> candidates;  // the most in a step, by robot
   sim::Collisions collisions;
 };
 
@@ -81,6 +82,7 @@ class Watch {
       }
       check_path(robot, r, before, from[r], asked[r]);
       check_gains(robot, r, before, frontiers);
+      check_candidates(robot, r, before, frontiers);
       // What it changed: all that differs once the next one sets out.
       auto next = when.upper_bound(r);
       const VoxelGrid after = next == when.end() ? grid() : next->second;
@@ -154,6 +156,34 @@ class Watch {
     }
   }
 
+  // Its goal is one of them, and what was counted is within its reach.
+  void check_candidates(const RobotStep& robot, std::size_t r, const VoxelGrid& before,
+                        const std::vector<VoxelKey>& frontiers) {
+    const TeamMember& member = exploration_.options().team[r];
+    if (member.options.rule != GoalRule::kViewQuality) {
+      EXPECT_TRUE(robot.image.empty());
+      return;
+    }
+    sums_.candidates.resize(team_.robots.size());
+    sums_.candidates[r] = std::max(sums_.candidates[r], robot.image.size());
+    EXPECT_TRUE(std::ranges::is_sorted(robot.image, {}, &RenderedCell::cell));
+    EXPECT_TRUE(robot.image.size() <= 1000 || member.robot.travel.motion == Motion::kPlane);
+    EXPECT_TRUE(!robot.goal.pose ||
+                std::ranges::binary_search(robot.image, robot.goal.cell, {}, &RenderedCell::cell));
+    for (std::size_t i = 0; i < robot.image.size(); i += 1 + robot.image.size() / 4) {
+      const RenderedCell& cell = robot.image[i];
+      EXPECT_LE(cell.quality, std::exp(-member.options.lambda * cell.distance) * cell.gain + 1e-9);
+      const Lattice& lattice = before.lattice();
+      const auto in_reach = std::ranges::count_if(frontiers, [&](const VoxelKey& key) {
+        const double distance = (lattice.exact_center(key) - lattice.exact_center(cell.cell)).norm();
+        return distance <= member.robot.view.max_range + 1e-9;
+      });
+      if (cell.standard_error == 0.0) {
+        EXPECT_LE(cell.gain, static_cast<double>(in_reach));
+      }
+    }
+  }
+
   void check_changes(const RobotStep& robot, const VoxelGrid& map, const VoxelGrid& after,
                      const std::vector<VoxelKey>& frontiers) {
     std::vector<VoxelChange> expected;
@@ -197,11 +227,14 @@ TEST(ExplorationSteps, AreAsTheySayInAStorage) {
   const Sums sums = Watch(team, team.options()).run(5);
   EXPECT_EQ(sums.steps, 5U);
   EXPECT_GT(sums.goals, 5U);
+  for (const std::size_t most : sums.candidates) EXPECT_GT(most, 500U);
+  EXPECT_EQ(std::ranges::max(sums.candidates), 1000U) << "there are more in space";
   EXPECT_EQ(sums.collisions, sim::Collisions());
 }
 
 TEST(ExplorationSteps, AreAsTheySayForAnyTeam) {
-  const auto sonar = io::read_robot(std::string(FRONTLUX_DATA_DIR) + "/robots/sonar.json");
+  const std::filesystem::path data = FRONTLUX_DATA_DIR;
+  const auto sonar = io::read_robot(data / "robots" / "sonar.json");
   const std::vector<std::vector<RobotDescription>> teams = {
       {uav_description()},
       {ugv_description()},

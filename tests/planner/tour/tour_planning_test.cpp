@@ -72,6 +72,35 @@ TEST(TourPlanning, LooksAtClustersFromWhereTheRobotCanGo) {
   EXPECT_TRUE(std::ranges::includes(keys, first));
 }
 
+TEST(TourPlanning, StopsAreAmongItsCandidates) {
+  OpenSpace space;
+  const TravelCorridor corridor = space.corridor();
+  EXPECT_TRUE(space.planning.candidates(0).empty()) << "before it has planned";
+  space.plan(corridor);
+  const std::vector<RenderedCell> candidates = space.planning.candidates(0);
+  EXPECT_TRUE(std::ranges::is_sorted(candidates, {}, &RenderedCell::cell));
+  EXPECT_GT(candidates.size(), space.planning.tour(0).size());
+  const Lattice& lattice = space.grid.lattice();
+  for (const RenderedCell& candidate : candidates) {
+    EXPECT_TRUE(corridor.contains(candidate.cell));
+    const Eigen::Vector3d at = lattice.exact_center(candidate.cell);
+    EXPECT_GE(candidate.distance, (at - space.pose.position).norm() - 1e-9);
+    EXPECT_LE(candidate.distance, 1.5 * (at - space.pose.position).norm() + 1.0) << "nothing is in its way";
+    // Nothing hides a frontier here, so it sees what is in its view: what it counts, and of other clusters.
+    const auto in_view = std::ranges::count_if(space.frontiers.keys(), [&](const VoxelKey& key) {
+      return space.robot.view.contains(lattice.exact_center(key) - at, candidate.yaw);
+    });
+    EXPECT_GE(candidate.gain, TourPlanning::Options{}.least_gain);
+    EXPECT_LE(candidate.gain, static_cast<double>(in_view));
+    EXPECT_EQ(candidate.hits, candidate.gain);
+    EXPECT_EQ(candidate.standard_error, 0.0);
+  }
+  for (const TourStop& stop : space.planning.tour(0))
+    EXPECT_TRUE(std::ranges::any_of(candidates, [&](const RenderedCell& candidate) {
+      return candidate.cell == stop.cell && candidate.yaw == stop.pose.yaw;
+    }));
+}
+
 // Where the map is large only ways between near places are measured, and far clusters share stops.
 TEST(TourPlanning, LeadsToAllClustersHoweverFarTheyAre) {
   OpenSpace all, some({.measured = 1}), far({.near = 0.02, .measured = 1});

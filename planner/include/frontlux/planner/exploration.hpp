@@ -86,8 +86,11 @@ struct PlannedStop {
 
 /// What one robot planned, did and mapped in one step.
 struct RobotStep {
-  Goal goal;                        ///< or why there is none
-  std::vector<RenderedCell> image;  ///< of a robot on a plane: the cells rendered for its goal
+  Goal goal;  ///< or why there is none
+  /// The candidates among which its goal was chosen: of a robot on a plane all cells rendered for it, else
+  /// the best 1000 by eq. 1. With tours they are places that see a cluster of frontiers each, and the gain is
+  /// what they see of it.
+  std::vector<RenderedCell> image;
   /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
   std::vector<Pose> planned;         ///< from where it was to the goal; empty if it stays

@@ -117,7 +117,7 @@ struct TeamGoals {
   std::uint64_t rays = 0;      ///< cast in this step
 };
 
-/// A cell as it was rendered for a robot's goal.
+/// A cell that a robot's goal may be in, and what it would see from there.
 struct RenderedCell {
   /// A cell of the corridor.
   VoxelKey cell;

@@ -22,8 +22,9 @@ export function swatch(color, kind = "") {
 
 /** A table with a caption, a row of heads, and rows whose first cell is a head. */
 export function table(caption, heads, rows) {
+  const td = (text) => el("td", { class: text.length > 16 && "sentence", text });
   return el("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption }, el("table", {},
     el("caption", { text: caption }),
     heads.length > 0 ? el("thead", {}, el("tr", {}, ...heads.map((text) => el("th", { scope: "col", text })))) : null,
-    el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((cell, i) => el(i === 0 ? "th" : "td", { scope: i === 0 ? "row" : undefined, text: String(cell) })))))));
+    el("tbody", {}, ...rows.map((row) => el("tr", {}, ...row.map((cell, i) => (i === 0 ? el("th", { scope: "row", text: String(cell) }) : td(String(cell)))))))));
 }

@@ -187,7 +187,7 @@ const WORDS = [
   ["Voxel", "A cube of space. It is unknown until a ray of a sensor passes through it (free) or ends in it (occupied)."],
   ["Frontier", "An unknown voxel next to a free one: the edge of the known space."],
   ["Observable space", "What the robots can observe at all: the free space that is connected with their start, and the surfaces around it. Coverage is the known fraction of it; a robot's coverage is what it observed first."],
-  ["View quality", "How many frontiers the ground robot expects to see from a place, less the farther away it is. Light yellow is best; the best place becomes the goal."],
+  ["View quality", "How many frontiers a robot expects to see from a place, less the farther away it is: of the cells on the floor, or of the candidates in space, squares. Light yellow is best. Without tours the best place becomes the goal; a tour is made of places that see much and lie on the way."],
   ["Time", "The run's own clock, in seconds: how long robots with these speeds, sensors and planning times need. It stands for the end of a step."],
   ["Path length", "Of all robots together, in metres, unless a robot is named."],
   ["Explored volume", "The volume of all voxels that are known to be free or occupied, within the bounds of the map."],

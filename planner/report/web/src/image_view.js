@@ -1,8 +1,17 @@
-import { DataTexture, Mesh, MeshBasicMaterial, NearestFilter, PlaneGeometry, SRGBColorSpace, DoubleSide } from "three";
+import { DataTexture, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Plane, PlaneGeometry, SRGBColorSpace, Vector3 } from "three";
 import { qualityColor } from "./palette.js";
 
 const ORIGIN = 32768;
 const MOST = 4096; // texels along an edge
+const point = new Vector3();
+
+/** Whether a robot's images are of one floor, cell by cell, and not of places anywhere. */
+export function onFloor(run, robot) {
+  const of = (list) => list.filter((part, i) => part && i % run.robots === robot);
+  if (!run.facts.robots[robot].plane || of(run.tours).length > 0) return false;
+  const { low, columns, rows } = boxOf(run, robot);
+  return columns <= MOST && rows <= MOST && of(run.images).every((image) => image.z.every((key) => key === image.z[0]));
+}
 
 /** The view quality of a robot on a plane: the cells rendered for its goal, painted on the floor. */
 export class ImageView {
@@ -12,7 +21,6 @@ export class ImageView {
     this.colors = Array.from({ length: 256 }, (_, i) => qualityColor(i / 255));
     this.box = boxOf(run, robot);
     this.shown = undefined; // step
-    if (!this.box) return;
     const { facts } = run, { low, columns, rows } = this.box;
     this.texels = new Uint8Array(4 * columns * rows);
     this.texture = new DataTexture(this.texels, columns, rows);
@@ -28,7 +36,7 @@ export class ImageView {
 
   /** Shows the image of a step; hides it if the step has none. */
   show(step) {
-    if (!this.box || this.shown === step) return;
+    if (this.shown === step) return;
     this.shown = step;
     const image = step < 0 ? null : this.run.images[step * this.run.robots + this.robot];
     this.mesh.visible = image !== null;
@@ -50,18 +58,19 @@ export class ImageView {
     return (key - ORIGIN - Math.floor(robots[this.robot].sensor_height / resolution + 1e-9)) * resolution;
   }
 
-  /** Number of the cell at a column of voxels in the image that is shown; -1 if there is none. */
-  cellAt(x, y) {
+  /** The cell of the image that is shown where a ray meets the floor: { i, distance } or null. */
+  pick(ray) {
     const image = this.shown >= 0 ? this.run.images[this.shown * this.run.robots + this.robot] : null;
-    if (!image) return -1;
-    for (let i = 0; i < image.count; ++i) if (image.x[i] === x && image.y[i] === y) return i;
-    return -1;
+    if (!image || !ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -this.mesh.position.z), point)) return null;
+    const [x, y] = [point.x, point.y].map((k) => Math.floor(k / this.run.facts.resolution) + ORIGIN);
+    for (let i = 0; i < image.count; ++i) if (image.x[i] === x && image.y[i] === y) return { i, distance: point.distanceTo(ray.origin) - 0.05 };
+    return null;
   }
 
   dispose() {
-    this.texture?.dispose();
-    this.material?.dispose();
-    this.mesh?.geometry.dispose();
+    this.texture.dispose();
+    this.material.dispose();
+    this.mesh.geometry.dispose();
   }
 }
 
@@ -78,5 +87,5 @@ function boxOf(run, robot) {
       }
   }
   const columns = high[0] - low[0] + 1, rows = high[1] - low[1] + 1;
-  return high[0] < 0 || columns > MOST || rows > MOST ? null : { low, columns, rows };
+  return { low, columns, rows };
 }

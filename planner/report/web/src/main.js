@@ -116,7 +116,7 @@ class Page {
       this.scene.load(run);
       this.toolbar = makeToolbar(this.scene, run, () => this.savePicture());
       this.stage.prepend(this.toolbar.bar);
-      this.view.append(this.toolbar.key);
+      this.views.append(this.toolbar.key);
     }
     this.details.replaceChildren(...details(run, run.facts.written_by));
     this.steps.open = false;
@@ -155,20 +155,24 @@ class Page {
     }, 300);
   }
 
-  /** A canvas keeps no picture for the printer, and a dark one wastes its ink: charts and views are drawn in light colours, views as pictures. */
+  /** A dark page wastes ink, so it turns light; a canvas keeps no picture for the printer, so views become pictures. */
   preparePrint() {
+    this.themeWished = root.dataset.theme;
+    root.dataset.theme = "light";
+    this.setTheme();
     this.charts.print();
     for (const scene of [this.scene, this.besideRun && this.second].filter(Boolean)) {
-      const { theme } = scene;
       scene.setTheme("light");
       scene.render();
       scene.canvas.after(el("img", { class: "print-view", alt: "The map as it is shown on the screen", src: scene.canvas.toDataURL("image/png") }));
-      scene.setTheme(theme);
     }
   }
 
   endPrint() {
     for (const picture of document.querySelectorAll(".print-view")) picture.remove();
+    if (this.themeWished) root.dataset.theme = this.themeWished;
+    else delete root.dataset.theme;
+    this.setTheme();
     this.charts.endPrint(themeNow());
   }
 

@@ -17,8 +17,8 @@ export const otherColor = (theme) => on(theme, palette.other);
 
 const scene = (theme, more) => ({ ink: on(theme, palette.team), frontier: on(theme, palette.frontier), ...more });
 export const SCENE = {
-  light: scene("light", { background: "#eef1f5", shade: 1.0, wall: "#e4e8ee", additive: false, heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] }),
-  dark: scene("dark", { background: "#10141a", shade: 0.92, wall: "#4a5563", additive: true, heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] }),
+  light: scene("light", { background: "#eef1f5", shade: 1.0, wall: "#e4e8ee", heights: ["#566a8c", "#8fa0ae", "#c9c4b2", "#e9dcb4"] }),
+  dark: scene("dark", { background: "#10141a", shade: 0.92, wall: "#4a5563", heights: ["#3d4f74", "#66788c", "#a09c8c", "#d8c994"] }),
 };
 
 /** From dark violet (0) over teal to light yellow (1), as `frontlux render` draws view quality: [r, g, b], 0 to 255. */

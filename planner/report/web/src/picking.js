@@ -1,11 +1,10 @@
-import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import { Raycaster, Vector2 } from "three";
 import { FREE, OCCUPIED, UNKNOWN } from "./run_data.js";
 import { clockTime } from "./run_numbers.js";
 
 const ORIGIN = 32768;
 const FAR = 4000; // voxels looked at along a ray
 const raycaster = new Raycaster();
-const point = new Vector3();
 
 /** The nearest object shown at a position of the view, from -1 to 1 along both axes. */
 export function pick(scene, x, y) {
@@ -65,11 +64,8 @@ function pickStop(tour, ray) {
 }
 
 function pickCell(image, ray) {
-  if (!image.mesh?.visible) return null;
-  const z = image.mesh.position.z, size = image.run.facts.resolution;
-  if (!ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -z), point)) return null;
-  const i = image.cellAt(Math.floor(point.x / size) + ORIGIN, Math.floor(point.y / size) + ORIGIN);
-  return i < 0 ? null : { kind: "cell", robot: image.robot, i, distance: point.distanceTo(ray.origin) - 0.05 };
+  const hit = image.mesh.visible ? image.pick(ray) : null;
+  return hit && { kind: "cell", robot: image.robot, ...hit };
 }
 
 /** What was picked, in words: [name, value] pairs. */
@@ -91,7 +87,7 @@ export function describePick(scene, hit) {
   if (hit.kind === "cell") {
     const image = run.images[step * run.robots + hit.robot];
     return [
-      ["Cell on the floor", `${metres([image.x[hit.i], image.y[hit.i]])} (x, y), ${name}`],
+      ["Candidate", `${metres([image.x[hit.i], image.y[hit.i], image.z[hit.i]])}, ${name}`],
       ["View quality", ((image.quality[hit.i] / 255) ** 2 * image.qualityMost).toFixed(1)],
       ["Expected gain", `${((image.gain[hit.i] / 255) * image.gainMost).toFixed(0)} frontiers`],
     ];

@@ -1,6 +1,7 @@
 import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { ImageView } from "./image_view.js";
+import { CandidateView } from "./candidate_view.js";
+import { ImageView, onFloor } from "./image_view.js";
 import { RobotView } from "./robot_view.js";
 import { SensorView } from "./sensor_view.js";
 import { TourView } from "./tour_view.js";
@@ -66,7 +67,8 @@ export class ReplayScene {
     const { half } = this.extent(), dash = Math.hypot(...half) / 35;
     this.tours = run.tours.some(Boolean) ? run.facts.robots.map((_, r) => new TourView(run, r, dash)) : [];
     this.trajectories = run.trajectories.some(Boolean) ? run.facts.robots.map((_, r) => new TrajectoryView(run, r, dash / 4)) : [];
-    this.images = run.facts.robots.map((_, r) => new ImageView(run, r)).filter((image) => image.box);
+    const rated = run.facts.robots.map((_, r) => r).filter((r) => run.images.some((image, i) => image && i % run.robots === r));
+    this.images = rated.map((r) => (onFloor(run, r) ? new ImageView(run, r) : new CandidateView(run, r)));
     this.scene.add(this.voxels.voxels, this.voxels.frontiers);
     for (const robot of this.robots) this.scene.add(robot.body, robot.view, robot.trail, robot.recent, robot.plan, robot.goal);
     for (const tour of this.tours) this.scene.add(tour.group);
@@ -156,6 +158,7 @@ export class ReplayScene {
     if (!this.run) return;
     this.voxels.setColors(theme, this.byOwner);
     for (const robot of this.robots) robot.setColor(robotColor(robot.robot, theme), SCENE[theme].ink);
+    for (const image of this.images) image.setTheme?.(theme);
     for (const trajectory of this.trajectories) trajectory.setColor(robotColor(this.run.facts.robots[trajectory.r], theme));
     for (const tour of this.tours) tour.setColor(robotColor(this.run.facts.robots[tour.r], theme), SCENE[theme].background);
     this.labels.forEach((label, r) => (label.style.borderColor = robotColor(this.run.facts.robots[r], theme)));
@@ -278,7 +281,7 @@ export class ReplayScene {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     for (const tour of this.tours ?? []) tour.setScale((2 * SLOPE) / height);
-    this.voxels?.setPointScale(height * this.renderer.getPixelRatio(), SLOPE);
+    for (const points of [this.voxels, ...(this.images ?? [])]) points?.setPointScale?.(height * this.renderer.getPixelRatio(), SLOPE);
     if (this.standing) this.look(this.standing);
     this.draw();
   }

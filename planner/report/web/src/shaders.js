@@ -57,12 +57,39 @@ void main() {
 export const POINT_FRAGMENT = `
 precision mediump float;
 uniform vec3 tints[16];
-uniform float glow;
 flat in int owner;
 out vec4 color;
 void main() {
   float r = length(gl_PointCoord - 0.5) * 2.0;
   float light = 1.0 - smoothstep(0.35, 1.0, r);
   if (light <= 0.02) discard;
-  color = vec4(tints[owner], light * glow);
+  color = vec4(tints[owner], 0.75 * light);
+}`;
+
+// A square with an edge in the colour of the background; smaller if its place is worth less.
+export const SQUARE_VERTEX = `
+precision highp float;
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform float size;
+in vec3 position;
+in vec4 tint;
+flat out vec3 fill;
+flat out float edge;
+void main() {
+  fill = tint.rgb;
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
+  gl_Position = projectionMatrix * seen;
+  gl_PointSize = clamp(size / -seen.z, 8.0, 40.0) * mix(0.5, 1.0, tint.a);
+  edge = 0.5 - 1.2 / gl_PointSize;
+}`;
+
+export const SQUARE_FRAGMENT = `
+precision mediump float;
+uniform vec3 paper;
+flat in vec3 fill;
+flat in float edge;
+out vec4 color;
+void main() {
+  vec2 off = abs(gl_PointCoord - 0.5);
+  color = vec4(max(off.x, off.y) > edge ? paper : fill, 1.0);
 }`;

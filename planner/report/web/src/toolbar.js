@@ -1,6 +1,7 @@
 import { el, swatch } from "./dom.js";
 import { LAYERS } from "./scene.js";
-import { SCENE, scaleGradient, qualityStops, robotColor } from "./palette.js";
+import { CandidateView } from "./candidate_view.js";
+import { SCENE, qualityColor, qualityStops, robotColor, scaleGradient } from "./palette.js";
 
 const NAMES = {
   voxels: "Voxels", frontiers: "Frontiers", quality: "View quality", robots: "Robots",
@@ -48,7 +49,8 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
       el("div", { class: "names" }, dot(SCENE[theme].frontier, assigned ? "frontier of nobody or several" : "frontier", "dot"), ...(assigned ? facts.robots.map((robot) => dot(robotColor(robot, theme), `of ${robot.name}`, "dot")) : []), ...facts.robots.map((robot) => dot(robotColor(robot, theme), robot.name))),
       el("div", { class: "names" }, dot(ink, "travelled", "line"), dot(ink, motion ? "scan" : "planned", "thin"),
         scene.trajectories.length > 0 ? dot(ink, "planned trajectory", "dotted") : null,
-        scene.tours.length > 0 ? dot(ink, "planned tour", "dashed") : null, dot(ink, "goal", "diamond")));
+        scene.tours.length > 0 ? dot(ink, "planned tour", "dashed") : null, dot(ink, "goal", "diamond"),
+        scene.images.some((image) => image instanceof CandidateView) ? dot(`rgb(${qualityColor(0.5).join(",")})`, "candidate") : null));
   };
   drawKey();
   const bar = el("div", { class: "toolbar" },

@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, AdditiveBlending, Color, GLSL3, Group, Mesh, NormalBlending, Points, RawShaderMaterial, Sphere, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Color, GLSL3, Group, Mesh, Points, RawShaderMaterial, Sphere, Vector3 } from "three";
 import { CHUNK } from "./run_data.js";
 import { POINT_FRAGMENT, POINT_VERTEX, VOXEL_FRAGMENT, VOXEL_VERTEX } from "./shaders.js";
 import { SCENE, robotColor } from "./palette.js";
@@ -27,7 +27,7 @@ export class VoxelView {
     });
     this.pointsMaterial = new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
-      uniforms: { size: { value: 100 }, tints: { value: Array.from({ length: 16 }, () => new Vector3()) }, glow: { value: 0.8 } },
+      uniforms: { size: { value: 100 }, tints: { value: Array.from({ length: 16 }, () => new Vector3()) } },
       transparent: true, depthWrite: false,
     });
     this.index = makeIndex(4096);
@@ -122,9 +122,6 @@ export class VoxelView {
     uniforms.by_owner.value = byOwner;
     const { tints } = this.pointsMaterial.uniforms;
     tints.value.forEach((tint, i) => setVector(tint, i === 0 ? scene.frontier : robotColor(robots[(i - 1) % robots.length], theme)));
-    this.pointsMaterial.uniforms.glow.value = scene.additive ? 0.55 : 0.7;
-    this.pointsMaterial.blending = scene.additive ? AdditiveBlending : NormalBlending;
-    this.pointsMaterial.needsUpdate = true;
   }
 
   /** @param pixels height of the view @param slope tangent of half the camera's opening angle */

@@ -9,7 +9,7 @@
 namespace frontlux::report {
 
 /// A colour on a light and on a dark background, as "#d55e00".
-struct RobotColor {
+struct ColorPair {
   std::string_view light, dark;
 };
 
@@ -17,6 +17,9 @@ struct RobotColor {
 /// number at the end of its name, alone and in any team: `uav` and `uav1` the first of the cold ones for
 /// aerial robots, `ugv2` the second of the warm ones for ground robots. Who comes later in a team and finds
 /// its colour taken gets the next free one.
-[[nodiscard]] std::vector<RobotColor> robot_colors(std::span<const planner::RobotDescription> team);
+[[nodiscard]] std::vector<ColorPair> robot_colors(std::span<const planner::RobotDescription> team);
+
+/// The colour of frontiers that are no robot's, from the same file.
+[[nodiscard]] ColorPair frontier_color();
 
 }  // namespace frontlux::report
