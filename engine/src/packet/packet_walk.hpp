@@ -4,6 +4,7 @@
 #include "packet/open_voxels.hpp"
 
 #include <frontlux/lattice.hpp>
+#include <frontlux/ray.hpp>
 
 #include <array>
 #include <cstddef>
@@ -46,12 +47,11 @@ enum RayEnd : std::uint32_t {
   kFirstRayEnd = kNeverStarted
 };
 
-/// At most `kMaxLines` rays and what comes of them, as arrays. `PacketWalk::rays` takes the first four
-/// members, with directions of any length. What the walk of a ray found is of use only if it was stopped.
+/// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped.
 struct RayBatch {
   std::size_t size = 0;
   alignas(64) PerAxisAndLine<float> origin;     ///< [m]
-  alignas(64) PerAxisAndLine<float> direction;  ///< after the walk as `normalized_as_octomap` returns it
+  alignas(64) PerAxisAndLine<float> direction;  ///< as `normalized_as_octomap` returns it
   alignas(64) PerLine<double> max_range;        ///< [m]
 
   alignas(64) PerLine<std::uint32_t> stopped_at;  ///< an index or a `RayEnd`
@@ -86,8 +86,8 @@ struct PacketWalk {
                    std::uint8_t* visible);
   static constexpr int kMaxOffset = 1000;  // (2 n + 1) dy dz has to fit into 31 bits
 
-  /// Walks the rays of a batch until a voxel stops them or they have gone `walked_length`.
-  void (*rays)(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch);
+  /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`.
+  void (*rays)(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch);
 };
 
 /// Those that may run, the widest first.

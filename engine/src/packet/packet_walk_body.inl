@@ -283,9 +283,10 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
   }
 }
 
-void rays(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch) {
+void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch) {
   PacketLines lines;
   alignas(64) PerLine<std::uint32_t> fitness;
+  take(rays, batch);
   normalize(batch, fitness);
   start(lattice, table, batch, lines, fitness);
   rate_steps(lines);

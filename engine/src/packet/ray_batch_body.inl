@@ -14,6 +14,18 @@ constexpr std::int32_t kCloseToTell = static_cast<std::int32_t>(kLongestWalk) + 
 constexpr std::uint32_t kStarts = 1;   // in an open voxel of the table, in a direction of unit length
 constexpr std::uint32_t kIsClear = 2;  // its first crossings are times to come
 
+inline void take(std::span<const Ray> rays, RayBatch& batch) {
+  batch.size = rays.size();
+  FRONTLUX_NO_GATHERS
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      batch.origin[a][i] = rays[i].origin[static_cast<Eigen::Index>(a)];
+      batch.direction[a][i] = rays[i].direction[static_cast<Eigen::Index>(a)];
+    }
+    batch.max_range[i] = rays[i].max_range;
+  }
+}
+
 // normalized_as_octomap and is_unit: a root in float is the root in double, rounded to float.
 inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& fitness) {
   float *const dx = batch.direction[0].data(), *const dy = batch.direction[1].data(),

@@ -16,19 +16,6 @@ namespace {
 constexpr int kLongSegment = 1000;  // voxels along the longest axis
 static_assert(kLongSegment <= PacketWalk::kMaxOffset);
 
-// Here and not in `PacketWalk::rays`, where clang, for a processor that can gather, makes gathers of it,
-// which are slower.
-void take(std::span<const Ray> rays, RayBatch& batch) {
-  batch.size = rays.size();
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      batch.origin[a][i] = rays[i].origin[static_cast<Eigen::Index>(a)];
-      batch.direction[a][i] = rays[i].direction[static_cast<Eigen::Index>(a)];
-    }
-    batch.max_range[i] = rays[i].max_range;
-  }
-}
-
 }  // namespace
 
 bool TableQuery::walks(const KeySegment& s) const {
@@ -84,8 +71,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
     return left_size;
   }
   RayBatch batch;
-  take(rays, batch);
-  walk_->rays(grid_.lattice(), table_, batch);
+  walk_->rays(grid_.lattice(), table_, rays, batch);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t stopped_at = batch.stopped_at[i];
     const auto per_axis = [i](const auto& values) {
