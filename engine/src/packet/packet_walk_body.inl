@@ -228,14 +228,18 @@ template <LineKind kKind, bool kJumps, class Finish>
   }
   const auto length = [](std::int32_t d) { return d < 0 ? -d : d; };
   const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
-  // The axes written out: with a loop over them GCC 14 vectorises nothing of this.
-  const auto time = [](std::int32_t distance, std::int32_t product) {
-    return distance == 0 ? kNever : product;
+  // The axes written out and choices made by bits: with a loop over the axes, or with conditions, of which it
+  // makes branches, GCC 14 vectorises nothing of this.
+  const auto all_if_zero = [](std::int32_t distance) { return -static_cast<std::int32_t>(distance == 0); };
+  const auto time = [&](std::int32_t distance, std::int32_t product) {
+    return product | (all_if_zero(distance) & kNever);
   };
-  const auto step = [](std::int32_t distance, std::int32_t product) {
-    return distance == 0 ? 0 : 2 * product;
+  const auto step = [&](std::int32_t distance, std::int32_t product) {
+    return 2 * product & ~all_if_zero(distance);
   };
-  const auto down = [](std::int32_t d, std::uint32_t bits) { return d < 0 ? bits : 0U; };
+  const auto down = [](std::int32_t d, std::uint32_t bits) {
+    return static_cast<std::uint32_t>(d >> 31) & bits;
+  };
   std::int32_t steps = 0;
   const std::uint32_t bits_x = layout.bits[0], bits_y = layout.bits[1], bits_z = layout.bits[2];
   for (std::size_t i = 0; i < size; ++i) {
