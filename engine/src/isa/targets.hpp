@@ -1,5 +1,13 @@
 #pragma once
 
+/// Before a loop that clang would make gathers of, where the processor has them, and be slower. GCC makes
+/// permutations of it.
+#ifdef __clang__
+#define FRONTLUX_NO_GATHERS _Pragma("clang loop vectorize(disable)")
+#else
+#define FRONTLUX_NO_GATHERS
+#endif
+
 /// What stands between FRONTLUX_BEGIN_AVX512 or FRONTLUX_BEGIN_AVX2 and FRONTLUX_END_TARGET is compiled for
 /// that instruction set, templates and lambdas included, which an attribute on a function does not reach.
 /// Where there are such sets FRONTLUX_X86_SETS is defined.

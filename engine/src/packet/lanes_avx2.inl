@@ -21,7 +21,6 @@ struct Lanes {
   static V min_unsigned(V a, V b) { return _mm256_min_epu32(a, b); }
   static V choose(M m, V yes, V no) { return _mm256_blendv_epi8(no, yes, m); }
   static M less(V a, V b) { return _mm256_cmpgt_epi32(b, a); }
-  static M is_zero(V a) { return _mm256_cmpeq_epi32(a, _mm256_setzero_si256()); }
 
   static I whole(std::uint32_t i) { return _mm256_set1_epi32(static_cast<int>(i)); }
   static I as_whole(V a) { return a; }

@@ -21,7 +21,6 @@ struct Lanes {
   static V min_unsigned(V a, V b) { return _mm512_min_epu32(a, b); }
   static V choose(M m, V yes, V no) { return _mm512_mask_mov_epi32(no, m, yes); }
   static M less(V a, V b) { return _mm512_cmplt_epi32_mask(a, b); }
-  static M is_zero(V a) { return _mm512_testn_epi32_mask(a, a); }
 
   static I whole(std::uint32_t i) { return _mm512_set1_epi32(static_cast<int>(i)); }
   static I as_whole(V a) { return a; }

@@ -26,7 +26,6 @@ struct Lanes {
   static V min_unsigned(V a, V b) { return as_time(as_whole(a) < as_whole(b) ? as_whole(a) : as_whole(b)); }
   static V choose(M m, V yes, V no) { return as_time(select(m, as_whole(yes), as_whole(no))); }
   static M less(V a, V b) { return std::bit_cast<M>(a < b); }
-  static M is_zero(V a) { return std::bit_cast<M>(a == 0); }
 
   static I whole(std::uint32_t i) { return I{} + i; }
   static I as_whole(V a) { return std::bit_cast<I>(a); }

@@ -40,7 +40,7 @@ struct Table {
 }
 
 // Moves the lanes of `jumping` ahead through the open cube around them, to shortly before they leave it.
-// @return those whose line ends before
+// @return the rays that end before; segments then have no steps left
 template <LineKind kKind>
 [[gnu::always_inline]] inline Lanes::M jump(Packet& p, const Table& table, Lanes::M jumping,
                                             Lanes::I radius) {
@@ -87,7 +87,6 @@ template <LineKind kKind>
   take(p.tx, p.dx, p.rx, table.not_x, 0, table.x_shift);
   take(p.ty, p.dy, p.ry, table.not_y, 3, table.y_shift);
   take(p.tz, p.dz, p.rz, table.not_z, 6, table.z_shift);
-  if constexpr (kKind == LineKind::kSegment) return Lanes::both(jumping, Lanes::less(p.steps, one));
   return over;
 }
 
@@ -138,17 +137,20 @@ template <LineKind kKind, bool kJumps, class Finish>
       }
       Lanes::expand(p.index, fill, &lines.index[next]);
       Lanes::expand(p.flip, fill, &lines.flip[next]);
-      if constexpr (kKind == LineKind::kSegment)
+      if constexpr (kKind == LineKind::kSegment) {
         Lanes::expand(p.steps, fill, &lines.steps[next]);
-      else
+      } else {
         p.closest = Lanes::choose(Lanes::mask(fill), Lanes::time(kNever), p.closest);
+        p.stopped_at = Lanes::select(Lanes::mask(fill), Lanes::whole(kWentThrough), p.stopped_at);
+      }
       for (unsigned f = fill; f != 0; f &= f - 1) line[__builtin_ctz(f)] = static_cast<std::uint32_t>(next++);
       active |= fill;
     }
     if (active == 0) break;
 
     const M running = Lanes::mask(active);
-    M ended = Lanes::none(), arrived = Lanes::none();
+    M going = running;          // rays that have not ended
+    M blocked = Lanes::none();  // segments that a voxel has stopped
     unsigned ended_bits = 0;
     const auto step = [&]() __attribute__((always_inline)) {
       // Ties go to z before y before x (rule 5).
@@ -156,13 +158,13 @@ template <LineKind kKind, bool kJumps, class Finish>
       const V first = Lanes::min(p.tx, p.ty);
       const M not_z_next = Lanes::less(first, p.tz);
       const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
-      M over;
+      M goes_on;  // unless it is stopped here
       if constexpr (kKind == LineKind::kSegment) {
         p.steps = Lanes::subtract(p.steps, Lanes::time(1));
-        over = Lanes::is_zero(p.steps);
+        goes_on = Lanes::less(Lanes::time(0), p.steps);
       } else {
         const V now = Lanes::min(first, p.tz);
-        over = Lanes::less(end_of_time, now);
+        goes_on = Lanes::but_not(going, Lanes::less(end_of_time, now));
         const V second = Lanes::max(first, Lanes::min(Lanes::max(p.tx, p.ty), p.tz));
         p.closest = Lanes::min(p.closest, Lanes::subtract(second, now));
       }
@@ -173,23 +175,27 @@ template <LineKind kKind, bool kJumps, class Finish>
           Lanes::select(not_z_next, Lanes::select(x_before_y, table.not_x, table.not_y), table.not_z);
       p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
       const I at = Lanes::exclusive(p.index, p.flip);
-      const M closed = Lanes::closed(table.words, at, running);
-      arrived = Lanes::any(arrived, Lanes::but_not(over, ended));
-      if constexpr (kKind == LineKind::kRay)
-        p.stopped_at = Lanes::select(Lanes::but_not(Lanes::but_not(closed, over), ended), at, p.stopped_at);
-      ended = Lanes::any(ended, Lanes::any(over, closed));
+      const M stopped = Lanes::both(goes_on, Lanes::closed(table.words, at, running));
+      if constexpr (kKind == LineKind::kSegment) {
+        blocked = Lanes::any(blocked, stopped);
+      } else {
+        p.stopped_at = Lanes::select(stopped, at, p.stopped_at);
+        going = Lanes::but_not(goes_on, stopped);
+      }
+    };
+    const auto ended = [&]() __attribute__((always_inline)) {
+      const M not_yet =
+          kKind == LineKind::kRay ? going : Lanes::but_not(Lanes::less(Lanes::time(0), p.steps), blocked);
+      return Lanes::bits(Lanes::but_not(running, not_yet));
     };
     do {
       if (kJumps && rounds_to_look-- == 0) {
-        const M candidates = Lanes::but_not(running, ended);
-        const I radius = open_radius(table, Lanes::exclusive(p.index, p.flip), candidates);
-        const M jumping = Lanes::both(candidates, Lanes::less(Lanes::time(1), Lanes::as_time(radius)));
+        const I radius = open_radius(table, Lanes::exclusive(p.index, p.flip), running);
+        const M jumping = Lanes::both(running, Lanes::less(Lanes::time(1), Lanes::as_time(radius)));
         if (__builtin_popcount(Lanes::bits(jumping)) >= kWorthAJump) {
-          const M over = jump<kKind>(p, table, jumping, radius);
-          arrived = Lanes::any(arrived, over);
-          ended = Lanes::any(ended, over);
+          going = Lanes::but_not(going, jump<kKind>(p, table, jumping, radius));
           step();
-          ended_bits = Lanes::bits(Lanes::both(ended, running));
+          ended_bits = ended();
           rounds_to_look = rounds_between_looks = 0;
           continue;
         }
@@ -198,9 +204,9 @@ template <LineKind kKind, bool kJumps, class Finish>
       }
 #pragma GCC unroll 8
       for (int k = 0; k < kSteps; ++k) step();
-      ended_bits = Lanes::bits(Lanes::both(ended, running));
+      ended_bits = ended();
     } while (ended_bits == 0);
-    finish(p, line, ended_bits, Lanes::bits(arrived));
+    finish(p, line, ended_bits, Lanes::bits(blocked));
     active &= ~ended_bits;
   }
 }
@@ -222,14 +228,18 @@ template <LineKind kKind, bool kJumps, class Finish>
   }
   const auto length = [](std::int32_t d) { return d < 0 ? -d : d; };
   const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
-  // The axes written out: with a loop over them GCC 14 vectorises nothing of this.
-  const auto time = [](std::int32_t distance, std::int32_t product) {
-    return distance == 0 ? kNever : product;
+  // The axes written out and choices made by bits: with a loop over the axes, or with conditions, of which it
+  // makes branches, GCC 14 vectorises nothing of this.
+  const auto all_if_zero = [](std::int32_t distance) { return -static_cast<std::int32_t>(distance == 0); };
+  const auto time = [&](std::int32_t distance, std::int32_t product) {
+    return product | (all_if_zero(distance) & kNever);
   };
-  const auto step = [](std::int32_t distance, std::int32_t product) {
-    return distance == 0 ? 0 : 2 * product;
+  const auto step = [&](std::int32_t distance, std::int32_t product) {
+    return 2 * product & ~all_if_zero(distance);
   };
-  const auto down = [](std::int32_t d, std::uint32_t bits) { return d < 0 ? bits : 0U; };
+  const auto down = [](std::int32_t d, std::uint32_t bits) {
+    return static_cast<std::uint32_t>(d >> 31) & bits;
+  };
   std::int32_t steps = 0;
   const std::uint32_t bits_x = layout.bits[0], bits_y = layout.bits[1], bits_z = layout.bits[2];
   for (std::size_t i = 0; i < size; ++i) {
@@ -261,10 +271,10 @@ void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t s
   PacketLines lines;
   lines.size = size;
   const std::int32_t steps = segment_lines(table.layout(), segments, size, lines);
-  const auto finish = [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+  const auto finish = [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned blocked) {
     for (; ended != 0; ended &= ended - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-      visible[line[lane]] = static_cast<std::uint8_t>((arrived >> lane) & 1U);
+      visible[line[lane]] = static_cast<std::uint8_t>(~(blocked >> lane) & 1U);
     }
   };
   // Short segments end before a jump is worth its price.
@@ -285,17 +295,16 @@ void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> 
   start(lattice, table, batch, lines, fitness);
   rate_steps(lines);
   walk_lines<LineKind::kRay, true>(
-      table, lines, [&](const Packet& p, const std::uint32_t* line, unsigned ended, unsigned arrived) {
+      table, lines, [&](const Packet& p, const std::uint32_t* line, unsigned ended, unsigned) {
         alignas(64) std::uint32_t at[Lanes::kWidth];
         Lanes::store(at, p.stopped_at);
         const unsigned close = Lanes::bits(Lanes::less(p.closest, Lanes::time(kCloseToTell)));
         for (; ended != 0; ended &= ended - 1) {
           const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
           const std::uint32_t fit = fitness[line[lane]];
-          const bool passed = ((arrived >> lane) & 1U) != 0, is_close = ((close >> lane) & 1U) != 0;
+          const bool is_close = ((close >> lane) & 1U) != 0;
           batch.stopped_at[line[lane]] = (fit & kStarts) == 0                ? kNeverStarted
                                          : is_close || (fit & kIsClear) == 0 ? kTooCloseToTell
-                                         : passed                            ? kWentThrough
                                                                              : at[lane];
         }
       });

@@ -16,6 +16,7 @@ constexpr std::uint32_t kIsClear = 2;  // its first crossings are times to come
 
 inline void take(std::span<const Ray> rays, RayBatch& batch) {
   batch.size = rays.size();
+  FRONTLUX_NO_GATHERS
   for (std::size_t i = 0; i < rays.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
       batch.origin[a][i] = rays[i].origin[static_cast<Eigen::Index>(a)];

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace frontlux::report::detail {
@@ -72,7 +73,7 @@ json facts_of(const planner::RecordedStep& recorded) {
 json numbers_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
 // A member of an object, or null. Nothing is copied: what is nested deeply would take all of the stack.
-const json& member(const json& object, const std::string& name) {
+const json& member(const json& object, std::string_view name) {
   static const json kNothing;
   const auto found = object.find(name);
   return found == object.end() ? kNothing : *found;
