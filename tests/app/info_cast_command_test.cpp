@@ -201,7 +201,7 @@ TEST_F(InfoCastCommand, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWorkBegins)
            {"info", map},
            {"cast", map, "--from", "0,0,0.1", "--direction", "1,0,0"},
            {"render", map, "--robot", "uav", "--at", "3,3,3", "-o", path("x.csv")},
-           {"plan", map, "--robot", "uav", "--from", "3,3,3", "--to", "4,4,4"},
+           {"plan", map, "--robot", "uav", "--from", "3,3,3,0", "--to", "4,4,4"},
            {"world", map},
            {"explore", map, "--start", "1,1,1", "-o", path("run")}}) {
     SCOPED_TRACE(words.front());
