@@ -1,8 +1,10 @@
 #include "map_file.hpp"
 
 #include "bad_input.hpp"
+#include "text.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/machine.hpp>
 #include <frontlux/planner/mapping.hpp>
 
 #include <octomap/ColorOcTree.h>
@@ -40,6 +42,16 @@ TreeSize tree_size(const MapFile& map) {
         return TreeSize{leaves, tree->size() - leaves, tree->memoryUsage()};
       },
       map.tree);
+}
+
+VoxelGrid make_grid(const MapFile& map) {
+  // As much again for what is made of the grid: the boxes of a ray caster, frontiers, a world's surface.
+  const std::uint64_t need = 2 * std::uint64_t{voxel_grid_bytes(map.tree)}, available = available_memory();
+  if (need > available)
+    throw BadInput(map.path.string() + ": its " + std::to_string(tree_size(map).leaves) +
+                   " leaves would take " + bytes_text(need) + " of memory where " + bytes_text(available) +
+                   " are available; give a map of a coarser resolution");
+  return make_voxel_grid(map.tree);
 }
 
 std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid, CasterKind kind) {

@@ -37,6 +37,10 @@ struct TreeSize {
 
 [[nodiscard]] TreeSize tree_size(const MapFile& map);
 
+/// The mirror of a map.
+/// @throws BadInput if it would not fit into the memory of this machine: voxels far apart take 3 kB each
+[[nodiscard]] VoxelGrid make_grid(const MapFile& map);
+
 /// @param map   outlives the caster
 /// @param grid  of the map
 [[nodiscard]] std::unique_ptr<RayCaster> make_caster(const MapFile& map, const VoxelGrid& grid,

@@ -55,10 +55,10 @@ void check_options(const WorldSource& source, WorldKind kind) {
 }
 
 sim::World make_map_world(const std::string& file) {
-  const MapFile map = read_map_file(file);
+  const VoxelGrid grid = make_grid(read_map_file(file));  // the tree's memory is free again
   try {
-    sim::World world = sim::make_map_world(make_voxel_grid(map.tree));
-    world.name = map.path.filename().string();
+    sim::World world = sim::make_map_world(grid);
+    world.name = std::filesystem::path(file).filename().string();
     return world;
   } catch (const std::runtime_error& error) {
     throw BadInput(file + ": " + error.what());

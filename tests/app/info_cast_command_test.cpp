@@ -1,5 +1,7 @@
 #include "octomap/quiet_octomap.hpp"
+#include "support/address_limits.hpp"
 #include "support/command_test.hpp"
+#include "support/maps.hpp"
 #include "support/tree_state.hpp"
 #include "support/voxel_keys.hpp"
 
@@ -16,6 +18,7 @@ using frontlux::test::joined;
 using Json = nlohmann::ordered_json;
 
 constexpr double kResolution = 0.1;
+constexpr const char* kNoLimits = "the sanitizer needs more address space than a limit would leave";
 constexpr std::array kCasters = {"fast", "embree", "grid", "octomap"};
 
 octomap::OcTreeKey key(int x, int y, int z) {
@@ -176,9 +179,7 @@ TEST_F(InfoCastCommand, InfoStaysQuickOnHugeBlocks) {
 }
 
 TEST_F(InfoCastCommand, LackOfMemoryIsCalledThat) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer needs more address space than a limit would leave";
-#endif
+  if (!frontlux::test::kLimitsAddresses) GTEST_SKIP() << kNoLimits;
   const std::string map = std::string(FRONTLUX_DATA_DIR) + "/maps/room_0.1m.bt";
   int short_of_memory = 0;
   for (int kilobytes = 100000; kilobytes <= 260000; kilobytes += 40000) {
@@ -189,6 +190,28 @@ TEST_F(InfoCastCommand, LackOfMemoryIsCalledThat) {
     short_of_memory += answer.err == "frontlux: not enough memory\n" ? 1 : 0;
   }
   EXPECT_GT(short_of_memory, 0);
+}
+
+TEST_F(InfoCastCommand, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWorkBegins) {
+  if (!frontlux::test::kLimitsAddresses) GTEST_SKIP() << kNoLimits;
+  const std::string map = path("sparse.bt");
+  frontlux::write_octree(*frontlux::test::make_sparse_tree(40),
+                         map);  // the tree takes 64 MiB, the mirror 165
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"info", map},
+           {"cast", map, "--from", "0,0,0.1", "--direction", "1,0,0"},
+           {"render", map, "--robot", "uav", "--at", "3,3,3", "-o", path("x.csv")},
+           {"plan", map, "--robot", "uav", "--from", "3,3,3,0", "--to", "4,4,4"},
+           {"world", map},
+           {"explore", map, "--start", "1,1,1", "-o", path("run")}}) {
+    SCOPED_TRACE(words.front());
+    expect_refused(words,
+                   {map + ": its 64000 leaves would take ", " MiB of memory where ",
+                    " are available; give a map of a coarser resolution"},
+                   "ulimit -v 300000;");
+    expect_refused(words, {map + ": holds ", " nodes, which would take ", " MiB of memory where "},
+                   "ulimit -v 130000;");
+  }
 }
 
 TEST_F(InfoCastCommand, CastSeesTheWall) {

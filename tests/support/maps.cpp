@@ -58,6 +58,17 @@ std::shared_ptr<octomap::OcTree> make_noise_tree(std::uint64_t seed, double reso
   return tree;
 }
 
+std::shared_ptr<octomap::OcTree> make_sparse_tree(int edge) {
+  auto tree = std::make_shared<octomap::OcTree>(0.1);
+  const auto along = [&](int i) { return static_cast<octomap::key_type>(32768 + 512 * (i - edge / 2)); };
+  for (int z = 0; z < edge; ++z)
+    for (int y = 0; y < edge; ++y)
+      for (int x = 0; x < edge; ++x)
+        tree->updateNode(octomap::OcTreeKey(along(x), along(y), along(z)), true, true);
+  tree->updateInnerOccupancy();
+  return tree;
+}
+
 std::vector<NamedMap> small_maps() {
   std::vector<NamedMap> maps = read_folder(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps");
   maps.push_back({"random_0.1m", make_random_tree(1, 0.1)});

@@ -20,6 +20,10 @@ std::shared_ptr<octomap::OcTree> make_random_tree(std::uint64_t seed, double res
 /// there can be.
 std::shared_ptr<octomap::OcTree> make_noise_tree(std::uint64_t seed, double resolution, int edge);
 
+/// Occupied voxels 512 voxels apart: those that a mirror takes most memory for.
+/// @param edge  of the cube of them; at most 120
+std::shared_ptr<octomap::OcTree> make_sparse_tree(int edge);
+
 /// All maps in data/maps that hold an OcTree, and random ones.
 std::vector<NamedMap> small_maps();
 

@@ -126,14 +126,19 @@ NodeRecord binary_record(const char* stream) {
   return {std::popcount((tags | (tags >> 1)) & kLowBits), std::popcount(tags & (tags >> 1) & kLowBits)};
 }
 
-// Walks the records depth first and returns the number of nodes.
+struct NodeCount {
+  std::uint64_t nodes = 0;
+  std::uint64_t parents = 0;  // of these, those with children
+};
+
+// Walks the records depth first and counts the nodes.
 class NodeWalk {
  public:
   NodeWalk(const std::filesystem::path& file, std::string_view bytes, const Header& header)
       : file_(file), bytes_(bytes), header_(header), offset_(header.data_offset) {}
 
-  std::uint64_t binary() {
-    std::uint64_t nodes = 1;
+  NodeCount binary() {
+    NodeCount count{1, 0};
     walk(2, [&](const char* record, std::size_t depth) {
       const auto [made, children] = binary_record(record);
       if (made == 0 && depth == 0)
@@ -143,21 +148,23 @@ class NodeWalk {
       if (made == 0)
         fail_at(file_, offset_, "holds a node that claims children and has none", kAskForAnotherCopy);
       if (children != 0 && depth + 1 == kTreeDepth) too_deep();
-      nodes += static_cast<std::uint64_t>(made);
+      count.nodes += static_cast<std::uint64_t>(made);
+      ++count.parents;
       return children;
     });
-    return nodes;
+    return count;
   }
 
-  std::uint64_t full(std::size_t payload) {
-    std::uint64_t nodes = 0;
+  NodeCount full(std::size_t payload) {
+    NodeCount count;
     walk(payload + 1, [&](const char* record, std::size_t depth) {
       const int children = std::popcount(static_cast<unsigned char>(record[payload]));
       if (children != 0 && depth == kTreeDepth) too_deep();
-      ++nodes;
+      ++count.nodes;
+      if (children != 0) ++count.parents;
       return children;
     });
-    return nodes;
+    return count;
   }
 
   [[nodiscard]] std::size_t end() const { return offset_; }
@@ -198,28 +205,29 @@ class NodeWalk {
   std::size_t offset_;
 };
 
-std::uint64_t checked_node_count(const std::filesystem::path& file, std::string_view bytes,
-                                 const Header& header, OctreeFormat format) {
+NodeCount checked_node_count(const std::filesystem::path& file, std::string_view bytes, const Header& header,
+                             OctreeFormat format) {
   const std::size_t stream_bytes = bytes.size() - header.data_offset;
   if (header.declared_nodes == 0) {
     if (stream_bytes != 0)
       fail_at(file, header.data_offset,
               "declares no nodes, but " + std::to_string(stream_bytes) + " bytes of nodes follow",
               kAskForAnotherCopy);
-    return 0;
+    return {};
   }
   constexpr std::size_t kLogOddsBytes = 4, kColorBytes = 3;
   NodeWalk walk(file, bytes, header);
-  const std::uint64_t nodes =
+  const NodeCount count =
       format == OctreeFormat::kBinary
           ? walk.binary()
           : walk.full(header.tree_type == "OcTree" ? kLogOddsBytes : kLogOddsBytes + kColorBytes);
   // OctoMap refuses such a .bt itself and never looks at the size of an .ot.
-  if (nodes != header.declared_nodes && (format == OctreeFormat::kBinary || walk.end() != bytes.size()))
+  if (count.nodes != header.declared_nodes && (format == OctreeFormat::kBinary || walk.end() != bytes.size()))
     fail_at(file, walk.end(),
-            "declares " + std::to_string(header.declared_nodes) + " nodes and holds " + std::to_string(nodes),
+            "declares " + std::to_string(header.declared_nodes) + " nodes and holds " +
+                std::to_string(count.nodes),
             kAskForAnotherCopy);
-  return nodes;
+  return count;
 }
 
 }  // namespace
@@ -233,7 +241,9 @@ OctreeFile check_octree_bytes(const std::filesystem::path& file, std::string byt
   OctreeFile tree;
   tree.format = format_of(file, bytes);
   const Header header = read_header(file, bytes);
-  tree.node_count = static_cast<std::size_t>(checked_node_count(file, bytes, header, tree.format));
+  const NodeCount count = checked_node_count(file, bytes, header, tree.format);
+  tree.node_count = static_cast<std::size_t>(count.nodes);
+  tree.parent_count = static_cast<std::size_t>(count.parents);
   tree.tree_type = header.tree_type;
   tree.resolution = header.resolution;
   tree.data_offset = header.data_offset;

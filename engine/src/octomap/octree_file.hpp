@@ -15,12 +15,13 @@ enum class OctreeFormat {
 /// An OctoMap file that is safe to hand to OctoMap's readers.
 struct OctreeFile {
   OctreeFormat format = OctreeFormat::kBinary;
-  std::string tree_type;        ///< "OcTree" or "ColorOcTree"
-  double resolution = 0.0;      ///< [m]
-  std::size_t node_count = 0;   ///< nodes in the stream, the root included; 0 if the tree is empty, which
-                                ///< `readData` and `readBinaryData` cannot read
-  std::size_t data_offset = 0;  ///< where the node stream begins in `bytes`
-  std::string bytes;            ///< the whole file
+  std::string tree_type;         ///< "OcTree" or "ColorOcTree"
+  double resolution = 0.0;       ///< [m]
+  std::size_t node_count = 0;    ///< nodes in the stream, the root included; 0 if the tree is empty, which
+                                 ///< `readData` and `readBinaryData` cannot read
+  std::size_t parent_count = 0;  ///< of these, those with children
+  std::size_t data_offset = 0;   ///< where the node stream begins in `bytes`
+  std::string bytes;             ///< the whole file
 };
 
 /// Reads a file into memory and checks it from end to end, because OctoMap's readers recurse as deep as the

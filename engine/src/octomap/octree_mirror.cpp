@@ -36,6 +36,38 @@ VoxelGrid mirror(const Tree& tree) {
   return grid;
 }
 
+// What a storage node of this edge and its place in its parent take, or more. Lists grow by half.
+std::size_t node_bytes(int log2_edge) {
+  const auto with_list = [](std::size_t node, std::size_t element) {
+    return node + detail::kStates.size() * element + sizeof(void*) * 3 / 2;
+  };
+  switch (log2_edge) {
+    case Brick::kLog2:
+      return sizeof(Brick) * 3 / 2;
+    case detail::Tile::kLog2:
+      return with_list(sizeof(detail::Tile), sizeof(Brick));
+    case detail::Region::kLog2:
+      return with_list(sizeof(detail::Region), sizeof(void*));
+    case detail::Sector::kLog2:
+      return with_list(sizeof(detail::Sector), sizeof(void*));
+    case detail::World::kLog2:
+      return sizeof(VoxelGrid) + with_list(sizeof(detail::World), sizeof(void*));
+    default:
+      return 0;
+  }
+}
+
+// Only what is no leaf has a node of its own.
+template <class Tree>
+std::size_t mirror_bytes(const Tree& tree, const typename Tree::NodeType* node, int log2_edge) {
+  std::size_t bytes = node_bytes(log2_edge);
+  if (log2_edge > Brick::kLog2)
+    for (unsigned i = 0; i < 8; ++i)
+      if (tree.nodeChildExists(node, i) && tree.nodeHasChildren(tree.getNodeChild(node, i)))
+        bytes += mirror_bytes(tree, tree.getNodeChild(node, i), log2_edge - 1);
+  return bytes;
+}
+
 template <class... Trees>
 VoxelGrid mirror(const std::variant<Trees...>& tree) {
   return std::visit([](const auto& t) { return mirror(*t); }, tree);
@@ -46,6 +78,15 @@ VoxelGrid mirror(const std::variant<Trees...>& tree) {
 VoxelGrid make_voxel_grid(const octomap::OcTree& tree) { return mirror(tree); }
 VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree) { return mirror(tree); }
 VoxelGrid make_voxel_grid(const Octree& tree) { return mirror(tree); }
+
+std::size_t voxel_grid_bytes(const Octree& tree) {
+  return std::visit(
+      [](const auto& t) {
+        return t->getRoot() == nullptr ? node_bytes(detail::World::kLog2)
+                                       : mirror_bytes(*t, t->getRoot(), detail::World::kLog2);
+      },
+      tree);
+}
 
 struct OctreeMirror::Watch {
   detail::OctreePointer tree;

@@ -43,11 +43,15 @@ bool all_are(const std::array<std::uint16_t, kSize>& slots, Occupancy state) {
                      [&](auto slot) { return slot == static_cast<std::uint16_t>(state); });
 }
 
-// The slot in which a new element is kept.
+// The slot in which a new element is kept. Grows by half and not to the double: among voxels far apart most
+// nodes keep a single one beside the uniform ones.
+// @param most  elements that there can be
 template <class Element>
-std::uint16_t take(std::vector<Element>& elements, std::vector<std::uint16_t>& unused,
+std::uint16_t take(std::vector<Element>& elements, std::vector<std::uint16_t>& unused, std::size_t most,
                    const Element& element) {
   if (unused.empty()) {
+    if (elements.size() == elements.capacity())
+      elements.reserve(std::min(elements.size() + elements.size() / 2, most));
     elements.push_back(element);
     return static_cast<std::uint16_t>(elements.size() - 1);
   }
@@ -81,7 +85,7 @@ bool Tile::fill(const VoxelKey& corner, int log2_edge, Occupancy state) {
   if (slot == uniform_slot) return uniform(state);
   if (slot < kStates.size()) {
     const Brick before = bricks[slot];
-    slot = take(bricks, unused, before);
+    slot = take(bricks, unused, slots.size() + kStates.size(), before);
   }
   fill_voxels(bricks[slot], corner, log2_edge, state);
   if (bricks[slot] != bricks[uniform_slot]) return false;
@@ -119,7 +123,7 @@ bool Branch<Child, kBits>::fill(const VoxelKey& corner, int log2_edge, Occupancy
   if (slot == uniform_slot) return false;
   if (slot < kStates.size()) {
     const Shared<Child> before = nodes[slot];
-    slot = take(nodes, unused, before);
+    slot = take(nodes, unused, slots.size() + kStates.size(), before);
   }
   if (!nodes[slot].own().fill(corner, log2_edge, state)) return false;
   release(slot);

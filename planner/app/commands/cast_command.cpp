@@ -61,7 +61,7 @@ Answer cast(const CastOptions& options) {
   check_inside(lattice, "--from", ray.origin);
   if (options.to) check_inside(lattice, "--to", *options.to);
 
-  const auto caster = make_caster(map, make_voxel_grid(map.tree), options.caster);
+  const auto caster = make_caster(map, make_grid(map), options.caster);
   Answer answer{caster->cast(ray, options.unknown), {}, {}, {}};
   if (answer.hit.stop == RayStop::kInvalid)
     throw BadInput((options.to ? "--to: " : "--direction: ") +

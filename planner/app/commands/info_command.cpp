@@ -30,7 +30,7 @@ struct Info {
 };
 
 Info gather(const MapFile& map) {
-  const VoxelGrid grid = make_voxel_grid(map.tree);
+  const VoxelGrid grid = make_grid(map);
   Info info;
   info.tree = tree_size(map);
   info.mirror_bytes = grid.memory_bytes();

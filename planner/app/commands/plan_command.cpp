@@ -230,7 +230,7 @@ void plan(const Options& options) {
   if (!options.output.empty()) check_output(options.output, {".csv", ".ply"});
   const planner::Robot robot = make_robot(options);
   const MapFile map = read_map_file(options.map);
-  const VoxelGrid grid = make_voxel_grid(map.tree);
+  const VoxelGrid grid = make_grid(map);
   const VoxelKey start = voxel_of(grid.lattice(), "--from", options.from);
   const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to);
   if (options.robot == RobotKind::kUgv && goal.z != start.z) {

@@ -232,7 +232,7 @@ void render(const Options& options) {
   check_options(options);
   check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"});
   const MapFile map = read_map_file(options.map);
-  const VoxelGrid grid = make_voxel_grid(map.tree);
+  const VoxelGrid grid = make_grid(map);
   const View view = look(map, grid, options, make_member(options));
   const Stopwatch writing;
   const auto ending = std::filesystem::path(options.output).extension();

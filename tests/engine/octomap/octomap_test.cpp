@@ -61,6 +61,23 @@ TEST(VoxelGridOfATree, ARootWithoutChildrenFillsTheWorld) {
 
 // Insertions, deletions of what was seen, with and without the change list reset in between: always equal to
 // a rebuild.
+TEST(VoxelGridOfATree, TakesNoMoreMemoryThanForetold) {
+  const auto compare = [](const Octree& tree) {
+    const std::size_t foretold = voxel_grid_bytes(tree);
+    EXPECT_LE(make_voxel_grid(tree).memory_bytes(), foretold);
+    return foretold;
+  };
+  for (const NamedMap& map : small_maps()) {
+    SCOPED_TRACE(map.name);
+    compare(map.tree);
+  }
+  compare(std::make_shared<octomap::OcTree>(0.1));
+  Random random(4);
+  compare(std::make_shared<octomap::ColorOcTree>(random_color_tree(random, 3, 500)));
+  const Octree sparse = make_sparse_tree(20);
+  EXPECT_LT(compare(sparse), make_voxel_grid(sparse).memory_bytes() * 11 / 10);
+}
+
 TEST(OctreeMirror, FollowsChangesExactly) {
   for (const bool reset : {true, false}) {
     octomap::OcTree tree(0.1);

@@ -173,7 +173,7 @@ TEST(VoxelGrid, VoxelsFarApartTakeLittleMemory) {
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) grid.set(make_key(1000 * x, 1000 * y, 1000 * z), Occupancy::kOccupied);
   EXPECT_EQ(grid.count()[2], 4096U);
-  EXPECT_LT(grid.memory_bytes(), std::size_t{4096 * 3072});
+  EXPECT_LT(grid.memory_bytes(), std::size_t{4096 * 2720});
 }
 
 TEST(VoxelGrid, RejectsBlocksThatAreNotAligned) {

@@ -1,5 +1,7 @@
 #include "mesh/import_process.hpp"
 
+#include <frontlux/machine.hpp>
+
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -9,7 +11,6 @@
 #include <cstddef>
 #include <exception>
 #include <fcntl.h>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -39,14 +40,6 @@ constexpr bool kLimitsAddresses = false;
 #else
 constexpr bool kLimitsAddresses = true;
 #endif
-
-// Of this process, whatever it is used for; 0 where that is not known.
-std::uint64_t address_space() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t pages = 0;
-  file >> pages;
-  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
 
 void set_limit(int resource, std::uint64_t most) {
   ::rlimit limit{};
