@@ -104,7 +104,8 @@ TEST_F(ExploreMotion, ItsFilesAgree) {
     EXPECT_EQ(by_robot.at(names[r]).at("held_back"), 0);
     idle += by_robot.at(names[r]).at("idle_s").get<double>();
   }
-  EXPECT_GE(idle, 2 * kLatency) << "both wait for their first planning";
+  constexpr double kTick = 0.02;  // [s] one in which a robot sets out is not idle
+  EXPECT_GE(idle, 2 * (kLatency - kTick)) << "both wait for their first planning";
   EXPECT_LT(idle, 2 * kSeconds);
   EXPECT_NEAR(json.at("separation_min_m"), nearest, 0.05);
   EXPECT_GT(json.at("separation_min_m"), 0.0);
