@@ -83,6 +83,17 @@ void open_standard_streams() {
       std::_Exit(kFailure);
 }
 
+void prepare_process() {
+  open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails, as on a full disk
+}
+
+// Before the libraries begin: Debian 13's Ipopt starts MPI when it is loaded, which opens files, and writes
+// to them.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+[[gnu::section(".preinit_array"), gnu::used]] void (*const kBeforeLibraries)() = &prepare_process;
+#endif
+
 int run(int argc, const char* const* argv) {
   const std::string version =
       std::string("frontlux ").append(FRONTLUX_VERSION) + ", vector instructions: " + instructions();
@@ -148,8 +159,7 @@ ended by itself has success even if it ended badly: see "warnings" in its run.js
 }  // namespace
 
 int main(int argc, char** argv) {
-  open_standard_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails, as on a full disk
+  prepare_process();
   try {
     return run(argc, argv);
   } catch (const frontlux::app::BadInput& error) {

@@ -64,7 +64,7 @@ TEST_F(ReportCommandTest, MakesTheSameStillsInAllFormatsEachTime) {
     SCOPED_TRACE(names[i]);
     if (names[i].ends_with(".svg")) test::expect_parts(first[i], {"<svg xmlns=", "</svg>"});
     if (names[i].ends_with(".pdf")) {
-      test::expect_parts(first[i], {"%PDF-1.5", "DejaVuSans", "%%EOF"});
+      test::expect_parts(first[i], {"%PDF-1.", "DejaVuSans", "%%EOF"});
       EXPECT_EQ(first[i].find("/CreationDate (20000101"), first[i].rfind("/CreationDate"));
     }
   }

@@ -8,6 +8,12 @@
 #define FRONTLUX_NO_GATHERS
 #endif
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593), GCC 14 vectors of one lane
+// that have been set for ones that have not.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 /// What stands between FRONTLUX_BEGIN_AVX512 or FRONTLUX_BEGIN_AVX2 and FRONTLUX_END_TARGET is compiled for
 /// that instruction set, templates and lambdas included, which an attribute on a function does not reach.
 /// Where there are such sets FRONTLUX_X86_SETS is defined.
@@ -22,8 +28,6 @@
 #define FRONTLUX_BEGIN_AVX512 FRONTLUX_BEGIN(FRONTLUX_AVX512)
 #define FRONTLUX_END_TARGET _Pragma("clang attribute pop")
 #else
-// GCC 12 takes the intrinsics' own undefined registers for ours (its bug 105593).
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #define FRONTLUX_BEGIN(set) _Pragma("GCC push_options") FRONTLUX_PRAGMA(GCC target(set))
 #define FRONTLUX_BEGIN_AVX512 FRONTLUX_BEGIN(FRONTLUX_AVX512 ",prefer-vector-width=512")
 #define FRONTLUX_END_TARGET _Pragma("GCC pop_options")
