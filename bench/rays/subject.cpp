@@ -72,18 +72,16 @@ Looks make_looks(const VoxelGrid& grid) {
   return looks;
 }
 
-// How long it takes to follow a look. The first one is not counted: it may have to set up what the others
-// use.
+// How long it takes to follow a look. The first one is not counted: it may set up what the others use.
 double update_seconds(CasterKind kind, const Subject& subject, const Looks& looks) {
   const auto rays = make_ray_caster(kind, looks.maps.front(), subject.tree);
   std::vector<double> seconds;
-  for (const VoxelGrid& map : looks.maps) {
+  for (std::size_t i = 1; i < looks.maps.size(); ++i) {
     const Stopwatch watch;
-    rays->update(map);
-    seconds.push_back(watch.seconds());
+    rays->update(looks.maps[i]);
+    if (i > 1) seconds.push_back(watch.seconds());
   }
-  seconds.erase(seconds.begin(), seconds.begin() + std::min<std::ptrdiff_t>(2, std::ssize(seconds) - 1));
-  return median(std::move(seconds));
+  return seconds.empty() ? 0.0 : median(std::move(seconds));
 }
 
 }  // namespace

@@ -40,8 +40,8 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 
 /// Reads an OctoMap file, `.bt` or `.ot`, by its header and not by its name. The file is checked from end to
 /// end before OctoMap's own reader, which trusts its input, sees it.
-/// @throws std::runtime_error naming the file, what is wrong with it and where, or that its nodes would not fit
-///         into `available_memory()`
+/// @throws std::runtime_error naming the file, what is wrong with it and where, or that its nodes would
+///         not fit into `available_memory()`
 [[nodiscard]] FRONTLUX_EXPORT Octree read_octree(const std::filesystem::path& file);
 
 /// Writes a tree in OctoMap's format: the log-odds of every node (and its colour) to a file named `.ot`, free
@@ -58,8 +58,8 @@ FRONTLUX_EXPORT void write_octree(const Octree& tree, const std::filesystem::pat
 [[nodiscard]] FRONTLUX_EXPORT VoxelGrid make_voxel_grid(const octomap::ColorOcTree& tree);
 [[nodiscard]] FRONTLUX_EXPORT VoxelGrid make_voxel_grid(const Octree& tree);
 
-/// About the memory that the mirror of a tree will take, and no less than its `memory_bytes()`: up to 3 kB for
-/// each voxel if they lie far apart.
+/// About the memory that the mirror of a tree will take, and no less than its `memory_bytes()`: up to 3 kB
+/// for each voxel if they lie far apart.
 [[nodiscard]] FRONTLUX_EXPORT std::size_t voxel_grid_bytes(const Octree& tree);
 
 /// Keeps a VoxelGrid in step with one tree.

@@ -91,27 +91,34 @@ std::shared_ptr<Change> insert(const Self& self, std::size_t robot, const py::ob
   });
 }
 
-void stopped(const Self& self, std::size_t robot, const py::object& pose_object, double time,
-             const py::object& blocked) {
+// Tells of a robot that it rests at a pose.
+template <class Tell>
+void at_rest(const Self& self, std::size_t robot, const py::object& pose_object, double time,
+             const Tell& tell) {
   const Lattice lattice = with_robot(
       self, robot, [](const Continuous& state, const auto& /*robot*/) { return state.team.lattice(); });
   const SensorPose pose = sensor_pose("pose", pose_object, lattice);
-  std::optional<Keys> cells;
-  if (!blocked.is_none()) cells.emplace("blocked", blocked);
   self->use([&](Continuous& state) {
     state.pass(time);
-    state.exploration.stopped(robot, pose.upright, time, cells ? cells->span() : std::span<const VoxelKey>());
+    tell(state.exploration, pose.upright);
   });
 }
 
-void lose(const Self& self, std::size_t robot, const py::object& pose_object, double time) {
-  const Lattice lattice = with_robot(
-      self, robot, [](const Continuous& state, const auto& /*robot*/) { return state.team.lattice(); });
-  const SensorPose pose = sensor_pose("pose", pose_object, lattice);
-  self->use([&](Continuous& state) {
-    state.pass(time);
-    state.exploration.lose(robot, pose.upright, time);
-  });
+void stopped(const Self& self, std::size_t robot, const py::object& pose, double time,
+             const py::object& blocked) {
+  std::optional<Keys> cells;
+  if (!blocked.is_none()) cells.emplace("blocked", blocked);
+  at_rest(self, robot, pose, time,
+          [&](planner::ContinuousExploration& exploration, const planner::Pose& rests) {
+            exploration.stopped(robot, rests, time, cells ? cells->span() : std::span<const VoxelKey>());
+          });
+}
+
+void lose(const Self& self, std::size_t robot, const py::object& pose, double time) {
+  at_rest(self, robot, pose, time,
+          [&](planner::ContinuousExploration& exploration, const planner::Pose& rests) {
+            exploration.lose(robot, rests, time);
+          });
 }
 
 PlanPointer plan(const Self& self, double time) {

@@ -64,6 +64,12 @@ ExplorationState::ExplorationState(ExplorationOptions given, Mapping map)
       caster(make_ray_caster(options.caster, mapping.grid(), mapping.tree())),
       abandoned(options.max_visits) {}
 
+TravelOptions ExplorationState::travel_by_voxels(std::size_t robot) const {
+  TravelOptions travel = options.team[robot].robot.travel;
+  travel.node_edge = 0.0;
+  return travel;
+}
+
 ExplorationStep ExplorationState::new_step() const {
   ExplorationStep step;
   step.number = number;
@@ -327,8 +333,7 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
   const PhaseClock clock(step, Phase::kMoving);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
-    TravelOptions body = options.team[r].robot.travel;
-    body.node_edge = 0.0;
+    const TravelOptions body = travel_by_voxels(r);
     // A retreat need not be free: the robot came on it.
     execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
     robot.gained =

@@ -48,6 +48,8 @@ struct ExplorationState {
 
   ExplorationState(ExplorationOptions given, Mapping map);
 
+  /// How a robot travels between the nodes of its corridor, if it has such.
+  [[nodiscard]] TravelOptions travel_by_voxels(std::size_t robot) const;
   /// What robots find their ways in. On tours it is `solid`: a robot that does not move measures the same
   /// again and again, and if beams that graze the floor had freed it before the robot, it would never go on.
   [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *solid : mapping.grid(); }

@@ -62,8 +62,6 @@ std::optional<std::size_t> ExplorationState::place_to_go_back_to(std::size_t rob
                                                                  const Keys& tried) const {
   const std::vector<Pose>& trail = trails[robot];
   const bool lost = goal.state == GoalState::kNoCorridor;
-  TravelOptions by_voxels = options.team[robot].robot.travel;
-  by_voxels.node_edge = 0.0;
   std::optional<TravelCorridor> elsewhere;
   double length = 0.0;  // [m] of the trail from the place on
   for (std::size_t place = trail.size(); place-- > 0;) {
@@ -74,7 +72,7 @@ std::optional<std::size_t> ExplorationState::place_to_go_back_to(std::size_t rob
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (lost) return place;
     if (elsewhere && elsewhere->contains(*cell)) continue;
-    if (!elsewhere) elsewhere.emplace(by_voxels, lattice(), mapping.bounds());
+    if (!elsewhere) elsewhere.emplace(travel_by_voxels(robot), lattice(), mapping.bounds());
     if (worth_going_to(*elsewhere, robot, *cell, length)) return place;
   }
   return std::nullopt;
@@ -123,9 +121,7 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   const auto place = place_to_go_back_to(robot, goal, {});
   if (!place) return false;
   // What has closed off a part that is smaller than that where it is has not locked it in.
-  TravelOptions by_voxels = options.team[robot].robot.travel;
-  by_voxels.node_edge = 0.0;
-  TravelCorridor elsewhere(by_voxels, lattice(), mapping.bounds());
+  TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());
   elsewhere.update({travel_map()}, lattice().key(trails[robot][*place].position).value());
   return !gets_to_as_many_as(robot, elsewhere.cells().size());
 }

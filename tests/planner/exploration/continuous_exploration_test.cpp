@@ -5,7 +5,6 @@
 
 #include <frontlux/frontier_set.hpp>
 #include <frontlux/planner/recorded_map.hpp>
-#include <frontlux/sim/coverage.hpp>
 
 #include <tbb/task_arena.h>
 
@@ -13,6 +12,7 @@ namespace frontlux::planner {
 namespace {
 
 using test::GoalChoice;
+using test::share_mapped;
 using test::small_uav;
 using test::TeamInMotion;
 using test::TeamInWorld;
@@ -59,19 +59,9 @@ std::set<VoxelKey> not_free(const Trajectory& trajectory, const TravelOptions& t
   return keys;
 }
 
-double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
-  return sim::measure(team.truth, grid).of_observable();
-}
-
 class ContinuousExplorationBy : public testing::TestWithParam<GoalChoice> {};
-std::string name_of_choice(const testing::TestParamInfo<GoalChoice>& now) {
-  if (now.param == GoalChoice::kGoals) return "Goals";
-  return now.param == GoalChoice::kTours ? "Tours" : "ToursInALargeMap";
-}
-INSTANTIATE_TEST_SUITE_P(Each, ContinuousExplorationBy,
-                         testing::Values(GoalChoice::kGoals, GoalChoice::kTours,
-                                         GoalChoice::kToursInALargeMap),
-                         name_of_choice);
+INSTANTIATE_TEST_SUITE_P(Each, ContinuousExplorationBy, testing::ValuesIn(test::kGoalChoices),
+                         test::name_of_choice);
 
 TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLimits) {
   TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GetParam());
@@ -198,29 +188,6 @@ TEST_P(ContinuousExplorationBy, IsTheSameOnOneAndTwoThreads) {
   EXPECT_TRUE(one == told(2));
 }
 
-void expect_apart(std::size_t count, double seconds, GoalChoice choice) {
-  TeamInMotion scene("room", std::vector<RobotDescription>(count, small_uav()), sim::AtContact::kGoOn,
-                     choice);
-  const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
-  double least = std::numeric_limits<double>::infinity();
-  const auto look = [&](double from, double to) {
-    for (double time = from; time < to; time += kSample)
-      for (std::size_t a = 0; a < count; ++a)
-        for (std::size_t b = a + 1; b < count; ++b) {
-          const auto at = [&](std::size_t r) {
-            return body.translated(scene.exploration().at(r, time).pose.position);
-          };
-          least = std::min(least, at(a).exteriorDistance(at(b)));
-        }
-  };
-  scene.explore(seconds, {}, look);
-  EXPECT_GT(least, 0.3);
-  EXPECT_LT(least, 3.0) << "they are never near each other";
-  for (std::size_t r = 0; r < count; ++r) EXPECT_GT(scene.robots().records()[r].length, 1.0);
-}
-TEST_P(ContinuousExplorationBy, KeepsTwoRobotsApart) { expect_apart(2, 20.0, GetParam()); }
-TEST_P(ContinuousExplorationBy, KeepsThreeRobotsApart) { expect_apart(3, 12.0, GetParam()); }
-
 // Explores for a while, and plans all that there is to plan.
 void begin_to_fly(TeamInMotion& scene) {
   scene.explore(2.0);
@@ -343,41 +310,6 @@ TEST(ContinuousExploration, SeesNoFrontiersBehindSurfaces) {
       }));
   EXPECT_GT(hidden, 0U);
   EXPECT_EQ(frontiers(), all.size() - hidden);
-}
-
-TEST_P(ContinuousExplorationBy, LeavesToTheOthersWhatALostRobotWasToSee) {
-  TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
-  ContinuousExploration& exploration = scene.exploration();
-  scene.explore(5.0);
-  const double before = share_mapped(scene.team(), scene.grid());
-  ASSERT_LT(before, 0.95);
-  const Pose rests = exploration.at(1, scene.time()).pose;
-  exploration.lose(1, rests, scene.time());
-  const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
-  double least = std::numeric_limits<double>::infinity();
-  scene.explore(
-      kLong, [&](const PlannedMotion& now) { EXPECT_EQ(now.robot, 0U); },
-      [&](double from, double to) {
-        for (double time = from; time < to; time += kSample)
-          least = std::min(least, body.translated(exploration.at(0, time).pose.position)
-                                      .exteriorDistance(body.translated(rests.position)));
-      });
-  EXPECT_TRUE(exploration.end());
-  EXPECT_TRUE(test::same(exploration.at(1, scene.time()).pose, rests));
-  EXPECT_GT(share_mapped(scene.team(), scene.grid()), 0.98);
-  EXPECT_GT(least, 0.3);
-}
-
-TEST(ContinuousExploration, EndsWithItsLastRobot) {
-  TeamInMotion scene("room", {small_uav(), small_uav()});
-  ContinuousExploration& exploration = scene.exploration();
-  scene.explore(1.0);
-  for (const std::size_t robot : {1U, 0U}) {
-    EXPECT_FALSE(exploration.end());
-    exploration.lose(robot, exploration.at(robot, scene.time()).pose, scene.time());
-  }
-  EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
-  EXPECT_FALSE(exploration.plan(scene.time() + 10.0));
 }
 
 // Planning takes for visible what the camera, which looks the other way, does not see.

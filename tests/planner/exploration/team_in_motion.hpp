@@ -3,9 +3,12 @@
 #include "planner/exploration/team_in_world.hpp"
 
 #include <frontlux/planner/continuous_exploration.hpp>
+#include <frontlux/sim/coverage.hpp>
 #include <frontlux/sim/moving_robots.hpp>
 
+#include <array>
 #include <functional>
+#include <string>
 
 namespace frontlux::test {
 
@@ -21,6 +24,17 @@ inline planner::RobotDescription small_uav() {
 /// How goals are chosen: one after the other; by tours; by tours, in a map that may grow so large that robots
 /// know distances near by only.
 enum class GoalChoice { kGoals, kTours, kToursInALargeMap };
+inline constexpr std::array kGoalChoices = {GoalChoice::kGoals, GoalChoice::kTours,
+                                            GoalChoice::kToursInALargeMap};
+inline std::string name_of_choice(const testing::TestParamInfo<GoalChoice>& now) {
+  if (now.param == GoalChoice::kGoals) return "Goals";
+  return now.param == GoalChoice::kTours ? "Tours" : "ToursInALargeMap";
+}
+
+/// The part of what robots can observe that a map knows.
+inline double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
+  return sim::measure(team.truth, grid).of_observable();
+}
 
 /// A team that explores a built-in world in motion.
 class TeamInMotion {

@@ -74,8 +74,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ///                 entered again
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
-  /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose, where
-  /// the others keep apart from it, and what it was to see becomes theirs. There is no way back for it.
+  /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
+  /// where the others keep apart from it, and what it was to see becomes theirs. There is no way back for it.
   void lose(std::size_t robot, const Pose& pose, double time);
 
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.

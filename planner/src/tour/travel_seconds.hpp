@@ -1,0 +1,22 @@
+#pragma once
+
+#include <frontlux/planner/robot.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace frontlux::planner::detail {
+
+/// Angle between two yaws [rad].
+[[nodiscard]] inline double turn_between(double a, double b) {
+  return std::abs(std::remainder(b - a, 2 * std::numbers::pi));
+}
+
+/// [s] for a way [m] and a turn [rad]; robots that see all around need not turn.
+[[nodiscard]] inline double travel_seconds(const Robot& robot, double distance, double turn) {
+  const bool turns = robot.view.shape != FieldOfView::Shape::kSpinning;
+  return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
+}
+
+}  // namespace frontlux::planner::detail
