@@ -84,7 +84,9 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
   stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
   State::Member& member = state_->members[robot];
   member.lost = true;
-  member.going = member.goes_back = member.blocked = false;
+  member.going = member.goes_back = member.makes_room = member.blocked = false;
+  member.request.reset();
+  state_->withdraw_requests(robot);
   member.goal = {};
   member.goal_frontiers.clear();
   member.needed.clear();

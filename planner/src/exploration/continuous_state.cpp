@@ -79,6 +79,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   const bool arrives = time + team.options.latency >= member.motion.last().end();
   if (member.goes_back && !arrives) return std::nullopt;  // its way back need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
+  if (member.makes_room && !arrives) return std::nullopt;
   if (member.going &&
       (member.goal_frontiers.empty() ? arrives
                                      : has_looked(member.motion.last(), member.sensed.back(), time)))
@@ -169,26 +170,36 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
   team.abandoned.visited(now.still_unknown);
 }
 
-// The cells in whose middle a robot would be too near to where another one will come to rest. A robot whose
-// way past the others has turned out to be too near keeps out of all cells in which it might be; but every
-// other time, since it may rest in one of them.
-std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot) const {
+// The cells in whose middle a robot would be too near to another one that is at a place, or more of them.
+// @param shrunk  [cells] how far inside of these a cell has to lie
+std::optional<KeyBox> ContinuousExploration::State::cells_too_near(std::size_t robot, std::size_t other,
+                                                                   const Eigen::Vector3d& other_at,
+                                                                   double shrunk) const {
+  const TravelOptions& travel = team.options.team[robot].robot.travel;
+  const auto box = detail::positions_too_near(body_of(travel), body_of(team.options.team[other].robot.travel),
+                                              other_at, kGap);
+  if (travel.motion == Motion::kPlane) {
+    const double height = team.poses[robot].position.z();
+    if (height <= box.min().z() || height >= box.max().z()) return std::nullopt;
+  }
+  const Eigen::Vector3d inside = Eigen::Vector3d::Constant(shrunk * team.lattice().resolution());
+  const auto low = team.lattice().key(Eigen::Vector3d(box.min() + inside)),
+             high = team.lattice().key(Eigen::Vector3d(box.max() - inside));
+  if (!low || !high) return std::nullopt;
+  return KeyBox{*low, *high};
+}
+
+// The cells that are too near to where others will come to rest. A robot whose way past the others has turned
+// out to be too near keeps out of all cells in which it might be; but every other time, since it may rest in
+// one of them.
+std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot, Others which) const {
   std::vector<KeyBox> places;
-  const auto body = body_of(team.options.team[robot].robot.travel);
   for (std::size_t other = 0; other < members.size(); ++other) {
-    if (other == robot) continue;
+    if (other == robot || (which == Others::kThatDoNotRest && rests(members[other]))) continue;
     const Trajectory& last = members[other].motion.last();
-    auto box = detail::positions_too_near(body, body_of(team.options.team[other].robot.travel),
-                                          last.at(last.end()).pose.position, kGap);
-    if (team.options.team[robot].robot.travel.motion == Motion::kPlane) {
-      const double height = team.poses[robot].position.z();
-      if (height <= box.min().z() || height >= box.max().z()) continue;
-    }
-    const double within = members[robot].waits % 2 == 1 ? 0.0 : 0.5;  // of a cell
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(within * team.lattice().resolution());
-    const auto low = team.lattice().key(Eigen::Vector3d(box.min() + half)),
-               high = team.lattice().key(Eigen::Vector3d(box.max() - half));
-    if (low && high) places.push_back({*low, *high});
+    const double shrunk = members[robot].waits % 2 == 1 ? 0.0 : 0.5;
+    if (auto cells = cells_too_near(robot, other, last.at(last.end()).pose.position, shrunk))
+      places.push_back(*cells);
   }
   return places;
 }
@@ -237,19 +248,35 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
   return voxels;
 }
 
-// Back along the way it came, to the last place from which it can go on.
-Trajectory ContinuousExploration::State::go_back(std::size_t robot, double start, ExplorationStep& step) {
-  const detail::PhaseClock clock(step, Phase::kPaths);
-  const Trajectory& old = members[robot].motion.last();
-  const MotionLimits& limits = team.options.team[robot].robot.limits;
-  const MotionState now = old.at(start);
+// Out of another one's way, or back along the way it came, to the last place from which it can go on.
+Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double start,
+                                                      ExplorationStep& step) {
+  Member& member = members[robot];
+  RobotStep& now = step.robots[robot];
+  const Trajectory& old = member.motion.last();
+  const MotionState then = old.at(start);
+  member.going = true;  // when it has come to rest, it plans again
   std::vector<Pose> way;
-  if (now.velocity.isZero()) way = team.take_way_back(robot, step.robots[robot].goal);
-  if (!way.empty()) {
-    way.insert(way.begin(), now.pose);
-    step.robots[robot].path = PathOutcome::kFound;
+  if (then.velocity.isZero()) {
+    ask_for_room(robot, step);
+    const detail::PhaseClock clock(step, Phase::kPaths);
+    way = way_out(robot);
+    member.makes_room = !way.empty();
+    if (!member.makes_room) {
+      member.request.reset();
+      if (!waits_for_room(robot)) way = team.take_way_back(robot, now.goal);
+      member.goes_back = !way.empty();
+    }
+    member.going = !way.empty();
   }
-  return old.after_stop(start, way, limits, segment_test(robot));
+  if (member.makes_room) now.goal.reason = "no goal: it makes room for another robot";
+  if (waits_for_room(robot)) now.goal.reason = "no goal: it waits for another robot to make room";
+  if (!way.empty()) {
+    way.insert(way.begin(), then.pose);
+    now.path = PathOutcome::kFound;
+  }
+  const detail::PhaseClock clock(step, Phase::kPaths);
+  return old.after_stop(start, way, team.options.team[robot].robot.limits, segment_test(robot));
 }
 
 // The way to the robot's goal, or back, or to rest.
@@ -260,14 +287,10 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const Trajectory& old = member.motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   member.goal_frontiers.clear();
-  if (!now.goal.pose) {
-    Trajectory back = go_back(robot, start, step);
-    member.goes_back = now.path == PathOutcome::kFound;
-    // When it has come to rest, it plans again.
-    member.going = member.goes_back || !old.at(start).velocity.isZero();
-    return back;
-  }
-  member.goes_back = false;
+  member.goes_back = member.makes_room = false;
+  if (!now.goal.pose) return without_goal(robot, start, step);
+  member.request.reset();
+  withdraw_requests(robot);
   team.went_back_to[robot].clear();
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
@@ -307,7 +330,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     team.poses[r] = starts[r].pose;
   }
   team.update_frontiers(step);
-  const std::vector<KeyBox> others = places_of_others(robot);
+  const std::vector<KeyBox> others = places_of_others(robot, Others::kAll);
   team.selection->keep_out_of(robot, others);
   if (team.voxel_corridors[robot]) team.voxel_corridors[robot]->keep_out_of(others);
   team.update_views(step);
@@ -355,6 +378,7 @@ void ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   } else {
     trajectory = member.motion.last();  // which keeps apart
     member.going = trajectory.end() > start;
+    member.makes_room = false;
     const bool went_back = std::exchange(member.goes_back, false);
     const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
     if (member.going || !went_back || std::ranges::none_of(members, moves)) return;
@@ -384,9 +408,10 @@ void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& ste
     gain = 0.0;
     for (const detail::TourStop& stop : team.tours->tour(robot)) gain += static_cast<double>(stop.seen);
   }
-  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going;
+  const bool waits = !member.going && (step.goal.pose || waits_for_room(robot));
+  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going && !waits;
   member.low_gains = low ? member.low_gains + 1 : 0;
-  member.waits = step.goal.pose && !member.going ? member.waits + 1 : 0;
+  member.waits = waits ? member.waits + 1 : 0;
 }
 
 bool ContinuousExploration::State::is_idle(const Member& member) {

@@ -17,6 +17,12 @@ namespace frontlux::planner {
 struct ContinuousExploration::State {
   using Keys = std::vector<VoxelKey>;
 
+  /// To make room for a robot, which has nothing to do on this side of the one that rests in its way.
+  struct Request {
+    std::size_t by = 0;
+    Keys way;  // cells
+  };
+
   /// One robot in motion.
   struct Member {
     detail::Follower motion;
@@ -26,7 +32,8 @@ struct ContinuousExploration::State {
     bool stopped = false, blocked = false;
     bool lost = false;              // takes no more part
     bool goes_back = false;         // on the way on which it came
-    bool going = false;             // it has a goal, or goes back
+    bool makes_room = false;        // on its way out of another one's way
+    bool going = false;             // it has a goal, goes back, or makes room
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     int waits = 0;                  // plannings in a row after which it could not set out for its goal
     Goal goal = {};                 // the last one
@@ -34,6 +41,8 @@ struct ContinuousExploration::State {
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
+    std::optional<Request> request = {};   // by another one, while it has no goal
+    std::vector<Keys> others_rested = {};  // where, each time that it has asked for room since it had a goal
   };
 
   detail::ExplorationState team;
@@ -46,14 +55,24 @@ struct ContinuousExploration::State {
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void take(std::size_t robot, const MapChange& change);
   [[nodiscard]] ExplorationStep collect(double time);
+  /// A robot needs no room any more.
+  void withdraw_requests(std::size_t robot);
   /// Whether there is nothing for a robot to do, or it has waited for others long enough.
   [[nodiscard]] static bool is_idle(const Member& member);
 
  private:
+  enum class Others { kAll, kThatDoNotRest };
+
   void note_look(std::size_t robot, PlanReason reason, ExplorationStep& step);
-  [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot) const;
+  [[nodiscard]] std::optional<KeyBox> cells_too_near(std::size_t robot, std::size_t other,
+                                                     const Eigen::Vector3d& other_at, double shrunk) const;
+  [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot, Others which) const;
+  [[nodiscard]] bool rests(const Member& member) const;
+  [[nodiscard]] bool waits_for_room(std::size_t robot) const;
+  void ask_for_room(std::size_t robot, ExplorationStep& step);
+  [[nodiscard]] std::vector<Pose> way_out(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
-  [[nodiscard]] Trajectory go_back(std::size_t robot, double start, ExplorationStep& step);
+  [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
   void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
   void judge(std::size_t robot, const RobotStep& step);

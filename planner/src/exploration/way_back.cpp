@@ -38,8 +38,9 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
                                       double length) const {
   elsewhere.update({travel_map()}, cell);
   if (tours)
-    return tours->would_see_from(robot, *caster,
-                                 [&](const VoxelKey& key) { return elsewhere.contains(key); });
+    return tours
+        ->place_to_see_from(robot, *caster, [&](const VoxelKey& key) { return elsewhere.contains(key); })
+        .has_value();
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
   const Keys others = frontiers_of_others(robot);
   const double from_afar = std::exp(-options.team[robot].options.lambda * length);

@@ -165,8 +165,8 @@ bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
   return members_[robot].ways.reaches(cell);
 }
 
-bool TourPlanning::would_see_from(std::size_t robot, const RayCaster& caster,
-                                  const std::function<bool(const VoxelKey&)>& among) const {
+std::optional<VoxelKey> TourPlanning::place_to_see_from(
+    std::size_t robot, const RayCaster& caster, const std::function<bool(const VoxelKey&)>& among) const {
   const auto is_others = [&](const FrontierCluster& cluster) {
     for (std::size_t r = 0; r < members_.size(); ++r)
       for (const TourStop& stop : members_[r].tour)
@@ -174,9 +174,12 @@ bool TourPlanning::would_see_from(std::size_t robot, const RayCaster& caster,
     return false;
   };
   const ViewpointQuery view = sight_of(robot, caster);
-  return std::ranges::any_of(clusters_.clusters(), [&](const FrontierCluster& cluster) {
-    return !is_others(cluster) && !viewpoints_anywhere(view, cluster, among).empty();
-  });
+  for (const FrontierCluster& cluster : clusters_.clusters()) {
+    if (is_others(cluster)) continue;
+    const auto viewpoints = viewpoints_anywhere(view, cluster, among);
+    if (!viewpoints.empty()) return viewpoints.front().cell;
+  }
+  return std::nullopt;
 }
 
 ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster) const {

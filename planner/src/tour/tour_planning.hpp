@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -82,10 +83,10 @@ class TourPlanning {
   /// Whether a cell is near a short way of the robot to some cell; for none if there is no way.
   [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(std::size_t robot,
                                                                    const VoxelKey& cell) const;
-  /// Whether the robot would have a stop among some cells if it could get to them: it sees a cluster from
-  /// there that is in no tour of another robot.
-  [[nodiscard]] bool would_see_from(std::size_t robot, const RayCaster& caster,
-                                    const std::function<bool(const VoxelKey&)>& among) const;
+  /// Where the robot would have a stop among some cells if it could get to them: it sees a cluster from there
+  /// that is in no tour of another robot. Nothing if there is no such place.
+  [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
+      std::size_t robot, const RayCaster& caster, const std::function<bool(const VoxelKey&)>& among) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
 

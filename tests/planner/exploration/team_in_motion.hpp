@@ -36,7 +36,7 @@ inline double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
   return sim::measure(team.truth, grid).of_observable();
 }
 
-/// A team that explores a built-in world in motion.
+/// A team that explores a world in motion.
 class TeamInMotion {
  public:
   /// Called after each planning.
@@ -46,7 +46,9 @@ class TeamInMotion {
 
   TeamInMotion(std::string_view world, std::vector<planner::RobotDescription> robots,
                sim::AtContact at_contact = sim::AtContact::kGoOn, GoalChoice choice = GoalChoice::kGoals)
-      : team_(world, 1, std::move(robots)),
+      : TeamInMotion(TeamInWorld(world, 1, std::move(robots)), at_contact, choice) {}
+  TeamInMotion(TeamInWorld team, sim::AtContact at_contact, GoalChoice choice)
+      : team_(std::move(team)),
         robots_(team_.world, team_.truth, team_.robots, poses_of(team_), {}, 1, at_contact),
         exploration_(options(team_, choice), empty_map(team_, choice)) {
     steps.push_back(exploration_.begin(team_.starts, 0.0));

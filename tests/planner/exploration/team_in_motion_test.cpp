@@ -2,6 +2,8 @@
 
 #include "planner/exploration/team_in_motion.hpp"
 
+#include "sim/mesh/box_mesh.hpp"
+
 namespace frontlux::planner {
 namespace {
 
@@ -59,6 +61,55 @@ TEST_P(TeamInMotionBy, LeavesToTheOthersWhatALostRobotWasToSee) {
   EXPECT_TRUE(test::same(exploration.at(1, scene.time()).pose, rests));
   EXPECT_GT(share_mapped(scene.team(), scene.grid()), 0.98);
   EXPECT_GT(least, 0.3);
+}
+
+// Two rooms of 6 x 6 x 2.4 m with a corridor of 6 x 1.8 x 2 m between them: the x of its ends [m]. There a
+// UAV cannot pass over a UGV.
+constexpr double kCorridor[] = {6.0, 12.0};
+sim::World two_rooms() {
+  sim::World world{"two rooms", {}, {}, Eigen::Vector3d(3.0, 0.0, 0.5)};
+  const auto block = [&](float x, float y, float z, float to_x, float to_y, float to_z) {
+    sim::test::add_box(world.mesh, {Eigen::Vector3f(x, y, z), Eigen::Vector3f(to_x, to_y, to_z)});
+  };
+  constexpr float kEnd = 18.0F, kOut = 0.3F, kFrom = kCorridor[0], kTo = kCorridor[1];
+  for (const float z : {-kOut - 0.05F, 2.35F})
+    block(-kOut, -3.0F - kOut, z, kEnd + kOut, 3.0F + kOut, z + kOut);
+  for (const float x : {-kOut, kEnd}) block(x, -3.0F - kOut, -0.05F, x + kOut, 3.0F + kOut, 2.35F);
+  for (const float y : {-3.0F - kOut, 3.0F}) block(0.0F, y, -0.05F, kEnd, y + kOut, 2.35F);
+  block(kFrom, -3.0F, -0.05F, kTo, -0.9F, 2.35F);
+  block(kFrom, 0.9F, -0.05F, kTo, 3.0F, 2.35F);
+  block(kFrom, -0.9F, 1.95F, kTo, 0.9F, 2.35F);
+  world.bounds = sim::bounds_of(world.mesh);
+  return world;
+}
+
+class TeamOnTours : public testing::TestWithParam<GoalChoice> {};
+INSTANTIATE_TEST_SUITE_P(Each, TeamOnTours,
+                         testing::Values(GoalChoice::kTours, GoalChoice::kToursInALargeMap),
+                         test::name_of_choice);
+
+// In the middle of the corridor rests a robot with next to no sight, which never has anything to do.
+TEST_P(TeamOnTours, MakesRoomForWhoeverHasSomethingToSee) {
+  RobotDescription blind = ugv_description();
+  blind.robot.travel.require_ground = false;
+  blind.robot.view = {FieldOfView::Shape::kCone, 0.5, 0.0, 0.5};
+  blind.columns = 100;
+  blind.rows = 1;
+  test::TeamInWorld team(two_rooms(), {small_uav(), blind});
+  Pose between = team.starts[1].pose;
+  between.position.x() = (kCorridor[0] + kCorridor[1]) / 2;
+  between.position = Lattice(0.3).exact_center(Lattice(0.3).key(between.position).value());
+  team.starts[1] = {between, sim::start_bubble(team.truth, blind.robot, between)};
+  TeamInMotion scene(std::move(team), sim::AtContact::kGoOn, GetParam());
+  std::size_t moves = 0;
+  scene.explore(300.0, [&](const PlannedMotion& now) {
+    if (now.robot == 1 && now.trajectory.end() > now.trajectory.begin()) ++moves;
+  });
+  EXPECT_EQ(scene.exploration().end(), ExplorationEnd::kNothingToDo);
+  EXPECT_EQ(moves, 1U);
+  const double x = scene.exploration().at(1, scene.time()).pose.position.x();
+  EXPECT_TRUE(x < kCorridor[0] || x > kCorridor[1]) << x;
+  EXPECT_GT(share_mapped(scene.team(), scene.grid()), 0.98);
 }
 
 TEST(TeamInMotion, EndsWithItsLastRobot) {

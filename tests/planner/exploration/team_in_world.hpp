@@ -21,7 +21,7 @@ using planner::ExplorationStep;
 using planner::Pose;
 using planner::RobotStep;
 
-/// A built-in world at 0.3 m, and robots at their starts in it.
+/// A world at 0.3 m, and robots at their starts in it.
 struct TeamInWorld {
   sim::World world;
   Eigen::Vector3d around;
@@ -29,8 +29,11 @@ struct TeamInWorld {
   std::vector<planner::RobotDescription> robots;
   std::vector<planner::ExplorationStart> starts;
 
+  /// Built-in.
   TeamInWorld(std::string_view name, std::uint64_t seed, std::vector<planner::RobotDescription> team)
-      : world(sim::make_world(name, seed)),
+      : TeamInWorld(sim::make_world(name, seed), std::move(team)) {}
+  TeamInWorld(sim::World place, std::vector<planner::RobotDescription> team)
+      : world(std::move(place)),
         around(sim::free_start(world, 0.3, true)),
         truth(world, 0.3, around),
         robots(std::move(team)) {

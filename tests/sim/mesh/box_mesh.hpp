@@ -18,7 +18,7 @@ inline void add_quad(TriangleMesh& mesh, const Eigen::Vector3f& a, const Eigen::
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// The six sides of a box, each of them in `pieces` x `pieces` quads.
+/// The six sides of a box, each of them in `pieces` x `pieces` quads, which face outwards.
 inline void add_box(TriangleMesh& mesh, const Eigen::AlignedBox3f& box, int pieces = 1) {
   const auto line = [&](int axis, int number) {
     if (number == pieces) return box.max()[axis];
@@ -37,7 +37,9 @@ inline void add_box(TriangleMesh& mesh, const Eigen::AlignedBox3f& box, int piec
             point[v] = line(v, b);
             return point;
           };
-          add_quad(mesh, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
+          const Eigen::Vector3f along_u = corner(i + 1, j), along_v = corner(i, j + 1);
+          add_quad(mesh, corner(i, j), side == 0 ? along_v : along_u, corner(i + 1, j + 1),
+                   side == 0 ? along_u : along_v);
         }
   }
 }

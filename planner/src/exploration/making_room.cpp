@@ -1,0 +1,102 @@
+// Robots that rest in the way of others, and make room for them.
+
+#include "exploration/continuous_state.hpp"
+#include "exploration/phase_clock.hpp"
+#include "goal/counting_ray_caster.hpp"
+
+#include <frontlux/planner/path_planner.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace frontlux::planner {
+
+using Keys = std::vector<VoxelKey>;
+
+// Whether a robot has no goal and stays where it is, unless it is asked to make room.
+bool ContinuousExploration::State::rests(const Member& member) const {
+  return member.planned && !member.lost && !member.going && !member.goal.pose;
+}
+
+bool ContinuousExploration::State::waits_for_room(std::size_t robot) const {
+  return std::ranges::any_of(
+      members, [&](const Member& member) { return member.request && member.request->by == robot; });
+}
+
+void ContinuousExploration::State::withdraw_requests(std::size_t robot) {
+  members[robot].others_rested.clear();
+  for (Member& member : members)
+    if (member.request && member.request->by == robot) member.request.reset();
+}
+
+// Of a robot on tours that has no goal: if others that rest keep it from what it would see, they are asked to
+// leave its way to there. Once for each choice of places where they rest, or they would go to and fro.
+void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationStep& step) {
+  if (!team.tours || team.voxel_corridors[robot] || waits_for_room(robot)) return;
+  const auto cell_of = [&](std::size_t r) { return team.lattice().key(team.poses[r].position); };
+  std::vector<std::size_t> resting;
+  Keys places;
+  for (std::size_t other = 0; other < members.size(); ++other) {
+    const auto place = cell_of(other);
+    if (other == robot || !rests(members[other]) || !place) continue;
+    resting.push_back(other);
+    places.push_back(*place);
+  }
+  std::vector<Keys>& rested = members[robot].others_rested;
+  if (resting.empty() || std::ranges::find(rested, places) != rested.end()) return;
+  rested.push_back(std::move(places));
+
+  const detail::CountingRayCaster counting(*team.caster, team.lattice());
+  std::optional<VoxelKey> to;
+  {
+    const detail::PhaseClock clock(step, Phase::kGoals);
+    to = team.tours->place_to_see_from(robot, counting,
+                                       [&](const VoxelKey& key) { return team.tours->gets_to(robot, key); });
+    step.rays += counting.rays();
+  }
+  if (!to) return;
+  const TravelCorridor& corridor = team.selection->corridor(robot);
+  team.selection->keep_out_of(robot, places_of_others(robot, Others::kThatDoNotRest));
+  team.keep_goal(robot, step, CorridorExtent::kNearby);
+  const detail::PhaseClock clock(step, Phase::kPaths);
+  if (!team.selection->find_way(robot, *to, team.tours->around_way_to(robot, *to))) return;
+  const Keys way = corridor.path_to(*to);
+  for (const std::size_t other : resting) {
+    const auto place = cells_too_near(robot, other, team.poses[other].position, 0.0);
+    const auto in_place = [&](const VoxelKey& cell) { return place && place->contains(cell); };
+    if (std::ranges::any_of(way, in_place)) members[other].request = Request{robot, way};
+  }
+}
+
+// To the nearest place beside the way of the robot that has asked; empty if there is none, or it is there.
+std::vector<Pose> ContinuousExploration::State::way_out(std::size_t robot) const {
+  constexpr std::size_t kMost = 100'000;  // cells
+  const Member& member = members[robot];
+  const auto here = team.lattice().key(team.poses[robot].position);
+  if (!member.request || !here) return {};
+  const TravelCorridor& corridor = team.path_corridor(robot);
+  const auto is_beside = [&](const VoxelKey& cell) {
+    const auto near = cells_too_near(member.request->by, robot, team.lattice().exact_center(cell), 0.0);
+    return !near || std::ranges::none_of(member.request->way,
+                                         [&](const VoxelKey& key) { return near->contains(key); });
+  };
+  std::set<VoxelKey> known{*here};
+  Keys cells{*here};
+  for (std::size_t i = 0; i < cells.size() && cells.size() < kMost; ++i) {
+    const VoxelKey cell = cells[i];
+    if (is_beside(cell)) {
+      if (cell == *here) return {};
+      Pose place = team.poses[robot];
+      place.position = team.lattice().exact_center(cell);
+      return plan_path(corridor, team.lattice(), team.poses[robot], place,
+                       {team.options.seed, team.number, robot}, team.options.path)
+          .viewpoints;
+    }
+    for_each_key(grown({cell, cell}, 1), [&](const VoxelKey& next) {
+      if (corridor.contains(next) && known.insert(next).second) cells.push_back(next);
+    });
+  }
+  return {};
+}
+
+}  // namespace frontlux::planner
