@@ -185,7 +185,8 @@ void read(std::string_view word, RobotFailures& failures) {
   for (std::string_view rest = word;; rest.remove_prefix(rest.find(',') + 1)) {
     const std::string_view part = rest.substr(0, rest.find(','));
     const std::size_t equals = part.find('=');
-    RobotFailures::Failure& failure = failures.each.emplace_back(std::string(part.substr(0, equals)), 0.0);
+    RobotFailures::Failure& failure =
+        failures.each.emplace_back(RobotFailures::Failure{std::string(part.substr(0, equals)), 0.0});
     try {
       if (equals == std::string_view::npos || equals == 0) throw BadInput("");
       read(part.substr(equals + 1), failure.time, kFromZero);

@@ -55,8 +55,9 @@ std::string goal_searches(const planner::ExplorationOptions& exploration) {
   for (const auto& [name, rule] : {std::pair{"render", GoalRule::kViewQuality},
                                    {"cluster", GoalRule::kClusters},
                                    {"nearest", GoalRule::kNearest}})
-    if (std::ranges::any_of(exploration.team,
-                            [&](const planner::TeamMember& member) { return member.options.rule == rule; }))
+    if (std::ranges::any_of(exploration.team, [searched = rule](const planner::TeamMember& member) {
+          return member.options.rule == searched;
+        }))
       names.append(names.empty() ? "" : "+").append(name);
   return names;
 }
