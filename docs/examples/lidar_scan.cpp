@@ -29,7 +29,7 @@ int main(int, char** arguments) {
   for (const Hit& hit : hits)
     if (hit.occupied()) seen.push_back(hit.key);
   std::ranges::sort(seen);
-  seen.erase(std::ranges::unique(seen).begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   std::cout << returns << " of " << rays.size() << " rays return, " << scan.size() << " points in "
             << seen.size() << " voxels\n";
 }
