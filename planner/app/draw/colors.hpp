@@ -8,6 +8,9 @@
 
 namespace frontlux::app {
 
+/// Of pictures' background, lines and text, and what stands behind.
+inline constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kMuted{86, 97, 112};
+
 /// The colour of a fraction from 0 (dark violet) over 0.5 (teal) to 1 (light yellow). Lightness grows evenly
 /// as eyes judge it: equal steps look equal, and those who do not tell hues apart still see the order. Values
 /// outside are clamped; NaN is 0.

@@ -14,7 +14,7 @@
 namespace frontlux::app {
 namespace {
 
-constexpr Color kInk{20, 20, 24}, kGrid{217, 223, 231}, kMuted{86, 97, 112};
+constexpr Color kGrid{217, 223, 231};
 constexpr int kWidth = 1000, kHeight = 560, kLeft = 96, kRight = 30, kBottom = 78, kLine = 32;
 constexpr TextStyle kTitle{.size = 20.0, .color = kInk, .bold = true}, kText{.size = 18.0, .color = kInk};
 

@@ -21,8 +21,7 @@
 namespace frontlux::app {
 namespace {
 
-constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kMuted{86, 97, 112}, kLow{86, 106, 140},
-    kMiddle{172, 178, 176}, kHigh{233, 220, 180};
+constexpr Color kLow{86, 106, 140}, kMiddle{172, 178, 176}, kHigh{233, 220, 180};
 constexpr int kMargin = 28, kLine = 34;
 constexpr int kFooter = 130;  // [px] for the keys below the map
 constexpr TextStyle kTitle{.size = 26.0, .color = kInk, .bold = true}, kText{.size = 22.0, .color = kInk},

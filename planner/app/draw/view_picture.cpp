@@ -13,8 +13,7 @@
 namespace frontlux::app {
 namespace {
 
-constexpr Color kPaper{255, 255, 255}, kInk{20, 20, 24}, kUnknown{150, 150, 156}, kFree{226, 226, 230},
-    kOccupied{38, 38, 44};
+constexpr Color kUnknown{150, 150, 156}, kFree{226, 226, 230}, kOccupied{38, 38, 44};
 constexpr int kMargin = 24, kPanel = 260, kLine = 28;
 constexpr TextStyle kText{.size = 19.0, .color = kInk};
 constexpr int kWidth = 900;                   // [px] of the longer edge of the map, about
