@@ -10,16 +10,17 @@
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
 namespace frontlux::bench {
 namespace {
 
-constexpr std::size_t kLooks = 12;
-constexpr double kLookRange = 6.0;         // [m]
-constexpr double kMostVoxels = 60.0;       // of the range, in maps finer than 0.1 m
-constexpr std::uint64_t kLookPlace = 301;  // stream of random numbers
+constexpr std::size_t kLooks = 12, kPlaces = 20'000;  // that are drawn all over the map
+constexpr double kLookRange = 6.0;                    // [m]
+constexpr double kMostVoxels = 60.0;                  // of the range, in maps finer than 0.1 m
+constexpr std::uint64_t kLookPlace = 301;             // stream of random numbers
 
 template <class Build>
 double median_seconds(Build&& build) {
@@ -33,9 +34,12 @@ double median_seconds(Build&& build) {
   return median(std::move(seconds));
 }
 
+// [voxels]
+double look_range(const VoxelGrid& grid) { return std::min(kLookRange / grid.resolution(), kMostVoxels); }
+
 // What a look all around shows.
 std::vector<VoxelKey> seen_from(const VoxelKey& place, const VoxelGrid& grid, const RayCaster& caster) {
-  const double range = std::min(kLookRange / grid.resolution(), kMostVoxels);
+  const double range = look_range(grid);
   std::vector<KeySegment> segments;
   for_each_key(grown({place, place}, static_cast<int>(range)), [&](const VoxelKey& key) {
     const Eigen::Vector3d way(key.x - place.x, key.y - place.y, key.z - place.z);
@@ -49,6 +53,21 @@ std::vector<VoxelKey> seen_from(const VoxelKey& place, const VoxelGrid& grid, co
   return seen;
 }
 
+// From where looks are taken: from places that are no farther from one of them than a look reaches, along
+// each axis, as by a robot on its way. So each map shows as much that is new, whatever its size.
+std::vector<VoxelKey> look_places(const VoxelGrid& grid) {
+  std::vector<VoxelKey> near, places;
+  const auto drawn = sample_free_voxels(grid, kPlaces, std::nullopt, kLookPlace);
+  if (drawn.empty()) return places;
+  const VoxelKey middle = drawn[drawn.size() / 2];
+  const KeyBox box = grown({middle, middle}, static_cast<int>(look_range(grid)));
+  std::ranges::copy_if(drawn, std::back_inserter(near),
+                       [&](const VoxelKey& key) { return box.contains(key); });
+  const std::size_t count = std::min(kLooks, near.size());
+  for (std::size_t i = 0; i < count; ++i) places.push_back(near[i * near.size() / count]);
+  return places;
+}
+
 // A map that is complete but for what some looks show, and then after each of them.
 struct Looks {
   std::vector<VoxelGrid> maps;
@@ -58,7 +77,7 @@ struct Looks {
 Looks make_looks(const VoxelGrid& grid) {
   const auto caster = make_grid_ray_caster(grid);
   Looks looks{{grid}, {}};
-  for (const VoxelKey& place : sample_free_voxels(grid, kLooks, std::nullopt, kLookPlace)) {
+  for (const VoxelKey& place : look_places(grid)) {
     VoxelGrid before = looks.maps.back();
     double voxels = 0.0;
     for (const VoxelKey& key : seen_from(place, grid, *caster)) {

@@ -92,12 +92,18 @@ struct CastRayPath {
 
 octomap::point3d point(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
 
+std::optional<octomap::OcTreeKey> key_of(const octomap::OcTree& tree, const Eigen::Vector3f& p) {
+  octomap::OcTreeKey key;
+  if (!octomap_knows_key(p) || !tree.coordToKeyChecked(point(p), key)) return std::nullopt;
+  return key;
+}
+
 PathCount expected_count(const octomap::OcTree& tree, const Ray& ray, UnknownPolicy unknown) {
-  octomap::OcTreeKey start;
-  if (!tree.coordToKeyChecked(point(ray.origin), start)) return {};
+  const auto start = key_of(tree, ray.origin);
+  if (!start) return {};
   Tally tally(tree, unknown);
-  if (tally.blocks(start)) return tally.blocked(start);
-  CastRayPath path(tree, point(ray.origin), start, point(ray.direction));
+  if (tally.blocks(*start)) return tally.blocked(*start);
+  CastRayPath path(tree, point(ray.origin), *start, point(ray.direction));
   if (!path.has_direction()) return {};
   while (true) {
     tally.add(path.key);
@@ -115,19 +121,18 @@ PathCount expected_count(const octomap::OcTree& tree, const Ray& ray, UnknownPol
 }
 
 PathCount expected_count(const octomap::OcTree& tree, const Segment& segment, UnknownPolicy unknown) {
-  octomap::OcTreeKey from, to;
-  if (!tree.coordToKeyChecked(point(segment.from), from) || !tree.coordToKeyChecked(point(segment.to), to))
-    return {};
+  const auto from = key_of(tree, segment.from), to = key_of(tree, segment.to);
+  if (!from || !to) return {};
   Tally tally(tree, unknown);
-  if (from == to) return tally.stopped(RayStop::kReached);
-  CastRayPath path(tree, point(segment.from), from, point(segment.to) - point(segment.from));
+  if (*from == *to) return tally.stopped(RayStop::kReached);
+  CastRayPath path(tree, point(segment.from), *from, point(segment.to) - point(segment.from));
   if (!path.has_direction()) return {};
   while (true) {
     tally.add(path.key);
     if (!path.advance()) return tally.stopped(RayStop::kOutOfRange);
-    if (path.key == to) return tally.stopped(RayStop::kReached);
+    if (path.key == *to) return tally.stopped(RayStop::kReached);
     for (unsigned i = 0; i < 3; ++i)
-      if ((path.key[i] - to[i]) * path.step[i] > 0) return tally.stopped(RayStop::kOutOfRange);
+      if ((path.key[i] - (*to)[i]) * path.step[i] > 0) return tally.stopped(RayStop::kOutOfRange);
     if (tally.blocks(path.key)) return tally.blocked(path.key);
   }
 }
