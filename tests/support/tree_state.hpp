@@ -8,17 +8,6 @@
 
 namespace frontlux::test {
 
-/// Whether OctoMap finds out by itself if a point has a key. On 64-bit ARM it takes a coordinate that is not
-/// a number for 0, and castRay from there may never return (docs/ray_contract.md, section 6).
-inline bool octomap_knows_key(const Eigen::Vector3f& point) {
-#ifdef __aarch64__
-  return !point.array().isNaN().any();
-#else
-  static_cast<void>(point);
-  return true;
-#endif
-}
-
 inline octomap::OcTreeKey tree_key(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
 /// By the search of the tree itself.

@@ -4,8 +4,8 @@
 
 #include "support/casters.hpp"
 #include "support/maps.hpp"
+#include "support/octomap_answers.hpp"
 #include "support/ray_samples.hpp"
-#include "support/tree_state.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/parallel.hpp>
@@ -81,8 +81,8 @@ void expect_casts_conform(const Subject& subject, std::size_t count, std::uint64
         const octomap::point3d origin = point_of(rays[i].origin), direction = point_of(rays[i].direction);
         const octomap::point3d untouched(1e20F, -2e20F, 3e20F);
         octomap::point3d end = untouched, drop_in_end = untouched;
-        const bool hit = octomap_knows_key(rays[i].origin) &&
-                         subject.map.tree->castRay(origin, direction, end, ignore_unknown, rays[i].max_range);
+        const bool hit =
+            castray_of(*subject.map.tree, origin, direction, end, ignore_unknown, rays[i].max_range);
         const bool drop_in_hit =
             subject.drop_in.castRay(origin, direction, drop_in_end, ignore_unknown, rays[i].max_range);
         const Eigen::Vector3f expected =
@@ -128,8 +128,8 @@ void expect_visibility_conforms(const Subject& subject, std::size_t count, std::
             subject.grid.at(*to) == Occupancy::kFree)
           return true;
         octomap::point3d end;
-        subject.map.tree->castRay(point_of(segments[i].from), point_of(segments[i].to - segments[i].from),
-                                  end, false);
+        castray_of(*subject.map.tree, point_of(segments[i].from), point_of(segments[i].to - segments[i].from),
+                   end, false);
         const Eigen::Vector3f stopped(end.x(), end.y(), end.z());
         return (walked[i] == 1) == (subject.grid.lattice().key(stopped) == to);
       },

@@ -4,6 +4,7 @@
 #include "support/casters.hpp"
 #include "support/complaint.hpp"
 #include "support/maps.hpp"
+#include "support/octomap_answers.hpp"
 #include "support/random.hpp"
 #include "support/ray_samples.hpp"
 #include "support/tree_state.hpp"
