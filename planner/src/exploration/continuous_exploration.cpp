@@ -75,7 +75,9 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   member.motion = {Trajectory(pose, time)};
   member.stopped = true;
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
-  if (const auto here = state.team.lattice().key(pose.position); cells.empty() && here) cells = {*here};
+  const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
+  const bool learns = !cells.empty() && (!member.planned || std::ranges::any_of(cells, is_new));
+  if (const auto here = state.team.lattice().key(pose.position); here && !learns) cells.push_back(*here);
   member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
   state.team.block(robot, cells);
 }
@@ -87,6 +89,7 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
   member.going = member.goes_back = member.makes_room = member.blocked = false;
   member.request.reset();
   state_->withdraw_requests(robot);
+  state_->tell_others(robot);
   member.goal = {};
   member.goal_frontiers.clear();
   member.needed.clear();

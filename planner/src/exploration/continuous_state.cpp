@@ -18,6 +18,7 @@ using Keys = std::vector<VoxelKey>;
 
 constexpr double kGap = 0.32;     // [m] that robots keep between their bodies
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
+constexpr int kPatience = 10;     // plannings, about a second each, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
 
 // Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
@@ -91,7 +92,9 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
     if (static_cast<double>(unknown) <= kUnseen * static_cast<double>(member.goal_frontiers.size()))
       return PlanReason::kGoalSeen;
   }
-  if (age >= team.options.period) return PlanReason::kPeriod;
+  const auto is_going = [](const Member& other) { return other.going; };
+  const bool would_end = member.others_rest && std::ranges::none_of(members, is_going);
+  if (age >= team.options.period || would_end) return PlanReason::kPeriod;
   return std::nullopt;
 }
 
@@ -263,7 +266,7 @@ Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double 
     way = way_out(robot);
     member.makes_room = !way.empty();
     if (!member.makes_room) {
-      member.request.reset();
+      end_request(robot);
       if (!waits_for_room(robot)) way = team.take_way_back(robot, now.goal);
       member.goes_back = !way.empty();
     }
@@ -352,10 +355,13 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.tours) team.note_assignment(step);
   if (!keeps) member.chosen = time;
 
+  const bool rested = rests(member);
+  member.others_rest = false;
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
   take_up(robot, start, trajectory, step);
   member.planned = time;
+  if (rests(member) && !rested) tell_others(robot);
   member.blocked = member.stopped = false;
   judge(robot, step.robots[robot]);
   ++team.number;
@@ -408,16 +414,17 @@ void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& ste
     gain = 0.0;
     for (const detail::TourStop& stop : team.tours->tour(robot)) gain += static_cast<double>(stop.seen);
   }
-  const bool waits = !member.going && (step.goal.pose || waits_for_room(robot));
+  const bool waits = !member.going && (step.goal.pose || member.request || waits_for_room(robot));
   const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going && !waits;
   member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = waits ? member.waits + 1 : 0;
+  if (member.waits > kPatience && member.request) end_request(robot);
 }
 
 bool ContinuousExploration::State::is_idle(const Member& member) {
-  constexpr int kPatience = 10;  // plannings, about a second each
   if (member.lost) return true;
-  return member.planned && !member.going && (member.waits == 0 || member.waits > kPatience);
+  return member.planned && !member.going && !member.others_rest &&
+         (member.waits == 0 || member.waits > kPatience);
 }
 
 }  // namespace frontlux::planner

@@ -35,14 +35,16 @@ struct ContinuousExploration::State {
     bool makes_room = false;        // on its way out of another one's way
     bool going = false;             // it has a goal, goes back, or makes room
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
-    int waits = 0;                  // plannings in a row after which it could not set out for its goal
+    int waits = 0;                  // plannings in a row after which it could not set out, or waited for room
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
     std::optional<Request> request = {};   // by another one, while it has no goal
-    std::vector<Keys> others_rested = {};  // where, each time that it has asked for room since it had a goal
+    bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
+    bool asks = true;                      // when it plans next without a goal: others to make room
+    std::vector<Keys> others_rested = {};  // where, each time that it has asked since it had a goal
   };
 
   detail::ExplorationState team;
@@ -57,6 +59,8 @@ struct ContinuousExploration::State {
   [[nodiscard]] ExplorationStep collect(double time);
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
+  /// A robot has come to rest, or is lost: the others may ask it, or have a way that it has kept closed.
+  void tell_others(std::size_t robot);
   /// Whether there is nothing for a robot to do, or it has waited for others long enough.
   [[nodiscard]] static bool is_idle(const Member& member);
 
@@ -69,6 +73,8 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot, Others which) const;
   [[nodiscard]] bool rests(const Member& member) const;
   [[nodiscard]] bool waits_for_room(std::size_t robot) const;
+  [[nodiscard]] Keys way_without_resting(std::size_t robot, ExplorationStep& step);
+  void end_request(std::size_t robot);
   void ask_for_room(std::size_t robot, ExplorationStep& step);
   [[nodiscard]] std::vector<Pose> way_out(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);

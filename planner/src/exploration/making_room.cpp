@@ -25,42 +25,66 @@ bool ContinuousExploration::State::waits_for_room(std::size_t robot) const {
 
 void ContinuousExploration::State::withdraw_requests(std::size_t robot) {
   members[robot].others_rested.clear();
+  members[robot].asks = true;
   for (Member& member : members)
     if (member.request && member.request->by == robot) member.request.reset();
 }
 
+void ContinuousExploration::State::tell_others(std::size_t robot) {
+  if (!team.tours) return;
+  for (std::size_t other = 0; other < members.size(); ++other)
+    if (other != robot && !members[other].lost && !members[other].going)
+      members[other].others_rest = members[other].asks = true;
+}
+
+// It has made room, or cannot.
+void ContinuousExploration::State::end_request(std::size_t robot) {
+  std::optional<Request>& request = members[robot].request;
+  if (request) team.tours->look_again(request->by);
+  request.reset();
+}
+
+// The way of a robot to something to see, if the others that rest were not there; empty if there is none.
+Keys ContinuousExploration::State::way_without_resting(std::size_t robot, ExplorationStep& step) {
+  const detail::CountingRayCaster counting(*team.caster, team.lattice());
+  const TravelCorridor& corridor = team.selection->corridor(robot);
+  const auto keep_out_of = [&](Others which, CorridorExtent extent) {
+    team.selection->keep_out_of(robot, places_of_others(robot, which));
+    team.keep_goal(robot, step, extent);
+  };
+  const CorridorExtent extent = corridor.extent();
+  keep_out_of(Others::kThatDoNotRest, CorridorExtent::kAllCells);
+  Keys way;
+  {
+    const detail::PhaseClock clock(step, Phase::kGoals);
+    const auto to = team.tours->place_to_see_from(
+        robot, counting, [&](const VoxelKey& cell) { return corridor.contains(cell); });
+    if (to) way = corridor.path_to(*to);
+  }
+  step.rays += counting.rays();
+  keep_out_of(Others::kAll, extent);
+  return way;
+}
+
 // Of a robot on tours that has no goal: if others that rest keep it from what it would see, they are asked to
-// leave its way to there. Once for each choice of places where they rest, or they would go to and fro.
+// leave its way to there. It is asked for when another one has come to rest, and no more than twice with all
+// in the same places, or they would go to and fro.
 void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationStep& step) {
-  if (!team.tours || team.voxel_corridors[robot] || waits_for_room(robot)) return;
-  const auto cell_of = [&](std::size_t r) { return team.lattice().key(team.poses[r].position); };
+  constexpr int kTimes = 2;
+  Member& member = members[robot];
+  if (!team.tours || team.voxel_corridors[robot] || waits_for_room(robot) || !member.asks) return;
+  member.asks = false;
   std::vector<std::size_t> resting;
   Keys places;
   for (std::size_t other = 0; other < members.size(); ++other) {
-    const auto place = cell_of(other);
-    if (other == robot || !rests(members[other]) || !place) continue;
-    resting.push_back(other);
+    const auto place = team.lattice().key(team.poses[other].position);
+    if (other == robot || !place || !(rests(members[other]) || members[other].lost)) continue;
     places.push_back(*place);
+    if (!members[other].lost) resting.push_back(other);
   }
-  std::vector<Keys>& rested = members[robot].others_rested;
-  if (resting.empty() || std::ranges::find(rested, places) != rested.end()) return;
-  rested.push_back(std::move(places));
-
-  const detail::CountingRayCaster counting(*team.caster, team.lattice());
-  std::optional<VoxelKey> to;
-  {
-    const detail::PhaseClock clock(step, Phase::kGoals);
-    to = team.tours->place_to_see_from(robot, counting,
-                                       [&](const VoxelKey& key) { return team.tours->gets_to(robot, key); });
-    step.rays += counting.rays();
-  }
-  if (!to) return;
-  const TravelCorridor& corridor = team.selection->corridor(robot);
-  team.selection->keep_out_of(robot, places_of_others(robot, Others::kThatDoNotRest));
-  team.keep_goal(robot, step, CorridorExtent::kNearby);
-  const detail::PhaseClock clock(step, Phase::kPaths);
-  if (!team.selection->find_way(robot, *to, team.tours->around_way_to(robot, *to))) return;
-  const Keys way = corridor.path_to(*to);
+  if (resting.empty() || std::ranges::count(member.others_rested, places) >= kTimes) return;
+  member.others_rested.push_back(std::move(places));
+  const Keys way = way_without_resting(robot, step);
   for (const std::size_t other : resting) {
     const auto place = cells_too_near(robot, other, team.poses[other].position, 0.0);
     const auto in_place = [&](const VoxelKey& cell) { return place && place->contains(cell); };
@@ -68,7 +92,7 @@ void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationSt
   }
 }
 
-// To the nearest place beside the way of the robot that has asked; empty if there is none, or it is there.
+// To a place near by, beside the way of the robot that has asked; empty if there is none, or it is there.
 std::vector<Pose> ContinuousExploration::State::way_out(std::size_t robot) const {
   constexpr std::size_t kMost = 100'000;  // cells
   const Member& member = members[robot];

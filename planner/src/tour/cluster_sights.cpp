@@ -75,6 +75,14 @@ void ClusterSights::update(const Query& query) {
   if (std::ranges::none_of(sights_, is_seen)) look_from_anywhere(query, {later, hidden.end()});
 }
 
+void ClusterSights::look_again() {
+  for (auto& [cluster, sight] : sights_) {
+    if (!sight.viewpoints.empty()) continue;
+    sight.stale = true;
+    sight.in_vain = sight.pause = 0;
+  }
+}
+
 std::span<const ClusterViewpoint> ClusterSights::viewpoints(std::uint32_t cluster) const {
   const auto sight = sights_.find(cluster);
   return sight == sights_.end() ? std::span<const ClusterViewpoint>() : sight->second.viewpoints;

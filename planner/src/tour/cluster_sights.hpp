@@ -30,6 +30,9 @@ class ClusterSights {
   /// twice as long; all of them once more before the robot sees no cluster at all.
   void update(const Query& query);
 
+  /// From the next update on cells all over the graph are tried again for the clusters that it does not see.
+  void look_again();
+
   /// Those of a cluster that the robot can get to, the best first.
   [[nodiscard]] std::span<const ClusterViewpoint> viewpoints(std::uint32_t cluster) const;
 

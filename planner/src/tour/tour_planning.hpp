@@ -64,6 +64,9 @@ class TourPlanning {
   /// A robot takes no more part: what it was to look at is left to the others.
   void lose(std::size_t robot);
 
+  /// The robot may get to places that were closed to it, though the map is the same.
+  void look_again(std::size_t robot) { members_[robot].sights.look_again(); }
+
   /// From the next planning on these voxels have changed.
   void note(std::span<const VoxelKey> changed);
 

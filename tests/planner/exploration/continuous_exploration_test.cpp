@@ -250,6 +250,30 @@ TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
     EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
 }
 
+// What it is stopped from is beside its way: it touches something within its cell.
+TEST(ContinuousExploration, LeavesACellInWhichItIsStoppedAgain) {
+  TeamInMotion scene("room", {small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  const double time = scene.time() + 0.05;
+  const Lattice lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const VoxelKey here = lattice.key(rests.position).value();
+  const VoxelKey cell = lattice.key(exploration.at(0, time + 0.5).pose.position).value();
+  ASSERT_NE(cell, here);
+  exploration.stopped(0, rests, time, {&cell, 1});
+  const auto first = exploration.plan(time);
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(first->step.robots[0].goal.pose);
+  const double later = first->trajectory.begin();
+  exploration.stopped(0, rests, later, {&cell, 1});
+  const auto second = exploration.plan(later);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->step.robots[0].blocked, (std::vector{std::min(cell, here), std::max(cell, here)}));
+  EXPECT_EQ(second->step.robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_GT(second->trajectory.length(), 0.0) << "it goes back the way it came";
+}
+
 // Whatever they try, they are stopped where they are.
 TEST(ContinuousExploration, EndsWithRobotsThatAreCutOff) {
   for (const std::size_t robots : {1U, 2U}) {

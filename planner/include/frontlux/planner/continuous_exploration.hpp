@@ -70,8 +70,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
 
   /// A robot rests at a pose since it could not go on: something that no sensor saw is in the way.
-  /// @param blocked  cells that it could not enter; if there are none, the cell that it is in will not be
-  ///                 entered again
+  /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
+  ///                 them as it is, the cell that it is in will not be entered again
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
