@@ -147,7 +147,7 @@ void add_explore_command(CLI::App& app) {
               "After how long it learns where it is; 0: never", kFromZero);
   command.add("--fail", options.failures, "NAME=SECONDS",
               "A robot fails after this time, and stays where it is; more with commas between");
-  const auto [mode, goal] = add_method_options(command, options);
+  const auto method = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
   command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report", "--quiet", "--json"});
   command.examples(R"(Examples:
@@ -158,7 +158,8 @@ void add_explore_command(CLI::App& app) {
 Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv, motion.csv and tours.csv (of
 robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C or SIGTERM ends a run
 after the current step. --help-all has more options.)");
-  command.run([given, resume, team, lockstep, mode = mode, goal = goal] {
+  command.run([given, resume, team, lockstep, method] {
+    const auto& [mode, goal] = method;
     if (resume.given() && given->resume.empty()) throw BadInput("--resume: name the folder of the run");
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);

@@ -172,7 +172,7 @@ std::array<std::uint64_t, 9> expect_counts(const octomap::OcTree& tree, const Ca
   for (const auto& [name, caster] : casters.all)
     for (const int threads : {1, 2}) {
       std::vector<PathCount> counts(paths.size(), kNotWritten);
-      tbb::task_arena(threads).execute([&, &caster = caster] { caster->count(paths, counts, unknown); });
+      tbb::task_arena(threads).execute([&, &asked = *caster] { asked.count(paths, counts, unknown); });
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < paths.size(); ++i)
         if (!(counts[i] == expected[i]) && ++wrong <= 3)
@@ -282,9 +282,9 @@ TEST(PathCount, OfAPathThatCanBeCountedByHand) {
   const auto pass = UnknownPolicy::kPass, block = UnknownPolicy::kBlock;
   for (const auto& [name, caster] : casters.all) {
     SCOPED_TRACE(name);
-    const auto count = [&caster = caster](const auto& path, UnknownPolicy unknown) {
+    const auto count = [&asked = *caster](const auto& path, UnknownPolicy unknown) {
       PathCount result = kNotWritten;
-      caster->count({&path, 1}, {&result, 1}, unknown);
+      asked.count({&path, 1}, {&result, 1}, unknown);
       return result;
     };
     EXPECT_EQ(count(Ray{origin, east, -1.0}, pass), (PathCount{3, 3, 0, RayStop::kOccupied}));

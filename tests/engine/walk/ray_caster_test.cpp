@@ -73,7 +73,7 @@ TEST(RayCaster, AnswersDependOnNeitherThreadsNorBatchNorOrder) {
     const Answers reference = questions.ask(*caster, 5000);
     for (const int threads : {1, 2})
       tbb::task_arena(threads).execute(
-          [&, &caster = caster] { expect_equal(reference, questions.ask(*caster, 5000)); });
+          [&, &asked = *caster] { expect_equal(reference, questions.ask(asked, 5000)); });
     for (const std::size_t batch : {std::size_t{1}, std::size_t{7}, std::size_t{257}, std::size_t{4096}})
       expect_equal(reference, questions.ask(*caster, batch));
     const Answers mixed = shuffled.ask(*caster, 5000);

@@ -246,12 +246,12 @@ TEST(StartBubble, StaysOnThisSideOfWalls) {
     const KeyBox body = body_voxels(truth.lattice(), robot, pose);
     std::set<VoxelKey> expected;
     for_each_key({frontlux::test::key_at(-30, -30, 0), frontlux::test::key_at(29, 29, 8)},
-                 [&, radius = radius](const VoxelKey& key) {
+                 [&, reach = radius](const VoxelKey& key) {
                    const Eigen::Vector3d center = truth.lattice().exact_center(key);
                    if (center.x() > 3.9 || center.x() < 0 || center.y() < 0 || center.y() > 6) return;
                    const Eigen::Vector3d off = center - pose.position;
                    const bool in =
-                       drives ? off.head<2>().norm() <= radius && center.z() < 0.9 : off.norm() <= radius;
+                       drives ? off.head<2>().norm() <= reach && center.z() < 0.9 : off.norm() <= reach;
                    if (in || body.contains(key)) expected.insert(key);
                  });
     EXPECT_EQ(std::set<VoxelKey>(bubble.begin(), bubble.end()), expected);

@@ -60,13 +60,13 @@ planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner:
   std::vector<Surface::Hit> hits(count);
   surface.cast(rays, hits);
 
-  const auto [sigma, dropout] = sensor.errors();
-  const auto measured = [&, sigma = sigma, dropout = dropout](std::size_t i) {
+  const RangeErrors& errors = sensor.errors();
+  const auto measured = [&](std::size_t i) {
     SplitMix64 random = random_of(seed, i);
-    if (open_unit(random) < dropout) return std::numeric_limits<double>::quiet_NaN();
+    if (open_unit(random) < errors.dropout) return std::numeric_limits<double>::quiet_NaN();
     const double range = hits[i].range;
-    if (sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
-    return std::clamp(range + sigma * normal(random), 0.0, max_range);
+    if (errors.sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
+    return std::clamp(range + errors.sigma * normal(random), 0.0, max_range);
   };
   constexpr std::size_t kChunk = 1024;
   for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {

@@ -45,10 +45,15 @@ class Numbers {
     const std::size_t at = i * step_ + column;
     return doubles_ != nullptr ? doubles_[at] : static_cast<double>(floats_[at]);
   }
+  [[nodiscard]] bool are_floats() const { return floats_ != nullptr; }
+  /// A row of three. @pre are_floats()
+  [[nodiscard]] Eigen::Vector3f float_point(std::size_t i) const {
+    return Eigen::Map<const Eigen::Vector3f>(floats_ + i * step_);
+  }
   /// A row of three.
   [[nodiscard]] Eigen::Vector3f point(std::size_t i) const {
     if (doubles_ != nullptr) return Eigen::Map<const Eigen::Vector3d>(doubles_ + i * step_).cast<float>();
-    return Eigen::Map<const Eigen::Vector3f>(floats_ + i * step_);
+    return float_point(i);
   }
 
  private:
