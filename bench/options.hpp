@@ -35,7 +35,8 @@ struct RaysOptions : Options {
 };
 
 /// What `bench_scaling` can vary, in the order in which it is measured.
-inline constexpr std::array<std::string_view, 5> kAxes{"resolution", "length", "density", "size", "order"};
+inline constexpr std::array<std::string_view, 6> kAxes{"resolution", "length", "density",
+                                                       "size",       "width",  "order"};
 
 struct ScalingOptions : Options {
   std::vector<std::string> axes;  ///< some of `kAxes`

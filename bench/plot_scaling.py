@@ -25,6 +25,7 @@ TITLES = {
     "length": "Rays of growing length",
     "density": "More and more occupied voxels",
     "size": "Larger and larger maps",
+    "width": "Wider and wider maps",
     "order": "One thread and more, rays in order and shuffled",
     "cost": "What a caster costs",
 }
@@ -33,6 +34,7 @@ SUBTITLES = {
     "length": "Above a nearly empty box, below a building; numbers: fast as a multiple of castRay",
     "density": "Random cubes in a box of free voxels, rays of 20 m; numbers: fast as a multiple of castRay",
     "size": "Equal rooms side by side and on top of each other, rays of 5 m; numbers: fast as a multiple of castRay",
+    "width": "Streets of a town, rays of 30 m; numbers: fast as a multiple of castRay",
     "order": "Hollow: 1 thread; filled: all threads; numbers: speed-up by threads, Mrays/s",
     "cost": "Memory and time from the octree to the caster, the grid included; updates without it",
 }
@@ -41,6 +43,7 @@ X_TITLES = {
     "length": "length of the rays [m]",
     "density": "occupied fraction of the box [%]",
     "size": "known voxels [millions]",
+    "width": "edge of the map [km]",
 }
 QUERIES = {
     "visible": "visible: between voxels, unknown blocks",

@@ -8,7 +8,7 @@
 namespace frontlux::bench {
 namespace {
 
-enum Stream : std::uint64_t { kBlock = 101, kDoor, kFurniture };
+enum Stream : std::uint64_t { kBlock = 101, kDoor, kFurniture, kStreet };
 
 /// A box by its lowest voxel and its edges, counted from the middle of the key range.
 KeyBox box_at(int x, int y, int z, int width, int depth, int height) {
@@ -126,6 +126,42 @@ VoxelGrid make_rooms(const Rooms& rooms) {
                                 std::to_string(rooms.y) + " x " + std::to_string(rooms.z) + " rooms");
   }
   return Builder(rooms).build();
+}
+
+VoxelGrid make_town(int edge) {
+  constexpr int kPitch = 1000, kWidth = 48, kWall = 8, kGround = 8, kHeight = 32;  // in whole bricks
+  constexpr int kCubesPerKilometre = 2000;
+  constexpr double kResolution = 0.2;
+  if (edge < kWidth || edge > Lattice::kKeysPerAxis - Lattice::kOrigin - kPitch)
+    throw std::invalid_argument("make_town: no town of " + std::to_string(edge) + " voxels");
+  VoxelGrid grid(kResolution);
+  const int streets = 1 + (edge - kWidth) / kPitch;
+  const auto for_each_street = [&](const auto& visit) {
+    for (int street = 0; street < streets; ++street)
+      for (const bool along_x : {false, true})
+        visit(2 * street + (along_x ? 1 : 0),
+              [street, along_x](int along, int across, int z, int length, int width, int height) {
+                const int at = street * kPitch + across;
+                return along_x ? box_at(along, at, z, length, width, height)
+                               : box_at(at, along, z, width, length, height);
+              });
+  };
+  for_each_street([&](int, const auto& box) {
+    fill_box(grid, box(0, -kWall, 0, edge, kWidth + 2 * kWall, kGround + kHeight), Occupancy::kOccupied);
+  });
+  for_each_street([&](int, const auto& box) {
+    fill_box(grid, box(0, 0, kGround, edge, kWidth, kHeight), Occupancy::kFree);
+  });
+  for_each_street([&](int street, const auto& box) {
+    Draws draws(kStreet, static_cast<std::uint64_t>(street) << 32U);
+    for (int cubes = static_cast<int>(edge * kResolution / 1000 * kCubesPerKilometre); cubes > 0; --cubes) {
+      const int size = draws.whole(1, 4);
+      const int along = draws.whole(0, edge - size), across = draws.whole(0, kWidth - size),
+                z = kGround + draws.whole(0, kHeight - size);
+      fill_box(grid, box(along, across, z, size, size, size), Occupancy::kOccupied);
+    }
+  });
+  return grid;
 }
 
 std::uint64_t count_known(const VoxelGrid& grid) {

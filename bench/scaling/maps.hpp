@@ -31,6 +31,12 @@ struct Rooms {
 /// @throws std::invalid_argument unless there is a room and all fit into the key range
 [[nodiscard]] VoxelGrid make_rooms(const Rooms& rooms);
 
+/// Streets of a town, 9.6 m wide and 200 m apart, with walls on both sides and occupied cubes of one to four
+/// voxels' edge in them, 6.4 m high, in voxels of 0.2 m. What lies between the streets is unknown.
+/// @param edge  [voxels] of the square that the town lies in
+/// @throws std::invalid_argument unless a street fits into it, and it into the key range
+[[nodiscard]] VoxelGrid make_town(int edge);
+
 /// Free and occupied voxels.
 [[nodiscard]] std::uint64_t count_known(const VoxelGrid& grid);
 

@@ -19,6 +19,15 @@ enum Stream : std::uint64_t { kViewpoint = 201, kDirection, kPoint, kOrder };
 constexpr std::size_t kTries = 256 * kTargetsPerViewpoint;
 constexpr double kSteepest = 0.3420201433;  // sine of 20 degrees
 
+/// Free voxels in a box, drawn from equal parts of all that it holds.
+std::vector<VoxelKey> draw_viewpoints(const VoxelGrid& grid, const KeyBox& within, std::size_t count) {
+  if (within == kAllVoxels) return sample_free_voxels(grid, count, std::nullopt, kViewpoint);
+  VoxelGrid here(grid.resolution());
+  const auto common = intersection(within, grid.known_bounds().value_or(within));
+  if (common) for_each_key(*common, [&](const VoxelKey& key) { here.set(key, grid.at(key)); });
+  return sample_free_voxels(here, count, std::nullopt, kViewpoint);
+}
+
 /// Free voxels around one viewpoint, each once.
 std::vector<VoxelKey> draw_targets(const VoxelGrid& grid, const VoxelKey& from, std::size_t number,
                                    double voxels, std::size_t count) {
@@ -48,7 +57,8 @@ void shuffle(std::vector<Item>& items, std::uint64_t stream) {
 
 }  // namespace
 
-std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length, std::size_t count) {
+std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length, std::size_t count,
+                                           const KeyBox& within) {
   const double voxels = std::min(length / grid.resolution(), 2.0 * Lattice::kKeysPerAxis);
   if (!(voxels >= 2 && std::isfinite(length)))
     throw std::invalid_argument("segments_of_length: length is " + std::to_string(length) +
@@ -57,7 +67,7 @@ std::vector<KeySegment> segments_of_length(const VoxelGrid& grid, double length,
   const std::size_t viewpoints = (count + kTargetsPerViewpoint - 1) / kTargetsPerViewpoint;
   std::vector<KeySegment> segments;
   segments.reserve(count);
-  const auto places = sample_free_voxels(grid, viewpoints, std::nullopt, kViewpoint);
+  const auto places = draw_viewpoints(grid, within, viewpoints);
   for (std::size_t place = 0; place < places.size(); ++place) {
     const std::size_t missing = std::min(kTargetsPerViewpoint, count - segments.size());
     for (const VoxelKey& to : draw_targets(grid, places[place], place, voxels, missing))

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <ostream>
@@ -28,6 +29,8 @@ constexpr std::size_t kRaysOfSize = 65'536;
 
 constexpr double kNearlyEmpty = 1e-4;
 
+constexpr int kAround = 500;  // voxels: more than half way from street to street
+
 // Makes a sweep, axis by axis.
 class SweepMaker {
  public:
@@ -41,6 +44,7 @@ class SweepMaker {
         if (axis == "length") vary_length();
         if (axis == "density") vary_density();
         if (axis == "size") vary_size();
+        if (axis == "width") vary_width();
         if (axis == "order") vary_order();
       }
     });
@@ -87,6 +91,20 @@ class SweepMaker {
     }
   }
 
+  // Past the width of one table; a robot's rays are near each other.
+  void vary_width() {
+    std::vector<double> kilometres{0.25, 0.5};
+    if (!options_.quick) kilometres.insert(kilometres.end(), {1.0, 2.0});
+    for (const double width : kilometres) {
+      const Subject& subject = town(width);
+      const KeyBox known = *subject.grid.known_bounds();
+      const VoxelKey middle = make_key((known.min.x + known.max.x) / 2, (known.min.y + known.max.y) / 2,
+                                       (known.min.z + known.max.z) / 2);
+      add_lines("width", width, format("%g", width) + "km", subject, 30.0,
+                options_.quick ? kRaysOfSize / 16 : kRaysOfSize, grown({middle, middle}, kAround));
+    }
+  }
+
   void vary_order() {
     const std::vector<double> resolutions = options_.quick ? std::vector{0.3} : std::vector{0.3, 0.1};
     for (const double resolution : resolutions) {
@@ -109,6 +127,11 @@ class SweepMaker {
   const Subject& blocks(double fraction) {
     return subject("blocks_" + format("%g", 100 * fraction) + "pct",
                    [&] { return make_octree(make_blocks(fraction)); });
+  }
+
+  const Subject& town(double kilometres) {
+    return subject("town_" + format("%g", kilometres) + "km",
+                   [&] { return make_octree(make_town(static_cast<int>(std::lround(5000 * kilometres)))); });
   }
 
   const Subject& rooms(const Rooms& rooms) {
@@ -154,10 +177,10 @@ class SweepMaker {
   }
 
   void add_lines(const std::string& axis, double x, const std::string& label, const Subject& subject,
-                 double length, std::optional<std::size_t> rays) {
+                 double length, std::optional<std::size_t> rays, const KeyBox& within = kAllVoxels) {
     const auto make = [&](const std::string& query, std::size_t count) {
       Workload workload{query, {}, {}, {}};
-      auto segments = segments_of_length(subject.grid, length, count);
+      auto segments = segments_of_length(subject.grid, length, count, within);
       if (query == "visible") {
         workload.segments = std::move(segments);
       } else if (!segments.empty()) {

@@ -1,10 +1,10 @@
 #include "embree/box_snapshot.hpp"
 #include "embree/scene_query.hpp"
-#include "packet/open_voxels.hpp"
+#include "fast/map_tables.hpp"
 #include "packet/table_query.hpp"
 #include "parallel/by_policy.hpp"
-#include "parallel/spare.hpp"
 #include "walk/snapshot_ray_caster.hpp"
+#include "walk/walk.hpp"
 
 #include <frontlux/parallel.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -12,50 +12,19 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <utility>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 namespace frontlux {
 namespace {
 
-using detail::OpenVoxels;
-
-/// A table and the map that it was made of.
-struct MapTable {
-  OpenVoxels table;
-  VoxelGrid grid;
-};
-
-/// The open voxels of a map under one policy.
-class TableOfMoment {
- public:
-  TableOfMoment(const VoxelGrid& grid, UnknownPolicy unknown, std::shared_ptr<detail::Spare<MapTable>> spare)
-      : spare_(std::move(spare)), of_(spare_->take()) {
-    if (of_ && of_->table.update(of_->grid, grid))
-      of_->grid = grid;
-    else
-      of_ = std::make_unique<MapTable>(MapTable{OpenVoxels(grid, unknown), grid});
-  }
-  ~TableOfMoment() { spare_->give_back(std::move(of_)); }
-  TableOfMoment(const TableOfMoment&) = delete;
-  TableOfMoment& operator=(const TableOfMoment&) = delete;
-
-  [[nodiscard]] const OpenVoxels& table() const { return of_->table; }
-  [[nodiscard]] const std::shared_ptr<detail::Spare<MapTable>>& spare() const { return spare_; }
-  /// With the spare one.
-  [[nodiscard]] std::size_t memory_bytes() const {
-    return table().memory_bytes() +
-           spare_->measured([](const MapTable& spare) { return spare.table.memory_bytes(); });
-  }
-
- private:
-  std::shared_ptr<detail::Spare<MapTable>> spare_;
-  std::unique_ptr<MapTable> of_;
-};
+using detail::MapTables;
 
 /// The blockers of a map in Embree's scenes, made when they are first needed.
 class BoxesOnDemand {
@@ -99,17 +68,17 @@ class BoxesOnDemand {
 class FastSnapshot {
  public:
   explicit FastSnapshot(const VoxelGrid& grid)
-      : grid_(grid), boxes_(grid), tables_([&](UnknownPolicy unknown) {
-          return std::make_unique<TableOfMoment>(grid, unknown, std::make_shared<detail::Spare<MapTable>>());
-        }) {}
+      : grid_(grid),
+        boxes_(grid),
+        tables_([&](UnknownPolicy unknown) { return std::make_unique<MapTables>(grid, unknown); }) {}
   FastSnapshot(const VoxelGrid& grid, const FastSnapshot& before)
       : grid_(grid), boxes_(grid, before.boxes_), tables_([&](UnknownPolicy unknown) {
-          return std::make_unique<TableOfMoment>(grid, unknown, before.tables_[unknown].spare());
+          return std::make_unique<MapTables>(grid, before.tables_[unknown]);
         }) {}
 
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
   [[nodiscard]] const BoxesOnDemand& boxes() const { return boxes_; }
-  [[nodiscard]] const OpenVoxels& table(UnknownPolicy unknown) const { return tables_[unknown].table(); }
+  [[nodiscard]] const MapTables& tables(UnknownPolicy unknown) const { return tables_[unknown]; }
   [[nodiscard]] std::size_t memory_bytes() const {
     return boxes_.memory_bytes() + tables_[UnknownPolicy::kBlock].memory_bytes() +
            tables_[UnknownPolicy::kPass].memory_bytes();
@@ -118,7 +87,7 @@ class FastSnapshot {
  private:
   VoxelGrid grid_;
   BoxesOnDemand boxes_;
-  detail::ByPolicy<TableOfMoment> tables_;
+  detail::ByPolicy<MapTables> tables_;
 };
 
 class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
@@ -129,14 +98,31 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
  private:
   static constexpr std::size_t kBatch = std::min(detail::BoxScene::kMaxBatch, detail::TableQuery::kMaxBatch);
 
-  // The table answers what it can. The rest goes to the scene. `ask` calls the one or the other.
+  using Numbers = std::vector<std::size_t>;  // of queries
+
+  // Tables answer what they can. The rest goes to the scene. `ask` calls the one or the other.
   template <class Query, class Answer, class Ask>
   void answer(std::span<const Query> queries, std::span<Answer> answers, UnknownPolicy unknown,
               const Ask& ask) const {
     const auto now = snapshot();
-    const detail::TableQuery table(now->grid(), now->table(unknown), unknown, packets_);
+    const auto* whole = now->tables(unknown).whole();
+    const Numbers rest =
+        whole ? ask_whole(detail::TableQuery(now->grid(), *whole, unknown, packets_), queries, answers, ask)
+              : ask_sectors(*now, queries, answers, unknown, ask);
+    if (rest.empty()) return;
+    const detail::SceneQuery scene(now->boxes().get(), unknown);
+    for_each_chunk(rest.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      ask_some(std::span(rest).subspan(begin, end - begin), queries, answers,
+               [&](auto... batch) { ask(scene, batch...); });
+    });
+  }
+
+  // @return what is not answered
+  template <class Query, class Answer, class Ask>
+  Numbers ask_whole(const detail::TableQuery& table, std::span<const Query> queries,
+                    std::span<Answer> answers, const Ask& ask) const {
     std::mutex mutex;
-    std::vector<std::size_t> rest;
+    Numbers rest;
     for_each_chunk(queries.size(), kBatch, [&](std::size_t begin, std::size_t end) {
       std::array<std::uint16_t, kBatch> left;
       const std::size_t size = ask(table, queries.subspan(begin, end - begin),
@@ -145,16 +131,83 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
       const std::lock_guard lock(mutex);
       for (std::size_t i = 0; i < size; ++i) rest.push_back(begin + left[i]);
     });
-    if (rest.empty()) return;
-    const detail::SceneQuery scene(now->boxes().get(), unknown);
-    for_each_chunk(rest.size(), kBatch, [&](std::size_t begin, std::size_t end) {
-      std::array<Query, kBatch> some;
-      std::array<Answer, kBatch> their_answers;
-      const std::size_t size = end - begin;
-      for (std::size_t i = 0; i < size; ++i) some[i] = queries[rest[begin + i]];
-      ask(scene, std::span<const Query>(some.data(), size), std::span(their_answers.data(), size));
-      for (std::size_t i = 0; i < size; ++i) answers[rest[begin + i]] = their_answers[i];
+    return rest;
+  }
+
+  // Each by the table of the sector in which it starts, or by a walk through the grid where there is none
+  // yet.
+  // @return what is not answered
+  template <class Query, class Answer, class Ask>
+  Numbers ask_sectors(const FastSnapshot& now, std::span<const Query> queries, std::span<Answer> answers,
+                      UnknownPolicy unknown, const Ask& ask) const {
+    constexpr std::uint32_t kNowhere = ~0U;
+    struct Placed {
+      std::uint32_t sector;
+      std::size_t number;
+      auto operator<=>(const Placed&) const = default;
+    };
+    const MapTables& tables = now.tables(unknown);
+    std::mutex mutex;
+    Numbers rest;
+    for_each_chunk(queries.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      std::array<Placed, kBatch> all;
+      const std::span placed(all.data(), end - begin);
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto key = start_of(now.grid().lattice(), queries[i]);
+        placed[i - begin] = {key ? tables.sector_of(*key) : kNowhere, i};
+      }
+      std::sort(placed.begin(), placed.end());
+      for (std::size_t first = 0, last = 0; first < placed.size(); first = last) {
+        const std::uint32_t sector = placed[first].sector;
+        std::array<std::size_t, kBatch> numbers;
+        while (last < placed.size() && placed[last].sector == sector) {
+          numbers[last - first] = placed[last].number;
+          ++last;
+        }
+        const std::span<const std::size_t> theirs(numbers.data(), last - first);
+        if (sector == kNowhere || !tables.is_worth_a_table(sector, theirs.size())) {
+          for (const std::size_t i : theirs) answers[i] = walk(now.grid(), queries[i], unknown);
+          continue;
+        }
+        std::array<std::uint16_t, kBatch> left;
+        std::iota(left.begin(), left.end(), std::uint16_t{0});
+        std::size_t left_size = theirs.size();
+        if (const auto* table = tables.sector(sector))
+          ask_some(theirs, queries, answers, [&](auto... batch) {
+            const detail::TableQuery query(now.grid(), *table, unknown, packets_);
+            left_size = ask(query, batch..., std::span(left));
+          });
+        if (left_size == 0) continue;
+        const std::lock_guard lock(mutex);
+        for (std::size_t i = 0; i < left_size; ++i) rest.push_back(theirs[left[i]]);
+      }
     });
+    return rest;
+  }
+
+  // Calls `ask_them` with the queries of some numbers next to each other.
+  // @param numbers  at most `kBatch`
+  template <class Query, class Answer, class AskThem>
+  static void ask_some(std::span<const std::size_t> numbers, std::span<const Query> queries,
+                       std::span<Answer> answers, const AskThem& ask_them) {
+    std::array<Query, kBatch> some;
+    std::array<Answer, kBatch> their_answers;
+    for (std::size_t i = 0; i < numbers.size(); ++i) some[i] = queries[numbers[i]];
+    ask_them(std::span<const Query>(some.data(), numbers.size()),
+             std::span(their_answers.data(), numbers.size()));
+    for (std::size_t i = 0; i < numbers.size(); ++i) answers[numbers[i]] = their_answers[i];
+  }
+
+  static std::optional<VoxelKey> start_of(const Lattice& lattice, const Ray& ray) {
+    return lattice.key(ray.origin);
+  }
+  static std::optional<VoxelKey> start_of(const Lattice&, const KeySegment& segment) { return segment.from; }
+
+  static Hit walk(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
+    return detail::walk_ray(grid, ray, unknown);
+  }
+  static std::uint8_t walk(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
+    return detail::walk_visible(grid, segment, unknown) ? 1 : 0;
   }
 
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {

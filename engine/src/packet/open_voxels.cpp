@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace frontlux::detail {
@@ -33,10 +34,14 @@ std::uint32_t bits_for(std::size_t count) { return static_cast<std::uint32_t>(st
 
 void OpenVoxels::Release::operator()(std::uint64_t* words) const { std::free(words); }
 
-OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown) : unknown_(unknown) {
-  const auto known = grid.known_bounds();
+OpenVoxels::OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown, const std::optional<KeyBox>& known,
+                       const KeyBox& window)
+    : unknown_(unknown), window_(window) {
   if (!known) return;
-  bounds_ = in_bricks(*known);
+  known_ = in_bricks(*known);
+  const auto bounds = intersection(known_, window_);
+  if (!bounds) return;
+  bounds_ = *bounds;
   // Powers of two along x and y, so that each axis has bits of its own; with a border on either side.
   std::array<std::size_t, 3> needed{};
   for (std::size_t a = 0; a < 3; ++a) needed[a] = bricks_along(bounds_min(a), bounds_max(a)) + 2;
@@ -72,13 +77,15 @@ bool OpenVoxels::update(const VoxelGrid& before, const VoxelGrid& after) {
   for_each_change(before, after, [&](const Block& block) {
     const KeyBox box = cube(block.corner, 1 << block.log2_edge);
     changes.push_back(box);
-    const bool is_forgotten = block.log2_edge > Brick::kLog2 && after.at(block.corner) == Occupancy::kUnknown;
-    if (!is_forgotten) changed = changed ? hull(*changed, box) : box;
+    if (!is_forgotten(block, after)) changed = changed ? hull(*changed, box) : box;
   });
   if (changes.empty()) return true;
-  if (empty() || (changed && !has_room_for(*changed))) return false;
-  const KeyBox old = bounds_;
-  if (changed) bounds_ = hull(bounds_, *changed);
+  if (empty()) return false;
+  const KeyBox known = changed ? hull(known_, *changed) : known_;
+  const KeyBox bounds = *intersection(known, window_);  // of the old one at least
+  if (!has_room_for(bounds)) return false;
+  const KeyBox old = std::exchange(bounds_, bounds);
+  known_ = known;
   // What lies in the larger bounds is no border any more.
   if (bounds_ != old && unknown_ == UnknownPolicy::kPass) changes = {bounds_};
   changed.reset();

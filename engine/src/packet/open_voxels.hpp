@@ -7,12 +7,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace frontlux::detail {
 
-/// The voxels that do not block, one bit each, in a flat table around all known voxels of a map: packets of
-/// rays walk through it (packet_walk.hpp).
+/// Whether a block of `for_each_change` became unknown as a whole: it may be far larger than what was known.
+[[nodiscard]] inline bool is_forgotten(const Block& block, const VoxelGrid& after) {
+  return block.log2_edge > Brick::kLog2 && after.at(block.corner) == Occupancy::kUnknown;
+}
+
+/// The voxels that do not block, one bit each, in a flat table around all known voxels of a map, or around
+/// those in a window: packets of rays walk through it (packet_walk.hpp).
 ///
 /// The bits lie brick by brick, so that a walk in any direction stays in a cache line for some steps. The
 /// place of a voxel's bit is its index: 3 bits each of x, y and z in the brick, then the rest of x, y and z.
@@ -22,18 +28,25 @@ namespace frontlux::detail {
 class OpenVoxels {
  public:
   /// Empty if no voxel is known, or if the table would be larger than it is worth.
-  OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown);
+  OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown)
+      : OpenVoxels(grid, unknown, grid.known_bounds(), kAllVoxels) {}
+  /// Of the voxels in a window.
+  /// @param known   a box of all known voxels of the map; none if there are none
+  /// @param window  of whole bricks
+  OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown, const std::optional<KeyBox>& known,
+             const KeyBox& window);
 
   /// Makes it the table of `after`, where it is that of `before`.
   /// @return false if what is known has outgrown it; then another one has to be made
   [[nodiscard]] bool update(const VoxelGrid& before, const VoxelGrid& after);
 
   [[nodiscard]] bool empty() const { return words_ == nullptr; }
-  /// True for all known voxels and the rest of their bricks.
+  /// True for the known voxels in the window and the rest of their bricks.
   [[nodiscard]] bool contains(const VoxelKey& key) const { return words_ && bounds_.contains(key); }
 
-  /// What `contains` is true for, unless it is empty.
+  /// What `contains` is true for, unless it is empty. The map knows nothing beyond that is in the window.
   [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
+  [[nodiscard]] const KeyBox& window() const { return window_; }
   /// The lowest and highest key along an axis of what `contains` is true for.
   [[nodiscard]] int bounds_min(std::size_t axis) const {
     return std::array{bounds_.min.x, bounds_.min.y, bounds_.min.z}[axis];
@@ -94,7 +107,9 @@ class OpenVoxels {
     void operator()(std::uint64_t* words) const;
   };
   UnknownPolicy unknown_;
-  KeyBox bounds_;  // of whole bricks
+  KeyBox window_;
+  KeyBox known_;   // bricks around all that the map knows
+  KeyBox bounds_;  // those of them in the window
   Layout layout_;
   std::array<std::size_t, 3> bricks_{};  // with the border
   std::size_t word_count_ = 0;

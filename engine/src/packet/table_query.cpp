@@ -103,7 +103,7 @@ std::optional<Hit> TableQuery::cast_alone(const Ray& ray) const {
   return finish(ray, entered->key, entered->direction, walk_alone(table_, *entered, length));
 }
 
-// None if the walk ended before the ray did.
+// None if the walk ended before the ray did, or went on out of the window.
 std::optional<Hit> TableQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
                                       std::uint32_t stopped_at) const {
   if (stopped_at == kWentThrough) {
@@ -111,11 +111,14 @@ std::optional<Hit> TableQuery::finish(const Ray& ray, const VoxelKey& start, con
     return end_ray(grid_, ray, start, direction, unknown_, std::nullopt);
   }
   const std::array<int, 3> cell = table_.layout().key(stopped_at);
-  if (is_inside(cell)) return end_ray(grid_, ray, start, direction, unknown_, as_key(cell));
+  const VoxelKey key = as_key(cell);
+  if (is_inside(cell)) return end_ray(grid_, ray, start, direction, unknown_, key);
+  const bool in_key_range = as_array(key) == cell;
+  if (in_key_range && !table_.window().contains(key)) return std::nullopt;
   // The border stops every walk, but its voxels are unknown ones like others: under kPass they do not block.
   if (unknown_ == UnknownPolicy::kPass) return end_ray(grid_, ray, start, direction, unknown_, std::nullopt);
-  if (as_array(as_key(cell)) != cell) return walk_ray(grid_, ray, unknown_);  // outside the key range
-  return end_ray(grid_, ray, start, direction, unknown_, as_key(cell));
+  if (!in_key_range) return walk_ray(grid_, ray, unknown_);
+  return end_ray(grid_, ray, start, direction, unknown_, key);
 }
 
 bool TableQuery::is_inside(const std::array<int, 3>& cell) const {

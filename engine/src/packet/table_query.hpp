@@ -27,7 +27,9 @@ class TableQuery {
         table_(table),
         walk_(table.empty() ? nullptr : &walk),
         unknown_(unknown),
-        ends_in_(unknown == UnknownPolicy::kBlock ? grown(table.bounds(), 8) : table.bounds()) {}
+        ends_in_(unknown == UnknownPolicy::kBlock
+                     ? intersection(grown(table.bounds(), 8), table.window()).value_or(table.bounds())
+                     : table.bounds()) {}
 
   /// @param left  as many places as queries; gets the indices of those not answered
   /// @return how many they are
