@@ -43,8 +43,8 @@ class KilledCommand : public ExploreMotion {
     const auto to = [&](const std::vector<std::string>& words, const char* folder) {
       return joined(words, {"--report", "off", "-o", path(folder)});
     };
-    const std::map<std::string, std::chrono::duration<double>> times = {
-        {"lockstep", expect_done(to(lockstep, "lockstep"))}, {"moving", expect_done(to(moving, "moving"))}};
+    expect_done(to(lockstep, "lockstep"));
+    expect_done(to(moving, "moving"));
     Moment moment;
     for (int i = 0; i < runs; ++i) {
       SCOPED_TRACE(i);
@@ -52,12 +52,13 @@ class KilledCommand : public ExploreMotion {
       const std::vector<std::string> begin = to(whole == "lockstep" ? lockstep : moving, "run"),
                                      go_on = {"explore", "--resume", path("run"), "--report", "off"};
       fs::remove_all(path("run"));
-      kill_once(begin, times.at(whole), moment);
+      const auto part = [&] { return moment.random.uniform(-0.2, 1.0); };  // below 0: as soon as it starts
+      kill_at(begin, whole, part(), moment);
       // The second time it is a resumed run that is killed, unless there is nothing to resume.
       for (const bool last : {false, true}) {
         const bool begun = content_of(path("run/run.frontlux")).size() > 200;
         if (!last)
-          kill_once(begun ? go_on : begin, times.at(whole), moment);
+          kill_at(begun ? go_on : begin, whole, part(), moment);
         else if (const Answer resumed = frontlux(go_on); resumed.code != 0) {
           expect_parts(resumed.err, {"begin"});
           expect_done(begin);
@@ -72,8 +73,10 @@ class KilledCommand : public ExploreMotion {
   }
 
   // Kills a run when this part of its recording is written, or soon after.
-  void kill_at(const std::vector<std::string>& words, double part, Moment& moment) const {
-    const auto enough = part * static_cast<double>(fs::file_size(path("whole/run.frontlux")));
+  // @param whole  folder of the same run, not killed
+  void kill_at(const std::vector<std::string>& words, const std::string& whole, double part,
+               Moment& moment) const {
+    const auto enough = part * static_cast<double>(fs::file_size(path(whole + "/run.frontlux")));
     const pid_t child = start(joined({FRONTLUX_COMMAND}, words), folder_);
     siginfo_t ended{};
     std::error_code error;
@@ -104,7 +107,7 @@ class KilledCommand : public ExploreMotion {
     Moment moment;
     // Again and again the same run, by other threads than before.
     for (int i = 0; i < kills; ++i)
-      kill_at(i == 0 ? begin("run", "1") : go_on(i % 2 == 0 ? "1" : "2"), part(i), moment);
+      kill_at(i == 0 ? begin("run", "1") : go_on(i % 2 == 0 ? "1" : "2"), "whole", part(i), moment);
     expect_done(go_on("1"));
     expect_same_motions("whole", "run");
     EXPECT_GE(moment.kills, kills / 2) << "the others came after its end";
@@ -118,7 +121,7 @@ class KilledCommand : public ExploreMotion {
         SCOPED_TRACE(std::string(first) + " and " + second + " threads, killed at " +
                      std::to_string(part(i)));
         fs::remove_all(path("run"));
-        kill_at(begin("run", first), part(i), moment);
+        kill_at(begin("run", first), "whole", part(i), moment);
         expect_done(go_on(second));
         expect_same_motions("whole", "run");
       }

@@ -54,6 +54,19 @@ std::string printable(std::string_view text) {
   return quoted.get<std::string>();
 }
 
+void choose(cairo_t* pen, const TextStyle& style) {
+  const std::unique_ptr<cairo_font_options_t, void (*)(cairo_font_options_t*)> options(
+      cairo_font_options_create(), cairo_font_options_destroy);
+  // Letters stand where the vectors say, in all formats.
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_set_font_options(pen, options.get());
+  cairo_select_font_face(pen, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(pen, style.size);
+}
+
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
   try {
     static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
@@ -97,119 +110,117 @@ Picture::Picture(int width, int height) : width_(width), height_(height) {
   if (width < 1 || height < 1 || width > kMaxEdge || height > kMaxEdge)
     throw std::invalid_argument("picture: " + std::to_string(width) + " x " + std::to_string(height) +
                                 " pixels, but each edge has to be 1 to " + std::to_string(kMaxEdge));
-  const cairo_rectangle_t extents{0.0, 0.0, static_cast<double>(width), static_cast<double>(height)};
-  surface_ = owned(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, &extents));
-  pen_ = pen_on(surface_);
-  cairo_set_line_join(pen_.get(), CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(pen_.get(), CAIRO_LINE_CAP_ROUND);
+  measure_ = pen_on(owned(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1)));
   fill(0.0, 0.0, width, height, {255, 255, 255});
 }
 
 void Picture::fill(double x, double y, double width, double height, Color color) {
-  use(pen_.get(), color);
-  cairo_rectangle(pen_.get(), x, y, width, height);
-  cairo_fill(pen_.get());
+  strokes_.emplace_back([=](cairo_t* pen) {
+    use(pen, color);
+    cairo_rectangle(pen, x, y, width, height);
+    cairo_fill(pen);
+  });
 }
 
 void Picture::frame(double x, double y, double width, double height, double thickness, Color color) {
-  use(pen_.get(), color);
-  cairo_set_line_width(pen_.get(), thickness);
-  cairo_rectangle(pen_.get(), x + thickness / 2, y + thickness / 2, width - thickness, height - thickness);
-  cairo_stroke(pen_.get());
+  strokes_.emplace_back([=](cairo_t* pen) {
+    use(pen, color);
+    cairo_set_line_width(pen, thickness);
+    cairo_rectangle(pen, x + thickness / 2, y + thickness / 2, width - thickness, height - thickness);
+    cairo_stroke(pen);
+  });
 }
 
 void Picture::disc(const Spot& middle, double radius, Color color) {
-  use(pen_.get(), color);
-  cairo_arc(pen_.get(), middle.x, middle.y, radius, 0.0, 2 * std::numbers::pi);
-  cairo_fill(pen_.get());
+  strokes_.emplace_back([=](cairo_t* pen) {
+    use(pen, color);
+    cairo_arc(pen, middle.x, middle.y, radius, 0.0, 2 * std::numbers::pi);
+    cairo_fill(pen);
+  });
 }
 
 void Picture::ring(const Spot& middle, double radius, double thickness, Color color) {
-  use(pen_.get(), color);
-  cairo_set_line_width(pen_.get(), thickness);
-  cairo_new_sub_path(pen_.get());
-  cairo_arc(pen_.get(), middle.x, middle.y, radius, 0.0, 2 * std::numbers::pi);
-  cairo_stroke(pen_.get());
+  strokes_.emplace_back([=](cairo_t* pen) {
+    use(pen, color);
+    cairo_set_line_width(pen, thickness);
+    cairo_new_sub_path(pen);
+    cairo_arc(pen, middle.x, middle.y, radius, 0.0, 2 * std::numbers::pi);
+    cairo_stroke(pen);
+  });
 }
 
 void Picture::line(std::span<const Spot> spots, double thickness, Color color,
                    std::span<const double> dashes) {
   if (spots.empty()) return;
-  use(pen_.get(), color);
-  cairo_set_line_width(pen_.get(), thickness);
-  cairo_set_dash(pen_.get(), dashes.data(), static_cast<int>(dashes.size()), 0.0);
-  cairo_move_to(pen_.get(), spots.front().x, spots.front().y);
-  for (const Spot& spot : spots.subspan(1)) cairo_line_to(pen_.get(), spot.x, spot.y);
-  cairo_stroke(pen_.get());
-  cairo_set_dash(pen_.get(), nullptr, 0, 0.0);
+  strokes_.emplace_back([thickness, color, path = std::vector(spots.begin(), spots.end()),
+                         gaps = std::vector(dashes.begin(), dashes.end())](cairo_t* pen) {
+    use(pen, color);
+    cairo_set_line_width(pen, thickness);
+    cairo_set_dash(pen, gaps.data(), static_cast<int>(gaps.size()), 0.0);
+    cairo_move_to(pen, path.front().x, path.front().y);
+    for (const Spot& spot : std::span(path).subspan(1)) cairo_line_to(pen, spot.x, spot.y);
+    cairo_stroke(pen);
+    cairo_set_dash(pen, nullptr, 0, 0.0);
+  });
 }
 
 void Picture::image(double x, double y, Raster raster) {
-  // The recording keeps a copy of the pixels, made when this surface goes.
-  const Surface pixels = owned(cairo_image_surface_create_for_data(
-      reinterpret_cast<unsigned char*>(raster.pixels().data()), CAIRO_FORMAT_ARGB32, raster.width(),
-      raster.height(), static_cast<int>(sizeof(std::uint32_t)) * raster.width()));
-  cairo_set_source_surface(pen_.get(), pixels.get(), x, y);
-  cairo_pattern_set_filter(cairo_get_source(pen_.get()), CAIRO_FILTER_NEAREST);
-  cairo_rectangle(pen_.get(), x, y, raster.width(), raster.height());
-  cairo_fill(pen_.get());
-  use(pen_.get(), {});  // lets go of the pixels
-  cairo_surface_finish(pixels.get());
-}
-
-void Picture::choose(const TextStyle& style) {
-  const std::unique_ptr<cairo_font_options_t, void (*)(cairo_font_options_t*)> options(
-      cairo_font_options_create(), cairo_font_options_destroy);
-  // Letters stand where the vectors say, in all formats.
-  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
-  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
-  cairo_set_font_options(pen_.get(), options.get());
-  cairo_select_font_face(pen_.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(pen_.get(), style.size);
+  const auto kept = std::make_shared<Raster>(std::move(raster));
+  strokes_.emplace_back([x, y, kept](cairo_t* pen) {
+    const Surface pixels = owned(cairo_image_surface_create_for_data(
+        reinterpret_cast<unsigned char*>(kept->pixels().data()), CAIRO_FORMAT_ARGB32, kept->width(),
+        kept->height(), static_cast<int>(sizeof(std::uint32_t)) * kept->width()));
+    cairo_set_source_surface(pen, pixels.get(), x, y);
+    cairo_pattern_set_filter(cairo_get_source(pen), CAIRO_FILTER_NEAREST);
+    cairo_rectangle(pen, x, y, kept->width(), kept->height());
+    cairo_fill(pen);
+    use(pen, {});                        // lets go of the pixels
+    cairo_surface_finish(pixels.get());  // a page that still needs them makes a copy
+  });
 }
 
 void Picture::text(const Spot& at, std::string_view text, const TextStyle& style) {
-  const std::string shown = printable(text);
   const double width = style.align == Align::kLeft ? 0.0 : text_width(text, style);
-  choose(style);
   const Spot begin{at.x - (style.align == Align::kRight ? width : width / 2),
                    at.y + kHalfSmallLetter * style.size};
-  if (style.halo) {
-    use(pen_.get(), {255, 255, 255});
-    cairo_set_line_width(pen_.get(), 0.3 * style.size);
-    cairo_move_to(pen_.get(), begin.x, begin.y);
-    cairo_text_path(pen_.get(), shown.c_str());
-    cairo_stroke(pen_.get());
-  }
-  use(pen_.get(), style.color);
-  cairo_move_to(pen_.get(), begin.x, begin.y);
-  cairo_show_text(pen_.get(), shown.c_str());
-  cairo_new_path(pen_.get());
+  strokes_.emplace_back([begin, style, shown = printable(text)](cairo_t* pen) {
+    choose(pen, style);
+    if (style.halo) {
+      use(pen, {255, 255, 255});
+      cairo_set_line_width(pen, 0.3 * style.size);
+      cairo_move_to(pen, begin.x, begin.y);
+      cairo_text_path(pen, shown.c_str());
+      cairo_stroke(pen);
+    }
+    use(pen, style.color);
+    cairo_move_to(pen, begin.x, begin.y);
+    cairo_show_text(pen, shown.c_str());
+    cairo_new_path(pen);
+  });
 }
 
 double Picture::text_width(std::string_view text, const TextStyle& style) {
-  choose(style);
+  choose(measure_.get(), style);
   cairo_text_extents_t extents{};
-  cairo_text_extents(pen_.get(), printable(text).c_str(), &extents);
+  cairo_text_extents(measure_.get(), printable(text).c_str(), &extents);
   return extents.x_advance;
 }
 
 std::string Picture::encoded(std::string_view ending) const {
-  check(cairo_status(pen_.get()));
   std::string bytes;
-  const auto replay = [&](const Surface& onto, double scale) {
+  // Not by a recording of Cairo's own, which Cairo 1.16 does not free when it is drawn into an SVG.
+  const auto draw = [&](const Surface& onto, double scale) {
     const Pen pen = pen_on(onto);
     cairo_scale(pen.get(), scale, scale);
-    cairo_set_source_surface(pen.get(), surface_.get(), 0.0, 0.0);
-    cairo_paint(pen.get());
+    cairo_set_line_join(pen.get(), CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(pen.get(), CAIRO_LINE_CAP_ROUND);
+    for (const auto& stroke : strokes_) stroke(pen.get());
     check(cairo_status(pen.get()));
   };
   const double width = kPointsPerPixel * width_, height = kPointsPerPixel * height_;
   if (ending == ".png") {
     const Surface image = owned(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_));
-    replay(image, 1.0);
+    draw(image, 1.0);
     check(cairo_surface_write_to_png_stream(image.get(), append, &bytes));
     return bytes;
   }
@@ -218,7 +229,7 @@ std::string Picture::encoded(std::string_view ending) const {
                                  : cairo_svg_surface_create_for_stream(append, &bytes, width, height));
   // Otherwise the moment of writing would be in the file.
   if (pdf) cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
-  replay(page, kPointsPerPixel);
+  draw(page, kPointsPerPixel);
   cairo_surface_finish(page.get());
   check(cairo_surface_status(page.get()));
   return bytes;

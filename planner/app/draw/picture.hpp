@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,7 +10,6 @@
 #include <vector>
 
 struct _cairo;
-struct _cairo_surface;
 
 namespace frontlux::app {
 
@@ -93,11 +93,9 @@ class Picture {
   void write(const std::filesystem::path& file) const;
 
  private:
-  void choose(const TextStyle& style);
-
   int width_, height_;
-  std::shared_ptr<_cairo_surface> surface_;
-  std::shared_ptr<_cairo> pen_;
+  std::vector<std::function<void(_cairo* pen)>> strokes_;  // what is drawn, in order
+  std::shared_ptr<_cairo> measure_;                        // for the widths of texts
 };
 
 }  // namespace frontlux::app
