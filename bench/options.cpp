@@ -127,6 +127,7 @@ that, it checks that all casters give the same answers. One axis is varied at a 
   length      rays of 2 to 60 m in a nearly empty box and in the building
   density     0.01 % to 20 % of a box occupied by random cubes; rays of 20 m
   size        1 to 100 million known voxels in equal rooms; rays of 5 m; also memory and build time
+  width       streets of a town of 250 m to 2 km in voxels of 0.2 m, past the width of one table; rays of 30 m
   order       the rays of the building in a planner's order and shuffled, on each number of threads
 All axes but `order` are measured on the highest number of threads. Without --quick a run takes some minutes
 and 2.2 GB of memory; the first run generates the building in four resolutions, which takes two minutes more.

@@ -173,5 +173,30 @@ TEST(RoomsMap, NoRoomsAreNoMap) {
     EXPECT_REFUSED(make_rooms(rooms));
 }
 
+TEST(TownMap, HasStreetsBetweenWalls) {
+  constexpr int kEdge = 2100;  // three streets each way
+  const VoxelGrid grid = make_town(kEdge);
+  EXPECT_EQ(grid, make_town(kEdge));
+  const auto at = [&](int x, int y, int z) {
+    return grid.at(make_key(Lattice::kOrigin + x, Lattice::kOrigin + y, Lattice::kOrigin + z));
+  };
+  std::map<Occupancy, int> in_streets;
+  for (int street = 0; street <= 2000; street += 1000)
+    for (int along = 0; along < kEdge; ++along)
+      for (const int across : {0, 20, 47}) {
+        ++in_streets[at(street + across, along, 20)];
+        ++in_streets[at(along, street + across, 20)];
+        EXPECT_EQ(at(along, street + across, 7), Occupancy::kOccupied);  // the ground
+      }
+  EXPECT_EQ(in_streets[Occupancy::kUnknown], 0);
+  EXPECT_GT(in_streets[Occupancy::kOccupied], 10);
+  EXPECT_GT(in_streets[Occupancy::kFree], 90 * in_streets[Occupancy::kOccupied]);
+  EXPECT_EQ(at(500, -4, 20), Occupancy::kOccupied);
+  EXPECT_EQ(at(500, 52, 20), Occupancy::kOccupied);
+  EXPECT_EQ(at(500, 500, 20), Occupancy::kUnknown);
+  EXPECT_THROW(make_town(10), std::invalid_argument);
+  EXPECT_THROW(make_town(65536), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace frontlux::bench
