@@ -9,8 +9,8 @@
 namespace frontlux::detail {
 namespace {
 
-// Queries that have started in a sector. To make its table takes as long as to walk four times as many through
-// the grid; one that is asked often will be asked again.
+// Queries that have started in a sector. To make its table takes as long as to walk four times as many
+// through the grid; one that is asked often will be asked again.
 constexpr std::uint64_t kWorthATable = 1U << 15U;
 // For all sectors under one policy. What starts in others goes to Embree.
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;
