@@ -2,6 +2,7 @@
 
 #include "walk/grid_path.hpp"
 
+#include <cmath>
 #include <optional>
 #include <type_traits>
 
@@ -34,7 +35,9 @@ Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
     time = d[i] != 0.0 && crossing > time ? crossing : time;
   }
   hit.entry = (origin + time * d).cast<float>();
-  hit.distance = static_cast<float>(time * d.norm());
+  // In this order, as packets do: where the product is in the middle between two floats it decides.
+  const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  hit.distance = static_cast<float>(time * length);
   return hit;
 }
 

@@ -211,7 +211,6 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     const PhaseClock clock(step, Phase::kGoals);
     wanted = abandoned.without_abandoned(frontiers.keys());
     step.abandoned = frontiers.size() - wanted.size();
-    tours->note(changed);
   }
   const auto update = [&](CorridorExtent extent) {
     keep_goal(robot, step, extent);
@@ -403,6 +402,7 @@ void ExplorationState::update_frontiers(ExplorationStep& step) {
     if (std::prev(next)->after != first->before) changed.push_back(first->key);
   }
   frontiers.update({solid ? *solid : mapping.grid(), changed});
+  if (tours) tours->note(changed);
 }
 
 // What a path is expected to see, as `epsilon` measures it.

@@ -259,6 +259,29 @@ TEST(PacketWalk, StopsWhereTheWalkStops) {
   }
 }
 
+// A ray whose distance lies in the middle between two floats, to the last bit of its direction's length: the
+// sum of squares has one order.
+TEST(PacketWalk, MeasuresDistancesAsTheWalkDoes) {
+  VoxelGrid grid(2.0);
+  for (int z = 32774; z < 32784; ++z) grid.set(make_key(32770, 32764, z), Occupancy::kFree);
+  grid.set(make_key(32770, 32764, 32784), Occupancy::kOccupied);
+  const Ray ray{{0x1.100b9ep+2F, -0x1.ce7894p+2F, 0x1.985ecep+3F},
+                {-0x1.f83f6ap-28F, -0x1.32af1ep-26F, 0x1p+0F},
+                0x1.a9c42c855b4f3p+5};
+  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  const Hit expected = detail::walk_ray(grid, ray, UnknownPolicy::kBlock);
+  EXPECT_EQ(expected.distance, 0x1.33d09ap+4F);
+  for (const detail::PacketWalk& walk : detail::packet_walks()) {
+    const TableQuery query(grid, table, UnknownPolicy::kBlock, walk);
+    const std::vector<Ray> rays(40, ray);
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint16_t> left(rays.size());
+    EXPECT_EQ(query.cast(rays, hits, left), 0U);
+    for (const Hit& hit : hits)
+      EXPECT_TRUE(same(hit, expected)) << name_of(walk.needs) << ' ' << hit.distance;
+  }
+}
+
 // The longest offsets that fit into 32 bits of time, and those just beyond, which are left.
 TEST(PacketWalk, HoldsUpToItsLongestOffset) {
   // 1008 voxels a side: with its border the largest table there is.

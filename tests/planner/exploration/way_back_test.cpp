@@ -136,6 +136,29 @@ TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
+// A door that a scan finds open while the robot keeps its stop is open at the next planning, too.
+TEST(WayBackWithTours, IsOpenOnceAScanHasFoundItOpen) {
+  const Keys door = test::keys_of(TwoRooms::kDoor);
+  TwoRooms rooms(true, 5, door);
+  const auto is_beyond = [&](const Goal& goal) {
+    return goal.pose && goal.pose->position.x() < TwoRooms::at(0, 0).position.x();
+  };
+  EXPECT_FALSE(is_beyond(rooms.choose()));
+  rooms.state.mapping.mark_free(door);
+  if (rooms.state.solid) rooms.state.solid = rooms.state.mapping.grid();
+  ExplorationStep seen = rooms.state.new_step();
+  for (const VoxelKey& key : door)
+    seen.robots[0].changed.push_back({key, Occupancy::kUnknown, Occupancy::kFree});
+  seen.robots[0].goal = rooms.step.robots[0].goal;
+  rooms.state.update_frontiers(seen);
+  rooms.state.update_views(seen);
+  rooms.state.keep_stop(0, seen);
+  rooms.step = rooms.state.new_step();
+  rooms.state.update_frontiers(rooms.step);
+  rooms.state.update_views(rooms.step);
+  EXPECT_TRUE(is_beyond(rooms.choose()));
+}
+
 // Where single voxels have stayed unknown there is no stop for a tour, however many they are.
 TEST(WayBackWithTours, IsNotWorthTakingForWhatIsNoStop) {
   Keys holes;
