@@ -136,7 +136,8 @@ TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
-// A door that a scan finds open while the robot keeps its stop is open at the next planning, too.
+// A door that a scan finds open while the robot keeps its stop is open at the next planning, when the robot
+// is in it.
 TEST(WayBackWithTours, IsOpenOnceAScanHasFoundItOpen) {
   const Keys door = test::keys_of(TwoRooms::kDoor);
   TwoRooms rooms(true, 5, door);
@@ -153,6 +154,7 @@ TEST(WayBackWithTours, IsOpenOnceAScanHasFoundItOpen) {
   rooms.state.update_frontiers(seen);
   rooms.state.update_views(seen);
   rooms.state.keep_stop(0, seen);
+  rooms.go_to(TwoRooms::at(30, 15));  // into the door
   rooms.step = rooms.state.new_step();
   rooms.state.update_frontiers(rooms.step);
   rooms.state.update_views(rooms.step);
