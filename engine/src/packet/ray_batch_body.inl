@@ -146,6 +146,7 @@ inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBa
   for (std::size_t i = 0; i < batch.size; ++i) {
     const double x = static_cast<double>(dx[i]), y = static_cast<double>(dy[i]),
                  z = static_cast<double>(dz[i]);
+    // The sum in the order of `make_hit`.
     batch.distance[i] = static_cast<float>(time[i] * std::sqrt(x * x + y * y + z * z));
   }
   for (std::size_t i = 0; i < batch.size; ++i) {
