@@ -130,7 +130,7 @@ that, it checks that all casters give the same answers. One axis is varied at a 
   width       streets of a town of 250 m to 2 km in voxels of 0.2 m, past the width of one table; rays of 30 m
   order       the rays of the building in a planner's order and shuffled, on each number of threads
 All axes but `order` are measured on the highest number of threads. Without --quick a run takes some minutes
-and 2.2 GB of memory; the first run generates the building in four resolutions, which takes two minutes more.
+and 4 GB of memory; the first run generates the building in four resolutions, which takes two minutes more.
 To draw the results: bench/plot_scaling.py RESULTS.json FOLDER
 )",
       options);
