@@ -173,10 +173,11 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
 
 void ExplorationState::note_assignment(ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {
-    Keys now = tours ? tours->frontiers_of(r) : targets[r];
-    step.robots[r].reassigned.clear();
-    std::ranges::set_symmetric_difference(assigned[r], now, std::back_inserter(step.robots[r].reassigned));
-    assigned[r] = std::move(now);
+    const Keys& now = tours ? tours->frontiers_of(r) : targets[r];
+    Keys& reassigned = step.robots[r].reassigned;
+    reassigned.clear();
+    std::ranges::set_symmetric_difference(assigned[r], now, std::back_inserter(reassigned));
+    if (!reassigned.empty()) assigned[r] = now;
   }
 }
 
@@ -264,7 +265,7 @@ ExplorationState::Keys ExplorationState::frontiers_of_others(std::size_t robot) 
   Keys all;
   for (std::size_t r = 0; r < size(); ++r) {
     if (r == robot) continue;
-    const Keys keys = tours ? tours->frontiers_of(r) : targets[r];
+    const Keys& keys = tours ? tours->frontiers_of(r) : targets[r];
     all.insert(all.end(), keys.begin(), keys.end());
   }
   std::ranges::sort(all);

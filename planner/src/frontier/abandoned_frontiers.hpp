@@ -2,6 +2,8 @@
 
 #include <frontlux/ray.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <span>
 #include <vector>
@@ -16,26 +18,27 @@ class AbandonedFrontiers {
 
   /// These were in view and stayed unknown.
   void visited(std::span<const VoxelKey> frontiers) {
-    for (const VoxelKey& key : frontiers) ++visits_[key];
+    for (const VoxelKey& key : frontiers)
+      if (++visits_[key] == max_visits_) abandoned_.insert(std::ranges::lower_bound(abandoned_, key), key);
   }
 
   [[nodiscard]] bool abandoned(const VoxelKey& key) const {
-    const auto found = visits_.find(key);
-    return found != visits_.end() && found->second >= max_visits_;
+    return std::ranges::binary_search(abandoned_, key);
   }
 
-  /// Those that are not abandoned, in their order.
+  /// Those that are not abandoned.
+  /// @param frontiers  sorted
   [[nodiscard]] std::vector<VoxelKey> without_abandoned(std::span<const VoxelKey> frontiers) const {
     std::vector<VoxelKey> rest;
     rest.reserve(frontiers.size());
-    for (const VoxelKey& key : frontiers)
-      if (!abandoned(key)) rest.push_back(key);
+    std::ranges::set_difference(frontiers, abandoned_, std::back_inserter(rest));
     return rest;
   }
 
  private:
   int max_visits_;
   std::map<VoxelKey, int> visits_;
+  std::vector<VoxelKey> abandoned_;  // sorted
 };
 
 }  // namespace frontlux::planner::detail

@@ -1,7 +1,7 @@
 #include "tour/frontier_clusters.hpp"
 
 #include <algorithm>
-#include <map>
+#include <iterator>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -20,76 +20,130 @@ void for_each_neighbor(const VoxelKey& key, const KeyBox& box, const Visit& visi
 FrontierClusters::FrontierClusters(const KeyBox& bounds, int edge, std::size_t least)
     : edge_(std::max(edge, 1)), least_(std::max<std::size_t>(least, 1)), piece_(bounds), cluster_(bounds) {}
 
-// The connected parts of the frontiers of each cube. Leaves their numbers in `piece_`.
-std::vector<Keys> FrontierClusters::pieces(std::span<const VoxelKey> frontiers) {
+std::uint32_t FrontierClusters::new_piece() {
+  if (!free_.empty()) {
+    const std::uint32_t number = free_.back();
+    free_.pop_back();
+    return number;
+  }
+  pieces_.emplace_back();
+  return static_cast<std::uint32_t>(pieces_.size() - 1);
+}
+
+// Finds the connected parts of a cube's frontiers anew.
+void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  for (const VoxelKey& key : frontiers) piece_[key] = kNone;
-  std::vector<Keys> pieces;
-  for (const VoxelKey& first : frontiers) {
+  for (const std::uint32_t piece : cube.pieces) {
+    for (const VoxelKey& key : pieces_[piece]) piece_[key] = 0;
+    pieces_[piece].clear();
+    free_.push_back(piece);
+  }
+  cube.pieces.clear();
+  for (const VoxelKey& key : cube.frontiers) piece_[key] = kNone;
+  for (const VoxelKey& first : cube.frontiers) {
     if (piece_[first] != kNone) continue;
-    const auto number = static_cast<std::uint32_t>(pieces.size() + 1);
-    const VoxelKey cube = cube_of(first);
-    Keys piece{first};
+    const std::uint32_t number = new_piece();
+    cube.pieces.push_back(number);
+    Keys& piece = pieces_[number];
+    piece.assign(1, first);
     piece_[first] = number;
     for (std::size_t i = 0; i < piece.size(); ++i)
       for_each_neighbor(VoxelKey(piece[i]), piece_.box(), [&](const VoxelKey& neighbor) {
-        if (piece_[neighbor] != kNone || cube_of(neighbor) != cube) return;
+        if (piece_[neighbor] != kNone || cube_of(neighbor) != at) return;
         piece_[neighbor] = number;
         piece.push_back(neighbor);
       });
-    pieces.push_back(std::move(piece));
+    std::ranges::sort(piece);
   }
+}
+
+// By their first keys.
+std::vector<std::uint32_t> FrontierClusters::pieces_in_order() const {
+  std::vector<std::uint32_t> pieces;
+  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece)
+    if (!pieces_[piece].empty()) pieces.push_back(piece);
+  std::ranges::sort(pieces, {}, [this](std::uint32_t piece) { return pieces_[piece].front(); });
   return pieces;
 }
 
-// A piece that is too small goes to the largest one that it touches.
-void FrontierClusters::join_small(std::vector<Keys>& pieces) const {
+// The largest piece that touches a small one, if it is larger, of those of one size the first.
+std::uint32_t FrontierClusters::piece_for(std::uint32_t small) const {
+  std::uint32_t best = small;
+  for (const VoxelKey& key : pieces_[small])
+    for_each_neighbor(key, piece_.box(), [&](const VoxelKey& neighbor) {
+      const std::uint32_t other = piece_[neighbor];
+      if (other == 0 || other == best) return;
+      const Keys &theirs = pieces_[other], &most = pieces_[best];
+      if (theirs.size() > most.size() || (theirs.size() == most.size() && theirs.front() < most.front()))
+        best = other;
+    });
+  return best;
+}
+
+// The pieces in order, sorted; those that are too small in the largest ones that they touch, or left out.
+std::vector<Keys> FrontierClusters::joined_pieces() const {
+  const std::vector<std::uint32_t> order = pieces_in_order();
+  std::vector<std::size_t> place(pieces_.size());
   std::vector<std::pair<std::size_t, std::size_t>> joins;
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    if (pieces[p].size() >= least_) continue;
-    std::size_t best = p;
-    for (const VoxelKey& key : pieces[p])
-      for_each_neighbor(key, piece_.box(), [&](const VoxelKey& neighbor) {
-        if (piece_[neighbor] == 0) return;
-        const std::size_t other = piece_[neighbor] - 1;
-        if (pieces[other].size() > pieces[best].size() ||
-            (pieces[other].size() == pieces[best].size() && other < best))
-          best = other;
-      });
-    if (best != p) joins.emplace_back(p, best);
-  }
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (pieces_[order[i]].size() < least_)
+      if (const std::uint32_t other = piece_for(order[i]); other != order[i])
+        joins.emplace_back(i, place[other]);
   // From the smallest on, so that a chain of small pieces ends in one.
-  std::ranges::stable_sort(joins, {}, [&](const auto& join) { return pieces[join.first].size(); });
+  std::ranges::stable_sort(joins, {}, [&](const auto& join) { return pieces_[order[join.first]].size(); });
+  std::vector<Keys> joined;
+  for (const std::uint32_t piece : order) joined.push_back(pieces_[piece]);
   for (const auto& [from, to] : joins) {
-    pieces[to].insert(pieces[to].end(), pieces[from].begin(), pieces[from].end());
-    pieces[from].clear();
+    joined[to].insert(joined[to].end(), joined[from].begin(), joined[from].end());
+    joined[from].clear();
   }
+  for (const auto& [from, to] : joins) std::ranges::sort(joined[to]);
+  std::erase_if(joined, [&](const Keys& keys) { return keys.size() < least_; });
+  return joined;
 }
 
 // The id of the cluster in which most of its frontiers were before, unless a larger one has it.
-void FrontierClusters::name(FrontierCluster& cluster, std::vector<std::uint32_t>& taken) {
-  std::map<std::uint32_t, std::size_t> before;
-  for (const VoxelKey& key : cluster.keys)
-    if (cluster_[key] != 0) ++before[cluster_[key]];
+void FrontierClusters::name(FrontierCluster& cluster, std::set<std::uint32_t>& taken) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> before;  // ids and how many were in them
+  for (const VoxelKey& key : cluster.keys) {
+    const std::uint32_t id = cluster_[key];
+    if (id == 0) continue;
+    const auto known = std::ranges::find(before, id, &std::pair<std::uint32_t, std::size_t>::first);
+    if (known == before.end())
+      before.emplace_back(id, 1);
+    else
+      ++known->second;
+  }
+  std::ranges::sort(before);
   std::pair<std::size_t, std::uint32_t> best{0, 0};
   for (const auto& [id, count] : before)
-    if (count > best.first && std::ranges::find(taken, id) == taken.end()) best = {count, id};
+    if (count > best.first && !taken.contains(id)) best = {count, id};
   cluster.id = best.second != 0 ? best.second : next_id_++;
-  taken.push_back(cluster.id);
+  taken.insert(cluster.id);
 }
 
 void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
-  std::vector<Keys> parts = pieces(frontiers);
-  join_small(parts);
-  for (const VoxelKey& key : frontiers) piece_[key] = 0;
-  std::erase_if(parts, [&](const Keys& keys) { return keys.size() < least_; });
-  for (Keys& keys : parts) std::ranges::sort(keys);
-  std::ranges::stable_sort(parts, [](const Keys& a, const Keys& b) { return a.size() > b.size(); });
+  Keys changed;
+  std::ranges::set_symmetric_difference(frontiers_, frontiers, std::back_inserter(changed));
+  frontiers_.assign(frontiers.begin(), frontiers.end());
+  std::map<VoxelKey, Keys> changed_in;  // each cube
+  for (const VoxelKey& key : changed) changed_in[cube_of(key)].push_back(key);
+  for (const auto& [at, keys] : changed_in) {
+    Cube& cube = cubes_[at];
+    Keys now;
+    std::ranges::set_symmetric_difference(cube.frontiers, keys, std::back_inserter(now));
+    cube.frontiers = std::move(now);
+    cut(cube, at);
+    if (cube.frontiers.empty()) cubes_.erase(at);
+  }
 
+  std::vector<Keys> parts = joined_pieces();
+  std::ranges::stable_sort(parts, [](const Keys& a, const Keys& b) { return a.size() > b.size(); });
   std::map<std::uint32_t, FrontierCluster> before;
   for (FrontierCluster& cluster : clusters_) before[cluster.id] = std::move(cluster);
   clusters_.clear();
-  std::vector<std::uint32_t> taken;
+  std::set<std::uint32_t> taken;
   for (Keys& keys : parts) {
     FrontierCluster cluster;
     cluster.keys = std::move(keys);

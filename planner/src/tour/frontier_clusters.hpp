@@ -8,6 +8,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -22,7 +24,8 @@ struct FrontierCluster {
 };
 
 /// The frontiers of a map in clusters. They connect by faces, edges and corners; clusters that reach from one
-/// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour.
+/// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour. Only cubes
+/// with other frontiers than before are looked at again.
 class FrontierClusters {
  public:
   /// @param bounds  of all frontiers
@@ -37,17 +40,30 @@ class FrontierClusters {
   [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
 
  private:
+  using Keys = std::vector<VoxelKey>;
+  struct Cube {
+    Keys frontiers;                     // sorted
+    std::vector<std::uint32_t> pieces;  // numbers
+  };
+
   [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
     return make_key(key.x / edge_, key.y / edge_, key.z / edge_);
   }
-  [[nodiscard]] std::vector<std::vector<VoxelKey>> pieces(std::span<const VoxelKey> frontiers);
-  void join_small(std::vector<std::vector<VoxelKey>>& pieces) const;
-  void name(FrontierCluster& cluster, std::vector<std::uint32_t>& taken);
+  void cut(Cube& cube, const VoxelKey& at);
+  [[nodiscard]] std::uint32_t new_piece();
+  [[nodiscard]] std::vector<std::uint32_t> pieces_in_order() const;
+  [[nodiscard]] std::uint32_t piece_for(std::uint32_t small) const;
+  [[nodiscard]] std::vector<Keys> joined_pieces() const;
+  void name(FrontierCluster& cluster, std::set<std::uint32_t>& taken);
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
-  BoxArray<std::uint32_t> piece_;    // of each frontier, from 1 on; 0 elsewhere
+  Keys frontiers_;
+  std::map<VoxelKey, Cube> cubes_;    // that hold frontiers
+  std::vector<Keys> pieces_ = {{}};   // sorted; empty those without a number in use, as 0
+  std::vector<std::uint32_t> free_;   // numbers
+  BoxArray<std::uint32_t> piece_;    // number of each frontier's; 0 elsewhere
   BoxArray<std::uint32_t> cluster_;  // that each voxel was in last
   std::uint32_t next_id_ = 1;
   std::uint64_t next_revision_ = 1;

@@ -77,22 +77,12 @@ void TourPlanning::lose(std::size_t robot) {
   Member& member = members_[robot];
   member.sights = {};
   member.tour.clear();
+  member.frontiers.clear();
   member.first_view.clear();
 }
 
 const FrontierCluster& TourPlanning::cluster(std::uint32_t id) const {
   return *std::ranges::find(clusters_.clusters(), id, &FrontierCluster::id);
-}
-
-Keys TourPlanning::frontiers_of(std::size_t robot) const {
-  Keys all;
-  for (const TourStop& stop : members_[robot].tour)
-    for (const std::uint32_t id : stop.clusters) {
-      const Keys& keys = cluster(id).keys;
-      all.insert(all.end(), keys.begin(), keys.end());
-    }
-  std::ranges::sort(all);
-  return all;
 }
 
 double TourPlanning::first_distance(std::size_t robot) const {
@@ -374,6 +364,15 @@ void TourPlanning::update(const Query& query) {
     member.tour = std::move(tour);
   }
   join_next_stops(query);
+  for (Member& member : members_) {
+    member.frontiers.clear();
+    for (const TourStop& stop : member.tour)
+      for (const std::uint32_t id : stop.clusters) {
+        const Keys& keys = cluster(id).keys;
+        member.frontiers.insert(member.frontiers.end(), keys.begin(), keys.end());
+      }
+    std::ranges::sort(member.frontiers);
+  }
 
   Member& member = members_[query.robot];
   member.first_view.clear();

@@ -91,7 +91,9 @@ class TourPlanning {
   [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
       std::size_t robot, const RayCaster& caster, const std::function<bool(const VoxelKey&)>& among) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
-  [[nodiscard]] std::vector<VoxelKey> frontiers_of(std::size_t robot) const;
+  [[nodiscard]] const std::vector<VoxelKey>& frontiers_of(std::size_t robot) const {
+    return members_[robot].frontiers;
+  }
 
  private:
   struct Member {
@@ -102,6 +104,7 @@ class TourPlanning {
     std::vector<VoxelKey> changed = {};  // since its ways were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
+    std::vector<VoxelKey> frontiers = {};  // of the clusters in the tour
     std::vector<VoxelKey> first_view = {};
   };
 

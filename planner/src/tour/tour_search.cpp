@@ -31,12 +31,14 @@ class Search {
     std::vector<bool> has(problem_.stops);
     for (const Tour& tour : tours_)
       for (const std::uint32_t stop : tour) has[stop] = true;
+    std::vector<Steps> steps;
+    for (std::size_t r = 0; r < tours_.size(); ++r) steps.push_back(steps_of(r, tours_[r]));
     for (;;) {
       Place best;
       std::uint32_t what = 0;
       for (std::uint32_t stop = 0; stop < problem_.stops; ++stop) {
         if (has[stop]) continue;
-        if (const Place place = best_place(stop); place.cost < best.cost) {
+        if (const Place place = best_place(stop, steps); place.cost < best.cost) {
           best = place;
           what = stop;
         }
@@ -46,6 +48,7 @@ class Search {
       Tour& tour = tours_[best.robot];
       tour.insert(tour.begin() + static_cast<std::ptrdiff_t>(best.at), what);
       lengths_[best.robot] = problem_.length(best.robot, tour);
+      steps[best.robot] = steps_of(best.robot, tour);
     }
   }
 
@@ -77,22 +80,34 @@ class Search {
     return longest + kOfAll * sum;
   }
 
-  // What a robot needs more to take in a stretch before place `at` of its tour.
-  [[nodiscard]] double detour(std::size_t r, const Tour& tour, std::size_t at, std::uint32_t first,
-                              std::uint32_t last) const {
-    const TourProblem::Robot& robot = problem_.robots[r];
-    const double to = at == 0 ? robot.first[first] : robot.between(tour[at - 1], first);
-    if (at == tour.size()) return to;
-    return to + robot.between(last, tour[at]) - step(robot, tour, at);
+  // Of a tour: the time to each of its stops from the one before.
+  using Steps = std::vector<double>;
+  [[nodiscard]] Steps steps_of(std::size_t r, const Tour& tour) const {
+    Steps steps(tour.size());
+    for (std::size_t i = 0; i < tour.size(); ++i) steps[i] = step(problem_.robots[r], tour, i);
+    return steps;
   }
 
-  [[nodiscard]] Place best_place(std::uint32_t stop) const {
+  // What a robot needs more to take in a stretch before place `at` of its tour.
+  [[nodiscard]] double detour(std::size_t r, const Tour& tour, const Steps& steps, std::size_t at,
+                              std::uint32_t first, std::uint32_t last) const {
+    const TourProblem::Robot& robot = problem_.robots[r];
+    const double to = at == 0 ? robot.first[first] : robot.between(first, tour[at - 1]);
+    if (at == tour.size()) return to;
+    return to + robot.between(last, tour[at]) - steps[at];
+  }
+
+  [[nodiscard]] Place best_place(std::uint32_t stop, std::span<const Steps> steps) const {
     Place best;
     for (std::size_t r = 0; r < tours_.size(); ++r) {
       if (problem_.robots[r].first[stop] == TourProblem::kNever) continue;
+      double least = TourProblem::kNever;  // what adds more costs no less
       for (std::size_t at = std::min(problem_.robots[r].fixed, tours_[r].size()); at <= tours_[r].size();
            ++at) {
-        const double length = lengths_[r] + detour(r, tours_[r], at, stop, stop);
+        const double added = detour(r, tours_[r], steps[r], at, stop, stop);
+        if (!(added < least)) continue;
+        least = added;
+        const double length = lengths_[r] + added;
         // Those that cost least come first.
         const double cost = cost_with(r, length, r, length);
         if (cost < best.cost) best = {cost, r, at};
@@ -124,12 +139,13 @@ class Search {
 
   // Or-opt: the best move of a few stops to another place, in their own tour or another one.
   bool move_stops() {
-    const double now = cost();
-    double best = now - kWorth;
+    double best = cost() - kWorth;
     struct {
       std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
       bool turned = false;
     } move;
+    std::vector<Steps> all;
+    for (std::size_t r = 0; r < tours_.size(); ++r) all.push_back(steps_of(r, tours_[r]));
     Tour rest;
     for (std::size_t a = 0; a < tours_.size(); ++a) {
       const TourProblem::Robot& robot = problem_.robots[a];
@@ -139,16 +155,21 @@ class Search {
           const std::size_t end = begin + count;
           const std::uint32_t first = tour[begin], last = tour[end - 1];
           double inner = 0.0;
-          for (std::size_t i = begin + 1; i < end; ++i) inner += step(robot, tour, i);
-          double left = lengths_[a] - step(robot, tour, begin) - inner;
-          if (end < tour.size()) {
-            left -= step(robot, tour, end);
-            left += begin == 0 ? robot.first[tour[end]] : robot.between(tour[begin - 1], tour[end]);
-          }
+          for (std::size_t i = begin + 1; i < end; ++i) inner += all[a][i];
+          double left = lengths_[a] - all[a][begin] - inner;
           rest.assign(tour.begin(), tour.begin() + static_cast<std::ptrdiff_t>(begin));
           rest.insert(rest.end(), tour.begin() + static_cast<std::ptrdiff_t>(end), tour.end());
+          Steps rest_steps = all[a];
+          rest_steps.erase(rest_steps.begin() + static_cast<std::ptrdiff_t>(begin),
+                           rest_steps.begin() + static_cast<std::ptrdiff_t>(end));
+          if (end < tour.size()) {
+            rest_steps[begin] = step(robot, rest, begin);
+            left -= all[a][end];
+            left += rest_steps[begin];
+          }
           for (std::size_t b = 0; b < tours_.size(); ++b) {
             const Tour& into = b == a ? rest : tours_[b];
+            const Steps& steps = b == a ? rest_steps : all[b];
             double within = inner;
             if (b != a) {
               if (problem_.robots[b].first[first] == TourProblem::kNever) continue;
@@ -157,11 +178,14 @@ class Search {
                 within += problem_.robots[b].between(tour[i - 1], tour[i]);
             }
             if (within == TourProblem::kNever) continue;
+            double least = TourProblem::kNever;  // added; what adds more costs no less
             for (std::size_t at = std::min(problem_.robots[b].fixed, into.size()); at <= into.size(); ++at)
               for (const bool turned : {false, true}) {
                 if (turned && count == 1) continue;
                 const double added =
-                    within + detour(b, into, at, turned ? last : first, turned ? first : last);
+                    within + detour(b, into, steps, at, turned ? last : first, turned ? first : last);
+                if (!(added < least)) continue;
+                least = added;
                 const double cost = b == a ? cost_with(a, left + added, a, left + added)
                                            : cost_with(a, left, b, lengths_[b] + added);
                 if (!(cost < best)) continue;

@@ -121,65 +121,91 @@ void TravelGraph::link(std::size_t index) {
     for_each_key(side, [&](const VoxelKey& key) {
       const VoxelKey next = *offset_key(key, kFaces[axis][0], kFaces[axis][1], kFaces[axis][2]);
       if (part_[key] != 0 && part_[next] != 0)
-        cube.links.emplace_back(part_[key] - 1u, (std::uint64_t{other} << 16) | (part_[next] - 1u));
+        cube.links.emplace_back(part_[key] - 1u, name_of(other, part_[next] - 1u));
     });
   }
   std::ranges::sort(cube.links);
   cube.links.erase(std::unique(cube.links.begin(), cube.links.end()), cube.links.end());
 }
 
-// Numbers the nodes, and connects each with its neighbours and with theirs: so a way along a diagonal is
-// about as long as it is.
-void TravelGraph::connect() {
-  centers_.clear();
-  extent_.reset();
-  for (Cube& cube : cubes_) {
-    cube.first = static_cast<std::uint32_t>(centers_.size());
-    centers_.insert(centers_.end(), cube.centers.begin(), cube.centers.end());
-    if (!cube.centers.empty()) extent_ = extent_ ? hull(*extent_, cube.cells) : cube.cells;
-  }
-  std::vector<std::vector<std::uint32_t>> touching(centers_.size());
-  for (const Cube& cube : cubes_)
-    for (const auto& [part, other] : cube.links) {
-      const std::uint32_t a = cube.first + part,
-                          b = cubes_[other >> 16].first + static_cast<std::uint32_t>(other & 0xFFFF);
-      touching[a].push_back(b);
-      touching[b].push_back(a);
-    }
-  begin_.assign(1, 0);
-  edges_.clear();
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t node = 0; node < centers_.size(); ++node) {
-    near = touching[node];
-    for (const std::uint32_t next : touching[node])
-      near.insert(near.end(), touching[next].begin(), touching[next].end());
+// Calls `visit(name)` for the nodes that touch one.
+template <class Visit>
+void TravelGraph::for_each_touching(Name name, const Visit& visit) const {
+  const std::size_t index = cube_of(name);
+  for (const auto& [part, other] : cubes_[index].links)
+    if (part == part_of(name)) visit(other);
+  for (const std::size_t back : {count_[1] * count_[2], count_[2], std::size_t{1}})
+    if (index >= back)
+      for (const auto& [part, other] : cubes_[index - back].links)
+        if (other == name) visit(name_of(index - back, part));
+}
+
+// Connects each node of a cube with its neighbours and with theirs: so a way along a diagonal is about as
+// long as it is.
+void TravelGraph::connect(std::size_t index) {
+  Cube& cube = cubes_[index];
+  cube.edges.clear();
+  std::vector<Name> touching, near;
+  for (std::uint32_t part = 0; part < cube.centers.size(); ++part) {
+    const Name name = name_of(index, part);
+    touching.clear();
+    for_each_touching(name, [&](Name next) { touching.push_back(next); });
+    near = touching;
+    for (const Name next : touching) for_each_touching(next, [&](Name beyond) { near.push_back(beyond); });
     std::ranges::sort(near);
     near.erase(std::unique(near.begin(), near.end()), near.end());
-    for (const std::uint32_t to : near)
-      if (to != node) edges_.push_back({to, static_cast<float>((centers_[to] - centers_[node]).norm())});
-    begin_.push_back(edges_.size());
+    for (const Name to : near)
+      if (to != name)
+        cube.edges.push_back({part, to, static_cast<float>((center_of(to) - center_of(name)).norm())});
   }
+}
+
+// Nodes are numbered by their names.
+void TravelGraph::number_nodes() {
+  names_.clear();
+  extent_.reset();
+  for (std::size_t i = 0; i < cubes_.size(); ++i) {
+    Cube& cube = cubes_[i];
+    cube.first = static_cast<std::uint32_t>(names_.size());
+    for (std::uint32_t part = 0; part < cube.centers.size(); ++part) names_.push_back(name_of(i, part));
+    if (!cube.centers.empty()) extent_ = extent_ ? hull(*extent_, cube.cells) : cube.cells;
+  }
+  begin_.clear();
+  edges_.clear();
+  for (const Cube& cube : cubes_) {
+    auto edge = cube.edges.begin();
+    for (std::uint32_t part = 0; part < cube.centers.size(); ++part) {
+      begin_.push_back(edges_.size());
+      for (; edge != cube.edges.end() && edge->from == part; ++edge)
+        edges_.push_back({cubes_[cube_of(edge->to)].first + part_of(edge->to), edge->length});
+    }
+  }
+  begin_.push_back(edges_.size());
 }
 
 void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   std::vector<std::uint8_t> reads(cubes_.size());
   for (const KeyBox& box : changed) for_each_cube(box, [&](std::size_t cube) { reads[cube] = 1; });
-  std::vector<std::size_t> read_cubes;
-  std::vector<std::uint8_t> links(cubes_.size(), 0);
-  const std::array<std::size_t, 3> step = {count_[1] * count_[2], count_[2], 1};
+  // A cube's links lead to those after it, and edges to neighbours of neighbours.
+  std::vector<std::uint8_t> links = reads;
+  changed_ = reads;
+  std::vector<std::size_t> read_cubes, connected_cubes;
   for (std::size_t i = 0; i < cubes_.size(); ++i) {
     if (reads[i] == 0) continue;
     read_cubes.push_back(i);
-    links[i] = 1;
-    for (const std::size_t back : step)
+    for (const std::size_t back : {count_[1] * count_[2], count_[2], std::size_t{1}})
       if (i >= back) links[i - back] = 1;
+    for_each_cube(grown(cubes_[i].cells, 2 * edge_), [&](std::size_t cube) { changed_[cube] = 1; });
   }
   if (read_cubes.empty()) return;
   for_each_index(read_cubes.size(), [&](std::size_t i) { read(cubes_[read_cubes[i]], corridor); });
   for_each_index(cubes_.size(), [&](std::size_t i) {
     if (links[i] != 0) link(i);
   });
-  connect();
+  for (std::size_t i = 0; i < cubes_.size(); ++i)
+    if (changed_[i] != 0) connected_cubes.push_back(i);
+  for_each_index(connected_cubes.size(), [&](std::size_t i) { connect(connected_cubes[i]); });
+  number_nodes();
 }
 
 std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
@@ -188,43 +214,83 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
 }
 
 // Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they
-// turn out to be nearer. Ends when the ways to so many are known.
-std::vector<double> TravelGraph::distances(std::uint32_t from, std::size_t count) const {
-  using Entry = std::pair<double, std::uint32_t>;
-  const double width = edge_ * lattice_.resolution() / 2;  // [m] of nodes about as far as each other
-  const auto band = [width](double length) { return static_cast<std::size_t>(length / width); };
-  std::vector<double> lengths(centers_.size(), kFar);
-  std::vector<std::vector<Entry>> open(1);
-  lengths[from] = 0.0;
-  open[0].emplace_back(0.0, from);
-  std::size_t known = 0, now = 0;
-  for (; now < open.size() && known < count; ++now) {
-    for (std::size_t i = 0; i < open[now].size(); ++i) {
-      const auto [so_far, node] = open[now][i];
-      if (so_far > lengths[node]) continue;
-      for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) {
-        const auto& [to, length] = edges_[e];
-        const double through = so_far + static_cast<double>(length);
-        if (through >= lengths[to]) continue;
-        lengths[to] = through;
-        if (band(through) >= open.size()) open.resize(band(through) + 1);
-        open[band(through)].emplace_back(through, to);
+// turn out to be nearer. Searches from several nodes after each other pay for what they reach only.
+class TravelGraph::Search {
+ public:
+  explicit Search(const TravelGraph& graph) : graph_(graph), lengths_(graph.size(), kFar) {}
+
+  // Ends when the ways to so many nodes are known. Those of other nodes are `kFar` afterwards.
+  void run(std::uint32_t from, std::size_t count) {
+    for (const std::uint32_t node : reached_) lengths_[node] = kFar;
+    reached_.assign(1, from);
+    lengths_[from] = 0.0;
+    open_.resize(std::max<std::size_t>(open_.size(), 1));
+    open_[0].emplace_back(0.0, from);
+    std::size_t known = 0, now = 0, end = 1;  // bands
+    for (; now < end && known < count; ++now) {
+      for (std::size_t i = 0; i < open_[now].size(); ++i) {
+        const auto [so_far, node] = open_[now][i];
+        if (so_far > lengths_[node]) continue;
+        for (std::size_t e = graph_.begin_[node]; e < graph_.begin_[node + 1]; ++e) {
+          const auto& [to, length] = graph_.edges_[e];
+          const double through = so_far + static_cast<double>(length);
+          if (through >= lengths_[to]) continue;
+          if (lengths_[to] == kFar) reached_.push_back(to);
+          lengths_[to] = through;
+          const std::size_t next = band(through);
+          end = std::max(end, next + 1);
+          if (end > open_.size()) open_.resize(end);
+          open_[next].emplace_back(through, to);
+        }
       }
+      for (const auto& [so_far, node] : open_[now]) known += so_far > lengths_[node] ? 0 : 1;
+      open_[now].clear();
     }
-    for (const auto& [so_far, node] : open[now]) known += so_far > lengths[node] ? 0 : 1;
-    open[now] = {};
+    for (std::size_t later = now; later < end; ++later) open_[later].clear();
+    std::erase_if(reached_, [&](std::uint32_t node) {
+      if (band(lengths_[node]) < now) return false;
+      lengths_[node] = kFar;
+      return true;
+    });
   }
-  if (now < open.size())
-    for (double& length : lengths)
-      if (length != kFar && band(length) >= now) length = kFar;
-  return lengths;
+
+  // [m] to each node
+  std::vector<double> take_lengths() { return std::move(lengths_); }
+
+  [[nodiscard]] std::vector<Distance> near() {
+    std::ranges::sort(reached_);
+    std::vector<Distance> near;
+    for (const std::uint32_t node : reached_) near.push_back({graph_.names_[node], lengths_[node]});
+    return near;
+  }
+
+ private:
+  [[nodiscard]] std::size_t band(double length) const { return static_cast<std::size_t>(length / width_); }
+
+  const TravelGraph& graph_;
+  // [m] of nodes about as far as each other
+  const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
+  std::vector<double> lengths_;
+  std::vector<std::uint32_t> reached_;
+  std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
+};
+
+std::vector<double> TravelGraph::distances(std::uint32_t from, std::size_t count) const {
+  Search search(*this);
+  search.run(from, count);
+  return search.take_lengths();
 }
 
-std::vector<TravelGraph::Distance> TravelGraph::near_distances(std::uint32_t from, std::size_t count) const {
-  const std::vector<double> lengths = distances(from, count);
-  std::vector<Distance> near;
-  for (std::uint32_t node = 0; node < lengths.size(); ++node)
-    if (lengths[node] != kFar) near.push_back({node, lengths[node]});
+std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
+    std::span<const std::uint32_t> from, std::size_t count) const {
+  std::vector<std::vector<Distance>> near(from.size());
+  for_each_range(from.size(), [&](std::size_t begin, std::size_t end) {
+    Search search(*this);
+    for (std::size_t i = begin; i < end; ++i) {
+      search.run(from[i], count);
+      near[i] = search.near();
+    }
+  });
   return near;
 }
 

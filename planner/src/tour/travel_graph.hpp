@@ -39,19 +39,29 @@ class TravelGraph {
   [[nodiscard]] std::optional<std::uint32_t> node(const VoxelKey& cell) const;
   /// The lowest and the highest cell in which the robot fits; none if it fits nowhere.
   [[nodiscard]] std::optional<KeyBox> extent() const { return extent_; }
-  [[nodiscard]] std::size_t size() const { return centers_.size(); }
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
   /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
   /// [m] from a node to others, from middle to middle; `kFar` where there is no way.
   /// @param count  how many are enough: of the nodes that are farther than so many, most are `kFar`, too
   [[nodiscard]] std::vector<double> distances(std::uint32_t from, std::size_t count = kAll) const;
+
+  /// What a node is called until its cells change, whatever its number.
+  using Name = std::uint64_t;
+  [[nodiscard]] Name name_of(std::uint32_t node) const { return names_[node]; }
   struct Distance {
-    std::uint32_t to;  ///< node
-    double length;     ///< [m]
+    Name to;
+    double length;  ///< [m]
+    auto operator<=>(const Distance&) const = default;
   };
-  /// Of `distances` those that are known, sorted by node.
-  [[nodiscard]] std::vector<Distance> near_distances(std::uint32_t from, std::size_t count) const;
+  /// From each of some nodes, of `distances` those that are known, sorted by name. Whatever has changed
+  /// elsewhere, they are the same as long as none of these nodes `has_changed`.
+  [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
+                                                                  std::size_t count) const;
+  /// Whether the last update has found the node's cells or neighbours anew.
+  [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
+
   /// The nodes of a shortest way to a node and those next to them, sorted: their cells connect.
   /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
   [[nodiscard]] std::vector<std::uint32_t> around_way(const std::vector<double>& lengths,
@@ -63,8 +73,27 @@ class TravelGraph {
     std::vector<Eigen::Vector3d> centers;                        // of its parts
     std::uint32_t first = 0;                                     // node of its first part
     std::vector<VoxelKey> spread;                                // some of its cells
-    std::vector<std::pair<std::uint32_t, std::uint64_t>> links;  // from a part to a part of a later cube
+    std::vector<std::pair<std::uint32_t, Name>> links;           // from a part to a part of a later cube
+    struct Edge {
+      std::uint32_t from;  // part
+      Name to;
+      float length;  // [m]
+    };
+    std::vector<Edge> edges;  // sorted
   };
+  class Search;
+
+  static constexpr int kPartBits = 16;
+  [[nodiscard]] static Name name_of(std::size_t cube, std::uint32_t part) {
+    return (Name{cube} << kPartBits) | part;
+  }
+  [[nodiscard]] static std::size_t cube_of(Name name) { return name >> kPartBits; }
+  [[nodiscard]] static std::uint32_t part_of(Name name) {
+    return static_cast<std::uint32_t>(name & ((1u << kPartBits) - 1));
+  }
+  [[nodiscard]] const Eigen::Vector3d& center_of(Name name) const {
+    return cubes_[cube_of(name)].centers[part_of(name)];
+  }
 
   [[nodiscard]] std::size_t cube_of(const VoxelKey& cell) const;
   template <class Visit>
@@ -72,7 +101,10 @@ class TravelGraph {
   void read(Cube& cube, const TravelCorridor& corridor);
   void spread(Cube& cube) const;
   void link(std::size_t index);
-  void connect();
+  template <class Visit>
+  void for_each_touching(Name name, const Visit& visit) const;
+  void connect(std::size_t index);
+  void number_nodes();
 
   Lattice lattice_;
   int edge_, spacing_;
@@ -80,8 +112,9 @@ class TravelGraph {
   std::vector<Cube> cubes_;
   BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
-  std::vector<Eigen::Vector3d> centers_;  // of the nodes
-  std::vector<std::size_t> begin_;        // of each node's neighbours
+  std::vector<std::uint8_t> changed_;  // cubes whose edges the last update has found anew
+  std::vector<Name> names_;            // of the nodes, in this order
+  std::vector<std::size_t> begin_;     // of each node's edges
   struct Edge {
     std::uint32_t to;
     float length;  // [m]

@@ -1,6 +1,5 @@
 #include "tour/travel_ways.hpp"
 
-#include <frontlux/parallel.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -14,7 +13,14 @@ TravelWays::TravelWays(const Lattice& lattice, TravelGraph graph, std::size_t me
 void TravelWays::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   graph_.update(corridor, changed);
   from_start_.clear();
-  near_.clear();
+  // What was not asked for since the update before will not be soon, either.
+  std::erase_if(near_, [&](const auto& entry) {
+    const Near& near = entry.second;
+    return !near.asked || std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
+      return graph_.has_changed(distance.to);
+    });
+  });
+  for (auto& [from, near] : near_) near.asked = false;
 }
 
 void TravelWays::start_from(const std::optional<VoxelKey>& cell) {
@@ -25,13 +31,18 @@ void TravelWays::start_from(const std::optional<VoxelKey>& cell) {
 
 void TravelWays::measure_from(std::span<const VoxelKey> cells) {
   std::vector<std::uint32_t> nodes;
-  for (const VoxelKey& cell : cells)
-    if (const auto node = graph_.node(cell); node && !near_.contains(*node)) nodes.push_back(*node);
+  for (const VoxelKey& cell : cells) {
+    const auto node = graph_.node(cell);
+    if (!node) continue;
+    if (const auto known = near_.find(graph_.name_of(*node)); known != near_.end())
+      known->second.asked = true;
+    else
+      nodes.push_back(*node);
+  }
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::vector<TravelGraph::Distance>> near(nodes.size());
-  for_each_index(nodes.size(), [&](std::size_t i) { near[i] = graph_.near_distances(nodes[i], measured_); });
-  for (std::size_t i = 0; i < nodes.size(); ++i) near_[nodes[i]] = std::move(near[i]);
+  auto near = graph_.near_distances(nodes, measured_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
 }
 
 bool TravelWays::reaches(const VoxelKey& cell) const {
@@ -46,9 +57,10 @@ double TravelWays::from_start(const VoxelKey& cell) const {
 double TravelWays::between(const VoxelKey& from, const VoxelKey& to) const {
   const auto a = graph_.node(from), b = graph_.node(to);
   if (!a || !b) return TravelGraph::kFar;
-  const auto& near = near_.at(*a);
-  const auto found = std::ranges::lower_bound(near, *b, {}, &TravelGraph::Distance::to);
-  return found != near.end() && found->to == *b ? straightened(from, to, found->length) : TravelGraph::kFar;
+  const auto& near = near_.at(graph_.name_of(*a)).distances;
+  const TravelGraph::Name name = graph_.name_of(*b);
+  const auto found = std::ranges::lower_bound(near, name, {}, &TravelGraph::Distance::to);
+  return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
 }
 
 // Nodes are wide: a way is no shorter than the straight line, and near by often that.
@@ -65,9 +77,11 @@ double TravelWays::straightened(const VoxelKey& from, const VoxelKey& to, double
 
 std::function<bool(const VoxelKey&)> TravelWays::around_way_to(const VoxelKey& to) const {
   if (!reaches(to)) return [](const VoxelKey&) { return false; };
-  return [this, nodes = graph_.around_way(from_start_, *graph_.node(to))](const VoxelKey& cell) {
+  std::vector<bool> around(graph_.size());
+  for (const std::uint32_t node : graph_.around_way(from_start_, *graph_.node(to))) around[node] = true;
+  return [this, around = std::move(around)](const VoxelKey& cell) {
     const auto node = graph_.node(cell);
-    return node && std::ranges::binary_search(nodes, *node);
+    return node && around[*node];
   };
 }
 

@@ -28,7 +28,7 @@ class TravelWays {
   /// Where the robot will be; none if it is not in the map, or does not fit there.
   void start_from(const std::optional<VoxelKey>& cell);
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Finds the ways from some cells, until the next update.
+  /// Finds the ways from some cells, until the next update. Those that it does not change are kept.
   void measure_from(std::span<const VoxelKey> cells);
 
   /// Whether the robot can get to a cell from its start.
@@ -49,7 +49,11 @@ class TravelWays {
   std::size_t measured_;
   std::optional<VoxelKey> start_;
   std::vector<double> from_start_;  // [m] to each node; empty before they are found
-  std::map<std::uint32_t, std::vector<TravelGraph::Distance>> near_;  // from other nodes
+  struct Near {
+    std::vector<TravelGraph::Distance> distances;
+    bool asked = true;  // for, since the last update
+  };
+  std::map<TravelGraph::Name, Near> near_;  // from other nodes
 };
 
 }  // namespace frontlux::planner::detail

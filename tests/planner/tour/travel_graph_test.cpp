@@ -109,13 +109,20 @@ TEST(TravelGraph, MeasuresTheNearestNodesOnly) {
     const auto from = static_cast<std::uint32_t>(random.below(static_cast<int>(graph.size())));
     const auto count = static_cast<std::size_t>(1 + random.below(60));
     const std::vector<double> all = graph.distances(from);
-    const auto near = graph.near_distances(from, count);
+    // From others before, so that nothing is left of their search.
+    const auto others = std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(all.size() - 1), from};
+    const auto near = graph.near_distances(others, count).back();
+    const auto number = [&](TravelGraph::Name name) {
+      std::uint32_t node = 0;
+      while (graph.name_of(node) != name) ++node;
+      return node;
+    };
     double farthest = 0.0;
     std::vector<bool> is_near(all.size());
     for (const TravelGraph::Distance& distance : near) {
-      EXPECT_EQ(distance.length, all[distance.to]);
+      EXPECT_EQ(distance.length, all[number(distance.to)]);
       farthest = std::max(farthest, distance.length);
-      is_near[distance.to] = true;
+      is_near[number(distance.to)] = true;
     }
     const auto reached = all.size() - static_cast<std::size_t>(std::ranges::count(all, TravelGraph::kFar));
     EXPECT_GE(near.size(), std::min(count, reached));
@@ -123,7 +130,7 @@ TEST(TravelGraph, MeasuresTheNearestNodesOnly) {
     fewer += near.size() < reached ? 1 : 0;
     // No way is shorter by way of a third node.
     for (const auto& [middle, length] : near) {
-      const std::vector<double> on = graph.distances(middle);
+      const std::vector<double> on = graph.distances(number(middle));
       for (std::size_t node = 0; node < all.size(); ++node) EXPECT_LE(all[node], length + on[node] + 1e-9);
     }
   }
@@ -139,7 +146,16 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
   corridor.update({grid}, robot);
   TravelGraph kept(grid.lattice(), kBounds, 5, 2);
   kept.update(corridor, {{kBounds}});
+  std::size_t same = 0, others = 0;  // ways before and after a change
   for (int round = 0; round < 40; ++round) {
+    std::vector<std::uint32_t> nodes;
+    std::vector<TravelGraph::Name> names;
+    for (std::uint32_t node = 0; node < kept.size(); node += 3) {
+      nodes.push_back(node);
+      names.push_back(kept.name_of(node));
+    }
+    constexpr std::size_t kCount = 12;
+    const auto before = kept.near_distances(nodes, kCount);
     Keys changed;
     std::vector<KeyBox> boxes;
     for (int i = 0; i < 1 + random.below(4); ++i) {
@@ -157,8 +173,24 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
     TravelGraph anew(grid.lattice(), kBounds, 5, 2);
     anew.update(corridor, {{kBounds}});
     expect_same(kept, anew);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto has_changed = [&](const TravelGraph::Distance& distance) {
+        return kept.has_changed(distance.to);
+      };
+      if (std::ranges::any_of(before[i], has_changed)) {
+        ++others;
+        continue;
+      }
+      ++same;
+      std::uint32_t node = 0;
+      while (node < anew.size() && anew.name_of(node) != names[i]) ++node;
+      ASSERT_LT(node, anew.size());
+      EXPECT_EQ(anew.near_distances({&node, 1}, kCount).front(), before[i]);
+    }
     if (testing::Test::HasFailure()) return;
   }
+  EXPECT_GT(same, 50U);
+  EXPECT_GT(others, 50U);
 }
 
 TEST(TravelGraph, SpreadsCellsOverAllParts) {
