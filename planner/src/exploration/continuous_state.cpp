@@ -299,8 +299,10 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   std::optional<detail::Departure> departure;
   {
     const detail::PhaseClock clock(step, Phase::kPaths);
+    Pose to = *now.goal.pose;
+    if (team.ahead[robot]) to.position = team.lattice().exact_center(*team.ahead[robot]);
     const auto path_from = [&](const Pose& from) {
-      PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, *now.goal.pose,
+      PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, to,
                                 {team.options.seed, team.number, robot}, team.options.path);
       now.path = plan.outcome;
       return std::move(plan.viewpoints);

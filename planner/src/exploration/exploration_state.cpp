@@ -104,6 +104,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   targets.resize(size());
   assigned.resize(size());
   trails.resize(size());
+  ahead.resize(size());
   went_back_to.resize(size());
 }
 
@@ -197,11 +198,24 @@ CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
   return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
 }
 
+// Of a long way only the first part is planned voxel by voxel: the robot plans again long before its end.
+bool ExplorationState::find_way_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
+  constexpr double kAhead = 80.0;  // [m]
+  const PhaseClock clock(step, Phase::kPaths);
+  const auto near_way = tours->around_way_to(robot, cell);
+  ahead[robot].reset();
+  if (const auto here = lattice().key(poses[robot].position))
+    ahead[robot] = tours->cell_on_way_to(robot, cell, *here, kAhead);
+  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_way)) return true;
+  ahead[robot].reset();
+  return selection->find_way(robot, cell, near_way);
+}
+
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   keep_goal(robot, step, extent_of_tours(robot));
-  const PhaseClock clock(step, Phase::kPaths);
   const VoxelKey& cell = step.robots[robot].goal.cell;
-  if (selection->find_way(robot, cell, tours->around_way_to(robot, cell))) return;
+  if (find_way_to_stop(robot, cell, step)) return;
+  const PhaseClock clock(step, Phase::kPaths);
   selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
 }
 
@@ -219,14 +233,11 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
   };
   const auto has_way = [&] {
-    const PhaseClock clock(step, Phase::kPaths);
     const auto tour = tours->tour(robot);
-    if (tour.empty()) return true;
-    const VoxelKey& cell = tour.front().cell;
-    return selection->find_way(robot, cell, tours->around_way_to(robot, cell));
+    return tour.empty() || find_way_to_stop(robot, tour.front().cell, step);
   };
   update(extent_of_tours(robot));
-  if (extent_of_tours(robot) == CorridorExtent::kNearby && !has_way()) update(CorridorExtent::kAllCells);
+  if (!has_way() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();
   const auto quality = [lambda = options.team[robot].options.lambda](double distance, double gain) {
     return std::exp(-lambda * distance) * gain;  // eq. 1

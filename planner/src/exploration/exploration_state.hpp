@@ -37,6 +37,7 @@ struct ExplorationState {
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};  // where each robot has been
   std::vector<Goal> last_goals = {};           // of the last step
+  std::vector<std::optional<VoxelKey>> ahead = {};  // on the way to a far stop: up to here it is planned
   std::vector<Keys> went_back_to = {};         // by robots that had no goal since
   std::vector<Keys> assigned = {};             // frontiers that are each robot's, as last noted; sorted
   Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
@@ -97,6 +98,7 @@ struct ExplorationState {
 
  private:
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
+  bool find_way_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
   // The place of the robot's trail to which it goes back, but for cells that it has tried.

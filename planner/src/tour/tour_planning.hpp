@@ -83,6 +83,12 @@ class TourPlanning {
   [[nodiscard]] bool gets_to(std::size_t robot, const VoxelKey& cell) const;
   /// [m] from where the robot will be to the first stop of its tour, about; 0 if there is none.
   [[nodiscard]] double first_distance(std::size_t robot) const;
+  /// On a short way of the robot to some cell, as far [m] beyond where it is by now; nothing if the way is no
+  /// longer.
+  [[nodiscard]] std::optional<VoxelKey> cell_on_way_to(std::size_t robot, const VoxelKey& cell,
+                                                       const VoxelKey& here, double ahead) const {
+    return members_[robot].ways.cell_on_way_to(cell, here, ahead);
+  }
   /// Whether a cell is near a short way of the robot to some cell; for none if there is no way.
   [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(std::size_t robot,
                                                                    const VoxelKey& cell) const;

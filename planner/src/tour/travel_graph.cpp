@@ -294,20 +294,41 @@ std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
   return near;
 }
 
-std::vector<std::uint32_t> TravelGraph::around_way(const std::vector<double>& lengths,
-                                                   std::uint32_t to) const {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t node = to;;) {
-    nodes.push_back(node);
+std::vector<std::uint32_t> TravelGraph::way_back(const std::vector<double>& lengths,
+                                                 std::uint32_t to) const {
+  std::vector<std::uint32_t> nodes{to};
+  for (;;) {
+    const std::uint32_t node = nodes.back();
     std::uint32_t before = node;
-    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) {
-      nodes.push_back(edges_[e].to);
+    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e)
       if (lengths[edges_[e].to] + static_cast<double>(edges_[e].length) == lengths[node] &&
           lengths[edges_[e].to] < lengths[node])
         before = edges_[e].to;
-    }
-    if (before == node) break;
-    node = before;
+    if (before == node) return nodes;
+    nodes.push_back(before);
+  }
+}
+
+VoxelKey TravelGraph::middle_cell(std::uint32_t node) const {
+  const Cube& cube = cubes_[cube_of(names_[node])];
+  const std::uint32_t part = part_of(names_[node]);
+  const VoxelKey* best = nullptr;
+  double nearest = kFar;
+  for (const VoxelKey& cell : cube.spread) {
+    const double distance = (lattice_.exact_center(cell) - cube.centers[part]).squaredNorm();
+    if (part_[cell] != part + 1 || distance >= nearest) continue;
+    nearest = distance;
+    best = &cell;
+  }
+  return *best;  // each part has some
+}
+
+std::vector<std::uint32_t> TravelGraph::around_way(const std::vector<double>& lengths,
+                                                   std::uint32_t to) const {
+  std::vector<std::uint32_t> nodes;
+  for (const std::uint32_t node : way_back(lengths, to)) {
+    nodes.push_back(node);
+    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) nodes.push_back(edges_[e].to);
   }
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());

@@ -62,6 +62,12 @@ class TravelGraph {
   /// Whether the last update has found the node's cells or neighbours anew.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
+  /// The nodes of a shortest way to a node, from its end to its begin.
+  /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
+  [[nodiscard]] std::vector<std::uint32_t> way_back(const std::vector<double>& lengths,
+                                                    std::uint32_t to) const;
+  /// The cell of a node that is nearest to its middle, of those that `spread_cells` returns.
+  [[nodiscard]] VoxelKey middle_cell(std::uint32_t node) const;
   /// The nodes of a shortest way to a node and those next to them, sorted: their cells connect.
   /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
   [[nodiscard]] std::vector<std::uint32_t> around_way(const std::vector<double>& lengths,

@@ -75,6 +75,16 @@ double TravelWays::straightened(const VoxelKey& from, const VoxelKey& to, double
   return clear ? straight : way;
 }
 
+std::optional<VoxelKey> TravelWays::cell_on_way_to(const VoxelKey& to, const VoxelKey& robot,
+                                                   double ahead) const {
+  if (!reaches(to) || !reaches(robot)) return std::nullopt;
+  const double length = from_start(robot) + ahead;
+  if (from_start(to) <= length) return std::nullopt;
+  for (const std::uint32_t node : graph_.way_back(from_start_, *graph_.node(to)))
+    if (from_start_[node] <= length) return graph_.middle_cell(node);
+  return std::nullopt;
+}
+
 std::function<bool(const VoxelKey&)> TravelWays::around_way_to(const VoxelKey& to) const {
   if (!reaches(to)) return [](const VoxelKey&) { return false; };
   std::vector<bool> around(graph_.size());

@@ -38,6 +38,10 @@ class TravelWays {
   /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no way.
   /// @param from  has been measured from
   [[nodiscard]] double between(const VoxelKey& from, const VoxelKey& to) const;
+  /// On a short way from the start to some cell, as far [m] beyond where the robot is by now; nothing if the
+  /// way is no longer.
+  [[nodiscard]] std::optional<VoxelKey> cell_on_way_to(const VoxelKey& to, const VoxelKey& robot,
+                                                       double ahead) const;
   /// Whether a cell is near a short way from the start to some cell; for none if there is no way.
   [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(const VoxelKey& to) const;
 

@@ -232,6 +232,16 @@ TEST(TravelGraph, FindsTheCellsAroundAWay) {
     const VoxelKey goal = random.pick(corridor.cells());
     const std::vector<double> lengths = graph.distances(graph.node(robot).value());
     const auto nodes = graph.around_way(lengths, graph.node(goal).value());
+    const auto back = graph.way_back(lengths, graph.node(goal).value());
+    EXPECT_EQ(back.front(), graph.node(goal));
+    EXPECT_EQ(back.back(), graph.node(robot));
+    for (std::size_t i = 0; i < back.size(); ++i) {
+      EXPECT_TRUE(std::ranges::binary_search(nodes, back[i]));
+      EXPECT_EQ(graph.node(graph.middle_cell(back[i])), back[i]);
+      if (i > 0) {
+        EXPECT_LT(lengths[back[i]], lengths[back[i - 1]]);
+      }
+    }
     fewer += nodes.size() < graph.size() ? 1 : 0;
     EXPECT_TRUE(corridor.find_way(goal, [&](const VoxelKey& cell) {
       return std::ranges::binary_search(nodes, graph.node(cell).value());
