@@ -104,7 +104,7 @@ give the same answers. The casters:
   line.add_option("--rays", options.rays,
                   "rays per workload (default: as many as castRay casts in some tenths of a second)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
-  line.add_flag("--peers", options.peers, "also measure NanoVDB, if built with it");
+  line.add_flag("--peers", options.peers, "also measure NanoVDB and Open3D, as far as built with them");
   line.add_google_benchmark(
       "only check that it works: few rays, one repetition, the coarse generated map only");
   line.read(argc, argv);

@@ -9,6 +9,9 @@
 #ifdef FRONTLUX_BENCH_NANOVDB
 #include "peers/nanovdb_peer.hpp"
 #endif
+#ifdef FRONTLUX_BENCH_OPEN3D
+#include "peers/open3d_peer.hpp"
+#endif
 
 #include <tbb/task_arena.h>
 
@@ -47,6 +50,14 @@ void prepare(const std::filesystem::path& file, const std::string& name, const R
   std::vector<Peer> peers;
 #ifdef FRONTLUX_BENCH_NANOVDB
   if (options.peers) peers.push_back(make_nanovdb_peer(subject.grid));
+#endif
+#ifdef FRONTLUX_BENCH_OPEN3D
+  if (options.peers) {
+    if (auto peer = make_open3d_peer(subject.grid))
+      peers.push_back(*std::move(peer));
+    else
+      std::cout << "  open3d left out: with this Embree its rays hit nothing" << std::endl;
+  }
 #endif
   WorkloadSource source(subject.grid, subject.caster(kGrid));
   for (const std::string_view query : kWorkloads) {

@@ -35,17 +35,17 @@ struct ExplorationState {
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
-  std::vector<std::vector<Pose>> trails = {};  // where each robot has been
-  std::vector<Goal> last_goals = {};           // of the last step
+  std::vector<std::vector<Pose>> trails = {};       // where each robot has been
+  std::vector<Goal> last_goals = {};                // of the last step
   std::vector<std::optional<VoxelKey>> ahead = {};  // on the way to a far stop: up to here it is planned
-  std::vector<Keys> went_back_to = {};         // by robots that had no goal since
-  std::vector<Keys> assigned = {};             // frontiers that are each robot's, as last noted; sorted
-  Keys wanted = {};                            // frontiers that are not abandoned, at the last selection
-  Keys changed = {};                           // by the last step, sorted
-  std::uint64_t number = 0;                    // of the next step
-  double time = 0.0;                           // [s] in lock-step
-  int low_gain_steps = 0;                      // in a row
-  bool idle = false;                           // in the last step no robot had a goal or moved
+  std::vector<Keys> went_back_to = {};              // by robots that had no goal since
+  std::vector<Keys> assigned = {};                  // frontiers that are each robot's, as last noted; sorted
+  Keys wanted = {};                                 // frontiers that are not abandoned, at the last selection
+  Keys changed = {};                                // by the last step, sorted
+  std::uint64_t number = 0;                         // of the next step
+  double time = 0.0;                                // [s] in lock-step
+  int low_gain_steps = 0;                           // in a row
+  bool idle = false;                                // in the last step no robot had a goal or moved
 
   ExplorationState(ExplorationOptions given, Mapping map);
 

@@ -60,9 +60,9 @@ class FrontierClusters {
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
-  std::map<VoxelKey, Cube> cubes_;    // that hold frontiers
-  std::vector<Keys> pieces_ = {{}};   // sorted; empty those without a number in use, as 0
-  std::vector<std::uint32_t> free_;   // numbers
+  std::map<VoxelKey, Cube> cubes_;   // that hold frontiers
+  std::vector<Keys> pieces_ = {{}};  // sorted; empty those without a number in use, as 0
+  std::vector<std::uint32_t> free_;  // numbers
   BoxArray<std::uint32_t> piece_;    // number of each frontier's; 0 elsewhere
   BoxArray<std::uint32_t> cluster_;  // that each voxel was in last
   std::uint32_t next_id_ = 1;

@@ -294,8 +294,7 @@ std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
   return near;
 }
 
-std::vector<std::uint32_t> TravelGraph::way_back(const std::vector<double>& lengths,
-                                                 std::uint32_t to) const {
+std::vector<std::uint32_t> TravelGraph::way_back(const std::vector<double>& lengths, std::uint32_t to) const {
   std::vector<std::uint32_t> nodes{to};
   for (;;) {
     const std::uint32_t node = nodes.back();

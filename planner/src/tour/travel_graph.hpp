@@ -76,10 +76,10 @@ class TravelGraph {
  private:
   struct Cube {
     KeyBox cells;
-    std::vector<Eigen::Vector3d> centers;                        // of its parts
-    std::uint32_t first = 0;                                     // node of its first part
-    std::vector<VoxelKey> spread;                                // some of its cells
-    std::vector<std::pair<std::uint32_t, Name>> links;           // from a part to a part of a later cube
+    std::vector<Eigen::Vector3d> centers;               // of its parts
+    std::uint32_t first = 0;                            // node of its first part
+    std::vector<VoxelKey> spread;                       // some of its cells
+    std::vector<std::pair<std::uint32_t, Name>> links;  // from a part to a part of a later cube
     struct Edge {
       std::uint32_t from;  // part
       Name to;
