@@ -24,31 +24,49 @@ class Search {
  public:
   Search(const TourProblem& problem, Tours tours) : problem_(problem), tours_(std::move(tours)) {
     tours_.resize(problem.robots.size());
-    for (std::size_t r = 0; r < tours_.size(); ++r) lengths_.push_back(problem.length(r, tours_[r]));
+    steps_.resize(tours_.size());
+    lengths_.resize(tours_.size());
+    for (std::size_t r = 0; r < tours_.size(); ++r) measure(r);
   }
 
   void insert_missing() {
     std::vector<bool> has(problem_.stops);
     for (const Tour& tour : tours_)
       for (const std::uint32_t stop : tour) has[stop] = true;
-    std::vector<Steps> steps;
-    for (std::size_t r = 0; r < tours_.size(); ++r) steps.push_back(steps_of(r, tours_[r]));
+    std::vector<std::vector<Place>> places;  // of each robot, for each stop
+    for (std::size_t r = 0; r < tours_.size(); ++r) {
+      places.emplace_back(problem_.stops);
+      for (std::uint32_t stop = 0; stop < problem_.stops; ++stop)
+        if (!has[stop]) places[r][stop] = cheapest_place(r, stop);
+    }
     for (;;) {
-      Place best;
+      double best = TourProblem::kNever;
+      std::size_t r = 0;
       std::uint32_t what = 0;
+      for (std::uint32_t stop = 0; stop < problem_.stops; ++stop)
+        for (std::size_t other = 0; other < tours_.size() && !has[stop]; ++other)
+          if (const double cost = cost_with_more(other, places[other][stop].added); cost < best) {
+            best = cost;
+            r = other;
+            what = stop;
+          }
+      if (best == TourProblem::kNever) return;
+      has[what] = true;
+      Tour& tour = tours_[r];
+      const std::size_t at = first_place_for(r, what, best);
+      tour.insert(tour.begin() + static_cast<std::ptrdiff_t>(at), what);
+      measure(r);
+      // Only one step of the tour has become another one, or rather two.
       for (std::uint32_t stop = 0; stop < problem_.stops; ++stop) {
         if (has[stop]) continue;
-        if (const Place place = best_place(stop, steps); place.cost < best.cost) {
-          best = place;
-          what = stop;
+        Place& place = places[r][stop];
+        if (place.at == at) {
+          place = cheapest_place(r, stop);
+          continue;
         }
+        place.at += place.at > at ? 1 : 0;
+        for (const std::size_t next : {at, at + 1}) take_if_cheaper(place, r, stop, next);
       }
-      if (best.cost == TourProblem::kNever) return;
-      has[what] = true;
-      Tour& tour = tours_[best.robot];
-      tour.insert(tour.begin() + static_cast<std::ptrdiff_t>(best.at), what);
-      lengths_[best.robot] = problem_.length(best.robot, tour);
-      steps[best.robot] = steps_of(best.robot, tour);
     }
   }
 
@@ -62,8 +80,8 @@ class Search {
 
  private:
   struct Place {
-    double cost = TourProblem::kNever;
-    std::size_t robot = 0, at = 0;
+    double added = TourProblem::kNever;  // [s] to the tour
+    std::size_t at = 0;
   };
 
   static double cost(const std::vector<double>& lengths) {
@@ -80,12 +98,18 @@ class Search {
     return longest + kOfAll * sum;
   }
 
+  [[nodiscard]] double cost_with_more(std::size_t r, double added) const {
+    return cost_with(r, lengths_[r] + added, r, lengths_[r] + added);
+  }
+
   // Of a tour: the time to each of its stops from the one before.
   using Steps = std::vector<double>;
-  [[nodiscard]] Steps steps_of(std::size_t r, const Tour& tour) const {
-    Steps steps(tour.size());
-    for (std::size_t i = 0; i < tour.size(); ++i) steps[i] = step(problem_.robots[r], tour, i);
-    return steps;
+
+  void measure(std::size_t r) {
+    const Tour& tour = tours_[r];
+    steps_[r].resize(tour.size());
+    for (std::size_t i = 0; i < tour.size(); ++i) steps_[r][i] = step(problem_.robots[r], tour, i);
+    lengths_[r] = std::accumulate(steps_[r].begin(), steps_[r].end(), 0.0);
   }
 
   // What a robot needs more to take in a stretch before place `at` of its tour.
@@ -97,23 +121,25 @@ class Search {
     return to + robot.between(last, tour[at]) - steps[at];
   }
 
-  [[nodiscard]] Place best_place(std::uint32_t stop, std::span<const Steps> steps) const {
-    Place best;
-    for (std::size_t r = 0; r < tours_.size(); ++r) {
-      if (problem_.robots[r].first[stop] == TourProblem::kNever) continue;
-      double least = TourProblem::kNever;  // what adds more costs no less
-      for (std::size_t at = std::min(problem_.robots[r].fixed, tours_[r].size()); at <= tours_[r].size();
-           ++at) {
-        const double added = detour(r, tours_[r], steps[r], at, stop, stop);
-        if (!(added < least)) continue;
-        least = added;
-        const double length = lengths_[r] + added;
-        // Those that cost least come first.
-        const double cost = cost_with(r, length, r, length);
-        if (cost < best.cost) best = {cost, r, at};
-      }
-    }
-    return best;
+  [[nodiscard]] std::size_t first_free_place(std::size_t r) const {
+    return std::min(problem_.robots[r].fixed, tours_[r].size());
+  }
+  void take_if_cheaper(Place& place, std::size_t r, std::uint32_t stop, std::size_t at) const {
+    if (at < first_free_place(r) || problem_.robots[r].first[stop] == TourProblem::kNever) return;
+    if (const double added = detour(r, tours_[r], steps_[r], at, stop, stop); added < place.added)
+      place = {added, at};
+  }
+  [[nodiscard]] Place cheapest_place(std::size_t r, std::uint32_t stop) const {
+    Place place;
+    for (std::size_t at = first_free_place(r); at <= tours_[r].size(); ++at)
+      take_if_cheaper(place, r, stop, at);
+    return place;
+  }
+  // Places that add about as much may cost the same, after rounding.
+  [[nodiscard]] std::size_t first_place_for(std::size_t r, std::uint32_t stop, double cost) const {
+    std::size_t at = first_free_place(r);
+    while (cost_with_more(r, detour(r, tours_[r], steps_[r], at, stop, stop)) != cost) ++at;
+    return at;
   }
 
   // 2-opt.
@@ -130,7 +156,7 @@ class Search {
           if (after >= before - kWorth) continue;
           std::reverse(tour.begin() + static_cast<std::ptrdiff_t>(i),
                        tour.begin() + static_cast<std::ptrdiff_t>(j + 1));
-          lengths_[r] = problem_.length(r, tour);
+          measure(r);
           any = true;
         }
     }
@@ -144,8 +170,6 @@ class Search {
       std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
       bool turned = false;
     } move;
-    std::vector<Steps> all;
-    for (std::size_t r = 0; r < tours_.size(); ++r) all.push_back(steps_of(r, tours_[r]));
     Tour rest;
     for (std::size_t a = 0; a < tours_.size(); ++a) {
       const TourProblem::Robot& robot = problem_.robots[a];
@@ -155,21 +179,21 @@ class Search {
           const std::size_t end = begin + count;
           const std::uint32_t first = tour[begin], last = tour[end - 1];
           double inner = 0.0;
-          for (std::size_t i = begin + 1; i < end; ++i) inner += all[a][i];
-          double left = lengths_[a] - all[a][begin] - inner;
+          for (std::size_t i = begin + 1; i < end; ++i) inner += steps_[a][i];
+          double left = lengths_[a] - steps_[a][begin] - inner;
           rest.assign(tour.begin(), tour.begin() + static_cast<std::ptrdiff_t>(begin));
           rest.insert(rest.end(), tour.begin() + static_cast<std::ptrdiff_t>(end), tour.end());
-          Steps rest_steps = all[a];
+          Steps rest_steps = steps_[a];
           rest_steps.erase(rest_steps.begin() + static_cast<std::ptrdiff_t>(begin),
                            rest_steps.begin() + static_cast<std::ptrdiff_t>(end));
           if (end < tour.size()) {
             rest_steps[begin] = step(robot, rest, begin);
-            left -= all[a][end];
+            left -= steps_[a][end];
             left += rest_steps[begin];
           }
           for (std::size_t b = 0; b < tours_.size(); ++b) {
             const Tour& into = b == a ? rest : tours_[b];
-            const Steps& steps = b == a ? rest_steps : all[b];
+            const Steps& steps = b == a ? rest_steps : steps_[b];
             double within = inner;
             if (b != a) {
               if (problem_.robots[b].first[first] == TourProblem::kNever) continue;
@@ -203,12 +227,13 @@ class Search {
     tour.erase(begin, begin + static_cast<std::ptrdiff_t>(move.count));
     Tour& into = tours_[move.to];
     into.insert(into.begin() + static_cast<std::ptrdiff_t>(move.at), stretch.begin(), stretch.end());
-    for (const std::size_t r : {move.from, move.to}) lengths_[r] = problem_.length(r, tours_[r]);
+    for (const std::size_t r : {move.from, move.to}) measure(r);
     return true;
   }
 
   const TourProblem& problem_;
   Tours tours_;
+  std::vector<Steps> steps_;
   std::vector<double> lengths_;
 };
 
