@@ -65,7 +65,7 @@ class ExploreMotion : public ExploreCommand {
               Table(path(b + "/events.csv")).without("planning_s"));
     const nlohmann::json x = json_in(a), y = json_in(b);
     for (const char* name : {"time_s", "auc", "explored_m3", "clearance_min_m", "separation_min_m",
-                             "contacts", "by_robot", "lockstep", "latency_s"})
+                             "contacts", "contacts_in_free", "by_robot", "lockstep", "latency_s"})
       EXPECT_EQ(x.at(name), y.at(name)) << name;
     for (const std::string& run : {a, b}) expect_planning_times(run);
   }

@@ -184,8 +184,44 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
   test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
 }
 
-// After 28 s, when it had mapped a twelfth, this team once ended its run: two robots rested in the third
-// one's way.
+// Wires of a millimetre stand in a row across a room: beams pass them by, and bodies do not.
+TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
+  std::ostringstream obj;
+  int vertices = 0;
+  const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    for (const double x : {low.x(), high.x()})
+      for (const double y : {low.y(), high.y()})
+        for (const double z : {low.z(), high.z()}) obj << "v " << x << " " << y << " " << z << "\n";
+    for (const auto& face :
+         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
+      obj << "f";
+      for (const int corner : face) obj << " " << vertices + corner;
+      obj << "\n";
+    }
+    vertices += 8;
+  };
+  add_box({-4.0, -2.5, 0.0}, {4.0, 2.5, 3.0});
+  for (double y = -2.2; y < 2.4; y += 0.6) add_box({0.3, y, 0.0}, {0.301, y + 0.001, 3.0});
+  const std::string world = write("wires.obj", obj.str());
+  const std::string robot = write("robot.json", R"({"name": "uav", "motion": "space", "body": {"kind": "box",
+    "size_m": [0.7, 0.7, 0.5]}, "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72,
+    "range_m": 6, "columns": 32, "rows": 24, "rate_hz": 4}})");
+  const std::vector<std::string> words = {
+      world, "--start=-2.5,0.1,1.5", "--team", "",         "--robot", robot, "--bumper",
+      "off", "--stop-time",          "25",     "--report", "off"};
+  const test::Answer answer = run(joined(words, {"-o", path("run")}));
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const nlohmann::json json = json_in("run");
+  const std::uint64_t contacts = json.at("contacts"), in_free = json.at("contacts_in_free");
+  EXPECT_GT(in_free, 0U);
+  EXPECT_LE(in_free, contacts);
+  test::expect_parts(answer.out,
+                     {"contacts     " + std::to_string(contacts) + ", " + std::to_string(in_free) +
+                      " with surfaces in free voxels, least clearance 0.00 m"});
+  ASSERT_EQ(run(joined(words, {"--lockstep", "-o", path("steps")})).code, 0);
+  EXPECT_EQ(json_in("steps").at("contacts_in_free"), nullptr) << "not judged in lock-step";
+}
+
 TEST_F(ExploreMotion, RobotsFailAndDriftAsAsked) {
   const auto words = [&](const std::string& output, const std::string& seconds) {
     return joined(quick(output, seconds), {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2"});
@@ -212,6 +248,8 @@ TEST_F(ExploreMotion, RobotsFailAndDriftAsAsked) {
   EXPECT_TRUE(content_of(path("run/motion.csv")) == content_of(path("parts/motion.csv")));
 }
 
+// After 28 s, when it had mapped a twelfth, this team once ended its run: two robots rested in the third
+// one's way.
 TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
   expect_answer({"maze", "--seed", "1", "--team", "3uav", "--latency", "0.25", "--stop-time", "45",
                  "--report", "off", "-o", path("run")});

@@ -33,9 +33,11 @@ ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
               setup.exploration.seed, setup.at_contact, setup.pose_errors),
       exploration_(setup.exploration,
                    planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
-      known_(setup.head.resolution) {
+      known_(setup.head.resolution),
+      judged_(setup.head.robots.size()) {
   numbers_.mapped.emplace_back();
   numbers_.robots.resize(setup.head.robots.size());
+  numbers_.contacts_in_free = 0;
 }
 
 ExplorationStep ContinuousLoop::step() { return go_on(nullptr); }
@@ -93,9 +95,26 @@ void ContinuousLoop::sense() {
   const auto where = [this](std::size_t robot, double time) { return exploration_.at(robot, time); };
   const sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
   time_ = next;
+  judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
   if (!numbers_.robots[sensed.robot].failed)
     count(exploration_.insert(sensed.robot, sensed.pose, sensed.scan));
+}
+
+// New ones, by the map that the robots had at the time.
+void ContinuousLoop::judge_contacts() {
+  const VoxelGrid& map = exploration_.mapping().grid();
+  for (std::size_t r = 0; r < judged_.size(); ++r) {
+    const std::vector<sim::Contact>& contacts = robots_.records()[r].contacts;
+    for (; judged_[r] < contacts.size(); ++judged_[r]) {
+      const Eigen::AlignedBox3d& body = contacts[judged_[r]].body;
+      const auto low = map.lattice().key(Eigen::Vector3d(body.min())),
+                 high = map.lattice().key(Eigen::Vector3d(body.max()));
+      const auto is_free = [&](const VoxelKey& key) { return map.at(key) == Occupancy::kFree; };
+      ++numbers_.contacts;
+      if (low && high && all_of({*low, *high}, is_free)) ++*numbers_.contacts_in_free;
+    }
+  }
 }
 
 void ContinuousLoop::count(const MapChange& change) {
@@ -109,12 +128,10 @@ void ContinuousLoop::count(const MapChange& change) {
   }
   mapped.time = time_;
   mapped.length = 0.0;
-  numbers_.contacts = 0;
   double clearance = 1.0;
   for (std::size_t r = 0; r < robots_.records().size(); ++r) {
     const sim::MotionRecord& record = robots_.records()[r];
     numbers_.robots[r] = {record.length, record.idle, record.held_back, numbers_.robots[r].failed};
-    numbers_.contacts += record.contacts;
     mapped.length += record.length;
     clearance = std::min(clearance, record.clearance);
   }

@@ -6,7 +6,11 @@
 #include <frontlux/sim/moving_robots.hpp>
 #include <frontlux/voxel_grid.hpp>
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace frontlux::app {
 
@@ -29,6 +33,7 @@ class ContinuousLoop final : public RunLoop {
   bool lose_robots();
   void sense();
   void count(const MapChange& change);
+  void judge_contacts();
   void note_motion(double until);
   void note_plan(const planner::PlannedMotion& planned, const planner::ExplorationStep& measured);
 
@@ -37,6 +42,7 @@ class ContinuousLoop final : public RunLoop {
   planner::ContinuousExploration exploration_;
   VoxelGrid known_;  // what is counted as mapped
   RunNumbers numbers_;
+  std::vector<std::size_t> judged_;  // contacts of each robot, by the map
   std::optional<RunEnd> end_;
   bool begun_ = false;
   double time_ = 0.0;          // [s] of the last scan

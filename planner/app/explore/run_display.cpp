@@ -134,6 +134,9 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
   }
   out += row("contacts",
              std::to_string(numbers.contacts) +
+                 (numbers.contacts > 0 && numbers.contacts_in_free
+                      ? ", " + std::to_string(*numbers.contacts_in_free) + " with surfaces in free voxels"
+                      : "") +
                  (numbers.clearance ? ", least clearance " + fixed(*numbers.clearance, 2) + " m" : "") +
                  (numbers.separation ? ", between robots " + fixed(*numbers.separation, 2) + " m" : "")) +
          row("planning", "mean " + fixed(sums.planning_mean(), 3) + " s, 99 % below " +

@@ -102,7 +102,7 @@ TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLi
   EXPECT_GT(planned, 10);
   EXPECT_GT(in_flight, planned / 3) << "it hardly ever stops";
   EXPECT_GE(reasons.size(), 3U);
-  EXPECT_EQ(scene.robots().records()[0].contacts, 0U);
+  EXPECT_EQ(scene.robots().records()[0].contacts.size(), 0U);
   EXPECT_GT(scene.robots().records()[0].clearance, 0.0);
 
   const TeamInWorld& team = scene.team();

@@ -102,7 +102,7 @@ TEST_F(ExploreLive, ExploresInMotionAndAgainWithoutARobot) {
   }
   expect_success(status);
   EXPECT_GT(trajectories, 10);
-  EXPECT_EQ(robots.records()[0].contacts, 0U);
+  EXPECT_EQ(robots.records()[0].contacts.size(), 0U);
   const std::string told = content_of(folder_ / "out"), map = content_of(folder_ / "scans/map.bt");
   EXPECT_NE(told.find("\n# end: "), std::string::npos) << told;
   const auto grid = make_voxel_grid(

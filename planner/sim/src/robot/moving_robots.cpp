@@ -117,7 +117,8 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   now.way += step;
   const Eigen::Vector3d at = to.pose.position + error(robot, time);
   const Eigen::Vector3d from = now.pose.position, motion = at - from;
-  const bool contact = !motion.isZero(0.0) && solids_.count({body(robot, from), motion}) > 0;
+  const SweptBox swept(body(robot, from), motion);
+  const bool contact = !motion.isZero(0.0) && solids_.count(swept) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
     now.way -= step;
     ++record.held_back;
@@ -127,7 +128,7 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
         {robot, now.believed, cells_ahead(truth_->lattice(), now.believed.position, to.pose.position)});
     return;
   }
-  if (contact && !now.touching) ++record.contacts;
+  if (contact && !now.touching) record.contacts.push_back({time, swept.bounds()});
   if (!motion.isZero(0.0)) now.touching = contact;
   record.length += motion.norm();
   if (motion.isZero(0.0) && to.pose.yaw == now.pose.yaw) record.idle += seconds;

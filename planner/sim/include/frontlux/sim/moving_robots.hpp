@@ -22,12 +22,18 @@
 
 namespace frontlux::sim {
 
+/// A body begins to touch a surface, and goes on.
+struct Contact {
+  double time = 0.0;         ///< [s] at the end of the motion that touched
+  Eigen::AlignedBox3d body;  ///< [m] around the body from the begin of that motion to its end
+};
+
 /// What robots in motion did to the world and to each other.
 struct MotionRecord {
-  std::uint64_t contacts = 0;   ///< times that a body began to touch a surface, and went on
-  std::uint64_t held_back = 0;  ///< times that a bumper stopped it instead
-  double length = 0.0;          ///< [m] travelled
-  double idle = 0.0;            ///< [s] at rest, not turning
+  std::vector<Contact> contacts;  ///< in the order of time
+  std::uint64_t held_back = 0;    ///< times that a bumper stopped it instead
+  double length = 0.0;            ///< [m] travelled
+  double idle = 0.0;              ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown on all sides, on a plane sideways, without touching a
   /// surface; up to a metre.
   double clearance = 1.0;
