@@ -10,21 +10,6 @@ using test::Table;
 
 class ExploreGround : public ExploreMotion {
  protected:
-  // Faces of closed boxes and of a ramp, which may overlap.
-  static void add_prism(std::ostream& obj, int& vertices, const Eigen::Vector3d& low,
-                        const Eigen::Vector3d& high, double top_at_low_x) {
-    for (const double x : {low.x(), high.x()})
-      for (const double y : {low.y(), high.y()})
-        for (const double z : {low.z(), x == low.x() ? top_at_low_x : high.z()})
-          obj << "v " << x << " " << y << " " << z << "\n";
-    for (const auto& face :
-         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
-      obj << "f";
-      for (const int corner : face) obj << " " << vertices + corner;
-      obj << "\n";
-    }
-    vertices += 8;
-  }
   // A lower floor with a pit of 1 m, a ramp along x up to 0.6 m, and an upper floor.
   [[nodiscard]] std::string hall(double run) const {
     std::ostringstream obj;

@@ -70,6 +70,22 @@ class ExploreMotion : public ExploreCommand {
     for (const std::string& run : {a, b}) expect_planning_times(run);
   }
 
+  /// Adds a box to an OBJ file, or a ramp whose top has another height at its low x.
+  static void add_prism(std::ostream& obj, int& vertices, const Eigen::Vector3d& low,
+                        const Eigen::Vector3d& high, double top_at_low_x) {
+    for (const double x : {low.x(), high.x()})
+      for (const double y : {low.y(), high.y()})
+        for (const double z : {low.z(), x == low.x() ? top_at_low_x : high.z()})
+          obj << "v " << x << " " << y << " " << z << "\n";
+    for (const auto& face :
+         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
+      obj << "f";
+      for (const int corner : face) obj << " " << vertices + corner;
+      obj << "\n";
+    }
+    vertices += 8;
+  }
+
  private:
   // events.csv and the recording tell the same times, also of plannings before the run was resumed.
   void expect_planning_times(const std::string& output) const {

@@ -189,16 +189,7 @@ TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
   std::ostringstream obj;
   int vertices = 0;
   const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-    for (const double x : {low.x(), high.x()})
-      for (const double y : {low.y(), high.y()})
-        for (const double z : {low.z(), high.z()}) obj << "v " << x << " " << y << " " << z << "\n";
-    for (const auto& face :
-         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
-      obj << "f";
-      for (const int corner : face) obj << " " << vertices + corner;
-      obj << "\n";
-    }
-    vertices += 8;
+    add_prism(obj, vertices, low, high, high.z());
   };
   add_box({-4.0, -2.5, 0.0}, {4.0, 2.5, 3.0});
   for (double y = -2.2; y < 2.4; y += 0.6) add_box({0.3, y, 0.0}, {0.301, y + 0.001, 3.0});
