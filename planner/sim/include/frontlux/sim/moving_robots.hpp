@@ -29,7 +29,7 @@ struct MotionRecord {
   double length = 0.0;          ///< [m] travelled
   double idle = 0.0;            ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown on all sides, on a plane sideways, without touching a
-  /// surface; up to a metre.
+  /// surface; up to a metre. A cylinder grows by it in radius and on both ends.
   double clearance = 1.0;
 };
 
@@ -80,7 +80,7 @@ class MovingRobots {
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
-  /// [m] The least distance between two bodies so far; infinite for a single robot.
+  /// [m] The least distance between the boxes around two bodies so far; infinite for a single robot.
   [[nodiscard]] double separation() const { return separation_; }
 
  private:
