@@ -22,8 +22,7 @@ int node_edge_log2(double edge, double resolution) {
 // [voxels] From the middle of a cell to a voxel, along an axis.
 double distance_to(int voxel) { return std::max(std::abs(voxel) - 0.5, 0.0); }
 
-// [m] Half of the box that a box of an edge may touch off the middle of a cell, without what its voxels
-// cover.
+// [m] How far a box of an edge may stick out of its voxels, anywhere in its cell.
 double reach_along(double edge, double resolution) {
   const double beyond = edge / 2 - detail::half_width(edge, resolution) * resolution;
   return beyond > kIgnored * resolution ? std::min(beyond, (0.5 - kIgnored) * resolution) : 0.0;
@@ -112,9 +111,10 @@ void BodyStencil::round_off(const RoundBody& body, double resolution) {
       if (body.sphere) columns.push_back({1 - layers, layers - 1});
       all = all && columns.back().low == low_[2] && columns.back().high == high_[2];
     }
-  // Along each axis a voxel is nearest to one of the two middles around a point, so one of the cells within
-  // half a voxel of it holds whatever a body there touches. A body that is off a middle by less than `room`
-  // touches nothing new: so much less is enough along all axes. If nothing is rounded off, the box's is, too.
+  // Along each axis a voxel is nearest from one of the two middles around a point. So each voxel that a body
+  // at the point touches is in the stencil of a cell within half a voxel of it. Voxels are nearer to a middle
+  // than the radius, or at least `beyond` far: axes off by less than this room in all need their own cell
+  // only. What rounds nothing off has the reach of its box as well.
   const double room = std::max(0.0, beyond - body.radius) / std::sqrt(body.sphere ? 3.0 : 2.0);
   double reach = std::min(0.5 - room, 0.5 - kIgnored) * resolution;
   if (reach < kIgnored * resolution) reach = 0.0;

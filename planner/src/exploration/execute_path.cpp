@@ -22,7 +22,8 @@ bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, co
 }
 
 // The corridor is as old as the step; the map has changed since. A robot beside which something was found may
-// move to the middle of its voxel, where it is free: it enters no other voxel on that move.
+// move to the middle of its voxel, where it is free: it enters no other voxel on that move, though a round
+// body may graze a corner.
 bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
   const Lattice& lattice = grid.lattice();
   const Eigen::Vector3d& begin =

@@ -70,7 +70,7 @@ TEST(SweptBody, RoundOnesMeetTheTrianglesWhosePointsTheyHold) {
 TEST(SweptBody, RoundOnesMeetWhatTheyMeetOnTheirWay) {
   Random random(12);
   int met = 0, only_on_the_way = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 1'500; ++i) {
     const BodyShape shape = i % 2 == 0 ? BodyShape::kCylinder : BodyShape::kSphere;
     const double radius = random.uniform(0.05, 0.3);
     const Vector3d half = Vector3d::Constant(radius), at = random.point(-0.5, 0.5),

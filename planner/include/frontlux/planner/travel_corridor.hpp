@@ -173,7 +173,8 @@ enum class CorridorExtent : std::uint8_t {
 /// cells connect with the robot's by faces. Diagonal steps shorten paths but reach no other cells. After an
 /// update the result is the same as that of a new corridor.
 ///
-/// Takes memory for each voxel of the bounds, or of one layer. Thread safety: as a standard container.
+/// Takes memory for each voxel of the bounds, or of one layer; of a sphere for each height of its columns.
+/// Thread safety: as a standard container.
 class FRONTLUX_EXPORT TravelCorridor {
  public:
   /// @param bounds  of the stencil; on a plane only x and y are used

@@ -16,9 +16,8 @@ namespace frontlux::sim {
 /// included, and exactly there.
 class SweptBody {
  public:
-  /// @param start   the smallest box around the body where the motion begins, not empty; of a cylinder as
-  /// wide
-  ///                as it is long, of a sphere a cube
+  /// @param start   the smallest box around the body where the motion begins, not empty; of a cylinder it is
+  ///                as wide as it is long, of a sphere a cube
   /// @param motion  [m]
   SweptBody(planner::BodyShape shape, const Eigen::AlignedBox3d& start, const Eigen::Vector3d& motion);
 
