@@ -17,6 +17,7 @@
 #include <frontlux/file.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/continuous_exploration.hpp>
 
 #include <charconv>
@@ -80,8 +81,11 @@ std::string rows_of(const Trajectory& trajectory) {
 ExplorationStart start_of(const Pose& start, const Lattice& lattice, const TravelOptions& travel) {
   ExplorationStart begin{start, {}};
   const VoxelKey at = lattice.key(start.position).value();
-  frontlux::for_each_key(voxels_of_cell(travel, lattice, cell_of(travel, lattice, at)),
-                         [&](const VoxelKey& key) { begin.known_free.push_back(key); });
+  static_cast<void>(BodyStencil(travel, lattice.resolution())
+                        .all_of(cell_of(travel, lattice, at), [&](const VoxelKey& key) {
+                          begin.known_free.push_back(key);
+                          return true;
+                        }));
   return begin;
 }
 

@@ -154,6 +154,30 @@ TEST_F(TaskCommand, IsResumedWithoutItsFile) {
   EXPECT_EQ(json_in("cut").at("task").at("box_m"), json_in("whole").at("task").at("box_m"));
 }
 
+// Among lockers, on any number of threads, resumed, and repeated from run.json.
+TEST_F(TaskCommand, OfARoundBodyIsTheSameAgain) {
+  const std::string kBox = R"({"kind": "box", "size_m": [0.4, 0.4, 0.4]})",
+                    kRound = R"({"kind": "cylinder", "diameter_m": 0.5, "height_m": 0.3})",
+                    kStart = R"(, "start": [1.5, 1.5, 1, 30])";
+  const std::string uav = test::replaced(test::replaced(kUav, kBox, kRound), kStart, "");
+  const std::string file = write("round.json", R"({"world": "room", "seed": 1, "resolution_m": 0.2, )"
+                                               R"("end": {"time_s": 4}, "robots": [)" +
+                                                   uav + "]}");
+  expect_done(file, "one", {"--threads", "1"});
+  expect_done(file, "two", {"--threads", "2"});
+  expect_same_runs("one", "two");
+  expect_done(file, "cut", {"--max-steps", "2"});
+  expect_resumed("cut", {"--max-steps", "100000"});
+  expect_same_runs("one", "cut");
+  EXPECT_EQ(content_of(path("one/motion.csv")), content_of(path("cut/motion.csv")));
+  EXPECT_EQ(json_in("one").at("task").at("robots")[0].at("body"), nlohmann::json::parse(kRound));
+  EXPECT_EQ(read_recording(path("cut/run.frontlux")).head.robots.at(0).robot.travel.shape,
+            BodyShape::kCylinder);
+  expect_done(task_of("one"), "again");
+  expect_same_runs("one", "again");
+  EXPECT_EQ(json_in("one").at("contacts"), 0);
+}
+
 TEST_F(TaskCommand, WithoutABoxIsShiftedLikeTheCommandLine) {
   write_court();
   const std::string file =

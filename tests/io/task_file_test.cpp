@@ -139,15 +139,22 @@ TEST_F(TaskFile, ThoseThatShipAreOfThePapersRobots) {
   }
 }
 
-// Planned with as the boxes around them.
 TEST_F(TaskFile, TakesRoundBodies) {
-  const auto extents = [&](const std::string& body) {
+  const auto expect_body = [&](const std::string& body, planner::BodyShape shape,
+                               const Eigen::Vector3d& extents) {
     write("t.json", test::replaced(kGood, R"({"kind": "box", "size_m": [0.4, 0.4, 0.3]})", body));
-    return read_task(path("t.json")).robots.at(0).description.robot.travel.extents;
+    const Task task = read_task(path("t.json"));
+    write("again.json", task_text(task));
+    for (const Task& read : {task, read_task(path("again.json"))}) {
+      const planner::TravelOptions& travel = read.robots.at(0).description.robot.travel;
+      EXPECT_EQ(travel.shape, shape);
+      EXPECT_EQ(travel.extents, extents);
+    }
   };
-  EXPECT_EQ(extents(R"({"kind": "cylinder", "diameter_m": 0.5, "height_m": 0.3})"),
-            Eigen::Vector3d(0.5, 0.5, 0.3));
-  EXPECT_EQ(extents(R"({"kind": "sphere", "diameter_m": 0.6})"), Eigen::Vector3d(0.6, 0.6, 0.6));
+  expect_body(R"({"kind": "box", "size_m": [0.5, 0.6, 0.3]})", planner::BodyShape::kBox, {0.5, 0.6, 0.3});
+  expect_body(R"({"kind": "cylinder", "diameter_m": 0.5, "height_m": 0.3})", planner::BodyShape::kCylinder,
+              {0.5, 0.5, 0.3});
+  expect_body(R"({"kind": "sphere", "diameter_m": 0.6})", planner::BodyShape::kSphere, {0.6, 0.6, 0.6});
 }
 
 TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {

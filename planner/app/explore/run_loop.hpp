@@ -39,7 +39,8 @@ struct RunNumbers {
   std::vector<Mapped> mapped;  ///< whenever it became more, by time
   std::vector<RobotNumbers> robots;
   std::uint64_t contacts = 0;  ///< of bodies with surfaces
-  /// Those where the map had all voxels of the body as free: the surface is in some that beams have passed.
+  /// Those where the map had all voxels around the body as free: the surface is in some that beams have
+  /// passed.
   std::optional<std::uint64_t> contacts_in_free;
   std::optional<double> clearance, separation;  ///< [m] if measured, and of more than one robot
 };

@@ -13,7 +13,8 @@ namespace frontlux::io {
 namespace {
 
 using nlohmann::json, nlohmann::ordered_json;
-using planner::Motion, planner::MotionLimits, planner::RobotDescription, planner::TravelOptions;
+using planner::BodyShape, planner::Motion, planner::MotionLimits, planner::RobotDescription,
+    planner::TravelOptions;
 using Shape = FieldOfView::Shape;
 
 constexpr std::size_t kMaxName = 40;
@@ -83,9 +84,11 @@ Eigen::Vector3d read_edges(Members& members, const std::string& name) {
   return {edges[0], edges[1], edges[2]};
 }
 
-// The box around it.
-Eigen::Vector3d read_body(Members& members, RobotForm form) {
-  if (form == RobotForm::kFile && members.find("body") == nullptr) return read_edges(members, "box_m");
+void read_body(Members& members, RobotForm form, TravelOptions& travel) {
+  if (form == RobotForm::kFile && members.find("body") == nullptr) {
+    travel.extents = read_edges(members, "box_m");
+    return;
+  }
   members.not_here({"box_m"},
                    form == RobotForm::kFile
                        ? "is given beside body"
@@ -93,17 +96,16 @@ Eigen::Vector3d read_body(Members& members, RobotForm form) {
   Members body = members.object("body", R"({"kind": "box", "size_m": [x, y, z]})");
   const std::string kinds = R"("box", "cylinder" or "sphere")";
   const std::string kind = body.text("kind", kinds);
-  Eigen::Vector3d size;
-  if (kind == "box") {
-    size = read_edges(body, "size_m");
-  } else if (kind == "cylinder" || kind == "sphere") {
-    const double diameter = body.number("diameter_m", "m", kLengths);
-    size = {diameter, diameter, kind == "sphere" ? diameter : body.number("height_m", "m", kLengths)};
+  const auto shape = planner::body_shape_named(kind);
+  if (!shape) body.refuse("kind", "is " + quote(kind), "give " + kinds);
+  travel.shape = *shape;
+  if (*shape == BodyShape::kBox) {
+    travel.extents = read_edges(body, "size_m");
   } else {
-    body.refuse("kind", "is " + quote(kind), "give " + kinds);
+    travel.extents.setConstant(body.number("diameter_m", "m", kLengths));
+    if (*shape == BodyShape::kCylinder) travel.extents.z() = body.number("height_m", "m", kLengths);
   }
   body.expect_no_more();
-  return size;
 }
 
 void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
@@ -112,7 +114,7 @@ void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
   const auto known = planner::motion_named(motion);
   if (!known) members.refuse("motion", "is " + quote(motion), "give " + motions);
   travel.motion = *known;
-  travel.extents = read_body(members, form);
+  read_body(members, form, travel);
   travel.margin = members.number("margin_m", "m", kMargins, travel.margin);
   if (travel.motion != Motion::kPlane)
     members.not_here({"require_ground"}, "is for a robot with the motion \"plane\"");
@@ -138,6 +140,18 @@ void read_travel(Members& members, RobotForm form, TravelOptions& travel) {
     if (members.find("node_edge_m") != nullptr)
       travel.node_edge = members.number("node_edge_m", "m", {travel.extents.maxCoeff(), kLengths.high});
   }
+}
+
+ordered_json json_of_body(const TravelOptions& travel) {
+  const Eigen::Vector3d& size = travel.extents;
+  ordered_json object;
+  object["kind"] = planner::name_of(travel.shape);
+  if (travel.shape == BodyShape::kBox)
+    object["size_m"] = {size.x(), size.y(), size.z()};
+  else
+    object["diameter_m"] = size.x();
+  if (travel.shape == BodyShape::kCylinder) object["height_m"] = size.z();
+  return object;
 }
 
 ordered_json json_of_sensor(const RobotDescription& robot) {
@@ -169,11 +183,10 @@ RobotDescription read_robot_members(Members& members, RobotForm form) {
 
 ordered_json json_of(const RobotDescription& robot) {
   const TravelOptions& travel = robot.robot.travel;
-  const Eigen::Vector3d& size = travel.extents;
   ordered_json object;
   object["name"] = robot.robot.name;
   object["motion"] = planner::name_of(travel.motion);
-  object["body"] = {{"kind", "box"}, {"size_m", {size.x(), size.y(), size.z()}}};
+  object["body"] = json_of_body(travel);
   object["margin_m"] = travel.margin;
   if (travel.drives()) {
     object["mount_height_m"] = travel.sensor_height;

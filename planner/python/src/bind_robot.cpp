@@ -122,7 +122,7 @@ Raises ValueError naming the value that is out of bounds.)")
           "'plane', 'ground' or 'space'.")
       .def_property_readonly(
           "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },
-          "float64 (3,): [m] its body along x, y and z.")
+          "float64 (3,): [m] the box around its body along x, y and z.")
       .def_property_readonly(
           "view", [](const Self& self) { return std::make_shared<FieldOfView>(self->robot.view); },
           "What its sensor sees.")

@@ -1,5 +1,7 @@
 #include "team.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -118,7 +120,9 @@ std::vector<ExplorationStart> starts_of(const Team& team, const py::object& obje
       throw py::value_error(name + " is not finite, or outside the bounds");
     ExplorationStart start{{at, numbers.number(r, 3)}, {}};
     const TravelOptions& travel = team.options.team[r].robot.travel;
-    const KeyBox body = voxels_of_cell(travel, lattice, cell_of(travel, lattice, *key));
+    const planner::BodyStencil stencil(travel, lattice.resolution());
+    const VoxelKey cell = cell_of(travel, lattice, *key);
+    const KeyBox body = stencil.box_around(cell);
     KeyBox box = body;
     if (free_radius > 0.0) {
       const Eigen::Vector3d reach = Eigen::Vector3d::Constant(free_radius);
@@ -128,7 +132,7 @@ std::vector<ExplorationStart> starts_of(const Team& team, const py::object& obje
       throw py::value_error("free_radius: a box of " + std::to_string(size_of(box)) +
                             " voxels around a start, but there may be at most 2^24");
     const auto known = [&](const VoxelKey& voxel) {
-      if (body.contains(voxel)) return true;
+      if (stencil.contains(cell, voxel)) return true;
       const Eigen::Vector3d offset = lattice.exact_center(voxel) - at;
       if (travel.motion == Motion::kSpace) return offset.norm() <= free_radius;
       return offset.head<2>().norm() <= free_radius && body.min.z <= voxel.z && voxel.z <= key->z;

@@ -5,7 +5,35 @@
 namespace frontlux::planner::detail {
 
 Erosion::Erosion(const KeyBox& box, const VoxelWindow& window, bool beyond)
-    : window_(window), beyond_(beyond), along_z_(box, beyond), along_yz_(box, beyond), whole_(box, beyond) {}
+    : window_(window), beyond_(beyond), along_(2, VoxelColumns(box, beyond)), whole_(box, beyond) {}
+
+Erosion::Erosion(const KeyBox& box, const BodyStencil& stencil)
+    : window_{stencil.low(), stencil.high()}, beyond_(false), whole_(box) {
+  if (stencil.is_box()) {
+    along_.assign(2, VoxelColumns(box));
+    return;
+  }
+  for (int x = window_.low[0]; x <= window_.high[0]; ++x)
+    for (int y = window_.low[1]; y <= window_.high[1]; ++y) {
+      const auto [low, high] = stencil.column(x, y);
+      if (low > high) continue;
+      auto part = std::ranges::find_if(parts_, [&](const Part& p) { return p.low == low && p.high == high; });
+      if (part == parts_.end()) part = parts_.insert(part, {low, high, {}, {}, VoxelColumns(box)});
+      part->columns.push_back({x, y});
+      const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(x) * whole_.size_y() + y;
+      part->offsets.push_back(column * static_cast<std::ptrdiff_t>(whole_.words()));
+    }
+}
+
+void Erosion::erode_along_z(const VoxelColumns& from, int low, int high, VoxelColumns& to) const {
+  to.stale = from.stale;
+  for (std::size_t i = 0; i < from.stale.size(); ++i) {
+    if (from.stale[i] == 0) continue;
+    const std::size_t words = from.words();
+    and_along_z(std::span(from.bits).subspan(i * words, words), low, high, beyond_,
+                std::span(to.bits).subspan(i * words, words));
+  }
+}
 
 // Renews the columns of `to` whose window along an axis meets a stale one of `from`, marking what changes.
 template <int kAxis>
@@ -39,17 +67,47 @@ void Erosion::erode_across(const VoxelColumns& from, VoxelColumns& to) const {
     }
 }
 
+// Renews the columns whose stencil meets a stale one.
+void Erosion::erode_parts() {
+  const int size_x = whole_.size_x(), size_y = whole_.size_y();
+  const auto inside = [&](int x, int y) { return x >= 0 && x < size_x && y >= 0 && y < size_y; };
+  VoxelColumns::Flags hit(whole_.stale.size(), 0);
+  for (int x = 0; x < size_x; ++x)
+    for (int y = 0; y < size_y; ++y)
+      for (const Part& part : parts_) {
+        if (part.along_z.stale[whole_.flag(x, y)] == 0) continue;
+        for (const auto& [dx, dy] : part.columns)
+          if (inside(x - dx, y - dy)) hit[whole_.flag(x - dx, y - dy)] = 1;
+      }
+  // Where the stencil leaves the box nothing is ever set.
+  const auto& [low, high] = window_;
+  for (int x = -low[0]; x < size_x - high[0]; ++x)
+    for (int y = -low[1]; y < size_y - high[1]; ++y) {
+      if (hit[whole_.flag(x, y)] == 0) continue;
+      for (std::size_t w = 0; w < whole_.words(); ++w) {
+        const auto first = static_cast<std::ptrdiff_t>(whole_.column(x, y) + w);
+        std::uint64_t all = ~std::uint64_t{0};
+        for (const Part& part : parts_) {
+          const std::uint64_t* words = part.along_z.bits.data() + first;
+          for (const std::ptrdiff_t offset : part.offsets) all &= words[offset];
+          if (all == 0) break;
+        }
+        whole_.bits[static_cast<std::size_t>(first)] = all;
+      }
+    }
+}
+
 void Erosion::erode(const VoxelColumns& columns) {
-  along_z_.stale = columns.stale;
-  for (std::size_t i = 0; i < columns.stale.size(); ++i) {
-    if (columns.stale[i] == 0) continue;
-    const std::size_t words = columns.words();
-    and_along_z(std::span(columns.bits).subspan(i * words, words), window_.low[2], window_.high[2], beyond_,
-                std::span(along_z_.bits).subspan(i * words, words));
+  if (parts_.empty()) {
+    erode_along_z(columns, window_.low[2], window_.high[2], along_[0]);
+    erode_across<1>(along_[0], along_[1]);
+    erode_across<0>(along_[1], whole_);
   }
-  erode_across<1>(along_z_, along_yz_);
-  erode_across<0>(along_yz_, whole_);
-  for (VoxelColumns* done : {&along_z_, &along_yz_, &whole_}) done->settle();
+  for (Part& part : parts_) erode_along_z(columns, part.low, part.high, part.along_z);
+  if (!parts_.empty()) erode_parts();
+  for (VoxelColumns& done : along_) done.settle();
+  for (Part& part : parts_) part.along_z.settle();
+  whole_.settle();
 }
 
 }  // namespace frontlux::planner::detail

@@ -2,7 +2,11 @@
 
 #include "corridor/voxel_columns.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
+
 #include <array>
+#include <cstddef>
+#include <vector>
 
 namespace frontlux::planner::detail {
 
@@ -11,10 +15,11 @@ struct VoxelWindow {
   std::array<int, 3> low{}, high{};
 };
 
-/// The voxels of a box around which all voxels of a window are set.
+/// The voxels of a box around which all voxels of a window or of a stencil are set.
 ///
-/// A window is tested by ANDs along one axis after the other. The result of each axis is kept, so that a
-/// change renews only the columns around it.
+/// A window is tested by ANDs along one axis after the other. Of a stencil that is no window, all columns
+/// with the same layers are tested along z first, and then each with the others of the stencil. The result of
+/// each stage is kept, so that a change renews only the columns around it.
 class Erosion {
  public:
   /// @param box     of the columns
@@ -22,18 +27,33 @@ class Erosion {
   /// @param beyond  whether voxels beyond the box count as set, as in the columns
   Erosion(const KeyBox& box, const VoxelWindow& window, bool beyond = false);
 
+  /// Voxels beyond the box do not count as set.
+  Erosion(const KeyBox& box, const BodyStencil& stencil);
+
   /// Takes the columns that are stale; all others have to be as they were.
   void erode(const VoxelColumns& columns);
 
   [[nodiscard]] bool whole(const VoxelKey& key) const { return whole_.holds(key); }
 
  private:
+  // Columns of the stencil with the same layers, relative to the middle.
+  struct Part {
+    int low, high;
+    std::vector<std::array<int, 2>> columns;
+    std::vector<std::ptrdiff_t> offsets;  // of the columns' first words
+    VoxelColumns along_z;
+  };
+
+  void erode_along_z(const VoxelColumns& from, int low, int high, VoxelColumns& to) const;
   template <int kAxis>
   void erode_across(const VoxelColumns& from, VoxelColumns& to) const;
+  void erode_parts();
 
   VoxelWindow window_;
   bool beyond_;
-  VoxelColumns along_z_, along_yz_, whole_;
+  std::vector<VoxelColumns> along_;  // z, and y and z; of a window
+  std::vector<Part> parts_;          // of a stencil that is none
+  VoxelColumns whole_;
 };
 
 }  // namespace frontlux::planner::detail

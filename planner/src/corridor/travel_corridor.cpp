@@ -2,7 +2,9 @@
 #include "corridor/path_distances.hpp"
 #include "corridor/path_search.hpp"
 #include "corridor/terrain.hpp"
+#include "corridor/whole_voxels.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
@@ -16,25 +18,24 @@
 namespace frontlux::planner {
 namespace {
 
-constexpr double kSlack = 1e-9;  // of a voxel: 0.9 m are three voxels of 0.3 m, whatever the division says
-constexpr int kMaxWindow = 1024;
+using detail::half_width, detail::kMaxWindow, detail::kSlack, detail::layers_below,
+    detail::reached_from_below, detail::voxels_in;
+
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSteepest = 80.0 * kDegree;
 constexpr int kNearby = 40;  // [cells] along each axis
 constexpr std::array<std::string_view, 3> kMotions = {"plane", "space", "ground"};
+constexpr std::array<std::string_view, 3> kShapes = {"box", "cylinder", "sphere"};
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
+template <class Value>
+std::optional<Value> value_named(const std::array<std::string_view, 3>& names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Value>(found - names.begin());
+}
+
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
-
-// Whole voxels in a length.
-int voxels_in(double length, double resolution) {
-  return static_cast<int>(std::floor(length / resolution + kSlack));
-}
-
-// Voxels that cover a length.
-int voxels_over(double length, double resolution) {
-  return static_cast<int>(std::ceil(length / resolution - kSlack));
-}
 
 void check_ground(const TravelOptions& options, double resolution) {
   if (!(options.step <= kMaxWindow * resolution && voxels_in(options.step, resolution) >= 1))
@@ -91,50 +92,10 @@ void check(const TravelOptions& options, double resolution, const KeyBox& bounds
            " are possible; give smaller bounds");
 }
 
-// Voxels on each side of the middle one, so that all together cover a length.
-int half_width(double length, double resolution) {
-  return static_cast<int>(std::ceil((length / resolution - 1.0) / 2 - kSlack));
-}
-
-int node_edge_log2(double edge, double resolution) {
-  int log2 = 0;
-  while (std::ldexp(resolution, log2) < edge - kSlack * resolution) ++log2;
-  return log2;
-}
-
-// Layers of voxels from the floor to the sensor of a robot that drives.
-int layers_below(const TravelOptions& options, double resolution) {
-  return voxels_in(options.sensor_height, resolution);
-}
-
-// Layers above the floor that steps and slopes may reach into.
-int reached_from_below(const TravelOptions& options, double resolution) {
-  return voxels_over(options.clearance(), resolution);
-}
-
-detail::VoxelWindow window_of(const TravelOptions& options, double resolution) {
-  if (options.node_edge > 0.0) {
-    const int edge = 1 << node_edge_log2(options.node_edge, resolution), half = edge / 2;
-    return {{-half, -half, -half}, {edge - 1 - half, edge - 1 - half, edge - 1 - half}};
-  }
-  detail::VoxelWindow window;
-  const Eigen::Vector3d box = options.box();
-  for (std::size_t a = 0; a < 3; ++a) {
-    window.high[a] = half_width(box[static_cast<Eigen::Index>(a)], resolution);
-    window.low[a] = -window.high[a];
-  }
-  if (options.drives()) {
-    const int below = layers_below(options, resolution);
-    window.low[2] = std::min(0, reached_from_below(options, resolution) - below);
-    window.high[2] = std::max(0, voxels_over(options.extents.z(), resolution) - 1 - below);
-  }
-  return window;
-}
-
-VoxelKey aligned(const TravelOptions& options, const detail::VoxelWindow& window, const VoxelKey& voxel) {
+VoxelKey aligned(const TravelOptions& options, const BodyStencil& stencil, const VoxelKey& voxel) {
   if (options.node_edge == 0.0) return voxel;
-  const int edge = window.high[0] - window.low[0] + 1;
-  const auto along = [&](int key) { return (key & ~(edge - 1)) - window.low[0]; };
+  const int low = stencil.low()[0], edge = stencil.high()[0] - low + 1;
+  const auto along = [&](int key) { return (key & ~(edge - 1)) - low; };
   return make_key(along(voxel.x), along(voxel.y), along(voxel.z));
 }
 
@@ -144,11 +105,13 @@ std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(ke
 
 std::string_view name_of(Motion motion) { return kMotions.at(static_cast<std::size_t>(motion)); }
 
-std::optional<Motion> motion_named(std::string_view name) {
-  const auto found = std::ranges::find(kMotions, name);
-  if (found == kMotions.end()) return std::nullopt;
-  return static_cast<Motion>(found - kMotions.begin());
+std::string_view name_of(BodyShape shape) { return kShapes.at(static_cast<std::size_t>(shape)); }
+
+std::optional<BodyShape> body_shape_named(std::string_view name) {
+  return value_named<BodyShape>(kShapes, name);
 }
+
+std::optional<Motion> motion_named(std::string_view name) { return value_named<Motion>(kMotions, name); }
 
 TravelOptions ugv_travel() {
   TravelOptions options;
@@ -193,26 +156,15 @@ Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
 }
 
 VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
-  return aligned(options, window_of(options, lattice.resolution()), voxel);
+  return aligned(options, BodyStencil(options, lattice.resolution()), voxel);
 }
 
 KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice, const VoxelKey& cell) {
-  const auto [low, high] = window_of(options, lattice.resolution());
-  return {{clamped(cell.x + low[0]), clamped(cell.y + low[1]), clamped(cell.z + low[2])},
-          {clamped(cell.x + high[0]), clamped(cell.y + high[1]), clamped(cell.z + high[2])}};
+  return BodyStencil(options, lattice.resolution()).box_around(cell);
 }
 
 Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
-  constexpr double kIgnored = 1e-4;  // of a voxel: centres that were floats are in the middle, too
-  Eigen::Vector3d reach = Eigen::Vector3d::Zero();
-  if (options.node_edge > 0.0) return reach;
-  const double resolution = lattice.resolution();
-  for (Eigen::Index a = 0; a < (options.drives() ? 2 : 3); ++a) {
-    const double edge = options.box()[a];
-    const double beyond = edge / 2 - half_width(edge, resolution) * resolution;
-    if (beyond > kIgnored * resolution) reach[a] = std::min(beyond, (0.5 - kIgnored) * resolution);
-  }
-  return reach;
+  return BodyStencil(options, lattice.resolution()).reach();
 }
 
 std::string_view describe(CorridorState state) {
@@ -235,8 +187,7 @@ struct TravelCorridor::State {
   const TravelOptions options;
   const Lattice lattice;
   const KeyBox bounds;
-  const detail::VoxelWindow window = window_of(options, lattice.resolution());
-  const Eigen::Vector3d reach = reach_of(options, lattice);
+  const BodyStencil stencil{options, lattice.resolution()};
   const int down = layers_below(options, lattice.resolution()) + 1;  // layers from a cell to its floor
 
   std::optional<std::uint16_t> plane;
@@ -253,7 +204,7 @@ struct TravelCorridor::State {
   std::vector<KeyBox> kept_out;   // of other robots
   CorridorState state = CorridorState::kNotUpdated;
 
-  [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, window, voxel); }
+  [[nodiscard]] VoxelKey cell_of(const VoxelKey& voxel) const { return aligned(options, stencil, voxel); }
   void lay_out(const VoxelKey& robot);
   void lay_ground(KeyBox box, const VoxelKey& robot);
   void read(const MapChange& change, const VoxelKey& robot);
@@ -280,11 +231,11 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   KeyBox middles = bounds;  // where the keys of cells may lie
   if (options.motion == Motion::kPlane) {
     plane = robot.z;
-    box.min.z = clamped(robot.z + window.low[2]);
-    box.max.z = clamped(robot.z + window.high[2]);
+    box.min.z = clamped(robot.z + stencil.low()[2]);
+    box.max.z = clamped(robot.z + stencil.high()[2]);
     middles.min.z = middles.max.z = robot.z;
   }
-  frame.stride = options.node_edge > 0.0 ? window.high[0] - window.low[0] + 1 : 1;
+  frame.stride = options.node_edge > 0.0 ? stencil.high()[0] - stencil.low()[0] + 1 : 1;
   if (frame.stride > 1) {
     middles.min = cell_of(bounds.min);
     middles.max = cell_of(bounds.max);
@@ -301,7 +252,7 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
   frame.size = {count(middles.min.x, middles.max.x), count(middles.min.y, middles.max.y),
                 count(lowest, middles.max.z)};
   free.emplace(box);
-  erosion.emplace(box, window);
+  erosion.emplace(box, stencil);
   distances.reset();
   terrain.reset();
   if (needs_ground()) lay_ground(box, robot);
@@ -437,7 +388,7 @@ bool TravelCorridor::fits(const VoxelKey& key) const {
   return state_->distances && state_->frame.place(key) && state_->fits(key);
 }
 
-const Eigen::Vector3d& TravelCorridor::reach() const { return state_->reach; }
+const Eigen::Vector3d& TravelCorridor::reach() const { return state_->stencil.reach(); }
 
 VoxelKey TravelCorridor::cell_of(const VoxelKey& voxel) const { return state_->cell_of(voxel); }
 

@@ -4,6 +4,7 @@
 #include "exploration/phase_clock.hpp"
 #include "goal/counting_ray_caster.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -229,11 +230,15 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
 Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
   constexpr double kStep = 0.05;  // [s]
   const TravelOptions& body = team.options.team[robot].robot.travel;
+  const BodyStencil stencil(body, team.lattice().resolution());
+  // Between its cells' middles a round body touches voxels that are none of its own cell's.
+  const Eigen::Vector3d reach =
+      body.shape == BodyShape::kBox ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : stencil.reach();
   Keys cells;
   Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
   for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
-    static_cast<void>(SegmentVoxels(team.lattice(), from, to).all_of([&](const VoxelKey& key) {
+    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
       if (cells.empty() || cells.back() != key) cells.push_back(key);
       return true;
     }));
@@ -242,7 +247,7 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
   sort_once(cells);
   Keys voxels;
   for (const VoxelKey& cell : cells) {
-    static_cast<void>(all_of(voxels_of_cell(body, team.lattice(), cell), [&](const VoxelKey& key) {
+    static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
       if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
       return true;
     }));

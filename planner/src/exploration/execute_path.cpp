@@ -1,5 +1,6 @@
 #include "exploration/execute_path.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -8,10 +9,6 @@
 
 namespace frontlux::planner::detail {
 namespace {
-
-bool is_free(const VoxelGrid& grid, const KeyBox& box) {
-  return all_of(box, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
-}
 
 // Whether a move stays in its voxel and leads towards the middle of it.
 bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -25,13 +22,15 @@ bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, co
 }
 
 // The corridor is as old as the step; the map has changed since. A robot beside which something was found may
-// move to the middle of its voxel, where it is free: it enters no other voxel on that move.
+// move to the middle of its voxel, where it is free: it enters no other voxel on that move, though a round
+// body may graze a corner.
 bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
   const Lattice& lattice = grid.lattice();
   const Eigen::Vector3d& begin =
       leads_to_the_middle(lattice, from.position, to.position) ? to.position : from.position;
-  return SegmentVoxels(lattice, begin, to.position, reach_of(body, lattice)).all_of([&](const VoxelKey& key) {
-    return is_free(grid, voxels_of_cell(body, lattice, key));
+  const BodyStencil stencil(body, lattice.resolution());
+  return SegmentVoxels(lattice, begin, to.position, stencil.reach()).all_of([&](const VoxelKey& cell) {
+    return stencil.all_of(cell, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
   });
 }
 

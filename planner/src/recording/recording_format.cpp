@@ -65,11 +65,25 @@ void code_view(RecordBytes& bytes, FieldOfView& view) {
       "the field of view is out of bounds");
 }
 
+// Motion and shape as one number, `motion + 3 shape`: that of a box is its motion, as before there were
+// shapes.
+void code_motion_and_shape(RecordBytes& bytes, TravelOptions& travel) {
+  constexpr int kMotions = 3, kShapes = 3;
+  int pair = static_cast<int>(travel.motion) + kMotions * static_cast<int>(travel.shape);
+  bytes.whole(pair, "motion and shape of the body", kMotions * kShapes - 1);
+  travel.motion = static_cast<Motion>(pair % kMotions);
+  travel.shape = static_cast<BodyShape>(pair / kMotions);
+}
+
 void code_travel(RecordBytes& bytes, TravelOptions& travel) {
   constexpr std::uint64_t kMostReach = 0xFFFF;  // [voxels]
-  bytes.whole(travel.motion, "motion", 2);
+  code_motion_and_shape(bytes, travel);
   for (double& extent : travel.extents)
     code_length(bytes, extent, "an extent of the collision box is no length");
+  bytes.require(travel.shape == BodyShape::kBox || travel.extents.x() == travel.extents.y(),
+                "the body is round, but not as long as wide");
+  bytes.require(travel.shape != BodyShape::kSphere || travel.extents.x() == travel.extents.z(),
+                "the body is a sphere, but not as high as wide");
   bytes.whole(travel.metric, "path metric", 1);
   code_length(bytes, travel.margin, "the margin around the body is no length");
   code_finite(bytes, travel.sensor_height, "the sensor's height is not finite");

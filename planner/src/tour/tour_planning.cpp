@@ -3,6 +3,7 @@
 #include "tour/travel_seconds.hpp"
 
 #include <frontlux/parallel.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -127,9 +128,10 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
 
 void TourPlanning::update_ways(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
-  std::vector<KeyBox> cells;  // whose boxes hold a changed voxel
+  const BodyStencil stencil(member.robot.travel, lattice_.resolution());
+  std::vector<KeyBox> cells;  // whose stencils may hold a changed voxel
   for (const KeyBox& box : changes) {
-    const KeyBox reach = voxels_of_cell(member.robot.travel, lattice_, box.min);
+    const KeyBox reach = stencil.box_around(box.min);
     const auto by = [](int low, int at, int high) { return std::max(at - low, high - at) + 1; };
     cells.push_back(grown(box, by(reach.min.x, box.min.x, reach.max.x),
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));

@@ -40,6 +40,9 @@ inline planner::RecordingHead random_head(Random& random, int robots) {
                           random.one_in(2)};
     robot.rate = random.uniform(0.1, 99);
     travel.extents = {random.uniform(0, 1), random.uniform(0, 2), random.uniform(0, 1)};
+    travel.shape = static_cast<planner::BodyShape>(random.below(3));
+    if (travel.shape != planner::BodyShape::kBox) travel.extents.y() = travel.extents.x();
+    if (travel.shape == planner::BodyShape::kSphere) travel.extents.z() = travel.extents.x();
     travel.sensor_height = random.uniform(-1, 1);
     travel.ground_reach = random.below(65536);
     for (int box = random.below(3); box > 0; --box)
@@ -145,8 +148,9 @@ class Listing {
          robot.view.vertical, robot.view.max_range, rate);
     line("limits", robot.limits.speed, robot.limits.acceleration, robot.limits.yaw_rate,
          robot.limits.per_axis);
-    line("travel", static_cast<int>(t.motion), t.extents.x(), t.extents.y(), t.extents.z(), t.margin,
-         static_cast<int>(t.metric), t.sensor_height, t.require_ground, t.ground_extents.has_value());
+    line("travel", static_cast<int>(t.motion), static_cast<int>(t.shape), t.extents.x(), t.extents.y(),
+         t.extents.z(), t.margin, static_cast<int>(t.metric), t.sensor_height, t.require_ground,
+         t.ground_extents.has_value());
     if (t.ground_extents) line("ground", t.ground_extents->x(), t.ground_extents->y());
     line(t.ground_reach, t.floor, t.min_height, t.node_edge, t.without_ground.size(), t.step, t.slope);
     for (const KeyBox& box : t.without_ground) add(box);

@@ -172,6 +172,27 @@ TEST(MovingRobots, CountEachTouchOnce) {
   EXPECT_NEAR(first.body.min().x(), first.body.max().x() - 0.8, 0.03) << "and a step of the motion";
 }
 
+// Past the upright edge of a pane, half a metre from it: a corner of the box around them meets it.
+TEST(MovingRobots, RoundBodiesTouchWithTheirTrueShape) {
+  BoxRoom room;
+  room.add_pane(3.0F);
+  const double off = 0.5 / std::numbers::sqrt2;
+  const Vector3d middle(3 + off, 2 - off, 1.5), from = middle - Vector3d(1, 1, 0),
+                                                to = middle + Vector3d(1.5, 1.5, 0);
+  for (const bool flies : {true, false})
+    for (const planner::BodyShape shape :
+         {planner::BodyShape::kBox, planner::BodyShape::kCylinder, planner::BodyShape::kSphere}) {
+      RobotDescription robot = flies ? uav() : ugv();
+      robot.robot.travel.shape = shape;
+      robot.robot.travel.extents = {0.8, 0.8, 0.8};
+      Moving scene(room, {robot}, {{from}});
+      scene.go_on(4.0, [&](std::size_t, double time) { return at(on_the_way(from, to, time)); });
+      const bool box = shape == planner::BodyShape::kBox;
+      EXPECT_EQ(scene.record().contacts, box ? 1U : 0U);
+      EXPECT_NEAR(scene.record().clearance, box ? 0.0 : 0.1, 4e-4);
+    }
+}
+
 TEST(MovingRobots, StayWhereABumperStopsThem) {
   BoxRoom room;
   room.add_pane(3.0F);

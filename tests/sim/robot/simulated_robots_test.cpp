@@ -130,6 +130,22 @@ TEST(SimulatedRobots, CountWhatTheyRunInto) {
   EXPECT_EQ(robots.total().physical, 6U);
 }
 
+// Half a metre from the upright edge of the pane, where only a corner of the box around it meets something.
+TEST(SimulatedRobots, CountContactsOfTheTrueShape) {
+  const BesideThePane scene;
+  for (const planner::BodyShape shape :
+       {planner::BodyShape::kBox, planner::BodyShape::kCylinder, planner::BodyShape::kSphere}) {
+    planner::RobotDescription round = planner::uav_description();
+    round.robot.travel.shape = shape;
+    SimulatedRobots robots = scene.robots({round});
+    const double off = 0.5 / std::numbers::sqrt2, x = 3 + off, y = 2 - off;
+    EXPECT_EQ(collisions_of(robots, 0, {{x - 1, y - 1, 1.35}}).physical, 0U);
+    EXPECT_EQ(collisions_of(robots, 0, {{x + 1, y + 1, 1.35}}).physical > 0,
+              shape == planner::BodyShape::kBox);
+    EXPECT_GT(collisions_of(robots, 0, {{3 - off, y + 1, 1.35}}).physical, 0U) << "through the pane";
+  }
+}
+
 TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
   const test::Place place("storage", 2);
   const Eigen::Vector3d& start = place.start;

@@ -59,6 +59,23 @@ TEST(StartPose, LeavesRoomForTheMargin) {
   }
 }
 
+// From the corner of a locker: 0.42 m are enough for a radius of 0.4 m, 0.38 m are not.
+TEST(StartPose, RoundBodiesMayStandNearerToCorners) {
+  const GroundTruth truth(room({{{1, 1, 0}, {2, 2, 2}}}), 0.1, {3.15, 3.15, 0.15});
+  planner::Robot robot = planner::uav();
+  robot.travel.min_height = 0.0;
+  const auto has_room = [&](planner::BodyShape shape, double off) {
+    robot.travel.shape = shape;
+    return !obstacle_at(truth, robot, {{2 + off, 2 + off, 1.05}}).has_value();
+  };
+  EXPECT_FALSE(has_room(planner::BodyShape::kBox, 0.3));
+  EXPECT_TRUE(has_room(planner::BodyShape::kBox, 0.4));
+  for (const planner::BodyShape shape : {planner::BodyShape::kCylinder, planner::BodyShape::kSphere}) {
+    EXPECT_TRUE(has_room(shape, 0.3));
+    EXPECT_FALSE(has_room(shape, 0.27));
+  }
+}
+
 TEST(StartPose, RefusesStartsThatAreNone) {
   World world = room();
   const auto refuses = [&](bool faces_away, const std::string& part) {

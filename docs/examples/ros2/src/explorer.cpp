@@ -1,5 +1,7 @@
 #include "explorer.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,7 +40,9 @@ ExplorationStart start_of(const Pose& pose, const Lattice& lattice, const Travel
                           double free_radius) {
   ExplorationStart start{pose, {}};
   const VoxelKey at = lattice.key(pose.position).value();
-  const KeyBox body = voxels_of_cell(travel, lattice, cell_of(travel, lattice, at));
+  const VoxelKey cell = cell_of(travel, lattice, at);
+  const BodyStencil stencil(travel, lattice.resolution());
+  const KeyBox body = stencil.box_around(cell);
   const Eigen::Vector3d around = Eigen::Vector3d::Constant(free_radius + lattice.resolution());
   for_each_key(hull(body, voxels_of(lattice, {pose.position - around, pose.position + around})),
                [&](const VoxelKey& key) {
@@ -47,7 +51,7 @@ ExplorationStart start_of(const Pose& pose, const Lattice& lattice, const Travel
                      travel.motion == Motion::kSpace
                          ? offset.norm() <= free_radius
                          : offset.head<2>().norm() <= free_radius && body.min.z <= key.z && key.z <= at.z;
-                 if (beside || body.contains(key)) start.known_free.push_back(key);
+                 if (beside || stencil.contains(cell, key)) start.known_free.push_back(key);
                });
   return start;
 }

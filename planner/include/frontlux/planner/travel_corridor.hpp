@@ -33,6 +33,18 @@ enum class Motion : std::uint8_t {
 /// Nothing if there is no motion of this name.
 [[nodiscard]] FRONTLUX_EXPORT std::optional<Motion> motion_named(std::string_view name);
 
+/// The shape of a robot's body. It keeps to the axes whatever the yaw.
+enum class BodyShape : std::uint8_t {
+  kBox,       ///< its edges along the axes
+  kCylinder,  ///< upright
+  kSphere,
+};
+
+/// As in robots' files: "box", "cylinder", "sphere".
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(BodyShape shape);
+/// Nothing if there is no shape of this name.
+[[nodiscard]] FRONTLUX_EXPORT std::optional<BodyShape> body_shape_named(std::string_view name);
+
 /// What a step from cell to cell costs.
 enum class PathMetric : std::uint8_t {
   kEuclidean,  ///< also diagonal steps that cut no corner, by their own length; right to 1 in 20,000
@@ -41,15 +53,23 @@ enum class PathMetric : std::uint8_t {
 
 /// Where a robot fits.
 ///
-/// Its collision box is made of whole voxels and does not turn with the yaw. Along each axis it is the
-/// smallest odd number of voxels, with the cell in the middle, that covers body and margin. On a plane the
-/// box stands on the lower face of a layer: the sensor's voxel is number floor(sensor_height / resolution)
-/// above that face, and the box has the fewest layers that cover its height and hold the sensor. On the
-/// ground it is the same, but for the lowest layers, which steps and slopes may reach into.
+/// In a cell it fits if no voxel that is not known to be free is nearer to its body, in the middle of the
+/// cell, than its margin. Those voxels are its `BodyStencil`. Of a box they are the collision box: along each
+/// axis the smallest odd number of voxels, with the cell in the middle, that covers body and margin. A
+/// cylinder is taken as one that is larger by the margin: it has the layers of its box, and of their columns
+/// those that are nearer to its axis than radius and margin. Around a sphere the distance counts in all
+/// directions.
+///
+/// On a plane a body stands on the lower face of a layer: the sensor's voxel is number
+/// floor(sensor_height / resolution) above that face, and the body has the fewest layers that cover its
+/// height and hold the sensor. On the ground it is the same, but for the lowest layers, which steps and
+/// slopes may reach into. A sphere that drives counts as the cylinder around it.
 struct FRONTLUX_EXPORT TravelOptions {
   /// On a plane, in space or on the ground.
   Motion motion = Motion::kSpace;
-  Eigen::Vector3d extents = Eigen::Vector3d::Zero();  ///< [m] of the body along x, y and z
+  BodyShape shape = BodyShape::kBox;  ///< of the body
+  /// [m] Of the box around the body along x, y and z; of a cylinder x and y are equal, of a sphere all.
+  Eigen::Vector3d extents = Eigen::Vector3d::Zero();
   double margin = 0.0;  ///< [m] kept free around the body; of a robot that drives to its sides
   /// How paths are measured.
   PathMetric metric = PathMetric::kEuclidean;
@@ -82,7 +102,12 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// Whether it goes on a floor.
   [[nodiscard]] bool drives() const { return motion != Motion::kSpace; }
 
-  /// [m] body and margin
+  /// What planning and the simulator take for the body's shape: of a sphere that drives the cylinder around.
+  [[nodiscard]] BodyShape planned_shape() const {
+    return shape == BodyShape::kSphere && drives() ? BodyShape::kCylinder : shape;
+  }
+
+  /// [m] the box around body and margin
   [[nodiscard]] Eigen::Vector3d box() const {
     return extents + 2 * Eigen::Vector3d(margin, margin, drives() ? 0.0 : margin);
   }
@@ -99,24 +124,24 @@ struct FRONTLUX_EXPORT TravelOptions {
 [[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_travel();
 [[nodiscard]] FRONTLUX_EXPORT TravelOptions uav_node_travel();
 
-/// [m] The body of a robot whose sensor is at the origin; on the ground without what the ground may reach
-/// into.
+/// [m] The box around the body of a robot whose sensor is at the origin; on the ground without what the
+/// ground may reach into.
 [[nodiscard]] FRONTLUX_EXPORT Eigen::AlignedBox3d body_of(const TravelOptions& travel);
 
 /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.
 [[nodiscard]] FRONTLUX_EXPORT VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice,
                                                const VoxelKey& voxel);
 
-/// The voxels that have to be free for a robot in a cell: its collision box, or the cell's node. Cut off at
-/// the end of the key range.
+/// The smallest box around the voxels that have to be free for a robot in a cell, its `BodyStencil`; of a box
+/// or a node it is all of them. Cut off at the end of the key range.
 [[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice,
                                                     const VoxelKey& cell);
 
-/// How far a body that is not in the middle of a voxel may stick out of the collision box around the voxel,
-/// along each axis [m]. The body fits at a position if all cells are passable that a box of this half width
-/// around the position touches. It is 0 along axes on which the collision box has room for the body anywhere
-/// in the voxel, for robots that drive along z, and for nodes. A ten thousandth of a voxel does not count, so
-/// that a body as wide as its collision box fits in the middle.
+/// How far a body that is not in the middle of a voxel may stick out of the stencil around the voxel, along
+/// each axis [m]. The body fits at a position if all cells are passable that a box of this half width around
+/// the position touches. It is 0 along axes on which the stencil has room for the body anywhere in the voxel,
+/// for robots that drive along z, and for nodes; of round bodies it is up to half a voxel. A ten thousandth
+/// of a voxel does not count, so that a body as wide as its collision box fits in the middle.
 [[nodiscard]] FRONTLUX_EXPORT Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
 
 /// Why there is a corridor, or none.
@@ -127,7 +152,7 @@ enum class CorridorState : std::uint8_t {
   kTooLow,         ///< its cell is below the minimum height
   kUnknown,        ///< it is in an unknown voxel
   kOccupied,       ///< it is in an occupied voxel
-  kBoxNotFree,     ///< its collision box, or its node, is not known to be free
+  kBoxNotFree,     ///< its stencil, or its node, is not known to be free
   kWithoutGround,  ///< the floor under it is not known to carry it
 };
 
@@ -144,14 +169,15 @@ enum class CorridorExtent : std::uint8_t {
 
 /// The cells that a robot can reach through what is known to be free, and how far they are.
 ///
-/// A cell is passable if its whole collision box is known to be free. The corridor is all cells that passable
+/// A cell is passable if its whole stencil is known to be free. The corridor is all cells that passable
 /// cells connect with the robot's by faces. Diagonal steps shorten paths but reach no other cells. After an
 /// update the result is the same as that of a new corridor.
 ///
-/// Takes memory for each voxel of the bounds, or of one layer. Thread safety: as a standard container.
+/// Takes memory for each voxel of the bounds, or of one layer; of a sphere for each height of its columns.
+/// Thread safety: as a standard container.
 class FRONTLUX_EXPORT TravelCorridor {
  public:
-  /// @param bounds  of the collision box; on a plane only x and y are used
+  /// @param bounds  of the stencil; on a plane only x and y are used
   /// @throws std::invalid_argument naming the option that is not valid, or if the bounds hold over 2^29 cells
   TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds);
   ~TravelCorridor();

@@ -3,6 +3,7 @@
 #include <frontlux/planner/segment_voxels.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/sim/moving_robots.hpp>
+#include <frontlux/sim/swept_body.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +79,7 @@ double MovingRobots::next_time() const {
   return next;
 }
 
-// The body, smaller by a margin on all sides, so that it may touch.
+// The box around the body, smaller by a margin on all sides, so that it may touch.
 Eigen::AlignedBox3d MovingRobots::body(std::size_t robot, const Eigen::Vector3d& at) const {
   const Eigen::AlignedBox3d box = planner::body_of(robots_[robot].robot.travel).translated(at);
   const Eigen::Vector3d margin = (box.sizes() / 4).cwiseMin(GroundTruth::kMargin);
@@ -117,7 +118,7 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   now.way += step;
   const Eigen::Vector3d at = to.pose.position + error(robot, time);
   const Eigen::Vector3d from = now.pose.position, motion = at - from;
-  const SweptBox swept(body(robot, from), motion);
+  const SweptBody swept(robots_[robot].robot.travel.planned_shape(), body(robot, from), motion);
   const bool contact = !motion.isZero(0.0) && solids_.count(swept) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
     now.way -= step;
@@ -150,7 +151,8 @@ void MovingRobots::measure_clearance(std::size_t robot) {
   }
   const auto touches = [&](double by) {
     const Eigen::Vector3d around = by * Eigen::Vector3d(1.0, 1.0, stands ? 0.0 : 1.0);
-    return solids_.count({{box.min() - around, box.max() + around}, Eigen::Vector3d::Zero()}) > 0;
+    const Eigen::AlignedBox3d grown(box.min() - around, box.max() + around);
+    return solids_.count(SweptBody(travel.planned_shape(), grown, Eigen::Vector3d::Zero())) > 0;
   };
   if (!touches(clearance)) return;
   double low = 0.0, high = clearance;

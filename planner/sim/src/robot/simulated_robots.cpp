@@ -1,8 +1,10 @@
 #include "sensing/keyed_random.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
+#include <frontlux/sim/swept_body.hpp>
 
 #include <cmath>
 #include <stdexcept>
@@ -26,7 +28,7 @@ VoxelKey key_of(const Lattice& lattice, const Eigen::Vector3d& point) {
   return *key;
 }
 
-// The body itself, smaller by a margin on all sides.
+// The box around the body itself, smaller by a margin on all sides.
 Eigen::AlignedBox3d body_at(const TravelOptions& travel, const Lattice& lattice,
                             const Eigen::Vector3d& sensor) {
   const Eigen::Vector3d half = travel.extents / 2;
@@ -60,14 +62,15 @@ Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, cons
   const Lattice& lattice = truth_->lattice();
   TravelOptions box = travel;
   box.node_edge = 0.0;  // if the robot plans with nodes, its box counts here
+  const planner::BodyStencil stencil(box, lattice.resolution());
   Collisions met;
   static_cast<void>(planner::SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
     const auto is_open = [&](const VoxelKey& k) { return !truth_->holds_surface(k); };
-    met.lattice += all_of(voxels_of_cell(box, lattice, key), is_open) ? 0 : 1;
+    met.lattice += stencil.all_of(key, is_open) ? 0 : 1;
     return true;
   }));
   const Eigen::AlignedBox3d first = body_at(box, lattice, from), last = body_at(box, lattice, to);
-  met.physical = solids_.count({first, last.min() - first.min()});
+  met.physical = solids_.count(SweptBody(box.planned_shape(), first, last.min() - first.min()));
   return met;
 }
 

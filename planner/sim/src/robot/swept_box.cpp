@@ -65,24 +65,4 @@ std::uint32_t TriangleBvh::grow(std::uint32_t begin, std::uint32_t end) {
   return number;
 }
 
-std::uint64_t TriangleBvh::count(const SweptBox& box) const {
-  std::uint64_t met = 0;
-  std::vector<std::uint32_t> open;
-  if (!nodes_.empty()) open.push_back(0);
-  while (!open.empty()) {
-    const std::uint32_t number = open.back();
-    open.pop_back();
-    const Node& node = nodes_[number];
-    if (!node.bounds.intersects(box.bounds())) continue;
-    if (node.second != 0) {
-      open.push_back(node.second);
-      open.push_back(number + 1);
-      continue;
-    }
-    for (std::uint32_t i = node.begin; i < node.end; ++i)
-      met += static_cast<std::uint64_t>(box.touches(corners_of(mesh_, order_[i])));
-  }
-  return met;
-}
-
 }  // namespace frontlux::sim

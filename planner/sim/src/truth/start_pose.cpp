@@ -1,3 +1,6 @@
+#include "truth/body_voxels.hpp"
+
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
@@ -8,7 +11,7 @@
 namespace frontlux::sim {
 namespace {
 
-using planner::Motion, planner::Pose, planner::Robot;
+using planner::BodyStencil, planner::Motion, planner::Pose, planner::Robot;
 
 constexpr double kSearched = 15.0;          // [m] along each axis
 constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
@@ -67,15 +70,22 @@ bool has_floor(const GroundTruth& truth, const VoxelKey& key) {
 
 bool drives(const Robot& robot) { return robot.travel.drives(); }
 
-bool all_free(const GroundTruth& truth, const KeyBox& box) {
-  return all_of(box, [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; });
+// Whether the voxels of a box are free that are `among(key)`.
+template <class Among>
+bool all_free(const GroundTruth& truth, const KeyBox& box, const Among& among) {
+  return all_of(box, [&](const VoxelKey& key) { return !among(key) || truth.at(key) == Truth::kFree; });
 }
 
-// Whether no wall lies between voxels of a box that is free.
-bool no_wall_in(const GroundTruth& truth, const KeyBox& box) {
+// Whether no wall lies between two of those voxels, which are free.
+template <class Among>
+bool no_wall_in(const GroundTruth& truth, const KeyBox& box, const Among& among) {
   return all_of(box, [&](const VoxelKey& key) {
-    return (key.x == box.max.x || truth.open(key, 0)) && (key.y == box.max.y || truth.open(key, 1)) &&
-           (key.z == box.max.z || truth.open(key, 2));
+    if (!among(key)) return true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto next = offset_key(key, axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0);
+      if (next && box.contains(*next) && among(*next) && !truth.open(key, axis)) return false;
+    }
+    return true;
   });
 }
 
@@ -84,7 +94,8 @@ std::optional<KeyBox> free_node(const GroundTruth& truth, const Robot& robot, co
   if (drives(robot) || robot.travel.node_edge == 0.0) return std::nullopt;
   const Lattice& lattice = truth.lattice();
   const KeyBox node = voxels_of_cell(robot.travel, lattice, cell_of(robot.travel, lattice, voxel));
-  if (!all_free(truth, node) || !no_wall_in(truth, node)) return std::nullopt;
+  const auto any = [](const VoxelKey&) { return true; };
+  if (!all_free(truth, node, any) || !no_wall_in(truth, node, any)) return std::nullopt;
   return node;
 }
 
@@ -120,9 +131,11 @@ std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const 
 
 // Whether there is room for all that planning keeps free around a robot, its margin too.
 bool has_room(const GroundTruth& truth, const Robot& robot, const Pose& pose) {
-  const KeyBox box =
-      voxels_of_cell(robot.travel, truth.lattice(), truth.lattice().key(pose.position).value());
-  return all_free(truth, box) && no_wall_in(truth, box);
+  const BodyStencil stencil(robot.travel, truth.lattice().resolution());
+  const VoxelKey cell = truth.lattice().key(pose.position).value();
+  const KeyBox box = stencil.box_around(cell);
+  const auto needed = [&](const VoxelKey& key) { return stencil.contains(cell, key); };
+  return all_free(truth, box, needed) && no_wall_in(truth, box, needed);
 }
 
 // The nearest pose that is good and has room or, if there is none, that is good.
@@ -180,7 +193,9 @@ KeyBox body_voxels(const Lattice& lattice, const Robot& robot, const Pose& senso
 
 std::optional<std::string> obstacle_at(const GroundTruth& truth, const Robot& robot,
                                        const Pose& sensor_pose) {
-  const KeyBox body = body_voxels(truth.lattice(), robot, sensor_pose);
+  const BodyVoxels voxels(truth.lattice(), robot, sensor_pose);
+  const KeyBox& body = voxels.box();
+  const auto in_body = [&](const VoxelKey& key) { return voxels.contains(key); };
   const auto sensor = truth.lattice().key(sensor_pose.position);
   const KeyBox& all = truth.bounds();
   if (!sensor || !all.contains(*sensor) || !all.contains(body.min) || !all.contains(body.max))
@@ -195,14 +210,15 @@ std::optional<std::string> obstacle_at(const GroundTruth& truth, const Robot& ro
                                    : where.str() + " cannot be reached from the start";
     return false;
   };
-  if (!all_of(body, is_free) || !is_free(*sensor)) return why;
-  if (!no_wall_in(truth, body)) return "a wall would run through it";
+  if (!all_of(body, [&](const VoxelKey& key) { return !in_body(key) || is_free(key); }) || !is_free(*sensor))
+    return why;
+  if (!no_wall_in(truth, body, in_body)) return "a wall would run through it";
   if (!drives(robot)) return why;
   for (VoxelKey above = {sensor->x, sensor->y, body.max.z}; above.z < sensor->z; ++above.z)
     if (!truth.open(above, 2)) return "a ceiling would separate it from its sensor";
   KeyBox feet = body;
   feet.max.z = body.min.z;
-  if (!all_of(feet, [&](const VoxelKey& key) { return has_floor(truth, key); }))
+  if (!all_of(feet, [&](const VoxelKey& key) { return !in_body(key) || has_floor(truth, key); }))
     return "there is no floor under all of it";
   return why;
 }
@@ -245,7 +261,7 @@ std::vector<std::optional<Pose>> find_starts(const GroundTruth& truth, const Eig
 std::vector<VoxelKey> start_bubble(const GroundTruth& truth, const Robot& robot, const Pose& sensor_pose) {
   const Lattice& lattice = truth.lattice();
   const Eigen::Vector3d& at = sensor_pose.position;
-  const KeyBox body = body_voxels(lattice, robot, sensor_pose);
+  const BodyVoxels body(lattice, robot, sensor_pose);
   const VoxelKey from = lattice.key(at).value();
   const std::optional<KeyBox> node = free_node(truth, robot, from);
   constexpr double kRounding = 1e-9;
@@ -253,7 +269,8 @@ std::vector<VoxelKey> start_bubble(const GroundTruth& truth, const Robot& robot,
     if (body.contains(key) || (node && node->contains(key))) return true;
     const Eigen::Vector3d offset = lattice.exact_center(key) - at;
     if (!drives(robot)) return offset.norm() <= kBall + kRounding;
-    return offset.head<2>().norm() <= kDisc + kRounding && offset.z() <= kRounding && key.z >= body.min.z;
+    return offset.head<2>().norm() <= kDisc + kRounding && offset.z() <= kRounding &&
+           key.z >= body.box().min.z;
   };
   std::vector<VoxelKey> bubble;
   flood_free(

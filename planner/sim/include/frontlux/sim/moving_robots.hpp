@@ -25,7 +25,7 @@ namespace frontlux::sim {
 /// A body begins to touch a surface, and goes on.
 struct Contact {
   double time = 0.0;         ///< [s] at the end of the motion that touched
-  Eigen::AlignedBox3d body;  ///< [m] around the body from the begin of that motion to its end
+  Eigen::AlignedBox3d body;  ///< [m] the box around the body from the begin of that motion to its end
 };
 
 /// What robots in motion did to the world and to each other.
@@ -35,7 +35,7 @@ struct MotionRecord {
   double length = 0.0;            ///< [m] travelled
   double idle = 0.0;              ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown on all sides, on a plane sideways, without touching a
-  /// surface; up to a metre.
+  /// surface; up to a metre. A cylinder grows by it in radius and on both ends.
   double clearance = 1.0;
 };
 
@@ -86,7 +86,7 @@ class MovingRobots {
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
-  /// [m] The least distance between two bodies so far; infinite for a single robot.
+  /// [m] The least distance between the boxes around two bodies so far; infinite for a single robot.
   [[nodiscard]] double separation() const { return separation_; }
 
  private:

@@ -21,11 +21,10 @@ namespace frontlux::sim {
 /// Collisions, counted in two ways. Both ignore a depth of `GroundTruth::kMargin`, as the ground truth does,
 /// so a body may touch a surface that lies on a voxel's face.
 struct Collisions {
-  /// Voxels that the sensor passed with a surface in the collision box around them, the box of whole voxels
-  /// that planning uses. It is a little larger than the body, so a count here need not be a body that hit
-  /// something.
+  /// Voxels that the sensor passed with a surface in the stencil around them, the whole voxels that planning
+  /// uses. They are a little more than the body, so a count here need not be a body that hit something.
   std::uint64_t lattice = 0;
-  /// Triangles that the body itself met on its straight motions: a box of exactly its extents around the
+  /// Triangles that the body itself met on its straight motions: its shape, of exactly its extents around the
   /// sensor, for a robot on a plane from the lower face of the layer that it stands on.
   std::uint64_t physical = 0;
 

@@ -37,8 +37,15 @@ class TriangleBvh {
   /// Copies the mesh. @throws std::invalid_argument as `check(mesh)`
   explicit TriangleBvh(const TriangleMesh& mesh);
 
-  /// Number of triangles that a box touches on its motion.
-  [[nodiscard]] std::uint64_t count(const SweptBox& box) const;
+  /// Number of triangles that a `SweptBox` or a `SweptBody` touches.
+  template <class Swept>
+  [[nodiscard]] std::uint64_t count(const Swept& swept) const {
+    std::uint64_t met = 0;
+    for_each_near(swept.bounds(), [&](const std::array<Eigen::Vector3d, 3>& triangle) {
+      met += static_cast<std::uint64_t>(swept.touches(triangle));
+    });
+    return met;
+  }
 
  private:
   // In depth-first order: the first child of a node comes right after it.
@@ -49,6 +56,25 @@ class TriangleBvh {
   };
 
   std::uint32_t grow(std::uint32_t begin, std::uint32_t end);
+
+  // Calls `visit(corners)` for the triangles whose nodes meet a box.
+  template <class Visit>
+  void for_each_near(const Eigen::AlignedBox3d& box, const Visit& visit) const {
+    std::vector<std::uint32_t> open;
+    if (!nodes_.empty()) open.push_back(0);
+    while (!open.empty()) {
+      const std::uint32_t number = open.back();
+      open.pop_back();
+      const Node& node = nodes_[number];
+      if (!node.bounds.intersects(box)) continue;
+      if (node.second != 0) {
+        open.push_back(node.second);
+        open.push_back(number + 1);
+        continue;
+      }
+      for (std::uint32_t i = node.begin; i < node.end; ++i) visit(corners_of(mesh_, order_[i]));
+    }
+  }
 
   TriangleMesh mesh_;
   std::vector<std::uint32_t> order_;
