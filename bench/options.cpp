@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const CLI::Range kThreads(1, 1024), kCounts(std::size_t{1}, std::size_t{10'000'000});
 
-/// A command line with the options that all benchmarks have.
+/// A command line with the options that all benchmarks on maps have.
 class CommandLine : public CLI::App {
  public:
   CommandLine(const std::string& description, Options& options) : CLI::App(description), options_(options) {
@@ -193,6 +193,32 @@ PathsOptions read_paths_options(int argc, char** argv) {
       ->check(CLI::Range(1, 10'000));
   line.add_option("--table", options.table, "also write the page to this file");
   line.read(argc, argv);
+  return options;
+}
+
+ToursOptions read_tours_options(int argc, char** argv) {
+  ToursOptions options;
+  CLI::App line(
+      R"(Tells how good the paths of robots in recorded runs were. The hindsight tour of a robot is the shortest one that
+2-opt and Or-opt find, when the whole map is known, from its start through all of its stops. A stop is where it
+took its last scan before it planned because its goal was reached or seen, if it had mapped frontiers by itself
+since its planning before. The columns:
+  path       metres that the robot went
+  stops      cells that hold stops
+  in order   metres of the shortest paths from stop to stop, in the order in which the robot was there
+  hindsight  metres of the hindsight tour
+  ratio      path / hindsight
+  revisited  the part of its path within 1 m of its own path at least 6 m of path before
+)",
+      fs::path(argv[0]).filename().string());
+  line.add_option("RUN", options.runs, "folders of runs in motion, as frontlux explore leaves them")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  try {
+    line.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    throw Exit{line.exit(error) == 0 ? 0 : 2};
+  }
   return options;
 }
 

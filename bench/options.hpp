@@ -18,7 +18,7 @@ struct Exit {
   int code;
 };
 
-/// What the benchmarks have in common.
+/// What the benchmarks on maps have in common.
 struct Options {
   std::vector<std::filesystem::path> maps;  ///< files to measure on
   std::filesystem::path cache;              ///< folder of the generated maps
@@ -60,6 +60,11 @@ struct PathsOptions : Options {
   std::filesystem::path table;
 };
 
+/// Of `bench_tours`.
+struct ToursOptions {
+  std::vector<std::filesystem::path> runs;  ///< folders of recorded runs in motion
+};
+
 /// Read the command line of each benchmark.
 /// @throws Exit if there is nothing to measure
 /// @throws std::runtime_error naming a folder of maps that cannot be listed
@@ -69,6 +74,7 @@ struct PathsOptions : Options {
 [[nodiscard]] PlannerOptions read_planner_options(int argc, char** argv);
 [[nodiscard]] ViewErrorOptions read_view_error_options(int argc, char** argv);
 [[nodiscard]] PathsOptions read_paths_options(int argc, char** argv);
+[[nodiscard]] ToursOptions read_tours_options(int argc, char** argv);
 /// @}
 
 }  // namespace frontlux::bench

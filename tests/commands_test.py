@@ -18,6 +18,7 @@ COMMAND = re.compile(r"(build/release/bin/)?frontlux (?!recording)|\./dev |(buil
 ELSEWHERE = {
     r"cmake --(preset|install)|c\+\+ -std": "consumer.install",
     r"bench_scaling|bench/plot_scaling.py": "bench.scaling_smoke",
+    "bench_tours": "bench.tours_smoke",
     r"bench_rays --help|bench_planner --help|bench_view_error|bench/plot_view_error.py|make_maps": "benchmarks are run by hand",
     r"dask-|ssh HOST|sbatch": "bench.reproduce_cluster",
     r"venv|pip install|apt-get|git clone": "installs packages: tests/package and the continuous integration do",

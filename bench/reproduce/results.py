@@ -4,6 +4,8 @@ import json
 import os
 from pathlib import Path
 
+from explore import kind_of
+
 FORMAT = 1
 BY_ITSELF = ("low_gain", "nothing_to_do", "coverage")
 LEVELS = ("50", "90", "95", "99", "end")
@@ -96,6 +98,12 @@ class Result:
         """The part of all that was mapped that robots of a kind mapped first."""
         first = self.curve[-1]["first"]
         return first.get(kind, 0.0) / sum(first.values()) if sum(first.values()) else None
+
+    def revisited(self, kind):
+        """The part of the path of robots of a kind that led to where they had been; None of runs before it was measured."""
+        robots = [r for name, r in (self.facts.get("by_robot") or {}).items() if kind_of(name) == kind and "revisited" in r]
+        metres = sum(r["length_m"] for r in robots)
+        return sum(r["revisited"] * r["length_m"] for r in robots) / metres if metres else None
 
     def efficiency(self, kind):
         """Percent of the observable space that robots of a kind mapped first, per 100 m of their path."""

@@ -58,10 +58,11 @@ def main_table(results, tasks):
                 task, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
                 *(means(done, lambda r, k=level: r.seconds(k)) for level in LEVELS[:-1]), mean_interval(done, end_of),
                 parts(done, lambda r: r.coverage), means(done, lambda r: r.metres()),
-                means(done, lambda r: r.metres("uav")), str(total(moved, "contacts")), least(moved, "clearance_min_m"),
-                least(moved, "separation_min_m"), why_unseen(done)])
+                means(done, lambda r: r.metres("uav")), parts(done, lambda r: r.revisited("uav")),
+                str(total(moved, "contacts")), least(moved, "clearance_min_m"), least(moved, "separation_min_m"),
+                why_unseen(done)])
     return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end", "mapped", "metres",
-                  "UAVs' metres", "contacts", "clearance [m]", "bodies apart [m]",
+                  "UAVs' metres", "revisited", "contacts", "clearance [m]", "bodies apart [m]",
                   "unseen [%]: narrow / hidden / in view"], rows, texts=2)
 
 
@@ -141,10 +142,11 @@ def steps_table(results):
                 parts(with_facts(runs), lambda r: r.coverage),
                 f"{percent(paper.COVERAGE[world])} in {paper.STEPS[world]}" if method == "steps" else NOTHING,
                 mean_interval(done, lambda r: r.steps()), mean_interval(done, lambda r: r.steps(0.9)),
-                means(done, lambda r: r.metres("uav")), means(done, lambda r: r.share("uav"), 0, " %", 100),
+                means(done, lambda r: r.metres("uav")), parts(done, lambda r: r.revisited("uav")),
+                means(done, lambda r: r.share("uav"), 0, " %", 100),
                 means(done, lambda r: r.efficiency("uav"), 1)])
     return table(["world", "", "runs", "failed", "mapped, by all runs", "paper, mapped in steps", "steps",
-                  "steps to 90 %", "UAV's metres", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
+                  "steps to 90 %", "UAV's metres", "revisited", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
 
 
 def optimisation_table(results):

@@ -2,6 +2,8 @@
 
 #include "app/explore_motion.hpp"
 
+#include "support/plain_revisits.hpp"
+
 #include <frontlux/planner/recording.hpp>
 
 namespace frontlux::planner {
@@ -73,11 +75,13 @@ TEST_F(ExploreMotion, ItsFilesAgree) {
   const Table motion(path("run/motion.csv"));
   ASSERT_GE(motion.size(), 2 * static_cast<std::size_t>(kSeconds * 100));
   std::vector<double> metres(2);
+  std::vector<std::vector<Eigen::Vector3d>> went(2);
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < motion.size(); ++i) {
     ASSERT_EQ(motion.text(i, "robot"), names[i % 2]);
     ASSERT_NEAR(motion.number(i, "time_s"), static_cast<double>(i / 2) / 100, 1e-9);
     const Eigen::Vector3d at = motion.point(i, "", "_m"), velocity = motion.point(i, "v", "_m_s");
+    went[i % 2].push_back(at);
     ASSERT_LE(velocity.norm(), 2.0 * 1.001);
     ASSERT_LE(std::abs(motion.number(i, "yaw_rate_rad_s")), std::numbers::pi / 2 * 1.001);
     if (i < 2) {
@@ -100,6 +104,7 @@ TEST_F(ExploreMotion, ItsFilesAgree) {
   for (std::size_t r = 0; r < 2; ++r) {
     EXPECT_NEAR(by_robot.at(names[r]).at("length_m"), metres[r], 0.02 * metres[r]);
     EXPECT_GT(metres[r], 2.0);
+    EXPECT_NEAR(by_robot.at(names[r]).at("revisited"), test::plain_revisited_part(went[r]), 0.02);
     EXPECT_NEAR(json.at("path_length_m").at(names[r]), metres[r], 0.05 * metres[r]);
     EXPECT_EQ(by_robot.at(names[r]).at("held_back"), 0);
     idle += by_robot.at(names[r]).at("idle_s").get<double>();

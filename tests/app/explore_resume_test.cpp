@@ -29,6 +29,7 @@ TEST_F(ExploreCommand, GivesTheSameResultHoweverItIsRun) {
   EXPECT_EQ(json_in("cut").at("steps"), 2);
   expect_resumed("cut", {"--max-steps", kSteps, "--threads", "1"});
   expect_same_runs("one", "cut");
+  EXPECT_EQ(json_in("one").at("by_robot"), json_in("cut").at("by_robot"));
   // Going on at the end changes nothing.
   expect_resumed("two");
   expect_same_runs("one", "two");

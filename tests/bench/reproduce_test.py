@@ -178,8 +178,17 @@ class OneRun(Made):
         self.assertIsNone(result.steps(0.999))
         self.assertAlmostEqual(result.share("uav"), 0.75, places=5)
         self.assertAlmostEqual(result.efficiency("uav"), 99.5 * 0.75 / 4, places=3)
+        self.assertEqual((result.revisited("uav"), result.revisited("balloon")), (0.1, None))
         self.assertEqual(result.gain("uav", "gain_predicted"), 150)
         self.assertIsNone(result.gain("balloon", "gained"))
+
+    def test_revisits_count_by_metres(self):
+        robots = {"uav1": {"length_m": 100, "revisited": 0.1}, "uav2": {"length_m": 300, "revisited": 0.3},
+                  "ugv": {"length_m": 50}}  # as runs left it before it was measured
+        run = self.make(Run("maze", "tour", 6), by_robot=robots)
+        result = self.results([run]).all[run]
+        self.assertAlmostEqual(result.revisited("uav"), 0.25)
+        self.assertIsNone(result.revisited("ugv"))
 
     def test_robots_of_a_kind_are_added(self):
         run = Run("maze", "tour", 6)
@@ -361,9 +370,10 @@ class Page(Made):
                 Run("maze", "tour", 7), self.make(Run("maze", "tour", 8), failure='a "b", c'), self.make(Run("maze", "tour", 6, True))]
         rows = list(csv.DictReader(io.StringIO(csv_of_runs(self.results(runs)))))
         self.assertEqual([row["seed"] for row in rows], ["6", "8"])
-        columns = ("s_to_end", "m_ugv", "m_uav", "share_uav", "steps_to_90", "end", "separation_min_m")
+        columns = ("s_to_end", "m_ugv", "m_uav", "revisited_ugv", "revisited_uav", "share_uav", "steps_to_90", "end",
+                   "separation_min_m")
         self.assertEqual([rows[0][key] for key in columns],
-                         ["400.0", "200.0", "400.0", "0.75", "37", "nothing_to_do", ""])
+                         ["400.0", "200.0", "400.0", "0.3", "0.1", "0.75", "37", "nothing_to_do", ""])
         self.assertEqual((rows[1]["failure"], rows[1]["s_to_end"]), ('a "b", c', ""))
 
     def test_hostile_names(self):

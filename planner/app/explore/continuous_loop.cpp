@@ -131,7 +131,8 @@ void ContinuousLoop::count(const MapChange& change) {
   double clearance = 1.0;
   for (std::size_t r = 0; r < robots_.records().size(); ++r) {
     const sim::MotionRecord& record = robots_.records()[r];
-    numbers_.robots[r] = {record.length, record.idle, record.held_back, numbers_.robots[r].failed};
+    numbers_.robots[r] = {record.length, record.revisited, record.idle, record.held_back,
+                          numbers_.robots[r].failed};
     mapped.length += record.length;
     clearance = std::min(clearance, record.clearance);
   }

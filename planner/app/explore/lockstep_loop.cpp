@@ -16,6 +16,7 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
                    planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})) {
   numbers_.mapped.emplace_back();
   numbers_.robots.resize(setup.head.robots.size());
+  for (const planner::ExplorationStart& start : setup.head.starts) paths_.emplace_back(start.pose.position);
 }
 
 planner::Drive LockstepLoop::drive() {
@@ -49,9 +50,11 @@ void LockstepLoop::note(const ExplorationStep& step) {
   mapped.time = step.time;
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
     const planner::RobotStep& robot = step.robots[r];
-    const double moving = planner::stop_and_go_time(std::span(robot.planned).first(robot.travelled),
-                                                    setup_.head.robots[r].robot.limits);
+    const auto reached = std::span(robot.planned).first(robot.travelled);
+    const double moving = planner::stop_and_go_time(reached, setup_.head.robots[r].robot.limits);
+    for (const planner::Pose& viewpoint : reached) paths_[r].go_to(viewpoint.position);
     numbers_.robots[r].length += robot.length;
+    numbers_.robots[r].revisited = paths_[r].share();
     numbers_.robots[r].idle += step.time - before - moving;
     numbers_.robots[r].held_back += robot.blocked.empty() ? 0 : 1;
     mapped.length += robot.length;

@@ -2,7 +2,10 @@
 
 #include "explore/run_loop.hpp"
 
+#include <frontlux/sim/path_revisits.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
+
+#include <vector>
 
 namespace frontlux::app {
 
@@ -25,6 +28,7 @@ class LockstepLoop final : public RunLoop {
   sim::SimulatedRobots robots_;
   planner::Exploration exploration_;
   RunNumbers numbers_;
+  std::vector<sim::PathRevisits> paths_;  // of each robot
   bool begun_ = false;
 };
 

@@ -230,7 +230,10 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
     names.push_back(name);
     lengths[name] = sums.travelled[r];
     const RobotNumbers& robot = numbers.robots[r];
-    robots[name] = {{"length_m", robot.length}, {"idle_s", robot.idle}, {"held_back", robot.held_back}};
+    robots[name] = {{"length_m", robot.length},
+                    {"revisited", robot.revisited},
+                    {"idle_s", robot.idle},
+                    {"held_back", robot.held_back}};
     if (robot.failed) robots[name]["failed_s"] = *robot.failed;
     held_back += robot.held_back;
   }

@@ -29,6 +29,7 @@ struct Mapped {
 /// What one robot did, up to now.
 struct RobotNumbers {
   double length = 0.0;                ///< [m]
+  double revisited = 0.0;             ///< the part of that, 0 to 1, which led to where it had been
   double idle = 0.0;                  ///< [s] at rest without turning
   std::uint64_t held_back = 0;        ///< times that its bumper stopped it
   std::optional<double> failed = {};  ///< [s] when it did

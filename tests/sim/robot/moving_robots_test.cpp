@@ -138,6 +138,20 @@ TEST(MovingRobots, CountMetresAndIdleSeconds) {
   EXPECT_EQ(scene.record(0).contacts.size() + scene.record(0).held_back, 0U);
 }
 
+// 4 m there, back and there again, at 1 m/s: from 6.5 s on it is within 1 m of where it was 6 m before.
+TEST(MovingRobots, TellWhichPartOfTheirPathTheyHadBeenOn) {
+  const BoxRoom room;
+  const Vector3d from(1, 2, 1.5), to(5, 2, 1.5);
+  Moving scene(room, {uav()}, {{from}});
+  scene.go_on(12.0, [&](std::size_t, double time) {
+    return at(time < 4.0   ? on_the_way(from, to, time)
+              : time < 8.0 ? on_the_way(to, from, time - 4.0)
+                           : on_the_way(from, to, time - 8.0));
+  });
+  EXPECT_NEAR(scene.record().length, 12.0, 0.1);
+  EXPECT_NEAR(scene.record().revisited, 5.5 / 12.0, 0.005);
+}
+
 // Half a body is 0.4 m: it touches the pane from 2.6 m to 3.4 m.
 TEST(MovingRobots, CountEachTouchOnce) {
   BoxRoom room;

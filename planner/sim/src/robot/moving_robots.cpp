@@ -65,7 +65,7 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
       refuse("robot '" + robots_[r].robot.name + "' takes " + std::to_string(robots_[r].rate) +
              " scans a second, but it has to be a positive number");
     sensors_.push_back(sensor_of(robots_[r], errors));
-    progress_.push_back({starts[r], starts[r]});
+    progress_.push_back({.pose = starts[r], .believed = starts[r], .path = PathRevisits(starts[r].position)});
     draw_direction(r);
     measure_clearance(r);
   }
@@ -132,6 +132,8 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   if (contact && !now.touching) record.contacts.push_back({time, swept.bounds()});
   if (!motion.isZero(0.0)) now.touching = contact;
   record.length += motion.norm();
+  now.path.go_to(at);
+  record.revisited = now.path.share();
   if (motion.isZero(0.0) && to.pose.yaw == now.pose.yaw) record.idle += seconds;
   now.pose = {at, to.pose.yaw};
   now.believed = to.pose;

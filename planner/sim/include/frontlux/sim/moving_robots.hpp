@@ -5,6 +5,7 @@
 #include <frontlux/planner/scan.hpp>
 #include <frontlux/planner/trajectory.hpp>
 #include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/path_revisits.hpp>
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 #include <frontlux/sim/surface.hpp>
@@ -33,7 +34,8 @@ struct MotionRecord {
   std::vector<Contact> contacts;  ///< in the order of time
   std::uint64_t held_back = 0;    ///< times that a bumper stopped it instead
   double length = 0.0;            ///< [m] travelled
-  double idle = 0.0;              ///< [s] at rest, not turning
+  double revisited = 0.0;  ///< the part of that, 0 to 1, which led to where it had been: `PathRevisits`
+  double idle = 0.0;       ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown on all sides, on a plane sideways, without touching a
   /// surface; up to a metre. A cylinder grows by it in radius and on both ends.
   double clearance = 1.0;
@@ -98,6 +100,7 @@ class MovingRobots {
     std::uint64_t fixes = 0;
     std::uint64_t scans = 0;
     bool touching = false, halted = false;
+    PathRevisits path;
   };
 
   [[nodiscard]] Eigen::AlignedBox3d body(std::size_t robot, const Eigen::Vector3d& at) const;
