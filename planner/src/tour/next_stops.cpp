@@ -10,9 +10,27 @@
 
 namespace frontlux::planner::detail {
 
-// Looks at the clusters that come next in the robot's tour from as few places as see them. Their order, and
+// The nearest stops of the robot's tour before the others. The shortest tour may leave them for the end, and
+// would come back for them from far away.
+void TourPlanning::put_nearest_first(const Query& query) {
+  std::vector<TourStop>& tour = members_[query.robot].tour;
+  if (tour.size() <= options_.joined) return;
+  std::vector<std::pair<double, std::size_t>> places;  // distance [m] and place of each stop
+  for (std::size_t i = 0; i < tour.size(); ++i) places.emplace_back(own_distance_to(query, tour[i].cell), i);
+  std::ranges::sort(places);
+  std::vector<bool> near(tour.size());
+  for (std::size_t i = 0; i < options_.joined; ++i) near[places[i].second] = true;
+  std::vector<TourStop> stops;
+  for (const bool nearest : {true, false})
+    for (std::size_t i = 0; i < tour.size(); ++i)
+      if (near[i] == nearest) stops.push_back(std::move(tour[i]));
+  tour = std::move(stops);
+}
+
+// Looks at the clusters of the robot's tour that are nearest from as few places as see them. Their order, and
 // the viewpoints of the next few, are those of the shortest ways.
 void TourPlanning::join_next_stops(const Query& query) {
+  put_nearest_first(query);
   Member& member = members_[query.robot];
   const MotionState& start = query.starts[query.robot];
   const std::size_t count = std::min(options_.joined, member.tour.size());

@@ -33,15 +33,15 @@ class TourPlanning {
  public:
   struct Options {
     // Of the greatest range of a robot's sensor: edges of the cubes in which
-    double cluster_edge = 0.4;  ///< frontiers make a cluster,
-    double zone_edge = 0.8;     ///< clusters that are far from all robots make one stop,
-    double graph_edge = 0.2;    ///< a robot's cells make a node
-    double spacing = 0.05;      ///< cells are tried for clusters that the usual places do not show,
-    double near = 2.0;          ///< of a robot's range: clusters up to here are stops of their own
-    double least_area = 1.5;    ///< [m2] of a cluster worth a stop
-    double least_gain = 10.0;   ///< [frontiers] that a stop shows
-    std::size_t joined = 40;  ///< clusters that come next, which are looked at from as few places as see them
-    std::size_t refined = 5;  ///< stops whose viewpoints are chosen together
+    double cluster_edge = 0.4;    ///< frontiers make a cluster,
+    double zone_edge = 0.8;       ///< clusters that are far from all robots make one stop,
+    double graph_edge = 0.2;      ///< a robot's cells make a node
+    double spacing = 0.05;        ///< cells are tried for clusters that the usual places do not show,
+    double near = 2.0;            ///< of a robot's range: clusters up to here are stops of their own
+    double least_area = 1.5;      ///< [m2] of a cluster worth a stop
+    double least_gain = 10.0;     ///< [frontiers] that a stop shows
+    std::size_t joined = 40;      ///< nearest clusters, which are looked at from as few places as see them
+    std::size_t refined = 5;      ///< stops whose viewpoints are chosen together
     std::size_t measured = 2500;  ///< nearest nodes to which the ways from a stop are known
   };
 
@@ -128,6 +128,7 @@ class TourPlanning {
                                                 std::span<const Stop> stops);
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
+  void put_nearest_first(const Query& query);
   void join_next_stops(const Query& query);
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
