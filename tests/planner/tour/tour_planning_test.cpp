@@ -110,6 +110,29 @@ TEST(TourPlanning, LeadsToAllClustersHoweverFarTheyAre) {
   EXPECT_EQ(far.clusters(), all.clusters());
 }
 
+// Left in the order of the shortest tour, places near by would come when the robot is far away.
+TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
+  constexpr std::size_t kJoined = 3;
+  OpenSpace all({.joined = 0}), some({.joined = kJoined});
+  for (OpenSpace* space : {&all, &some}) space->plan(space->corridor());
+  const TravelCorridor corridor = all.corridor();
+  std::map<std::uint32_t, double> distances;  // [m] to each cluster's best viewpoint
+  for (const TourStop& stop : all.planning.tour(0)) {
+    ASSERT_EQ(stop.clusters.size(), 1U);
+    distances[stop.clusters.front()] = corridor.distance(stop.cell).value();
+  }
+  std::size_t clusters = 0;
+  double farthest = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (const TourStop& stop : some.planning.tour(0))
+    for (const std::uint32_t cluster : stop.clusters)
+      if (clusters++ < kJoined)
+        farthest = std::max(farthest, distances.at(cluster));
+      else
+        nearest = std::min(nearest, distances.at(cluster));
+  ASSERT_GT(clusters, 2 * kJoined);
+  EXPECT_LE(farthest, nearest);
+}
+
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.
 TEST(TourPlanning, GoesOnAfterTheRobotWasLost) {
   OpenSpace space;
