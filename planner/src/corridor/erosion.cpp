@@ -15,10 +15,12 @@ Erosion::Erosion(const KeyBox& box, const BodyStencil& stencil)
   }
   for (int x = window_.low[0]; x <= window_.high[0]; ++x)
     for (int y = window_.low[1]; y <= window_.high[1]; ++y) {
-      const auto [low, high] = stencil.column(x, y);
-      if (low > high) continue;
-      auto part = std::ranges::find_if(parts_, [&](const Part& p) { return p.low == low && p.high == high; });
-      if (part == parts_.end()) part = parts_.insert(part, {low, high, {}, {}, VoxelColumns(box)});
+      const BodyStencil::Range range = stencil.column(x, y);
+      if (range.low > range.high) continue;
+      auto part = std::ranges::find_if(
+          parts_, [&](const Part& p) { return p.low == range.low && p.high == range.high; });
+      if (part == parts_.end())
+        part = parts_.insert(part, {range.low, range.high, {}, {}, VoxelColumns(box)});
       part->columns.push_back({x, y});
       const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(x) * whole_.size_y() + y;
       part->offsets.push_back(column * static_cast<std::ptrdiff_t>(whole_.words()));
