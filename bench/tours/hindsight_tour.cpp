@@ -4,6 +4,7 @@
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -48,9 +49,12 @@ void open_path(TravelOptions& travel, VoxelGrid& map, const KeyBox& bounds,
         }));
   std::sort(closed.begin(), closed.end());
   closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
+  const planner::BodyStencil stencil(travel, map.resolution());
   for (const VoxelKey& cell : closed) {
-    for_each_key(planner::voxels_of_cell(travel, lattice, cell),
-                 [&](const VoxelKey& key) { map.set(key, Occupancy::kFree); });
+    static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
+      map.set(key, Occupancy::kFree);
+      return true;
+    }));
     if (travel.drives()) travel.without_ground.push_back({cell, cell});
   }
 }

@@ -138,7 +138,9 @@ class Search {
   // Places that add about as much may cost the same, after rounding.
   [[nodiscard]] std::size_t first_place_for(std::size_t r, std::uint32_t stop, double cost) const {
     std::size_t at = first_free_place(r);
-    while (cost_with_more(r, detour(r, tours_[r], steps_[r], at, stop, stop)) != cost) ++at;
+    while (at < tours_[r].size() &&
+           cost_with_more(r, detour(r, tours_[r], steps_[r], at, stop, stop)) != cost)
+      ++at;
     return at;
   }
 
