@@ -94,8 +94,8 @@ void explore(const Robot& robot, const std::filesystem::path& folder, const Pose
   const Eigen::Vector3d reach(20, 20, 5);  // [m] what may be explored around the start
   const MappingOptions map{.resolution = lattice.resolution(),
                            .bounds = voxels_of(lattice, {start.position - reach, start.position + reach})};
-  ExplorationOptions options = exploration_options();
-  options.team.push_back({robot, goal_options(robot)});
+  ExplorationOptions options = tour_options(lattice.resolution());
+  options.team.push_back({robot, motion_goal_options(robot)});
   ContinuousExploration exploration(options, Mapping(map));
 
   std::size_t taken = 0;

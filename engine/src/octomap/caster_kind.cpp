@@ -1,5 +1,8 @@
 #include <frontlux/caster_kind.hpp>
 
+#include <stdexcept>
+#include <string>
+
 namespace frontlux {
 namespace {
 
@@ -13,9 +16,10 @@ std::unique_ptr<RayCaster> make(CasterKind kind, const VoxelGrid& grid, const Tr
     case CasterKind::kOctomap:
       return make_octomap_ray_caster(tree);
     case CasterKind::kFast:
-      break;
+      return make_ray_caster(grid);
   }
-  return make_ray_caster(grid);
+  throw std::invalid_argument("ray caster: kind is " + std::to_string(static_cast<int>(kind)) +
+                              ", which is none of the values of CasterKind");
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ void add_explore_command(CLI::App& app) {
   command.add_action("--task", "FILE.json",
                      "What to explore, how and with whom (docs/tasks.md); other options win over it",
                      [&options, read_option = command.read_option()](std::string_view file) {
-                       read_task(std::string(file), read_option, options);
+                       apply_task(std::string(file), read_option, options);
                      });
   command.add("WORLD", options.source.world, "", "Built-in world (see frontlux world), mesh or OctoMap file");
   command.add("-o,--output", given->output, "DIR",

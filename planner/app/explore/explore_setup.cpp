@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -161,11 +160,10 @@ planner::GoalRule rule_of(GoalSearch search) {
 }
 
 planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot) {
-  planner::GoalOptions goal = planner::goal_options(robot, options.mode);
+  planner::GoalOptions goal = options.lockstep ? planner::goal_options(robot, options.mode)
+                                               : planner::motion_goal_options(robot, options.mode);
   goal.rule = options.goal ? rule_of(*options.goal) : goal.rule;
   goal.lambda = options.lambda.value_or(goal.lambda);
-  // A robot in motion plans again before it arrives, so that near goals cost it less.
-  if (!options.lockstep && options.mode == Method::kDefault) goal.advance = 2.0;
   goal.advance = options.advance.value_or(goal.advance);
   goal.min_distance = options.min_distance.value_or(goal.min_distance);
   goal.rendering.renderer = options.renderer.value_or(goal.rendering.renderer);
@@ -181,36 +179,28 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
     throw BadInput(std::string("--goal tour is not for ") +
                    (options.lockstep ? "--lockstep" : "--mode paper") +
                    "; give another goal, or leave it out");
-  planner::ExplorationOptions exploration = planner::exploration_options(options.mode);
+  planner::ExplorationOptions exploration = options.lockstep ? planner::exploration_options(options.mode)
+                                            : makes_tours(options)
+                                                ? planner::tour_options(options.source.resolution)
+                                                : planner::motion_options(options.mode);
   exploration.seed = options.seed;
   // With nearest goals each gain is small, so that small gains do not end the exploration.
   if (options.goal == GoalSearch::kNearest) exploration.epsilon = 1.0;
-  // Ten frontiers of 0.1 m are no reason to go anywhere.
-  constexpr double kWorthAStop = 0.3;  // [m2] of frontiers
-  if (makes_tours(options))
-    exploration.epsilon =
-        std::max(exploration.epsilon,
-                 std::round(kWorthAStop / (options.source.resolution * options.source.resolution)));
   exploration.epsilon = options.epsilon.value_or(exploration.epsilon);
   for (const RobotDescription& robot : robots) {
     planner::GoalOptions goal = goal_options(options, robot.robot);
-    // Steps are quiet only when there is no better goal.
+    // Steps have low gain only when there is no better goal.
     if (options.mode == Method::kDefault) goal.min_gain = exploration.epsilon;
     exploration.team.push_back({robot.robot, goal});
   }
   exploration.path.search = options.search.value_or(exploration.path.search);
   constexpr int kOfRrtStar = 2000;
   if (exploration.path.search == planner::PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
-  exploration.tours = makes_tours(options);
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;
   exploration.caster = options.caster;
-  // In motion a step is a planning, a matter of a second.
-  exploration.max_steps =
-      options.max_steps.value_or(options.lockstep ? exploration.max_steps : std::numeric_limits<int>::max());
+  exploration.max_steps = options.max_steps.value_or(exploration.max_steps);
   exploration.latency = options.latency;
-  // In motion each planning notes what the last scan had in view.
-  if (!options.lockstep) exploration.max_visits = 1;
   exploration.check();
   return exploration;
 }

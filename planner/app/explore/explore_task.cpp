@@ -115,7 +115,7 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
 
 }  // namespace
 
-void read_task(const std::string& file, const Command::ReadOption& read_option, ExploreOptions& options) {
+void apply_task(const std::string& file, const Command::ReadOption& read_option, ExploreOptions& options) {
   work_on(file, "give a smaller task", [&] {
     const io::Task task = io::read_task(file);
     options.task = file;

@@ -48,28 +48,26 @@ Robot robot_above(const planner::RobotDescription& description, const Lattice& l
 }
 
 Team make_team(const TeamArguments& arguments, bool lockstep, Method method) {
-  Team team{arguments.robots, planner::exploration_options(method), {}};
+  const bool tours = arguments.goal == "tour";
+  Team team{arguments.robots,
+            lockstep ? planner::exploration_options(method)
+            : tours  ? planner::tour_options(arguments.resolution)
+                     : planner::motion_options(method),
+            {}};
   team.map.resolution = arguments.resolution;
   const Lattice lattice = team.lattice();
   team.map.bounds = given_bounds(lattice, arguments.bounds);
   const std::optional<GoalRule> rule = rule_of(arguments.goal, lockstep);
   ExplorationOptions& options = team.options;
   options.seed = arguments.seed;
-  options.tours = arguments.goal == "tour";
   if (rule == GoalRule::kNearest) options.epsilon = 1.0;
-  constexpr double kWorthAStop = 0.3;  // [m2] of frontiers
-  if (options.tours)
-    options.epsilon =
-        std::max(options.epsilon, std::round(kWorthAStop / (arguments.resolution * arguments.resolution)));
   options.epsilon = arguments.epsilon.value_or(options.epsilon);
-  options.max_steps =
-      arguments.max_steps.value_or(lockstep ? options.max_steps : std::numeric_limits<int>::max());
-  if (!lockstep) options.max_visits = 1;
+  options.max_steps = arguments.max_steps.value_or(options.max_steps);
   for (const auto& description : arguments.robots) {
     const Robot robot = robot_above(*description, lattice, team.map.bounds);
-    planner::GoalOptions goal = planner::goal_options(robot, method);
+    planner::GoalOptions goal =
+        lockstep ? planner::goal_options(robot, method) : planner::motion_goal_options(robot, method);
     goal.rule = rule.value_or(goal.rule);
-    if (!lockstep) goal.advance = 2.0;
     goal.rendering.seed = arguments.seed;
     if (method == Method::kDefault) goal.min_gain = options.epsilon;
     options.team.push_back({robot, goal});

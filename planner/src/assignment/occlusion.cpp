@@ -10,7 +10,7 @@ Occlusion::Occlusion(const VoxelGrid& grid, const KeyBox& box) {
   constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 29;
   const auto known = grid.known_bounds();
   const auto part = known ? intersection(box, *known) : std::nullopt;
-  if (!part || VoxelColumns::bytes(*part) > kMaxBytes) return;
+  if (!part || BitColumns::bytes(*part) > kMaxBytes) return;
   walls_.emplace(*part);
   walls_->add_occupied(grid);
 }
@@ -21,7 +21,7 @@ bool Occlusion::occupied(const KeyBox& box) const {
     for (int y = box.min.y; y <= box.max.y; ++y) {
       const std::uint64_t* word = walls_->at(make_key(x, y, box.min.z));
       for (int z = box.min.z; z <= box.max.z; z += 64, ++word)
-        if ((~VoxelColumns::read(word, shift) & VoxelColumns::bits_to(box.max.z - z)) != 0) return false;
+        if ((~BitColumns::read(word, shift) & BitColumns::bits_to(box.max.z - z)) != 0) return false;
     }
   return true;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assignment/voxel_columns.hpp"
+#include "assignment/bit_columns.hpp"
 
 #include <frontlux/voxel_grid.hpp>
 
@@ -24,7 +24,7 @@ class Occlusion {
  private:
   [[nodiscard]] bool occupied(const KeyBox& box) const;
 
-  std::optional<VoxelColumns> walls_;
+  std::optional<BitColumns> walls_;
 };
 
 }  // namespace frontlux::planner::detail

@@ -28,7 +28,7 @@ std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid,
                                                      const ViewRegion& region, const KeyBox& targets) {
   if (region.greatest_height() > kMaxHeight) return std::nullopt;
   const KeyBox cells = bounds_of(corridor), box = hull(cells, targets);
-  if (2 * VoxelColumns::bytes(box) > kMaxBytes) return std::nullopt;
+  if (2 * BitColumns::bytes(box) > kMaxBytes) return std::nullopt;
   std::optional<VisibilityFlood> flood = VisibilityFlood(box, cells, region);
   for (Columns* columns : {&flood->up_, &flood->down_}) {
     columns->walls.add_occupied(grid);
@@ -39,8 +39,8 @@ std::optional<VisibilityFlood> VisibilityFlood::make(const VoxelGrid& grid,
 
 // A ray to an offset in the region rises no more than the region's slope, and crosses what it touches.
 VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, const ViewRegion& region)
-    : up_{VoxelColumns(box), VoxelColumns(box)},
-      down_{VoxelColumns(box, true), VoxelColumns(box, true)},
+    : up_{BitColumns(box), BitColumns(box)},
+      down_{BitColumns(box, true), BitColumns(box, true)},
       corridor_(corridor),
       reach_(region.reach()) {
   constexpr double kWidth = std::numbers::pi / 2 / kSectors;
@@ -50,9 +50,9 @@ VisibilityFlood::VisibilityFlood(const KeyBox& box, const KeyBox& corridor, cons
       const double rise = 0.5 + region.slope() * std::hypot(x + 0.5, y + 0.5) + kRounding;
       const std::uint64_t crossed =
           range <= region.squared_range()
-              ? VoxelColumns::bits_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())))
+              ? BitColumns::bits_to(static_cast<int>(std::min(rise, 1.0 * region.greatest_height())))
               : 0;
-      std::uint64_t cells = VoxelColumns::bits_to(region.height(x, y));
+      std::uint64_t cells = BitColumns::bits_to(region.height(x, y));
       if (x == 0 && y == 0) cells &= ~std::uint64_t{1};  // the target itself
       const double azimuth = std::atan2(y, x), low = std::atan2(y - 0.5, x + 0.5) - kRounding,
                    high = std::atan2(y + 0.5, x - 0.5) + kRounding;
@@ -85,7 +85,7 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
     if (size[a] < (side[a] > 0 ? 0 : 1)) return;
   }
   const Columns& columns = side[2] > 0 ? up_ : down_;
-  const std::uint64_t heights = VoxelColumns::bits_to(size[2]),
+  const std::uint64_t heights = BitColumns::bits_to(size[2]),
                       wanted = side[2] > 0 ? heights : heights & ~std::uint64_t{1};
   const std::ptrdiff_t step_x = side[0] * columns.walls.along_x(), step_y = side[1] * columns.walls.along_y();
   const int shift = columns.walls.shift(target);
@@ -110,8 +110,7 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
         continue;
       }
       const std::ptrdiff_t column = x * step_x + y * step_y;
-      reached =
-          fill(seeds, (~VoxelColumns::read(walls + column, shift) | start) & limits[y].crossed & heights);
+      reached = fill(seeds, (~BitColumns::read(walls + column, shift) | start) & limits[y].crossed & heights);
       start = 0;
       here = reached;
       if (reached != 0) {
@@ -121,7 +120,7 @@ void VisibilityFlood::cells(const VoxelKey& target, const std::array<int, 3>& si
       if ((x == 0 && side[0] < 0) || (y == 0 && side[1] < 0)) continue;
       // A cell may be occupied itself; what lies before it may not.
       std::uint64_t found = (seeds | reached << 1) & limits[y].cells & wanted;
-      if (found != 0) found &= VoxelColumns::read(corridor_cells + column, shift);
+      if (found != 0) found &= BitColumns::read(corridor_cells + column, shift);
       for (; found != 0; found &= found - 1)
         cells.push_back(
             make_key(t[0] + side[0] * x, t[1] + side[1] * y, t[2] + side[2] * std::countr_zero(found)));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assignment/voxel_columns.hpp"
+#include "assignment/bit_columns.hpp"
 
 #include <frontlux/view_region.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -51,7 +51,7 @@ class VisibilityFlood {
 
   // The same voxels twice: as columns upwards and downwards.
   struct Columns {
-    VoxelColumns walls, cells;
+    BitColumns walls, cells;
   };
   Columns up_, down_;
   KeyBox corridor_;  // around the cells

@@ -116,7 +116,8 @@ ExplorationStep ContinuousExploration::finish(double time) {
 }
 
 MotionState ContinuousExploration::at(std::size_t robot, double time) const {
-  return state_->members.at(robot).motion.at(time);
+  if (robot >= state_->members.size()) refuse("there is no robot " + std::to_string(robot));
+  return state_->members[robot].motion.at(time);
 }
 
 std::optional<ExplorationEnd> ContinuousExploration::end() const {
@@ -125,12 +126,12 @@ std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const auto low = [&](const auto& member) {
     return member.lost || member.low_gains >= state.team.options.low_gain_steps;
   };
-  const bool all_idle = std::ranges::all_of(state.members, State::is_idle);
-  if (all_idle || std::ranges::all_of(state.members, low)) {
+  const bool nothing_to_do = std::ranges::all_of(state.members, State::has_nothing_to_do);
+  if (nothing_to_do || std::ranges::all_of(state.members, low)) {
     for (std::size_t r = 0; r < state.members.size(); ++r)
       if (!state.members[r].lost && state.team.is_cut_off(r, state.members[r].goal))
         return ExplorationEnd::kCutOff;
-    return all_idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+    return nothing_to_do ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
   }
   if (state.team.number > static_cast<std::uint64_t>(state.team.options.max_steps))
     return ExplorationEnd::kStepLimit;

@@ -370,7 +370,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.planned = time;
   if (rests(member) && !rested) tell_others(robot);
   member.blocked = member.stopped = false;
-  judge(robot, step.robots[robot]);
+  count_low_gain(robot, step.robots[robot]);
   ++team.number;
   step.robots[robot].trajectory = poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
@@ -413,8 +413,8 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
   return true;
 }
 
-// What the end depends on.
-void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& step) {
+// And plannings in which it waits: `end` decides by both.
+void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step) {
   Member& member = members[robot];
   double gain = step.goal.gain;
   if (team.tours) {  // the next stop may show little, on the way to others
@@ -428,7 +428,7 @@ void ContinuousExploration::State::judge(std::size_t robot, const RobotStep& ste
   if (member.waits > kPatience && member.request) end_request(robot);
 }
 
-bool ContinuousExploration::State::is_idle(const Member& member) {
+bool ContinuousExploration::State::has_nothing_to_do(const Member& member) {
   if (member.lost) return true;
   return member.planned && !member.going && !member.others_rest &&
          (member.waits == 0 || member.waits > kPatience);

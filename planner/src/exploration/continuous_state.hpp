@@ -33,7 +33,7 @@ struct ContinuousExploration::State {
     bool lost = false;              // takes no more part
     bool goes_back = false;         // on the way on which it came
     bool makes_room = false;        // on its way out of another one's way
-    bool going = false;             // it has a goal, goes back, or makes room
+    bool going = false;             // it moves, or plans again when it has come to rest: nothing ends before
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     int waits = 0;                  // plannings in a row after which it could not set out, or waited for room
     Goal goal = {};                 // the last one
@@ -61,8 +61,8 @@ struct ContinuousExploration::State {
   void withdraw_requests(std::size_t robot);
   /// A robot has come to rest, or is lost: the others may ask it, or have a way that it has kept closed.
   void tell_others(std::size_t robot);
-  /// Whether there is nothing for a robot to do, or it has waited for others long enough.
-  [[nodiscard]] static bool is_idle(const Member& member);
+  /// Or it has waited for others long enough.
+  [[nodiscard]] static bool has_nothing_to_do(const Member& member);
 
  private:
   enum class Others { kAll, kThatDoNotRest };
@@ -81,7 +81,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
   void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
-  void judge(std::size_t robot, const RobotStep& step);
+  void count_low_gain(std::size_t robot, const RobotStep& step);
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;

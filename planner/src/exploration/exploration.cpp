@@ -17,6 +17,7 @@ using State = detail::ExplorationState;
 
 Exploration::Exploration(ExplorationOptions options, Mapping mapping) {
   options.check();
+  if (options.tours) refuse("tours are for robots in motion, see ContinuousExploration");
   state_ = std::make_unique<State>(std::move(options), std::move(mapping));
 }
 Exploration::~Exploration() = default;
@@ -53,7 +54,7 @@ ExplorationStep Exploration::step(const Drive& drive) {
   state.execute_paths(gains, drive, step);                // Alg. 1, lines 8 to 11
   state.advance_clock(step);
   state.update_frontiers(step);
-  state.judge(step);  // Alg. 1, line 3
+  state.count_low_gain(step);  // Alg. 1, line 3
   return step;
 }
 
@@ -68,17 +69,17 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   if (!state.execute_again(recorded, drive, step)) return false;
   state.advance_clock(step);
   state.update_frontiers(step);
-  state.judge(step);
+  state.count_low_gain(step);
   return true;
 }
 
 // Alg. 1, line 3.
 std::optional<ExplorationEnd> Exploration::end() const {
   const State& state = *state_;
-  if (state.idle || state.low_gain_steps >= state.options.low_gain_steps) {
+  if (state.nothing_to_do || state.low_gain_steps >= state.options.low_gain_steps) {
     for (std::size_t r = 0; r < state.last_goals.size(); ++r)
       if (state.is_cut_off(r, state.last_goals[r])) return ExplorationEnd::kCutOff;
-    return state.idle ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
+    return state.nothing_to_do ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
   }
   if (state.number > static_cast<std::uint64_t>(state.options.max_steps)) return ExplorationEnd::kStepLimit;
   return std::nullopt;

@@ -1,7 +1,9 @@
 #include <frontlux/planner/exploration.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -44,6 +46,21 @@ ExplorationOptions exploration_options(Method method) {
   } else {
     options.path.search = PathSearch::kCorridor;
   }
+  return options;
+}
+
+ExplorationOptions motion_options(Method method) {
+  ExplorationOptions options = exploration_options(method);
+  options.max_visits = 1;
+  options.max_steps = std::numeric_limits<int>::max();
+  return options;
+}
+
+ExplorationOptions tour_options(double resolution) {
+  constexpr double kWorthAStop = 0.3;  // [m2]: ten frontiers of 0.1 m are no reason to go anywhere
+  ExplorationOptions options = motion_options();
+  options.tours = true;
+  options.epsilon = std::max(options.epsilon, std::round(kWorthAStop / (resolution * resolution)));
   return options;
 }
 

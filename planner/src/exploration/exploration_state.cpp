@@ -423,16 +423,16 @@ double ExplorationState::path_gain(const RobotStep& robot) const {
   return static_cast<double>(sum ? robot.gain_sum : robot.gain_predicted);
 }
 
-// Line 3: what the end depends on.
-void ExplorationState::judge(const ExplorationStep& step) {
+// Line 3.
+void ExplorationState::count_low_gain(const ExplorationStep& step) {
   double expected_gain = 0.0;
   bool retreats = false;
-  idle = true;
+  nothing_to_do = true;
   last_goals.clear();
   for (const RobotStep& robot : step.robots) {
     last_goals.push_back(robot.goal);
     const bool moved = robot.travelled > 1;
-    if (robot.goal.pose || moved) idle = false;
+    if (robot.goal.pose || moved) nothing_to_do = false;
     if (moved && robot.goal.pose) expected_gain += path_gain(robot);
     retreats = retreats || (moved && !robot.goal.pose);
   }

@@ -25,7 +25,7 @@ struct ExplorationState {
   Mapping mapping;
   /// If given: the map, but for voxels that were occupied once, which stay so. It has the frontiers. Beams
   /// that graze a surface free some of its voxels, until they are hit again; what is behind is no frontier.
-  std::optional<VoxelGrid> solid = {};
+  std::optional<VoxelGrid> solid = {};  // in motion
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
   AbandonedFrontiers abandoned;
@@ -45,7 +45,7 @@ struct ExplorationState {
   std::uint64_t number = 0;                         // of the next step
   double time = 0.0;                                // [s] in lock-step
   int low_gain_steps = 0;                           // in a row
-  bool idle = false;                                // in the last step no robot had a goal or moved
+  bool nothing_to_do = false;                       // in the last step no robot had a goal or moved
 
   ExplorationState(ExplorationOptions given, Mapping map);
 
@@ -83,7 +83,8 @@ struct ExplorationState {
   void block(std::size_t robot, std::span<const VoxelKey> cells);
   void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
-  void judge(const ExplorationStep& step);
+  /// Counts steps of low gain; `Exploration::end` decides by them.
+  void count_low_gain(const ExplorationStep& step);
 
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);

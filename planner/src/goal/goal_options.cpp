@@ -49,7 +49,7 @@ GoalOptions goal_options(const Robot& robot, Method method) {
     options.refined = drives ? 0 : 4096;  // all cells that see a frontier
   } else {
     options.advance = 4.0;
-    options.min_gain = 10.0;  // fewer make a step quiet: `ExplorationOptions`
+    options.min_gain = 10.0;  // `ExplorationOptions::epsilon`
     if (drives) {
       options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
     } else {
@@ -61,6 +61,12 @@ GoalOptions goal_options(const Robot& robot, Method method) {
       options.prune = true;
     }
   }
+  return options;
+}
+
+GoalOptions motion_goal_options(const Robot& robot, Method method) {
+  GoalOptions options = goal_options(robot, method);
+  if (method == Method::kDefault) options.advance = 2.0;
   return options;
 }
 

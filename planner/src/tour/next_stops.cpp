@@ -1,6 +1,5 @@
 // The stops that come next in a robot's tour.
 
-#include "tour/joined_stops.hpp"
 #include "tour/shortest_choice.hpp"
 #include "tour/tour_planning.hpp"
 #include "tour/travel_seconds.hpp"
@@ -27,78 +26,108 @@ void TourPlanning::put_nearest_first(const Query& query) {
   tour = std::move(stops);
 }
 
+// The first clusters of the robot's tour, the viewpoints from which it sees them one by one, and what else it
+// sees from there.
+TourPlanning::NextStops TourPlanning::next_stops(const Query& query) const {
+  const Member& member = members_[query.robot];
+  NextStops next;
+  const std::size_t count = std::min(options_.joined, member.tour.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    next.clusters.push_back(&cluster(member.tour[c].clusters.front()));
+    next.views.sizes.push_back(static_cast<double>(next.clusters.back()->keys.size()));
+    for (const ClusterViewpoint& viewpoint : member.sights.viewpoints(next.clusters.back()->id))
+      if (const double distance = own_distance_to(query, viewpoint.cell); distance != TourProblem::kNever) {
+        next.viewpoints.push_back(viewpoint);
+        next.distances.push_back(distance);
+        next.views.found_for.push_back(c);
+      }
+  }
+  next.views.parts = parts_seen(sight_of(query.robot, query.caster), next.viewpoints, next.clusters);
+  next.stops = join_clusters(next.views);
+  return next;
+}
+
+double TourPlanning::seconds_to_first(const Query& query, const NextStops& next,
+                                      std::size_t viewpoint) const {
+  return seconds_to(members_[query.robot].robot, query.starts[query.robot], next.viewpoints[viewpoint],
+                    next.distances[viewpoint]);
+}
+
+// @pre the ways from the first viewpoint are measured
+double TourPlanning::seconds_between(const Query& query, const NextStops& next, std::size_t a,
+                                     std::size_t b) const {
+  const Member& member = members_[query.robot];
+  double way = member.ways.between(next.viewpoints[a].cell, next.viewpoints[b].cell);
+  if (way == TourProblem::kNever) way = next.distances[a] + next.distances[b];  // by where the robot is
+  return travel_seconds(member.robot, way, turn_between(next.viewpoints[a].yaw, next.viewpoints[b].yaw));
+}
+
+// The stops in the order in which the robot gets to the clusters soon, each from its first viewpoint.
+void TourPlanning::put_in_order(const Query& query, NextStops& next) {
+  const std::size_t count = next.stops.size();
+  const auto first_of = [&](std::size_t stop) { return next.stops[stop].viewpoints.front(); };
+  TourProblem::Robot robot{{}, NumberTable(count, count)};
+  std::vector<double> weights;
+  std::vector<std::uint32_t> order;
+  std::vector<VoxelKey> cells;
+  for (std::size_t s = 0; s < count; ++s) {
+    robot.first.push_back(seconds_to_first(query, next, first_of(s)));
+    weights.push_back(static_cast<double>(next.stops[s].clusters.size()));
+    order.push_back(static_cast<std::uint32_t>(s));
+    cells.push_back(next.viewpoints[first_of(s)].cell);
+  }
+  members_[query.robot].ways.measure_from(cells);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j)
+      robot.between(i, j) = robot.between(j, i) = seconds_between(query, next, first_of(i), first_of(j));
+  std::vector<JoinedStop> ordered;
+  for (const std::uint32_t s : soonest_order(robot, weights, std::move(order)))
+    ordered.push_back(std::move(next.stops[s]));
+  next.stops = std::move(ordered);
+}
+
+// The viewpoint of each stop: of the first few those between which the ways are shortest.
+std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, const NextStops& next) {
+  std::vector<VoxelKey> cells;
+  std::vector<std::vector<std::size_t>> stages;
+  for (std::size_t s = 0; s < std::min(options_.refined, next.stops.size()); ++s) {
+    stages.push_back(next.stops[s].viewpoints);
+    for (const std::size_t v : stages.back()) cells.push_back(next.viewpoints[v].cell);
+  }
+  members_[query.robot].ways.measure_from(cells);
+  std::vector<std::size_t> chosen = shortest_choice(
+      stages, [&](std::size_t v) { return seconds_to_first(query, next, v); },
+      [&](std::size_t a, std::size_t b) { return seconds_between(query, next, a, b); });
+  for (std::size_t s = chosen.size(); s < next.stops.size(); ++s)
+    chosen.push_back(next.stops[s].viewpoints.front());
+  return chosen;
+}
+
+TourStop TourPlanning::stop_at(const NextStops& next, const JoinedStop& joined, std::size_t viewpoint) const {
+  const ClusterViewpoint& at = next.viewpoints[viewpoint];
+  TourStop stop{{}, {lattice_.exact_center(at.cell), at.yaw}, at.cell, 0};
+  double seen = 0.0;
+  for (const std::size_t c : joined.clusters) {
+    stop.clusters.push_back(next.clusters[c]->id);
+    seen += next.views.found_for[viewpoint] == c ? static_cast<double>(at.seen)
+                                                 : next.views.parts(viewpoint, c) * next.views.sizes[c];
+  }
+  stop.seen = static_cast<std::size_t>(seen);
+  return stop;
+}
+
 // Looks at the clusters of the robot's tour that are nearest from as few places as see them. Their order, and
 // the viewpoints of the next few, are those of the shortest ways.
 void TourPlanning::join_next_stops(const Query& query) {
   put_nearest_first(query);
   Member& member = members_[query.robot];
-  const MotionState& start = query.starts[query.robot];
-  const std::size_t count = std::min(options_.joined, member.tour.size());
-  std::vector<const FrontierCluster*> clusters;
-  std::vector<ClusterViewpoint> viewpoints;
-  std::vector<double> distances;  // [m] to the viewpoints
-  SharedViews views;
-  for (std::size_t c = 0; c < count; ++c) {
-    clusters.push_back(&cluster(member.tour[c].clusters.front()));
-    views.sizes.push_back(static_cast<double>(clusters.back()->keys.size()));
-    for (const ClusterViewpoint& viewpoint : member.sights.viewpoints(clusters.back()->id))
-      if (const double distance = own_distance_to(query, viewpoint.cell); distance != TourProblem::kNever) {
-        viewpoints.push_back(viewpoint);
-        distances.push_back(distance);
-        views.found_for.push_back(c);
-      }
-  }
-  views.parts = parts_seen(sight_of(query.robot, query.caster), viewpoints, clusters);
-  const std::vector<JoinedStop> joined = join_clusters(views);
-  const auto first = [&](std::size_t v) {
-    return seconds_to(member.robot, start, viewpoints[v], distances[v]);
-  };
-  const auto between = [&](std::size_t a, std::size_t b) {  // the first one has been measured from
-    double way = member.ways.between(viewpoints[a].cell, viewpoints[b].cell);
-    if (way == TourProblem::kNever) way = distances[a] + distances[b];  // by where the robot is
-    return travel_seconds(member.robot, way, turn_between(viewpoints[a].yaw, viewpoints[b].yaw));
-  };
-
-  TourProblem::Robot robot{{}, NumberTable(joined.size(), joined.size())};
-  std::vector<double> weights;
-  std::vector<std::uint32_t> order;
-  std::vector<VoxelKey> cells;
-  for (const JoinedStop& stop : joined) {
-    robot.first.push_back(first(stop.viewpoints.front()));
-    weights.push_back(static_cast<double>(stop.clusters.size()));
-    order.push_back(static_cast<std::uint32_t>(order.size()));
-    cells.push_back(viewpoints[stop.viewpoints.front()].cell);
-  }
-  member.ways.measure_from(cells);
-  for (std::size_t i = 0; i < joined.size(); ++i)
-    for (std::size_t j = i + 1; j < joined.size(); ++j)
-      robot.between(i, j) = robot.between(j, i) =
-          between(joined[i].viewpoints.front(), joined[j].viewpoints.front());
-  order = soonest_order(robot, weights, std::move(order));
-
-  std::vector<std::vector<std::size_t>> stages;
-  for (std::size_t s = 0; s < std::min(options_.refined, order.size()); ++s) {
-    stages.push_back(joined[order[s]].viewpoints);
-    for (const std::size_t v : stages.back()) cells.push_back(viewpoints[v].cell);
-  }
-  member.ways.measure_from(cells);
-  const std::vector<std::size_t> choice = shortest_choice(stages, first, between);
+  NextStops next = next_stops(query);
+  put_in_order(query, next);
+  const std::vector<std::size_t> chosen = chosen_viewpoints(query, next);
   std::vector<TourStop> tour;
-  for (std::size_t s = 0; s < order.size(); ++s) {
-    const JoinedStop& stop = joined[order[s]];
-    const std::size_t v = s < choice.size() ? choice[s] : stop.viewpoints.front();
-    const ClusterViewpoint& viewpoint = viewpoints[v];
-    TourStop next{{}, {lattice_.exact_center(viewpoint.cell), viewpoint.yaw}, viewpoint.cell, 0};
-    double seen = 0.0;
-    for (const std::size_t c : stop.clusters) {
-      next.clusters.push_back(clusters[c]->id);
-      seen +=
-          views.found_for[v] == c ? static_cast<double>(viewpoint.seen) : views.parts(v, c) * views.sizes[c];
-    }
-    next.seen = static_cast<std::size_t>(seen);
-    tour.push_back(std::move(next));
-  }
-  tour.insert(tour.end(), member.tour.begin() + static_cast<std::ptrdiff_t>(count), member.tour.end());
+  for (std::size_t s = 0; s < next.stops.size(); ++s) tour.push_back(stop_at(next, next.stops[s], chosen[s]));
+  tour.insert(tour.end(), member.tour.begin() + static_cast<std::ptrdiff_t>(next.clusters.size()),
+              member.tour.end());
   member.tour = std::move(tour);
 }
 

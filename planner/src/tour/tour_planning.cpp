@@ -311,9 +311,11 @@ TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stop
   return problem;
 }
 
-void TourPlanning::update(const Query& query) {
-  std::vector<KeyBox> changes = take_changes(members_[query.robot]);
-  if (!std::exchange(members_[query.robot].planned, true))
+// The ways, the clusters, and from where the robot sees them.
+void TourPlanning::follow_map(const Query& query) {
+  Member& member = members_[query.robot];
+  std::vector<KeyBox> changes = take_changes(member);
+  if (!std::exchange(member.planned, true))
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
   update_ways(query, changes);
   for (std::size_t r = 0; r < members_.size(); ++r)
@@ -323,49 +325,64 @@ void TourPlanning::update(const Query& query) {
     return reaches(query, cell);
   };
   const ViewpointQuery view = sight_of(query.robot, query.caster);
-  members_[query.robot].sights.update(
+  member.sights.update(
       {view, clusters_.clusters(), changes, can_go, query.corridor.state() == CorridorState::kReady});
-  const auto clusters = clusters_.clusters();
-  const std::vector<Stop> places = stops(query.starts);
-  TourProblem all = problem(query, places);
+}
+
+// What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.
+Tours TourPlanning::tours_before(const Query& query, std::span<const Stop> stops,
+                                 TourProblem& problem) const {
   std::map<std::uint32_t, std::uint32_t> stop_of;  // cluster
-  for (std::uint32_t i = 0; i < places.size(); ++i)
-    for (const std::uint32_t cluster : places[i]) stop_of[clusters[cluster].id] = i;
-  // What is left of the tours before.
+  for (std::uint32_t i = 0; i < stops.size(); ++i)
+    for (const std::uint32_t cluster : stops[i]) stop_of[clusters_.clusters()[cluster].id] = i;
   Tours before(members_.size());
-  std::vector<bool> taken(places.size());
+  std::vector<bool> taken(stops.size());
   for (std::size_t r = 0; r < members_.size(); ++r)
     for (const TourStop& stop : members_[r].tour)
       for (const std::uint32_t cluster : stop.clusters) {
         const auto place = stop_of.find(cluster);
         if (place == stop_of.end() || taken[place->second] ||
-            all.robots[r].first[place->second] == TourProblem::kNever)
+            problem.robots[r].first[place->second] == TourProblem::kNever)
           continue;
         taken[place->second] = true;
         before[r].push_back(place->second);
-        // Where another robot goes already, it goes.
-        if (r != query.robot && &stop == members_[r].tour.data()) ++all.robots[r].fixed;
+        if (r != query.robot && &stop == members_[r].tour.data()) ++problem.robots[r].fixed;
       }
-  Tours tours = shortened_tours(all, before);
-  Tours begun(members_.size());
-  for (std::size_t r = 0; r < members_.size(); ++r)
-    begun[r].assign(before[r].begin(), before[r].begin() + static_cast<std::ptrdiff_t>(all.robots[r].fixed));
-  Tours anew = shortened_tours(all, begun);
-  constexpr double kWorth = 0.95;  // else robots would change their minds all the time
-  if (cost_of(all, anew) < kWorth * cost_of(all, tours)) tours = std::move(anew);
+  return before;
+}
+
+// The tours before, shortened, unless tours from nothing are better by a margin: else robots would change
+// their minds all the time.
+Tours TourPlanning::shared_out(const TourProblem& problem, const Tours& before) {
+  constexpr double kWorth = 0.95;
+  Tours tours = shortened_tours(problem, before);
+  Tours begun(before.size());
+  for (std::size_t r = 0; r < before.size(); ++r)
+    begun[r].assign(before[r].begin(),
+                    before[r].begin() + static_cast<std::ptrdiff_t>(problem.robots[r].fixed));
+  Tours anew = shortened_tours(problem, begun);
+  return cost_of(problem, anew) < kWorth * cost_of(problem, tours) ? anew : tours;
+}
+
+// A stop for each cluster, until the robot that plans joins its next ones.
+void TourPlanning::take(const Query& query, std::span<const Stop> stops, const Tours& tours) {
   for (std::size_t r = 0; r < members_.size(); ++r) {
     Member& member = members_[r];
     std::vector<TourStop> tour;
     Eigen::Vector3d at = query.starts[r].pose.position;
     for (const std::uint32_t place : tours[r])
-      for (const std::uint32_t cluster : in_order(member, places[place], at)) {
+      for (const std::uint32_t cluster : in_order(member, stops[place], at)) {
         const ClusterViewpoint& viewpoint = *best_viewpoint(member, cluster);
         at = lattice_.exact_center(viewpoint.cell);
-        tour.push_back({{clusters[cluster].id}, {at, viewpoint.yaw}, viewpoint.cell, viewpoint.seen});
+        tour.push_back(
+            {{clusters_.clusters()[cluster].id}, {at, viewpoint.yaw}, viewpoint.cell, viewpoint.seen});
       }
     member.tour = std::move(tour);
   }
-  join_next_stops(query);
+}
+
+// Of all tours, and of the first stop of the robot that plans.
+void TourPlanning::note_frontiers(const Query& query) {
   for (Member& member : members_) {
     member.frontiers.clear();
     for (const TourStop& stop : member.tour)
@@ -375,7 +392,6 @@ void TourPlanning::update(const Query& query) {
       }
     std::ranges::sort(member.frontiers);
   }
-
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;
@@ -386,6 +402,16 @@ void TourPlanning::update(const Query& query) {
     member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
   }
   std::ranges::sort(member.first_view);
+}
+
+void TourPlanning::update(const Query& query) {
+  follow_map(query);
+  const std::vector<Stop> places = stops(query.starts);
+  TourProblem all = problem(query, places);
+  const Tours before = tours_before(query, places, all);
+  take(query, places, shared_out(all, before));
+  join_next_stops(query);
+  note_frontiers(query);
 }
 
 }  // namespace frontlux::planner::detail

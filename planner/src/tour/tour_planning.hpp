@@ -3,6 +3,7 @@
 #include "tour/cluster_sights.hpp"
 #include "tour/cluster_viewpoints.hpp"
 #include "tour/frontier_clusters.hpp"
+#include "tour/joined_stops.hpp"
 #include "tour/tour_search.hpp"
 #include "tour/travel_ways.hpp"
 
@@ -128,8 +129,32 @@ class TourPlanning {
                                                 std::span<const Stop> stops);
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
-  void put_nearest_first(const Query& query);
+  // The stages of `update`.
+  void follow_map(const Query& query);
+  [[nodiscard]] Tours tours_before(const Query& query, std::span<const Stop> stops,
+                                   TourProblem& problem) const;
+  [[nodiscard]] static Tours shared_out(const TourProblem& problem, const Tours& before);
+  void take(const Query& query, std::span<const Stop> stops, const Tours& tours);
   void join_next_stops(const Query& query);
+  void note_frontiers(const Query& query);
+  // The stages of `join_next_stops` (next_stops.cpp).
+  struct NextStops {
+    std::vector<const FrontierCluster*> clusters = {};
+    std::vector<ClusterViewpoint> viewpoints = {};  // of the clusters
+    std::vector<double> distances = {};             // [m] to the viewpoints
+    SharedViews views = {};                         // of the clusters from the viewpoints
+    std::vector<JoinedStop> stops = {};
+  };
+  void put_nearest_first(const Query& query);
+  [[nodiscard]] NextStops next_stops(const Query& query) const;
+  void put_in_order(const Query& query, NextStops& next);
+  [[nodiscard]] std::vector<std::size_t> chosen_viewpoints(const Query& query, const NextStops& next);
+  [[nodiscard]] TourStop stop_at(const NextStops& next, const JoinedStop& joined,
+                                 std::size_t viewpoint) const;
+  [[nodiscard]] double seconds_to_first(const Query& query, const NextStops& next,
+                                        std::size_t viewpoint) const;
+  [[nodiscard]] double seconds_between(const Query& query, const NextStops& next, std::size_t a,
+                                       std::size_t b) const;
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
 

@@ -386,6 +386,7 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   refuses([&] { exploration.insert(0, pose, scan); }, "no robot 0");
   refuses([&] { exploration.stopped(0, pose, 0.0, {}); }, "no robot 0");
   refuses([&] { exploration.lose(0, pose, 0.0); }, "no robot 0");
+  refuses([&] { static_cast<void>(exploration.at(0, 0.0)); }, "no robot 0");
   refuses([&] { static_cast<void>(exploration.plan(0.0)); }, "before its beginning");
   refuses([&] { static_cast<void>(exploration.finish(0.0)); }, "before its beginning");
   refuses([&] { exploration.begin({}, 0.0); }, "0 starts for 1 robots");
@@ -397,6 +398,7 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   exploration.begin(team.starts, 0.0);
   refuses([&] { exploration.begin(team.starts, 0.0); }, "has begun already");
   refuses([&] { exploration.insert(1, pose, scan); }, "no robot 1");
+  refuses([&] { static_cast<void>(exploration.at(1, 0.0)); }, "no robot 1");
   EXPECT_REFUSED(exploration.insert(0, lost.pose, scan));
   EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
   ExplorationOptions options = TeamInMotion::options(team);

@@ -304,6 +304,7 @@ TEST(Exploration, RefusesWrongOptions) {
   expect_refusal([](O& o) { o.epsilon = HUGE_VAL; }, "epsilon is inf");
   expect_refusal([](O& o) { o.low_gain_steps = 0; }, "low_gain_steps is 0");
   expect_refusal([](O& o) { o.max_steps = -1; }, "max_steps is -1");
+  expect_refusal([](O& o) { o.tours = true; }, "ContinuousExploration");
   expect_refusal([](O& o) { o.max_visits = 0; }, "max_visits is 0");
   expect_refusal([](O& o) { o.min_cluster_size = 0; }, "min_cluster_size is 0");
   expect_refusal([](O& o) { o.team[0].options.lambda = std::nan(""); }, "lambda");

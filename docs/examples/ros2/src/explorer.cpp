@@ -73,14 +73,10 @@ void Explorer::begin(double time, const Pose& pose) {
   if (!lattice.key(pose.position) || !std::isfinite(pose.yaw))
     throw std::invalid_argument("the pose is not finite, or outside the key range");
   const KeyBox bounds = voxels_of(lattice, {pose.position - options_.reach, pose.position + options_.reach});
-  ExplorationOptions options = exploration_options();
-  options.tours = true;
-  options.max_visits = 1;
-  options.max_steps = std::numeric_limits<int>::max();
+  ExplorationOptions options = tour_options(options_.resolution);
   options.latency = options_.latency;
-  options.epsilon = std::max(options.epsilon, std::round(0.3 / std::pow(options_.resolution, 2)));  // 0.3 m2
   options_.robot.travel.floor = (bounds.min.z - static_cast<double>(Lattice::kOrigin)) * options_.resolution;
-  GoalOptions goal = goal_options(options_.robot);
+  GoalOptions goal = motion_goal_options(options_.robot);
   goal.min_gain = options.epsilon;
   options.team.push_back({options_.robot, goal});
   ContinuousExploration exploration(options, Mapping({.resolution = options_.resolution, .bounds = bounds}));

@@ -66,12 +66,16 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ExplorationStep begin(std::span<const ExplorationStart> starts, double time);
 
   /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map.
-  /// @throws std::invalid_argument before `begin`, or for what `Mapping::insert` refuses; so do the others
+  /// @throws std::invalid_argument before `begin`, if there is no such robot, or for what `Mapping::insert`
+  ///         refuses
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
 
   /// A robot rests at a pose since it could not go on: something that no sensor saw is in the way.
   /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
   ///                 them as it is, the cell that it is in will not be entered again
+  /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose that is not
+  /// finite;
+  ///         so does `lose`
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
@@ -79,12 +83,14 @@ class FRONTLUX_EXPORT ContinuousExploration {
   void lose(std::size_t robot, const Pose& pose, double time);
 
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.
+  /// @throws std::invalid_argument before `begin`; so does `finish`
   [[nodiscard]] std::optional<PlannedMotion> plan(double time);
 
   /// What the robots have done since the last planning, when nobody will plan any more.
   [[nodiscard]] ExplorationStep finish(double time);
 
-  /// Where a robot is by its trajectories.
+  /// Where a robot is by its trajectories, or will be at a time to come.
+  /// @throws std::invalid_argument before `begin`, or if there is no such robot
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
   /// Why the exploration is over; nothing while it goes on. Of low gain is an

@@ -29,7 +29,7 @@ struct ExplorationState;
 /// A team, and how it explores.
 struct FRONTLUX_EXPORT ExplorationOptions {
   std::vector<TeamMember> team;  ///< who comes first has the first choice: ground robots, then aerial ones
-  /// Which caster plans.
+  /// The caster that answers what is visible.
   CasterKind caster = CasterKind::kFast;
   /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
   /// the other.
@@ -46,7 +46,7 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   /// `GainMode::kSum` summed over viewpoints. A stop of a tour shows at least so many.
   double epsilon = 10.0;
   int low_gain_steps = 3;    ///< this many steps, in motion plannings, of low gain in a row end it
-  int max_steps = 1000;      ///< so does this number of steps
+  int max_steps = 1000;      ///< so does this number of steps, in motion plannings
   double latency = 0.1;      ///< [s] that the clock charges for a planning
   double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its way anew
   double commitment = 30.0;  ///< [s] in motion: a goal that is not seen yet is kept for this long
@@ -60,6 +60,13 @@ struct FRONTLUX_EXPORT ExplorationOptions {
 /// All but the team. By default robots take the corridor's own shortest paths, since a random search finds
 /// longer ones; `kPaper` searches by RRT.
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions exploration_options(Method method = Method::kDefault);
+/// The same for robots in motion, which note what each scan has in view: a frontier that stays unknown after
+/// one look is abandoned, and the number of plannings has no limit.
+[[nodiscard]] FRONTLUX_EXPORT ExplorationOptions motion_options(Method method = Method::kDefault);
+/// All but the team as `frontlux explore` has it by default: in motion, on tours, whose stops show 0.3 m2 of
+/// frontiers and at least ten.
+/// @param resolution  [m] of the map
+[[nodiscard]] FRONTLUX_EXPORT ExplorationOptions tour_options(double resolution);
 
 /// Where a robot begins, and what it knows to be free there without having seen it.
 struct ExplorationStart {
@@ -137,7 +144,7 @@ struct FRONTLUX_EXPORT ExplorationStep {
 /// Why an exploration is over.
 enum class ExplorationEnd : std::uint8_t {
   kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps or plannings
-  kNothingToDo,  ///< no robot has a goal
+  kNothingToDo,  ///< no robot has a goal, or waits any more for others to let it go to one
   kStepLimit,    ///< `max_steps` are done
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };
@@ -164,7 +171,7 @@ using Drive = std::function<std::optional<Scan>(std::size_t robot, const Pose& v
 class FRONTLUX_EXPORT Exploration {
  public:
   /// @param mapping  the map to fill; empty, or with what is known already
-  /// @throws std::invalid_argument naming the value that is out of bounds
+  /// @throws std::invalid_argument naming the value that is out of bounds, or for `tours`
   Exploration(ExplorationOptions options, Mapping mapping);
   ~Exploration();
   Exploration(Exploration&&) noexcept;

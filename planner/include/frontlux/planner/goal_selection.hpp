@@ -76,6 +76,10 @@ struct FRONTLUX_EXPORT GoalOptions {
 /// second voxel, pruned, and counted for the best cells. As printed: on a plane by hits among the drawn
 /// frontiers, in space by clusters.
 [[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
+/// The same for a robot in motion: by default near goals cost it less, since it plans again before it
+/// arrives.
+[[nodiscard]] FRONTLUX_EXPORT GoalOptions motion_goal_options(const Robot& robot,
+                                                              Method method = Method::kDefault);
 
 /// Which frontiers a robot's goal is for, or why it has no goal.
 enum class GoalState : std::uint8_t {

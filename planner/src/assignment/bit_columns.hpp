@@ -12,14 +12,14 @@ namespace frontlux::planner::detail {
 
 /// A set of voxels in a box as columns of bits along z. 64 voxels can be read at a time, from any height:
 /// upwards or, if the columns are built so, downwards.
-class VoxelColumns {
+class BitColumns {
  public:
   /// Bytes that a box takes.
   [[nodiscard]] static std::uint64_t bytes(const KeyBox& box) {
     return size(box.min.x, box.max.x) * size(box.min.y, box.max.y) * words(box) * sizeof(std::uint64_t);
   }
 
-  explicit VoxelColumns(const KeyBox& box, bool downwards = false)
+  explicit BitColumns(const KeyBox& box, bool downwards = false)
       : box_(box),
         downwards_(downwards),
         words_(words(box)),
