@@ -223,6 +223,7 @@ struct TravelCorridor::State {
     return fits(cell) &&
            std::ranges::none_of(kept_out, [&](const KeyBox& box) { return box.contains(cell); });
   }
+  void open_own_cell(const VoxelKey& own);
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
 
@@ -312,6 +313,34 @@ CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const Vox
   return CorridorState::kReady;
 }
 
+// A robot that is too near to another one may stay there and go away, but come no nearer: of a box around its
+// cell there remains what lies beyond the cell, seen from the nearest face.
+void TravelCorridor::State::open_own_cell(const VoxelKey& own) {
+  const auto opened = [&](KeyBox& box) {
+    if (!box.contains(own)) return true;
+    std::uint16_t* face = nullptr;
+    int nearest = Lattice::kKeysPerAxis, beyond = 0;
+    const auto consider = [&](std::uint16_t& limit, int at, int step) {
+      if (std::abs(limit - at) >= nearest) return;
+      nearest = std::abs(limit - at);
+      face = &limit;
+      beyond = at + step;
+    };
+    consider(box.min.x, own.x, 1);
+    consider(box.max.x, own.x, -1);
+    consider(box.min.y, own.y, 1);
+    consider(box.max.y, own.y, -1);
+    if (!options.drives()) {
+      consider(box.min.z, own.z, 1);
+      consider(box.max.z, own.z, -1);
+    }
+    if (beyond < 0 || beyond >= Lattice::kKeysPerAxis) return false;
+    *face = static_cast<std::uint16_t>(beyond);
+    return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
+  };
+  std::erase_if(kept_out, [&](KeyBox& box) { return !opened(box); });
+}
+
 TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds) {
   check(options, lattice.resolution(), bounds);
   state_ = std::make_unique<State>(options, lattice, bounds);
@@ -325,7 +354,7 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, Corr
   if (grid.resolution() != state_->lattice.resolution())
     refuse("the grid has a resolution of " + std::to_string(grid.resolution()) + " m, the corridor " +
            std::to_string(state_->lattice.resolution()) + " m");
-  std::erase_if(state_->kept_out, [&](const KeyBox& box) { return box.contains(state_->cell_of(robot)); });
+  state_->open_own_cell(state_->cell_of(robot));
   state_->read(change, robot);
   state_->state = state_->find_state(grid, robot);
   const bool all = extent == CorridorExtent::kAllCells;

@@ -80,16 +80,17 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   if (const auto here = state.team.lattice().key(pose.position); here && !learns) cells.push_back(*here);
   member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
   state.team.block(robot, cells);
+  state.note_in_way(robot, time);
 }
 
 void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double time) {
   stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
   State::Member& member = state_->members[robot];
   member.lost = true;
-  member.going = member.goes_back = member.makes_room = member.blocked = false;
+  member.going = member.goes_back = member.makes_room = member.blocked = member.meets_other = false;
   member.request.reset();
   state_->withdraw_requests(robot);
-  state_->tell_others(robot);
+  state_->tell_of_loss(robot);
   member.goal = {};
   member.goal_frontiers.clear();
   member.needed.clear();
@@ -124,7 +125,7 @@ std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
   const auto low = [&](const auto& member) {
-    return member.lost || member.low_gains >= state.team.options.low_gain_steps;
+    return member.lost || (member.low_gains >= state.team.options.low_gain_steps && !member.others_rest);
   };
   const bool nothing_to_do = std::ranges::all_of(state.members, State::has_nothing_to_do);
   if (nothing_to_do || std::ranges::all_of(state.members, low)) {

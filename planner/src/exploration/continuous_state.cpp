@@ -17,7 +17,6 @@ namespace {
 
 using Keys = std::vector<VoxelKey>;
 
-constexpr double kGap = 0.32;     // [m] that robots keep between their bodies
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
 constexpr int kPatience = 10;     // plannings, about a second each, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
@@ -78,6 +77,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (age <= 0.0) return std::nullopt;
   if (member.stopped) return PlanReason::kStopped;
   if (age < team.options.latency) return std::nullopt;
+  if (member.meets_other) return PlanReason::kBlocked;
   const bool arrives = time + team.options.latency >= member.motion.last().end();
   if (member.goes_back && !arrives) return std::nullopt;  // its way back need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
@@ -181,14 +181,14 @@ std::optional<KeyBox> ContinuousExploration::State::cells_too_near(std::size_t r
                                                                    double shrunk) const {
   const TravelOptions& travel = team.options.team[robot].robot.travel;
   const auto box = detail::positions_too_near(body_of(travel), body_of(team.options.team[other].robot.travel),
-                                              other_at, kGap);
-  if (travel.motion == Motion::kPlane) {
-    const double height = team.poses[robot].position.z();
-    if (height <= box.min().z() || height >= box.max().z()) return std::nullopt;
-  }
+                                              other_at, kSeparation);
+  const bool on_plane = travel.motion == Motion::kPlane;
+  const double height = team.poses[robot].position.z();
+  if (on_plane && (height <= box.min().z() || height >= box.max().z())) return std::nullopt;
   const Eigen::Vector3d inside = Eigen::Vector3d::Constant(shrunk * team.lattice().resolution());
-  const auto low = team.lattice().key(Eigen::Vector3d(box.min() + inside)),
-             high = team.lattice().key(Eigen::Vector3d(box.max() - inside));
+  Eigen::Vector3d lowest = box.min() + inside, highest = box.max() - inside;
+  if (on_plane) lowest.z() = highest.z() = height;  // its own layer, wherever in it the sensor is
+  const auto low = team.lattice().key(lowest), high = team.lattice().key(highest);
   if (!low || !high) return std::nullopt;
   return KeyBox{*low, *high};
 }
@@ -208,12 +208,15 @@ std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t r
   return places;
 }
 
-bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
+bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
+                                               std::size_t other) const {
   const auto body = [&](std::size_t r) { return body_of(team.options.team[r].robot.travel); };
+  return detail::keeps_apart(trajectory, from, body(robot), members[other].motion, body(other), kSeparation);
+}
+
+bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
   for (std::size_t other = 0; other < members.size(); ++other)
-    if (other != robot &&
-        !detail::keeps_apart(trajectory, body(robot), members[other].motion, body(other), kGap))
-      return false;
+    if (other != robot && !keeps_apart(robot, trajectory, trajectory.begin(), other)) return false;
   return true;
 }
 
@@ -366,10 +369,11 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.others_rest = false;
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
-  take_up(robot, start, trajectory, step);
+  const bool took_it = take_up(robot, start, trajectory, step);
   member.planned = time;
   if (rests(member) && !rested) tell_others(robot);
-  member.blocked = member.stopped = false;
+  member.blocked = member.blocked && !took_it && member.going;  // it tries again to brake
+  member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot]);
   ++team.number;
   step.robots[robot].trajectory = poses_along(trajectory, start);
@@ -381,33 +385,36 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 }
 
 // Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
-void ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
+// @return whether it follows another one than before
+bool ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
                                            ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kPaths);
   Member& member = members[robot];
   if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
     member.needed = voxels_needed(robot, trajectory);
     member.motion.next = trajectory;
-  } else {
-    trajectory = member.motion.last();  // which keeps apart
-    member.going = trajectory.end() > start;
-    member.makes_room = false;
-    const bool went_back = std::exchange(member.goes_back, false);
-    const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-    if (member.going || !went_back || std::ranges::none_of(members, moves)) return;
-    // Another one may make room: it tries the way back again.
-    team.went_back_to[robot].pop_back();
-    member.going = true;
+    return true;
   }
+  trajectory = member.motion.last();  // which keeps apart
+  member.going = trajectory.end() > start;
+  member.makes_room = false;
+  const bool went_back = std::exchange(member.goes_back, false);
+  const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
+  if (member.going || !went_back || std::ranges::none_of(members, moves)) return false;
+  // Another one may make room: it tries the way back again.
+  team.went_back_to[robot].pop_back();
+  member.going = true;
+  return false;
 }
 
-// Of a robot whose way is neither free nor can be left: it brakes, if that keeps apart from the others.
+// Of a robot whose way is neither free nor can be left: it brakes, if that keeps apart from the others. If it
+// would run into one that has stopped, it brakes in any case.
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
   member.goal_frontiers.clear();
-  if (!member.blocked) return false;
+  if (!member.blocked && !member.meets_other) return false;
   Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
-  if (!keeps_apart(robot, braking)) return false;
+  if (!member.meets_other && !keeps_apart(robot, braking)) return false;
   trajectory = std::move(braking);
   member.going = true;  // when it has come to rest, it plans again
   return true;
@@ -417,9 +424,10 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step) {
   Member& member = members[robot];
   double gain = step.goal.gain;
-  if (team.tours) {  // the next stop may show little, on the way to others
-    gain = 0.0;
-    for (const detail::TourStop& stop : team.tours->tour(robot)) gain += static_cast<double>(stop.seen);
+  if (team.tours) {  // its goal may show little, on the way to others
+    double seen = 0.0;
+    for (const detail::TourStop& stop : team.tours->tour(robot)) seen += static_cast<double>(stop.seen);
+    gain = std::max(gain, seen);
   }
   const bool waits = !member.going && (step.goal.pose || member.request || waits_for_room(robot));
   const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going && !waits;

@@ -30,6 +30,7 @@ struct ContinuousExploration::State {
     double chosen = 0.0;                 // [s] when it chose its goal
     std::uint64_t gained = 0;            // frontiers that it has mapped since it planned last
     bool stopped = false, blocked = false;
+    bool meets_other = false;       // its trajectory leads too near to another one that has stopped
     bool lost = false;              // takes no more part
     bool goes_back = false;         // on the way on which it came
     bool makes_room = false;        // on its way out of another one's way
@@ -59,8 +60,12 @@ struct ContinuousExploration::State {
   [[nodiscard]] ExplorationStep collect(double time);
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
-  /// A robot has come to rest, or is lost: the others may ask it, or have a way that it has kept closed.
+  /// A robot has come to rest: the others may ask it, or have a way that it has kept closed.
   void tell_others(std::size_t robot);
+  /// A robot is lost: each of the others decides anew what there is for it to do.
+  void tell_of_loss(std::size_t robot);
+  /// A robot has stopped where none of the others knew that it would: they may not go on through it.
+  void note_in_way(std::size_t robot, double time);
   /// Or it has waited for others long enough.
   [[nodiscard]] static bool has_nothing_to_do(const Member& member);
 
@@ -79,10 +84,12 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::vector<Pose> way_out(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
-  void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
+  [[nodiscard]] bool take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
   void count_low_gain(std::size_t robot, const RobotStep& step);
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
+  [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
+                                 std::size_t other) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
 };

@@ -32,9 +32,29 @@ void ContinuousExploration::State::withdraw_requests(std::size_t robot) {
 
 void ContinuousExploration::State::tell_others(std::size_t robot) {
   if (!team.tours) return;
-  for (std::size_t other = 0; other < members.size(); ++other)
-    if (other != robot && !members[other].lost && !members[other].going)
-      members[other].others_rest = members[other].asks = true;
+  for (std::size_t other = 0; other < members.size(); ++other) {
+    Member& member = members[other];
+    if (other == robot || member.lost || member.going) continue;
+    member.others_rest = member.asks = true;
+    member.waits = 0;
+  }
+}
+
+void ContinuousExploration::State::tell_of_loss(std::size_t robot) {
+  for (std::size_t other = 0; other < members.size(); ++other) {
+    Member& member = members[other];
+    if (other == robot || member.lost) continue;
+    member.others_rest = member.asks = true;
+    member.waits = member.low_gains = 0;
+  }
+}
+
+void ContinuousExploration::State::note_in_way(std::size_t robot, double time) {
+  for (std::size_t other = 0; other < members.size(); ++other) {
+    Member& member = members[other];
+    if (other != robot && !member.lost && member.motion.last().end() > time)
+      member.meets_other = member.meets_other || !keeps_apart(other, member.motion.last(), time, robot);
+  }
 }
 
 // It has made room, or cannot.

@@ -26,9 +26,9 @@ struct Follower {
   [[nodiscard]] const Trajectory& last() const { return next ? *next : now; }
 };
 
-/// Whether a robot on its trajectory keeps a gap [m] to another, from the trajectory's begin on and for all
-/// time to come. Robots that are nearer to each other already may not come nearer yet.
-[[nodiscard]] bool keeps_apart(const Trajectory& trajectory, const Eigen::AlignedBox3d& body,
+/// Whether a robot on its trajectory keeps a gap [m] to another, from a time [s] on and for all time to come.
+/// Robots that are nearer to each other already may not come nearer yet.
+[[nodiscard]] bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::AlignedBox3d& body,
                                const Follower& other, const Eigen::AlignedBox3d& other_body, double gap);
 
 }  // namespace frontlux::planner::detail

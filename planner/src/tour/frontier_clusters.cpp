@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -66,40 +67,46 @@ std::vector<std::uint32_t> FrontierClusters::pieces_in_order() const {
   return pieces;
 }
 
-// The largest piece that touches a small one, if it is larger, of those of one size the first.
+// The largest piece that touches a small one, of those of one size the first; itself if none does.
 std::uint32_t FrontierClusters::piece_for(std::uint32_t small) const {
   std::uint32_t best = small;
   for (const VoxelKey& key : pieces_[small])
     for_each_neighbor(key, piece_.box(), [&](const VoxelKey& neighbor) {
       const std::uint32_t other = piece_[neighbor];
-      if (other == 0 || other == best) return;
+      if (other == 0 || other == small || other == best) return;
       const Keys &theirs = pieces_[other], &most = pieces_[best];
-      if (theirs.size() > most.size() || (theirs.size() == most.size() && theirs.front() < most.front()))
+      if (best == small || theirs.size() > most.size() ||
+          (theirs.size() == most.size() && theirs.front() < most.front()))
         best = other;
     });
   return best;
 }
 
-// The pieces in order, sorted; those that are too small in the largest ones that they touch, or left out.
+// The pieces in order, sorted; those that are too small together with the largest ones that they touch. What
+// is too small all the same is left out.
 std::vector<Keys> FrontierClusters::joined_pieces() const {
+  std::vector<std::uint32_t> joined_to(pieces_.size());  // itself: the first piece of a cluster
+  std::iota(joined_to.begin(), joined_to.end(), 0U);
+  const auto first_of = [&](std::uint32_t piece) {
+    while (joined_to[piece] != piece) piece = joined_to[piece];
+    return piece;
+  };
   const std::vector<std::uint32_t> order = pieces_in_order();
-  std::vector<std::size_t> place(pieces_.size());
-  std::vector<std::pair<std::size_t, std::size_t>> joins;
-  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  for (std::size_t i = 0; i < order.size(); ++i)
-    if (pieces_[order[i]].size() < least_)
-      if (const std::uint32_t other = piece_for(order[i]); other != order[i])
-        joins.emplace_back(i, place[other]);
-  // From the smallest on, so that a chain of small pieces ends in one.
-  std::ranges::stable_sort(joins, {}, [&](const auto& join) { return pieces_[order[join.first]].size(); });
-  std::vector<Keys> joined;
-  for (const std::uint32_t piece : order) joined.push_back(pieces_[piece]);
-  for (const auto& [from, to] : joins) {
-    joined[to].insert(joined[to].end(), joined[from].begin(), joined[from].end());
-    joined[from].clear();
+  for (const std::uint32_t piece : order) {
+    if (pieces_[piece].size() >= least_) continue;
+    std::uint32_t a = first_of(piece), b = first_of(piece_for(piece));
+    if (pieces_[b].front() < pieces_[a].front()) std::swap(a, b);
+    joined_to[b] = a;
   }
-  for (const auto& [from, to] : joins) std::ranges::sort(joined[to]);
-  std::erase_if(joined, [&](const Keys& keys) { return keys.size() < least_; });
+  std::vector<Keys> all(pieces_.size());
+  for (const std::uint32_t piece : order) {
+    Keys& keys = all[first_of(piece)];
+    keys.insert(keys.end(), pieces_[piece].begin(), pieces_[piece].end());
+  }
+  std::vector<Keys> joined;
+  for (const std::uint32_t piece : order)
+    if (all[piece].size() >= least_) joined.push_back(std::move(all[piece]));
+  for (Keys& keys : joined) std::ranges::sort(keys);
   return joined;
 }
 

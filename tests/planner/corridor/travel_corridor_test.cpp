@@ -264,9 +264,26 @@ TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
   EXPECT_GT(none, 80U);
 }
 
-// The boxes of the last call, but for those that hold the robot's own cell.
+// What lies on the far side of a robot's cell in a box, where it may come no nearer: as seen from the box's
+// nearest face.
+std::vector<VoxelKey> far_side(const KeyBox& box, const VoxelKey& own, bool drives) {
+  const auto axis = [](const VoxelKey& key, int a) { return a == 0 ? key.x : a == 1 ? key.y : key.z; };
+  int nearest = 1 << 16, along = 0, side = 0;
+  for (int a = 0; a < (drives ? 2 : 3); ++a)
+    for (const int s : {-1, 1}) {
+      const int distance = std::abs(axis(s < 0 ? box.min : box.max, a) - axis(own, a));
+      if (distance < nearest) nearest = distance, along = a, side = s;
+    }
+  std::vector<VoxelKey> cells;
+  for_each_key(box, [&](const VoxelKey& key) {
+    if (side * (axis(key, along) - axis(own, along)) < 0) cells.push_back(key);
+  });
+  return cells;
+}
+
+// The boxes of the last call; of those that hold the robot's own cell, what lies behind it.
 TEST(TravelCorridor, KeepsOutOfBoxes) {
-  std::size_t cells = 0;
+  std::size_t cells = 0, behind = 0;
   for (const Robot& robot : robots()) {
     Random random(5);
     VoxelGrid grid = random_map(2, robot.resolution, 400);
@@ -284,8 +301,23 @@ TEST(TravelCorridor, KeepsOutOfBoxes) {
       EXPECT_EQ(corridor.cells().size(), before) << "until the next update";
       corridor.update({grid}, robot.at);
       Robot expected = robot;
-      for (const KeyBox& box : boxes)
-        if (!box.contains(corridor.cell_of(robot.at))) expected.rule.kept_out.push_back(box);
+      const VoxelKey own = corridor.cell_of(robot.at);
+      boxes.push_back(grown({own, own}, 0));
+      if (step % 2 == 0)
+        boxes.back() = {moved(own, -random.below(4), -random.below(4), -random.below(4)),
+                        moved(own, random.below(4), random.below(4), random.below(4))};
+      corridor.keep_out_of(boxes);
+      corridor.update({grid}, robot.at);
+      for (const KeyBox& box : boxes) {
+        if (!box.contains(own)) {
+          expected.rule.kept_out.push_back(box);
+          continue;
+        }
+        for (const VoxelKey& cell : far_side(box, own, robot.options.drives())) {
+          expected.rule.kept_out.push_back({cell, cell});
+          ++behind;
+        }
+      }
       expect_as_defined(corridor, grid, expected);
       if (testing::Test::HasFatalFailure()) return;
       cells += corridor.cells().size();
@@ -296,6 +328,7 @@ TEST(TravelCorridor, KeepsOutOfBoxes) {
     expect_as_defined(corridor, grid, robot);
   }
   EXPECT_GT(cells, 5'000U);
+  EXPECT_GT(behind, 100U);
 }
 
 // A body with a margin is one that is larger by it, also off the middle of a cell.

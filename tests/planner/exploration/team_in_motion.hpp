@@ -47,10 +47,11 @@ class TeamInMotion {
   TeamInMotion(std::string_view world, std::vector<planner::RobotDescription> robots,
                sim::AtContact at_contact = sim::AtContact::kGoOn, GoalChoice choice = GoalChoice::kGoals)
       : TeamInMotion(TeamInWorld(world, 1, std::move(robots)), at_contact, choice) {}
-  TeamInMotion(TeamInWorld team, sim::AtContact at_contact, GoalChoice choice)
+  /// @param epsilon  see `ExplorationOptions`
+  TeamInMotion(TeamInWorld team, sim::AtContact at_contact, GoalChoice choice, double epsilon = 10.0)
       : team_(std::move(team)),
         robots_(team_.world, team_.truth, team_.robots, poses_of(team_), {}, 1, at_contact),
-        exploration_(options(team_, choice), empty_map(team_, choice)) {
+        exploration_(options(team_, choice, epsilon), empty_map(team_, choice)) {
     steps.push_back(exploration_.begin(team_.starts, 0.0));
   }
 
@@ -76,8 +77,10 @@ class TeamInMotion {
   }
 
   static planner::ExplorationOptions options(const TeamInWorld& team,
-                                             GoalChoice choice = GoalChoice::kGoals) {
+                                             GoalChoice choice = GoalChoice::kGoals,
+                                             double epsilon = 10.0) {
     planner::ExplorationOptions options = team.options();
+    options.epsilon = epsilon;
     options.tours = choice != GoalChoice::kGoals;
     for (planner::TeamMember& member : options.team) member.options.advance = 2.0;
     return options;

@@ -63,6 +63,83 @@ TEST_P(TeamInMotionBy, LeavesToTheOthersWhatALostRobotWasToSee) {
   EXPECT_GT(least, 0.3);
 }
 
+// One robot above or beside another one, nearer than robots keep apart: each goes its own way.
+TEST_P(TeamInMotionBy, RobotsThatStartTooNearGoApart) {
+  for (const Eigen::Vector3d& offset : {Eigen::Vector3d(0.9, 0, 0), Eigen::Vector3d(0, -0.9, 0),
+                                        Eigen::Vector3d(0, 0, 0.9), Eigen::Vector3d(0.6, 0.9, 0.3)}) {
+    test::TeamInWorld team("room", 1, {small_uav(), small_uav()});
+    Pose beside = team.starts[0].pose;
+    beside.position += offset;
+    team.starts[1] = {beside, sim::start_bubble(team.truth, small_uav().robot, beside)};
+    ASSERT_FALSE(sim::obstacle_at(team.truth, small_uav().robot, beside));
+    TeamInMotion scene(std::move(team), sim::AtContact::kGoOn, GetParam());
+    scene.explore(200.0);
+    EXPECT_GT(share_mapped(scene.team(), scene.grid()), 0.98) << offset.transpose();
+    EXPECT_GT(scene.robots().records()[0].length + scene.robots().records()[1].length, 5.0);
+  }
+}
+
+// A robot that fails in the way of another one, as near as it can stop: it does not go on through it.
+TEST_P(TeamInMotionBy, DoesNotGoOnThroughARobotThatFails) {
+  constexpr double kAhead = 1.4, kFar = 2.0;  // [s], [m]
+  const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
+  std::size_t failures = 0;
+  for (double time = 1.0; time < 9.0; time += 0.4) {
+    TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
+    ContinuousExploration& exploration = scene.exploration();
+    scene.explore(time);
+    const Pose ahead = exploration.at(0, scene.time() + kAhead).pose;
+    if ((ahead.position - exploration.at(0, scene.time()).pose.position).norm() < kFar) continue;
+    ++failures;
+    exploration.lose(1, ahead, scene.time());
+    double least = std::numeric_limits<double>::infinity();
+    scene.explore(time + 6.0, {}, [&](double from, double to) {
+      for (double at = from; at < to; at += kSample)
+        least = std::min(least, body.translated(exploration.at(0, at).pose.position)
+                                    .exteriorDistance(body.translated(ahead.position)));
+    });
+    EXPECT_GT(least, 0.0) << time;
+  }
+  EXPECT_GT(failures, 2U);
+}
+
+// A robot on its way to something worth it keeps the exploration from its end, also if what it goes for has
+// become too small for a stop since.
+TEST(TeamInMotion, LowGainIsOfAllThatIsStillGoneFor) {
+  std::size_t ends = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    for (const std::size_t count : {2U, 3U, 5U}) {
+      TeamInMotion scene(test::TeamInWorld("room", seed, std::vector<RobotDescription>(count, small_uav())),
+                         sim::AtContact::kGoOn, GoalChoice::kTours);
+      std::vector<double> gains(count);
+      scene.explore(200.0, [&](const PlannedMotion& now) {
+        const Goal& goal = now.step.robots[now.robot].goal;
+        gains[now.robot] = goal.pose ? goal.gain : 0.0;
+      });
+      if (scene.exploration().end() != ExplorationEnd::kLowGain) continue;
+      for (const double gain : gains)
+        EXPECT_LT(gain, scene.exploration().options().epsilon) << seed << " " << count;
+    }
+}
+
+// What a robot has for itself is worth nothing to it by so large an epsilon; with what it takes over from one
+// that is lost it may be.
+TEST_P(TeamInMotionBy, ALossIsNoEnd) {
+  constexpr double kEpsilon = 60.0;
+  std::size_t losses = 0;
+  for (const double time : {4.0, 5.0, 6.0, 7.0, 14.5, 15.0}) {
+    TeamInMotion scene(test::TeamInWorld("room", 1, {small_uav(), small_uav()}), sim::AtContact::kGoOn,
+                       GetParam(), kEpsilon);
+    ContinuousExploration& exploration = scene.exploration();
+    scene.explore(time);
+    if (exploration.end()) break;
+    ++losses;
+    exploration.lose(1, exploration.at(1, scene.time()).pose, scene.time());
+    EXPECT_FALSE(exploration.end()) << "lost after " << time << " s";
+  }
+  EXPECT_GT(losses, 2U);
+}
+
 // Two rooms of 6 x 6 x 2.4 m with a corridor of 6 x 1.8 x 2 m between them: the x of its ends [m]. There a
 // UAV cannot pass over a UGV.
 constexpr double kCorridor[] = {6.0, 12.0};

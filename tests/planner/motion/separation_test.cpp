@@ -94,7 +94,7 @@ TEST(Separation, IsThatOfManySamples) {
     const double gap = least_gap(mine, body, other, other_body);
     const double first = detail::gap_between(body.translated(mine.at(mine.begin()).pose.position),
                                              other_body.translated(other.at(mine.begin()).pose.position));
-    const bool keeps = detail::keeps_apart(mine, body, other, other_body, kGap);
+    const bool keeps = detail::keeps_apart(mine, mine.begin(), body, other, other_body, kGap);
     const double least = std::min(kGap, first);
     // In half of a hundredth of a second they come nearer by no more than this.
     if (std::abs(gap - least) < 0.02 && gap != first) continue;
@@ -113,8 +113,8 @@ TEST(Separation, PlacesThatAreJustFarEnoughAreFree) {
     const double at = (i + 0.5) * 0.3;
     const detail::Follower other{Trajectory({{at, 0, 0}, 0.0}, 0.0)};
     const auto ends = [&](double x) { return straight({x - 1.0, 0, 0}, {x, 0, 0}, 0.0, {}); };
-    EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), cube(0.8), other, cube(0.8), 0.1)) << i;
-    EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), cube(0.8), other, cube(0.8), 0.1)) << i;
+    EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
+    EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
   }
 }
 
@@ -127,11 +127,11 @@ TEST(Separation, LooksAsFarAheadAsTheOtherMoves) {
     return detail::Follower{Trajectory({{20, 0, 0}, 0.0}, 0.0),
                             Trajectory::through({way.front()}, 10.0, way, limits, kAllFree).value()};
   };
-  EXPECT_TRUE(detail::keeps_apart(mine, cube(0.5), comes_to(1.7), cube(0.5), 0.1));
-  EXPECT_FALSE(detail::keeps_apart(mine, cube(0.5), comes_to(1.5), cube(0.5), 0.1));
+  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
+  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.5), cube(0.5), 0.1));
   // What was before does not matter.
   const Trajectory later = straight({1.0, 0, 0}, {0, 0, 0}, 60.0, limits);
-  EXPECT_TRUE(detail::keeps_apart(later, cube(0.5), comes_to(1.7), cube(0.5), 0.1));
+  EXPECT_TRUE(detail::keeps_apart(later, later.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
 }
 
 }  // namespace

@@ -78,6 +78,28 @@ TEST(FrontierClusters, HoldEachFrontierOnceInConnectedPartsOfBoundedSize) {
   }
 }
 
+// Pieces of 4 x 1 x n frontiers, one in each cube along x, that touch each other in a row. None is large
+// enough alone, and no two of them in some orders.
+TEST(FrontierClusters, JoinSmallPiecesThatTouchInARow) {
+  constexpr int kEdge = 4;
+  for (const std::vector<int>& sizes : std::vector<std::vector<int>>{
+           {9, 8, 8}, {8, 8, 9}, {8, 9, 8}, {5, 4, 4}, {4, 4, 5}, {9, 4, 8}, {4, 4, 4, 4}}) {
+    Keys frontiers;
+    int x = 0;
+    for (const int size : sizes) {
+      const VoxelKey corner = make_key(1000 + x, 1000, 1000);
+      for (int i = 0; i < size; ++i)
+        frontiers.push_back(make_key(corner.x + i % kEdge, corner.y, corner.z + i / kEdge));
+      x += kEdge;
+    }
+    test::sort(frontiers);
+    FrontierClusters clusters(kBounds, kEdge, 10);
+    clusters.update(frontiers);
+    ASSERT_EQ(clusters.clusters().size(), 1U) << sizes.front() << ", " << sizes[1] << ", " << sizes[2];
+    EXPECT_EQ(clusters.clusters().front().keys, frontiers);
+  }
+}
+
 TEST(FrontierClusters, KeepTheirIdsAndRevisionsWhileTheyStay) {
   Random random(42);
   Keys frontiers = random_frontiers(random, 10);

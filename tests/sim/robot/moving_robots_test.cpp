@@ -373,6 +373,30 @@ TEST(MovingRobots, DriftByAPartOfTheirWayUntilTheyKnowTheirPlace) {
   }
 }
 
+TEST(MovingRobots, ThatDriveStayOnTheirFloorWhateverTheirErrors) {
+  const BoxRoom room;
+  for (const planner::Motion motion : {planner::Motion::kPlane, planner::Motion::kGround}) {
+    RobotDescription lidar = planner::ugv_description();
+    lidar.robot.travel.motion = motion;
+    lidar.robot.view = {FieldOfView::Shape::kSpinning, 0.0, 2.8, 10.0};
+    lidar.columns = 180;
+    lidar.rows = 60;
+    const Vector3d from(2, 2, lidar.robot.travel.sensor_height);
+    const auto where = [&](std::size_t, double time) { return at(from + Vector3d(0, 0.5 * time, 0)); };
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      Moving scene(room, {lidar}, {{from, 0.0}}, AtContact::kGoOn, {}, seed, {0.2, 0.0});
+      Vector3d error = Vector3d::Zero();
+      for (double time = 0.0; time < 2.0;) {
+        const auto sensed = scene.robots.advance(where, scene.stopped);
+        time = sensed.time;
+        error = error_by(sensed.scan);
+      }
+      EXPECT_GT(error.head<2>().norm(), 0.15);
+      EXPECT_NEAR(error.z(), 0.0, 1e-5);
+    }
+  }
+}
+
 TEST(MovingRobots, RefusePoseErrorsThatAreNone) {
   const BoxRoom room;
   for (const PoseErrors& wrong : {PoseErrors{-0.1, 0.0}, PoseErrors{1.1, 0.0}, PoseErrors{std::nan(""), 0.0},

@@ -18,12 +18,17 @@ enum class PlanReason : std::uint8_t {
   kStart,     ///< it has no trajectory yet
   kArrival,   ///< its trajectory is about to end
   kGoalSeen,  ///< most of what it was going for is mapped
-  kBlocked,   ///< its trajectory leads through what is no longer known to be free
+  kBlocked,   ///< its trajectory leads through what is no longer known to be free, or where another robot
+              ///< has stopped
   kStopped,   ///< it could not follow its trajectory
   kPeriod,    ///< its plan is as old as `ExplorationOptions::period`
 };
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PlanReason reason);
+
+/// [m] What robots in motion keep between the boxes around their bodies. Those that are nearer already may
+/// stay so, but come no nearer.
+inline constexpr double kSeparation = 0.32;
 
 /// One robot's planning, and what all robots have done since the planning before.
 struct PlannedMotion {

@@ -202,8 +202,9 @@ class FRONTLUX_EXPORT TravelCorridor {
   void block(std::span<const VoxelKey> cells);
 
   /// Makes the cells in these boxes impassable from the next update on at the latest, in the place of those
-  /// of the call before: other robots are there, or on their way. A box that holds the robot's own cell is
-  /// ignored.
+  /// of the call before: other robots are there, or on their way. Of a box that holds the robot's own cell
+  /// there remains what lies beyond that cell, seen from the box's nearest face; of a robot that drives, from
+  /// its nearest side.
   void keep_out_of(std::vector<KeyBox> boxes);
 
   /// If it is not `kReady`, there are no cells.

@@ -15,7 +15,7 @@
 namespace frontlux::sim {
 namespace {
 
-using planner::Motion, planner::Pose;
+using planner::Pose;
 
 constexpr double kTick = 0.02;  // [s] bodies move straight in between
 
@@ -90,7 +90,7 @@ void MovingRobots::draw_direction(std::size_t robot) {
   constexpr std::uint64_t kDirections = 0x506F7365;  // a stream apart from that of the sensors
   Progress& now = progress_[robot];
   SplitMix64 random = random_of(random_of(seed_ + kDirections, robot).bits(), now.fixes);
-  const bool level = robots_[robot].robot.travel.motion == Motion::kPlane;
+  const bool level = robots_[robot].robot.travel.drives();
   const double azimuth = 2 * std::numbers::pi * random.unit(), z = level ? 0.0 : 2 * random.unit() - 1;
   now.direction = {std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z};
 }

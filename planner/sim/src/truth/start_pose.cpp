@@ -1,6 +1,7 @@
 #include "truth/body_voxels.hpp"
 
 #include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/continuous_exploration.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
@@ -15,7 +16,6 @@ using planner::BodyStencil, planner::Motion, planner::Pose, planner::Robot;
 
 constexpr double kSearched = 15.0;          // [m] along each axis
 constexpr double kDisc = 2.3, kBall = 1.0;  // [m] radius of a bubble on a plane, in space
-constexpr double kApart = 0.1;              // [m] between bodies
 
 // The voxels to search, around a centre within the bounds.
 KeyBox search_box(const GroundTruth& truth, const VoxelKey& center) {
@@ -123,7 +123,7 @@ std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const 
   const KeyBox box = taken_by(truth.lattice(), robot, pose);
   const Eigen::AlignedBox3d body = body_at(robot, pose);
   if (std::ranges::any_of(placed, [&](const Placed& other) {
-        return intersection(box, other.taken).has_value() || body.exteriorDistance(other.body) < kApart;
+        return intersection(box, other.taken).has_value() || body.exteriorDistance(other.body) < planner::kSeparation;
       }))
     return std::nullopt;
   return pose;
