@@ -178,6 +178,28 @@ TEST_F(TaskCommand, OfARoundBodyIsTheSameAgain) {
   EXPECT_EQ(json_in("one").at("contacts"), 0);
 }
 
+TEST_F(TaskCommand, NumbersEqualNamesPastThoseThatAreTaken) {
+  write_court();
+  const auto robot = [](const std::string& name, int x) {
+    return test::replaced(test::replaced(kUav, R"("name": "uav")", R"("name": ")" + name + '"'),
+                          "[1.5, 1.5, 1, 30]", "[" + std::to_string(x) + ", 1.5, 1, 30]");
+  };
+  const std::string longest(40, 'n');
+  write("team.json", R"({"world": "court.ply", "box_m": [[0, 0, 0], [6, 6, 2]], "resolution_m": 0.2, )"
+                     R"("end": {"time_s": 0.2}, "robots": [)" +
+                         robot("u", 1) + ", " + robot("u", 2) + ", " + robot("u1", 3) + ", " +
+                         robot(longest, 4) + ", " + robot(longest, 5) + "]}");
+  expect_done(path("team.json"), "run");
+  const std::vector<std::string> names = {"u2", "u3", "u1", std::string(39, 'n') + '1',
+                                          std::string(39, 'n') + '2'};
+  EXPECT_EQ(json_in("run").at("robots"), names);
+  EXPECT_EQ(json_in("run").at("by_robot").size(), names.size());
+  // The names that a run has got are those of its task.
+  expect_done(task_of("run"), "again");
+  EXPECT_EQ(json_in("again").at("robots"), names);
+  expect_same_runs("run", "again");
+}
+
 TEST_F(TaskCommand, WithoutABoxIsShiftedLikeTheCommandLine) {
   write_court();
   const std::string file =

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -23,7 +24,23 @@ using planner::Method, planner::Motion, planner::Pose, planner::RobotDescription
 
 constexpr std::size_t kMaxRobots = io::kMostRobots;
 
-// Robots of the same name get numbers; those on the ground come first, since they choose first.
+// Robots of the same name get numbers, but none that makes the name of another one.
+void number_equal_names(std::span<RobotDescription> robots) {
+  std::map<std::string, int> total, number;
+  for (const RobotDescription& robot : robots) ++total[robot.robot.name];
+  std::set<std::string> taken;
+  for (const auto& [name, count] : total) taken.insert(name);
+  for (RobotDescription& robot : robots) {
+    const std::string name = robot.robot.name;
+    if (total[name] == 1) continue;
+    do {
+      const std::string digits = std::to_string(++number[name]);
+      robot.robot.name = name.substr(0, io::kLongestRobotName - digits.size()) + digits;
+    } while (!taken.insert(robot.robot.name).second);
+  }
+}
+
+// Those on the ground come first, since they choose first.
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
   std::vector<RobotDescription> robots;
   try {
@@ -44,12 +61,7 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
                    std::to_string(kMaxRobots));
   std::stable_partition(robots.begin(), robots.end(),
                         [](const RobotDescription& robot) { return robot.robot.travel.drives(); });
-  std::map<std::string, int> total, number;
-  for (const RobotDescription& robot : robots) ++total[robot.robot.name];
-  for (RobotDescription& robot : robots) {
-    const std::string name = robot.robot.name;
-    if (total[name] > 1) robot.robot.name += std::to_string(++number[name]);
-  }
+  number_equal_names(robots);
   return robots;
 }
 

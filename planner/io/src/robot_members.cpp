@@ -1,6 +1,7 @@
 #include "robot_members.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/io/robot_file.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +18,6 @@ using planner::BodyShape, planner::Motion, planner::MotionLimits, planner::Robot
     planner::TravelOptions;
 using Shape = FieldOfView::Shape;
 
-constexpr std::size_t kMaxName = 40;
 constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 26;
 constexpr Range kHeights{0.0, 100.0}, kMargins{0.0, 100.0}, kSensorRanges{0.01, 1000.0}, kAngles{0.1, 179.0};
 constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.01, 36000.0}, kRates{0.01, 10000.0};
@@ -27,12 +27,12 @@ constexpr double kCameraRate = 15.0;  // [1/s]; that of others is RobotDescripti
 const std::string kSeeRobots = "an object, see docs/robots.md";
 
 std::string name_of_robot(Members& members) {
-  const std::string wanted = "1 to " + std::to_string(kMaxName) + " letters, digits, - and _";
+  const std::string wanted = "1 to " + std::to_string(kLongestRobotName) + " letters, digits, - and _";
   std::string name = members.text("name", wanted);
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   };
-  if (name.empty() || name.size() > kMaxName || !std::ranges::all_of(name, fits))
+  if (name.empty() || name.size() > kLongestRobotName || !std::ranges::all_of(name, fits))
     members.refuse("name", "is " + quote(name), "give " + wanted);
   return name;
 }
