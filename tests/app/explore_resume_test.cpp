@@ -85,6 +85,25 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
   expect_same_runs("whole", "cut");
 }
 
+// Whether it was stopped in lock-step or in motion, or has ended.
+TEST_F(ExploreCommand, RefusesALimitBelowTheRecordedSteps) {
+  expect_explored("lockstep");
+  expect_answer({"room", "--stop-time", "3", "--report", "off", "-o", path("moving")});
+  for (const std::string folder : {"lockstep", "moving"}) {
+    const int steps = json_in(folder).at("steps");
+    ASSERT_GT(steps, 1) << folder;
+    expect_refused({"--resume", path(folder), "--max-steps", "1"},
+                   {"--resume: " + std::to_string(steps) + " steps of the run in " + path(folder) +
+                        " are recorded already, more than the limit of 1",
+                    "give --max-steps " + std::to_string(steps) + " or more"});
+    expect_resumed(folder, {"--max-steps", std::to_string(steps)});
+    EXPECT_EQ(json_in(folder).at("steps"), steps);
+  }
+  // The limit that the run began with, too.
+  expect_resumed("lockstep", {"--max-steps", "5"});
+  expect_refused({"--resume", path("lockstep")}, {"5 steps", "the limit of 4", "give --max-steps 5 or more"});
+}
+
 // A world that is large enough to be caught in the middle of.
 TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
   const auto to = [&](const std::string& output) {
@@ -174,7 +193,8 @@ TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
   RecordingWriter writer(path("run/run.frontlux"), recording.head);
   for (const RecordedStep& step : recording.steps) writer.write(step);
   writer.write_end("stopped");
-  expect_refused({"--resume", path("run")}, {"--resume: in step 2 the robots see another world"});
+  expect_refused({"--resume", path("run"), "--max-steps", "2"},
+                 {"--resume: in step 2 the robots see another world"});
 }
 
 }  // namespace

@@ -193,6 +193,16 @@ void check_same(const planner::RecordingHead& recorded, const planner::Recording
                  " is now; start a new run");
 }
 
+// A run cannot go back behind its recorded steps.
+void check_limit(const Recording& recorded, int most, const ExploreRun& run) {
+  const std::uint64_t last = recorded.steps.empty() ? 0 : recorded.steps.back().step.number;
+  if (last <= static_cast<std::uint64_t>(most)) return;
+  const std::string number = std::to_string(last);
+  throw BadInput("--resume: " + number + " steps of the run in " + run.folder.string() +
+                 " are recorded already, more than the limit of " + std::to_string(most) +
+                 "; give --max-steps " + number + " or more");
+}
+
 // Of a run that ended since there was nothing more to do, in a world that is not too large for that.
 std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& loop) {
   using planner::ExplorationEnd;
@@ -230,7 +240,10 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   ExploreOptions here = options;
   if (recording) here.source.world = find_world(options, run);
   ExploreSetup setup = make_setup(here, recording ? std::optional(recording->head.robots) : std::nullopt);
-  if (recording) check_same(recording->head, setup.head, run);
+  if (recording) {
+    check_same(recording->head, setup.head, run);
+    check_limit(*recording, setup.exploration.max_steps, run);
+  }
 
   const InterruptNote note;
   const planner::RecordingHead& head = recording ? recording->head : setup.head;
