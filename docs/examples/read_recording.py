@@ -57,14 +57,18 @@ with open(sys.argv[1], "rb") as file:
     if title not in [b"frontlux recording, format %d\n" % version for version in (3, 4, 5)]:
         sys.exit(f"{sys.argv[1]}: {title!r} is not 'frontlux recording, format 3' to 5; read it with the frontlux that wrote it")
     version = int(title.split()[-1])
-    while len(header := file.read(16)) == 16:
-        tag, packed, _plain, _checksum = struct.unpack("<4s3I", header)
-        payload, checksum = file.read(packed), file.read(4)
-        if len(checksum) < 4:
+    data, at = file.read(), 0
+    zeros = len(data.rstrip(b"\0"))  # where they begin that a loss of power has left
+    while at + 16 <= len(data):
+        tag, packed, _plain, checksum = struct.unpack_from("<4s3I", data, at)
+        whole = zlib.crc32(data[at:at + 12]) == checksum
+        begin, at = at + 16, at + 16 + (packed + 4 if whole else 0)
+        whole = whole and at <= len(data) and zlib.crc32(data[begin:at - 4]) == struct.unpack_from("<I", data, at - 4)[0]
+        if not whole and zeros >= at:
+            sys.exit(f"{sys.argv[1]}: damaged before byte {len(title) + at}")
+        if not whole:
             break  # the run was cut off here
-        if zlib.crc32(payload) != struct.unpack("<I", checksum)[0]:
-            sys.exit(f"{sys.argv[1]}: damaged before byte {file.tell()}")
-        record = Bytes(zlib.decompress(payload))
+        record = Bytes(zlib.decompress(data[begin:at - 4]))
         if tag == b"step":
             print(step_line(record, version))
         elif tag == b"end ":

@@ -49,6 +49,14 @@ std::string decompressed(std::string_view packed, std::size_t size) {
   return bytes;
 }
 
+}  // namespace
+
+std::string_view without_zeros(std::string_view bytes) {
+  return bytes.substr(0, bytes.find_last_not_of('\0') + 1);
+}
+
+namespace {
+
 bool begins_a_tag(std::string_view bytes) {
   for (const std::string_view tag : {kHeadTag, kStepTag, kEndTag})
     if (tag.starts_with(bytes.substr(0, kTag))) return true;
@@ -71,20 +79,26 @@ std::string packed_record(std::string_view tag, const std::string& bytes) {
   return record;
 }
 
-std::optional<Record> record_at(std::string_view file, std::size_t begin) {
+std::optional<Record> record_at(std::string_view file, std::size_t begin, std::size_t zeros) {
   const std::string_view left = file.substr(begin);
   // What a file grew by before the machine lost its power may read as zeros.
-  if (left.find_first_not_of('\0') == std::string_view::npos) return std::nullopt;
-  if (!begins_a_tag(left)) throw BadRecord("no record begins here");
+  if (zeros <= begin) return std::nullopt;
+  const std::size_t written = zeros - begin;
+  if (!begins_a_tag(left.substr(0, written))) throw BadRecord("no record begins here");
   if (left.size() < kHeader) return std::nullopt;
-  if (checksum(left.substr(0, kHeader - kNumber)) != number_at(left, kHeader - kNumber))
+  if (checksum(left.substr(0, kHeader - kNumber)) != number_at(left, kHeader - kNumber)) {
+    if (written < kHeader) return std::nullopt;
     throw BadRecord("the sizes of a record fail their checksum");
+  }
   const std::size_t packed = number_at(left, kTag), plain = number_at(left, kTag + kNumber);
   if (plain > kMostBytes || plain > kMostRatio * (packed + 1))
     throw BadRecord("a record announces " + std::to_string(plain) + " bytes, more than it can hold");
   if (left.size() - kHeader < packed + kNumber) return std::nullopt;
   const std::string_view payload = left.substr(kHeader, packed);
-  if (checksum(payload) != number_at(left, kHeader + packed)) throw BadRecord("a record fails its checksum");
+  if (checksum(payload) != number_at(left, kHeader + packed)) {
+    if (written < kHeader + packed + kNumber) return std::nullopt;
+    throw BadRecord("a record fails its checksum");
+  }
   return Record{left.substr(0, kTag), decompressed(payload, plain), begin + kHeader + packed + kNumber};
 }
 

@@ -21,8 +21,13 @@ struct Record {
   std::size_t end = 0;  ///< where the next one begins
 };
 
-/// The record that begins at a byte of the file; nothing if the file ends before it does.
+/// The bytes but for zeros at their end.
+[[nodiscard]] std::string_view without_zeros(std::string_view bytes);
+
+/// The record that begins at a byte of the file; nothing if the file ends before it does, or has nothing but
+/// zeros from some byte of it on.
+/// @param zeros  where the zeros at the file's end begin
 /// @throws BadRecord if there is something else
-[[nodiscard]] std::optional<Record> record_at(std::string_view file, std::size_t begin);
+[[nodiscard]] std::optional<Record> record_at(std::string_view file, std::size_t begin, std::size_t zeros);
 
 }  // namespace frontlux::planner::detail

@@ -27,6 +27,7 @@ std::pair<int, std::size_t> read_title(const std::filesystem::path& file, std::s
          "name the file run.frontlux of a folder that `frontlux explore` wrote");
   };
   const auto too_short = [&] { fail_unbegun(file, "in its first line, before the run began"); };
+  bytes = detail::without_zeros(bytes);
   if (kRecordingTitle.starts_with(bytes)) too_short();
   if (!bytes.starts_with(kRecordingTitle)) foreign();
   const std::string_view rest = bytes.substr(kRecordingTitle.size(), kMostDigits + 1);
@@ -46,10 +47,11 @@ std::pair<int, std::size_t> read_title(const std::filesystem::path& file, std::s
 Recording read_records(std::string_view bytes, int format, std::size_t& at) {
   Recording recording;
   recording.format = format;
+  const std::size_t zeros = detail::without_zeros(bytes).size();  // where they begin
   bool has_head = false;
   while (at < bytes.size()) {
-    if (recording.end) throw detail::BadRecord("goes on after its end");
-    const auto record = detail::record_at(bytes, at);
+    if (recording.end && zeros > at) throw detail::BadRecord("goes on after its end");
+    const auto record = detail::record_at(bytes, at, zeros);
     if (!record) break;
     if (has_head == (record->tag == detail::kHeadTag))
       throw detail::BadRecord(has_head ? "has a second head" : "has no head");
@@ -64,7 +66,7 @@ Recording read_records(std::string_view bytes, int format, std::size_t& at) {
     at = record->end;
     if (!recording.end) recording.bytes = at;
   }
-  recording.truncated = at < bytes.size();
+  recording.truncated = !recording.end && at < bytes.size();
   return recording;
 }
 

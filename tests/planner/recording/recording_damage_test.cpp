@@ -76,6 +76,40 @@ TEST_F(RecordingDamageTest, ZerosAtTheEndAreAnUnfinishedStep) {
   expect_steps(recording, 2);
 }
 
+// As a machine leaves it that lost its power, from every byte of the file on.
+TEST_F(RecordingDamageTest, ZerosFromAnyByteOnAreAnUnfinishedStep) {
+  const auto sizes = record(2, 6, true);
+  const std::string whole = bytes();
+  for (const std::size_t more : {std::size_t{0}, std::size_t{1}, std::size_t{5000}})
+    for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+      SCOPED_TRACE(std::to_string(more) + " bytes more, zeros from byte " + std::to_string(cut));
+      const std::string zeroed = whole.substr(0, cut) + std::string(whole.size() - cut + more, '\0');
+      if (zeroed.substr(0, whole.size()) == whole) continue;  // they were zeros before
+      if (cut < sizes[0]) {
+        expect_refused(zeroed, "begin it anew");
+        continue;
+      }
+      save(zeroed);
+      const Recording recording = read_recording(file_);
+      std::size_t count = 0;
+      while (count + 1 < sizes.size() && sizes[count + 1] <= cut) ++count;
+      ASSERT_NO_FATAL_FAILURE(expect_steps(recording, count));
+      EXPECT_EQ(recording.bytes, sizes[count]);
+      EXPECT_TRUE(recording.truncated);
+      EXPECT_EQ(recording.end, std::nullopt);
+    }
+  // Zeros within the file are damage, and so is anything behind those at its end.
+  for (std::size_t at = sizes[0]; at + 8 < whole.size(); ++at) {
+    std::string holed = whole;
+    if (holed.replace(at, 4, 4, '\0') != whole) expect_refused(holed, "is damaged at byte ");
+  }
+  expect_refused(whole.substr(0, sizes[1] + 20) + std::string(5000, '\0') + "x", "is damaged at byte ");
+  // Those after a run's end are nothing.
+  save(whole + std::string(100, '\0'));
+  EXPECT_EQ(read_recording(file_).end, "low_gain");
+  EXPECT_FALSE(read_recording(file_).truncated);
+}
+
 // Damage that the checksums do not show, as somebody hostile would make it.
 TEST_F(RecordingDamageTest, EveryChangedByteOfAStepIsHarmless) {
   const auto sizes = record(1, 6, false);

@@ -150,15 +150,17 @@ TEST_F(RecordingTest, WrongOrderOfCalls) {
 
 #ifdef FRONTLUX_PYTHON
 TEST_F(RecordingTest, PythonExampleReadsIt) {
-  record(3, 30, true);
-  const std::string command = std::string(FRONTLUX_PYTHON) + " " + FRONTLUX_DATA_DIR +
-                              "/../docs/examples/read_recording.py " + file_.string() + " 2>&1";
-  FILE* const pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::string said;
-  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) said += static_cast<char>(c);
-  EXPECT_EQ(pclose(pipe), 0);
-
+  const auto sizes = record(3, 30, true);
+  const auto read = [&](int expected_code) {
+    const std::string command = std::string(FRONTLUX_PYTHON) + " " + FRONTLUX_DATA_DIR +
+                                "/../docs/examples/read_recording.py " + file_.string() + " 2>&1";
+    FILE* const pipe = popen(command.c_str(), "r");
+    std::string said;
+    for (int c = 0; pipe != nullptr && (c = std::fgetc(pipe)) != EOF;) said += static_cast<char>(c);
+    EXPECT_EQ(WEXITSTATUS(pclose(pipe)), expected_code) << said;
+    return said;
+  };
+  const std::string said = read(0);
   std::ostringstream expected;
   for (const RecordedStep& recorded : steps_) {
     const auto& step = recorded.step;
@@ -178,8 +180,20 @@ TEST_F(RecordingTest, PythonExampleReadsIt) {
     }
     expected << "\n";
   }
-  expected << "end: low_gain\n";
-  EXPECT_EQ(said, expected.str());
+  const std::string steps = expected.str();
+  EXPECT_EQ(said, steps + "end: low_gain\n");
+
+  // Cut off, and filled with zeros: at the begin of the end's record, in its header and in its bytes.
+  const std::string whole = bytes();
+  for (const std::size_t cut : {sizes[3], sizes[3] + 3, sizes[3] + 18})
+    for (const std::size_t zeros : {0, 1, 5000}) {
+      save(whole.substr(0, cut) + std::string(zeros, '\0'));
+      EXPECT_EQ(read(0), steps) << cut << " and " << zeros;
+    }
+  std::string damaged = whole;
+  damaged.replace(sizes[1] + 20, 4, 4, '\0');
+  save(damaged);
+  EXPECT_TRUE(read(1).ends_with(": damaged before byte " + std::to_string(sizes[2]) + "\n"));
 }
 #endif
 
