@@ -78,8 +78,9 @@ std::string instructions() {
 
 // Else the first file that is opened becomes the stream that came closed, and gets what is printed.
 void open_standard_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDWR) != stream)
+  for (const auto& [stream, how] :
+       {std::pair(STDIN_FILENO, O_RDONLY), {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}})
+    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", how) != stream)
       std::_Exit(kFailure);
 }
 
@@ -152,7 +153,10 @@ ended by itself has success even if it ended badly: see "warnings" in its run.js
     const std::string command = commands.empty() ? "" : commands.front()->get_name() + " ";
     return complain(describe(error, app) + "; see frontlux " + command + "--help", kBadInput);
   }
-  if (!std::cout.flush()) return complain("standard output cannot be written to", kFailure);
+  if (!std::cout.flush())
+    return complain(std::string("standard output ") +
+                        (is_open_to_write(STDOUT_FILENO) ? "cannot be written to" : "is closed"),
+                    kFailure);
   return 0;
 }
 

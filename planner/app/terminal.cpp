@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdlib>
+#include <fcntl.h>
 #include <iostream>
 
 namespace frontlux::app {
@@ -21,6 +22,11 @@ std::string in_red(const std::string& text, int stream) {
   const char* const no_color = std::getenv("NO_COLOR");
   if (::isatty(stream) == 0 || (no_color != nullptr && *no_color != '\0')) return text;
   return "\033[31m" + text + "\033[0m";
+}
+
+bool is_open_to_write(int stream) {
+  const int flags = ::fcntl(stream, F_GETFL);
+  return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
 }
 
 void ProgressLine::show(std::string_view text) const {

@@ -11,6 +11,10 @@ namespace frontlux::app {
 /// @param stream  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] std::string in_red(const std::string& text, int stream);
 
+/// Whether a stream was not closed when the program began.
+/// @param stream  STDOUT_FILENO or STDERR_FILENO
+[[nodiscard]] bool is_open_to_write(int stream);
+
 /// A line on standard error that replaces itself, if there is a terminal to see it; gone in the end.
 class ProgressLine {
  public:

@@ -37,6 +37,22 @@ TEST_F(HelpCommand, SaysWhatToNameInTheirPlace) {
   expect_refused({"explore", "room", "-o", ""}, {"--output: name a folder"});
 }
 
+// A result that nobody gets is none.
+TEST_F(HelpCommand, FailsWhenStandardOutputIsClosed) {
+  const std::string map = test::quoted(
+                        (std::filesystem::path(FRONTLUX_DATA_DIR) / "maps/room_0.1m.bt").string()),
+                    run = test::quoted(path("run"));
+  for (const std::string& words :
+       {"info " + map, "info --json " + map, std::string("world"), std::string("--help"),
+        std::string("--version"), "explore room --lockstep --max-steps 1 --report off --json -o " + run}) {
+    const std::string command =
+        test::quoted(FRONTLUX_COMMAND) + " " + words + " >&- 2>" + test::quoted(path("err"));
+    EXPECT_EQ(test::exit_code(std::system(command.c_str())), 1) << words;
+    const std::string said = test::content_of(path("err"));
+    EXPECT_TRUE(said.ends_with("frontlux: standard output is closed\n")) << said;
+  }
+}
+
 TEST_F(HelpCommand, HelpIsACommandToo) {
   EXPECT_EQ(expect_answer({"help"}), expect_answer({"--help"}, {"help COMMAND"}));
   EXPECT_EQ(expect_answer({"help", "cast"}), expect_answer({"cast", "--help"}));

@@ -44,8 +44,9 @@ std::string moves(const planner::RobotStep& robot, std::uint64_t number, bool lo
 RunDisplay::RunDisplay(const ExploreRun& run, const ExploreSetup& setup)
     : run_(run),
       setup_(setup),
-      in_place_(line_.visible() && !run.quiet),
-      lines_(!run.quiet && (!line_.visible() || (::isatty(STDOUT_FILENO) == 0 && !run.json))),
+      quiet_(run.quiet || (!run.json && !is_open_to_write(STDOUT_FILENO))),
+      in_place_(line_.visible() && !quiet_),
+      lines_(!quiet_ && (!line_.visible() || (::isatty(STDOUT_FILENO) == 0 && !run.json))),
       forecast_(ends_of(setup)) {}
 
 void RunDisplay::print_line(const std::string& line) const {
@@ -95,7 +96,7 @@ void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& en
   if (in_place_) line_.clear();
   if (run_.json)
     std::cout << result_line(run_json, run_);
-  else if (!run_.quiet)
+  else if (!quiet_)
     print_summary(result, end);
   for (const std::string& warning : result.warnings)
     std::cerr << in_red("warning: " + warning, STDERR_FILENO) << '\n';

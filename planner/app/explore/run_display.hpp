@@ -15,7 +15,8 @@ struct ExploreRun;
 struct ExploreSetup;
 
 /// What a run prints: on a terminal a line that replaces itself, elsewhere a line for each step; its result
-/// in the end. With --json the result alone is on standard output, with --quiet neither line nor result is.
+/// in the end. With --json the result alone is on standard output, with --quiet neither line nor result is. A
+/// closed standard output counts as --quiet: the run is in its folder.
 class RunDisplay {
  public:
   /// @param run, setup  live as long as the display
@@ -41,7 +42,7 @@ class RunDisplay {
   const ExploreRun& run_;
   const ExploreSetup& setup_;
   ProgressLine line_;
-  bool in_place_, lines_;
+  bool quiet_, in_place_, lines_;
   RunForecast forecast_;
   std::size_t repeated_ = 0;
   double last_line_ = 0.0;  // [s]
