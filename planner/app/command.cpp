@@ -36,12 +36,16 @@ Option Command::add_words(const char* name, const char* type, const char* what,
   const std::string label = std::string_view(name).substr(std::string_view(name).rfind(',') + 1).data();
   CLI::Option* option = app_->add_option(
       name,
-      [label, help = see_help(*app_), read_word = std::move(read_word)](const CLI::results_t& words) {
-        for (const std::string& word : words) try {
+      [label, type = std::string(type), help = see_help(*app_),
+       read_word = std::move(read_word)](const CLI::results_t& words) {
+        for (const std::string& word : words) {
+          check_name(label, word, type);
+          try {
             read_word(word);
           } catch (const BadInput& error) {
             throw BadInput(label + ": " + error.what() + help);
           }
+        }
         return true;
       },
       what);

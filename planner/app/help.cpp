@@ -9,7 +9,6 @@
 #include <cctype>
 #include <cstddef>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -92,9 +91,6 @@ std::string man_page(const CLI::App& app, const std::string& name, const CLI::Ap
 }
 
 // ---- completion
-
-bool is_file(std::string_view type) { return type.starts_with("FILE"); }
-bool is_folder(std::string_view type) { return type == "DIR"; }
 
 // What bash proposes for the value of an option; empty: nothing.
 std::string proposal(const std::string& type) {
@@ -205,6 +201,14 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name, CLI:
   std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
   for (std::size_t gap; (gap = help.find("\n\n\n")) != std::string::npos;) help.erase(gap, 1);
   return help;
+}
+
+bool is_file(std::string_view type) { return type.starts_with("FILE"); }
+bool is_folder(std::string_view type) { return type == "DIR"; }
+
+void check_name(const std::string& option, std::string_view word, std::string_view type) {
+  if (word.empty() && is_file(type)) throw BadInput(option + ": '' names no file; name one");
+  if (word.empty() && is_folder(type)) throw BadInput(option + ": '' names no folder; name one");
 }
 
 std::vector<std::string> option_names(const CLI::App& app, bool with_short) {

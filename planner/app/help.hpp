@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace frontlux::app {
@@ -26,6 +27,13 @@ class HelpFormatter : public CLI::Formatter {
   std::set<const CLI::Option*> rare_;
   mutable bool all_ = false;  // while it makes a help
 };
+
+/// Whether what --help shows for an option's value stands for a file, or for a folder.
+[[nodiscard]] bool is_file(std::string_view type);
+[[nodiscard]] bool is_folder(std::string_view type);
+/// @param option  for messages
+/// @throws BadInput if a word is empty that is to name a file or a folder
+void check_name(const std::string& option, std::string_view word, std::string_view type);
 
 /// The names of an app's options as they are written, "--seed"; short ones too if `with_short`.
 [[nodiscard]] std::vector<std::string> option_names(const CLI::App& app, bool with_short = false);

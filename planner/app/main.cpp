@@ -110,6 +110,7 @@ int run(int argc, const char* const* argv) {
   formatter->hide(app.add_option(
                          "--manual",
                          [&app](const CLI::results_t& words) -> bool {
+                           frontlux::app::check_name("--manual", words.front(), "DIR");
                            frontlux::app::write_manual(app, words.front());
                            throw CLI::Success();
                          },

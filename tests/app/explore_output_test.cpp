@@ -100,7 +100,7 @@ TEST_F(ExploreOutput, TheFolderIsNamedAfterWorldAndSeed) {
   EXPECT_EQ(json_in("runs/room-7").at("seed"), 7);
   expect_refused(room({"--seed", "7"}), {"--output: runs/room-7 is not empty", "--resume", "--force"}, there);
   expect_answer(room({"--seed", "8"}), {"exploring into runs/room-8;"}, there);
-  expect_refused(room({"--seed", "9", "-o", ""}), {"--output: name a folder"}, there);
+  expect_refused(room({"--seed", "9", "-o", ""}), {"--output: '' names no folder"}, there);
   EXPECT_FALSE(fs::exists(path("runs/room-9")));
 }
 

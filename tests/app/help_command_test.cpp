@@ -33,8 +33,19 @@ TEST_F(HelpCommand, SaysWhatToNameInTheirPlace) {
     expect_refused(words, {"is a directory; name a built-in world"});
   expect_refused({"report", ""}, {"'': there is no such folder or recording; check the path"});
   expect_refused({"explore", ""}, {"WORLD: give the world to explore"});
-  expect_refused({"explore", "--resume", ""}, {"--resume: name the folder of the run"});
-  expect_refused({"explore", "room", "-o", ""}, {"--output: name a folder"});
+  const std::string map = (std::filesystem::path(FRONTLUX_DATA_DIR) / "maps/room_0.1m.bt").string();
+  const std::vector<std::pair<std::string, std::vector<std::string>>> empty = {
+      {"--resume: '' names no folder", {"explore", "--resume", ""}},
+      {"--output: '' names no folder", {"explore", "room", "-o", ""}},
+      {"--task: '' names no file", {"explore", "--task", "", "-o", path("run")}},
+      {"--robot: '' names no file", {"explore", "room", "--robot", "", "-o", path("run")}},
+      {"--poses: '' names no file", {"scan", "room", "--poses", "", "-o", path("x.bt")}},
+      {"--output: '' names no file", {"world", "room", "-o", ""}},
+      {"--output: '' names no file",
+       {"plan", map, "--robot", "uav", "--from", "0,0,1.5,0", "--to", "1,0,1.5", "-o", ""}},
+      {"--output: '' names no file", {"report", folder, "-o", ""}},
+      {"--manual: '' names no folder", {"--manual", ""}}};
+  for (const auto& [part, words] : empty) expect_refused(words, {part});
 }
 
 // A result that nobody gets is none.

@@ -29,8 +29,6 @@ void check(const Options& given) {
     throw BadInput(
         "WORLD: give the world to explore: a built-in one (see frontlux world), a mesh or a map; or a "
         "--task; see frontlux explore --help");
-  if (given.output && given.output->empty())
-    throw BadInput("--output: name a folder for the files of the run");
 }
 
 // runs/WORLD-SEED, without the folder and the ending of a world that is a file.
@@ -160,7 +158,6 @@ robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html.
 after the current step. --help-all has more options.)");
   command.run([given, resume, team, lockstep, method] {
     const auto& [mode, goal] = method;
-    if (resume.given() && given->resume.empty()) throw BadInput("--resume: name the folder of the run");
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);
   });
