@@ -248,6 +248,8 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {"", "line 1, column 1: this is not JSON"},
       {"[]", "holds an array of 0 and no object; describe a task between { and }, see docs/tasks.md"},
       {kGood + "x", "this is not JSON"},
+      {kGood + std::string("\n\0, x", 5), "line 2, column 1: there is a NUL byte"},
+      {kGood.substr(0, 3) + '\0' + kGood.substr(3), "line 1, column 4: there is a NUL byte"},
   };
   for (const auto& [text, expected] : cases) {
     const std::string what = complaint("t.json", text);

@@ -51,6 +51,10 @@ json read_json(const std::filesystem::path& file, const JsonContent& content) {
 }
 
 json parse_json(const std::filesystem::path& file, const std::string& text, const JsonContent& content) {
+  // The parser takes one for the end.
+  if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
+    fail(file, place_of(text, nul + 1) + ": there is a NUL byte, which is not JSON",
+         "save the file as plain text");
   std::vector<std::set<std::string>> names;  // of the objects that are open
   std::string last = "the file";
   const auto look = [&](int depth, json::parse_event_t event, json& value) {
