@@ -150,6 +150,37 @@ TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
   }
 }
 
+// Neither a new run nor one that goes on stands beside pictures of what was before.
+TEST_F(RunFolder, LosesTheViewsOfAnOlderState) {
+  const std::vector<std::string> views = {"final_map.png",        "coverage.svg", "video.mp4",
+                                          "video/frame_0001.png", "video.gif",    "report.html"};
+  const auto show = [&] {
+    fs::create_directories(path("run/video"));
+    for (const std::string& view : views) write("run/" + view, "old");
+    write("run/coverage.txt", "mine");
+    write("run/video/mine", "mine");
+  };
+  const auto expect_shown = [&](bool there) {
+    for (const std::string& view : views) EXPECT_EQ(fs::exists(path("run/" + view)), there) << view;
+    EXPECT_EQ(content_of(path("run/coverage.txt")), "mine");
+    EXPECT_EQ(content_of(path("run/video/mine")), "mine");
+  };
+  expect_explored("run");
+  show();
+  expect_resumed("run");
+  expect_shown(true);  // nothing was added
+  expect_resumed("run", {"--max-steps", "5"});
+  expect_shown(false);
+  show();
+  expect_explored("run", {"--force"});
+  expect_shown(false);
+  // A folder of frames alone goes with them.
+  show();
+  fs::remove(path("run/video/mine"));
+  expect_explored("run", {"--force"});
+  EXPECT_FALSE(fs::exists(path("run/video")));
+}
+
 TEST_F(RunFolder, LosesWhatKilledRunsLeftUnfinished) {
   expect_explored("run");
   const pid_t gone = fork();

@@ -9,6 +9,8 @@
 #include <frontlux/report/report.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -73,15 +75,15 @@ std::filesystem::path output_of(const Options& options, const std::vector<Run>& 
     return options.output;
   }
   if (runs.size() > 1) throw BadInput("--output: give a file for the report of several runs");
-  return runs.front().file.parent_path() / "report.html";
+  return runs.front().file.parent_path() / kReport;
 }
 
 // The pictures of a run beside its recording, each drawn once.
 void write_stills(const Options& options, const Run& run) {
   std::vector<const char*> endings;
-  if (options.png) endings.push_back(".png");
-  if (options.svg) endings.push_back(".svg");
-  if (options.pdf) endings.push_back(".pdf");
+  const std::array wanted = {options.png, options.svg, options.pdf};
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i]) endings.push_back(kStillEndings[i]);
   if (endings.empty()) return;
   const auto write = [&](const char* name, const Picture& picture) {
     for (const char* ending : endings) {
@@ -90,14 +92,14 @@ void write_stills(const Options& options, const Run& run) {
       std::cout << file.string() << '\n';
     }
   };
-  write("final_map", draw_final_map(run.recording, run.name));
-  write("coverage", draw_coverage(run.recording, run.name));
+  write(kFinalMap, draw_final_map(run.recording, run.name));
+  write(kCoverage, draw_coverage(run.recording, run.name));
 }
 
 // Films of a run beside its recording; its frames where there is no ffmpeg.
 void write_films(const Options& options, const Run& run) {
   constexpr int kWidth = 1200;  // [px]
-  const std::filesystem::path folder = run.file.parent_path(), frames = folder / "video";
+  const std::filesystem::path folder = run.file.parent_path(), frames = folder / kFrames;
   write_frames(frames, run.recording, run.name, kWidth);
   if (!has_ffmpeg()) {
     std::cout << (frames / "").string() << '\n';
@@ -107,8 +109,8 @@ void write_films(const Options& options, const Run& run) {
     write_film(folder / name, frames);
     std::cout << (folder / name).string() << '\n';
   };
-  if (options.video) write("video.mp4");
-  if (options.gif) write("video.gif");
+  if (options.video) write(kFilms[0]);
+  if (options.gif) write(kFilms[1]);
   remove_frames(frames);
 }
 

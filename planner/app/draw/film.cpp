@@ -15,8 +15,11 @@
 namespace frontlux::app {
 namespace {
 
-constexpr int kRate = 15, kSeconds = 12, kFrames = kRate * kSeconds,
+constexpr int kRate = 15, kSeconds = 12, kGrowing = kRate * kSeconds,
               kLast = 2 * kRate;  // frames a second; [s]; frames at the end
+
+// A film beside its frames until it is whole: "film.mp4".
+std::string unfinished_film(const std::filesystem::path& film) { return "film" + film.extension().string(); }
 
 std::string frame_name(int number) {
   std::array<char, 32> name{};
@@ -45,7 +48,8 @@ int ffmpeg(const std::filesystem::path& folder, std::vector<std::string> words) 
 
 void remove_frames(const std::filesystem::path& folder) {
   std::error_code ignored;
-  for (int i = 1; i <= kFrames + kLast; ++i) std::filesystem::remove(folder / frame_name(i), ignored);
+  for (int i = 1; i <= kGrowing + kLast; ++i) std::filesystem::remove(folder / frame_name(i), ignored);
+  for (const char* film : kFilms) std::filesystem::remove(folder / unfinished_film(film), ignored);
   std::filesystem::remove(folder, ignored);  // unless it holds other files
 }
 
@@ -64,8 +68,8 @@ void write_frames(const std::filesystem::path& folder, const planner::Recording&
   all.go_to(end);
   MapView view(recording, all, {.width = width, .height = width * 3 / 4, .fine = 2});
   double shown = -1.0;
-  for (int i = 1; i <= kFrames + kLast; ++i) {
-    const double moment = i >= kFrames ? end : end * i / kFrames;
+  for (int i = 1; i <= kGrowing + kLast; ++i) {
+    const double moment = i >= kGrowing ? end : end * i / kGrowing;
     const std::string file = frame_name(i);
     if (std::exchange(shown, moment) != moment) {
       map.go_to(moment);
@@ -80,7 +84,7 @@ void write_frames(const std::filesystem::path& folder, const planner::Recording&
 
 void write_film(const std::filesystem::path& file, const std::filesystem::path& folder) {
   const bool gif = file.extension() == ".gif";
-  const std::string made = gif ? "film.gif" : "film.mp4";  // beside the frames until it is whole
+  const std::string made = unfinished_film(file);
   std::vector<std::string> words = {"-framerate", std::to_string(kRate), "-i", "frame_%04d.png"};
   // A GIF holds 256 colours, chosen for this film, and what has changed from frame to frame.
   const std::vector<std::string> format =

@@ -2,10 +2,15 @@
 
 #include <frontlux/planner/recording.hpp>
 
+#include <array>
 #include <filesystem>
 #include <string>
 
 namespace frontlux::app {
+
+/// The names of films beside a run's recording, and of the folder of their frames.
+inline constexpr std::array kFilms = {"video.mp4", "video.gif"};
+inline constexpr const char* kFrames = "video";
 
 /// Whether there is an ffmpeg to make films with.
 [[nodiscard]] bool has_ffmpeg();
@@ -17,7 +22,7 @@ namespace frontlux::app {
 void write_frames(const std::filesystem::path& folder, const planner::Recording& recording,
                   const std::string& name, int width);
 
-/// Removes what `write_frames` has written, and the folder if nothing else is in it.
+/// Removes what `write_frames` and `write_film` have written there, and the folder if nothing else is in it.
 void remove_frames(const std::filesystem::path& folder);
 
 /// Makes a film of a folder's frames by ffmpeg, in the format of the file's ending: .mp4, or .gif at half the

@@ -4,9 +4,14 @@
 
 #include <frontlux/planner/recording.hpp>
 
+#include <array>
 #include <string>
 
 namespace frontlux::app {
+
+/// The names of the two pictures beside a run's recording, and the endings that they may have.
+inline constexpr const char *kFinalMap = "final_map", *kCoverage = "coverage";
+inline constexpr std::array kStillEndings = {".png", ".svg", ".pdf"};
 
 /// A chart of what the team and each robot had mapped at the end of each step, over steps, or of a run in
 /// motion over the clock's seconds: fractions of the observable voxels; where their number is unknown, of

@@ -1,6 +1,8 @@
 #include "explore/explore_run.hpp"
 
 #include "bad_input.hpp"
+#include "draw/film.hpp"
+#include "draw/stills.hpp"
 #include "explore/explore_setup.hpp"
 #include "explore/run_display.hpp"
 #include "explore/run_files.hpp"
@@ -34,7 +36,7 @@ using planner::RecordedStep, planner::Recording;
 constexpr const char* kRecording = "run.frontlux";
 constexpr const char* kStopped = "stopped";
 constexpr std::array kFiles = {kRecording,   "run.json",  "steps.csv", "paths.csv", "events.csv",
-                               "motion.csv", "tours.csv", "map.ot",    "map.bt",    "report.html"};
+                               "motion.csv", "tours.csv", "map.ot",    "map.bt",    kReport};
 
 // Whether there is nothing to lose: at most what runs left that were killed before they began.
 bool is_unused(const fs::path& folder) {
@@ -53,9 +55,18 @@ bool is_unused(const fs::path& folder) {
   return !error;
 }
 
+// What `frontlux report` makes of a run, beside the films' frames.
+std::vector<std::string> pictures() {
+  std::vector<std::string> names(kFilms.begin(), kFilms.end());
+  for (const std::string still : {kFinalMap, kCoverage})
+    for (const char* ending : kStillEndings) names.push_back(still + ending);
+  return names;
+}
+
 // Of runs that were killed.
 void remove_unfinished_files(const fs::path& folder) {
   for (const char* file : kFiles) remove_unfinished(folder / file);
+  for (const std::string& file : pictures()) remove_unfinished(folder / file);
 }
 
 void prepare_folder(const ExploreRun& run) {
@@ -82,6 +93,14 @@ void remove_old_files(const fs::path& folder) {
   std::error_code ignored;
   for (const char* file : kFiles)
     if (file != kRecording) fs::remove(folder / file, ignored);
+}
+
+// What shows a run up to a step that others follow now.
+void remove_views(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / kReport, ignored);
+  for (const std::string& file : pictures()) fs::remove(folder / file, ignored);
+  remove_frames(folder / kFrames);
 }
 
 // What is left of a run that was stopped or could not go on, as the end of a message.
@@ -269,6 +288,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
       recorded = before.size();
       if (!recording) remove_old_files(run.folder);
+      if (!exploring.loop().end()) remove_views(run.folder);
       remove_unfinished_files(run.folder);
       exploring.open_files(before);
       display.begin();

@@ -300,7 +300,7 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
   return text;
 }
 
-std::filesystem::path report_of(const ExploreRun& run) { return run.folder / "report.html"; }
+std::filesystem::path report_of(const ExploreRun& run) { return run.folder / kReport; }
 
 std::string result_line(const std::string& run_json, const ExploreRun& run) {
   Json result = {{"folder", run.folder.string()}, {"report", nullptr}};

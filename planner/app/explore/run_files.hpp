@@ -83,6 +83,7 @@ struct RunResult {
 std::string write_run_json(const ExploreRun& run, const ExploreOptions& options, const ExploreSetup& setup,
                            const RunResult& result);
 
+inline constexpr const char* kReport = "report.html";
 /// Where a run's report is.
 [[nodiscard]] std::filesystem::path report_of(const ExploreRun& run);
 
