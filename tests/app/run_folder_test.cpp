@@ -134,6 +134,22 @@ TEST_F(RunFolder, SaysThatTheRecordingIsReadOnly) {
   expect_resumed("run");
 }
 
+// That is known before the recorded steps are repeated.
+TEST_F(RunFolder, IsNotResumedWhereNothingCanBeWritten) {
+  fs::permissions(folder_, fs::perms::all);
+  expect_explored("run");
+  const auto writing = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  fs::permissions(path("run"), fs::perms::all & ~writing);
+  const pid_t child =
+      test::start({FRONTLUX_COMMAND, "explore", "--resume", path("run")}, folder_, test::kNobody);
+  const int code = test::exit_code(test::status_of(child));
+  fs::permissions(path("run"), fs::perms::owner_all);
+  if (code == test::kCannotBe) GTEST_SKIP() << "cannot be another user here";
+  EXPECT_EQ(code, 2);
+  expect_parts(content_of(path("err")), {"--resume: " + path("run") + " cannot be written to; check its"});
+  EXPECT_EQ(content_of(path("out")).find("repeated"), std::string::npos);
+}
+
 // A run that was killed before its first record leaves nothing to go on with, and nothing in the way.
 TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
   expect_explored("whole");

@@ -178,7 +178,14 @@ Recording read_run(const ExploreRun& run) {
         ": it is not the folder of a run, or the run had not begun; name the folder that was given "
         "to -o, or begin it anew, without --resume");
   try {
-    return planner::read_recording(file);
+    Recording recording = planner::read_recording(file);
+    // Before the recorded steps are repeated, which may take long.
+    for (const auto& [written, mode] : {std::pair(run.folder, W_OK | X_OK), {file, W_OK}})
+      if (::access(written.c_str(), mode) != 0)
+        throw BadInput("--resume: " + written.string() + " cannot be written to; check its permissions");
+    return recording;
+  } catch (const BadInput&) {
+    throw;
   } catch (const std::runtime_error& failure) {
     throw BadInput(std::string("--resume: ") + failure.what());
   }
