@@ -200,6 +200,26 @@ TEST_F(TaskCommand, NumbersEqualNamesPastThoseThatAreTaken) {
   expect_same_runs("run", "again");
 }
 
+TEST_F(TaskCommand, RefusesStartsInEachOther) {
+  write_court();
+  const std::string other = test::replaced(test::replaced(kUav, R"("uav")", R"("second")"),
+                                           "[1.5, 1.5, 1, 30]", "[1.5, 1.8, 1, 0]");
+  const auto task = [&](const std::string& second) {
+    return write("two.json",
+                 R"({"world": "court.ply", "box_m": [[0, 0, 0], [6, 6, 2]], "resolution_m": 0.2, )"
+                 R"("end": {"time_s": 0.2}, "robots": [)" +
+                     kUav + ", " + second + "]}");
+  };
+  const std::string overlap =
+      "the bodies of the robots 'uav' and 'second' overlap, with their sensors 0.30 m apart";
+  expect_refused({"--task", task(other), "-o", path("run")},
+                 {"two.json: the start of the robot 'second': " + overlap});
+  const std::string apart = task(test::replaced(other, "1.8, 1, 0", "2.1, 1, 0"));
+  expect_refused({"--task", apart, "--pose", "second=1.5,1.2,1,0", "-o", path("run")},
+                 {"--pose: 'second=1.5,1.2,1,0': " + overlap});
+  expect_done(apart, "run");
+}
+
 TEST_F(TaskCommand, WithoutABoxIsShiftedLikeTheCommandLine) {
   write_court();
   const std::string file =

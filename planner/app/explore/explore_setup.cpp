@@ -127,6 +127,25 @@ Pose place_by_hand(Pose pose, const std::string& giver, double shift, const sim:
   return pose;
 }
 
+// Robots that are put by hand may be put into each other. Their bodies count by the boxes around them, as
+// when they keep apart.
+void check_apart(const GivenStarts& given, std::span<const RobotDescription> robots,
+                 std::span<const std::optional<Pose>> starts) {
+  const auto name = [&](std::size_t r) { return "'" + robots[r].robot.name + "'"; };
+  const auto body = [&](std::size_t r) {
+    return planner::body_of(robots[r].robot.travel).translated(starts[r]->position);
+  };
+  for (std::size_t a = 0; a < robots.size(); ++a)
+    for (std::size_t b = a + 1; b < robots.size(); ++b) {
+      if (!starts[a] || !starts[b] || (!given.poses[a] && !given.poses[b])) continue;
+      if ((body(a).intersection(body(b)).sizes().array() <= sim::GroundTruth::kMargin).any()) continue;
+      throw BadInput((given.poses[b] ? given.givers[b] : given.givers[a]) + ": the bodies of the robots " +
+                     name(a) + " and " + name(b) + " overlap, with their sensors " +
+                     fixed((starts[a]->position - starts[b]->position).norm(), 2) +
+                     " m apart; start them farther from each other");
+    }
+}
+
 // Where the robots do start, and how high above which floor those in the air have to be: in lock-step above
 // that which they start on, in motion above the world's lowest one, so that they may go down stairs.
 void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, ExploreSetup& setup) {
@@ -138,6 +157,7 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
     if (given.poses[r])
       starts[r] = place_by_hand(*given.poses[r], given.givers[r], setup.sourced.ground_shift, *setup.truth,
                                 robots[r]);
+  check_apart(given, robots, starts);
   std::optional<double> ground;
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (!starts[r])
