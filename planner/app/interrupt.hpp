@@ -17,6 +17,12 @@ class Interrupted : public std::exception {
   std::string what_;
 };
 
+inline constexpr int kInterruptedCode = 128 + 2;  ///< how the program exits when it is stopped
+
+/// From now on Ctrl-C and SIGTERM end the program at once, with this code and a message, and without files
+/// that are not whole.
+void end_at_interrupts();
+
 /// While it lives, Ctrl-C and SIGTERM are noted instead of ending the program. One at a time.
 class InterruptNote {
  public:

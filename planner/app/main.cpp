@@ -26,7 +26,7 @@
 
 namespace {
 
-constexpr int kBadInput = 2, kFailure = 1, kInterrupted = 128 + 2;
+constexpr int kBadInput = 2, kFailure = 1;
 
 int complain(const std::string& message, int code) {
   std::cerr << frontlux::app::in_red("frontlux: " + message, STDERR_FILENO) << '\n';
@@ -165,12 +165,13 @@ ended by itself has success even if it ended badly: see "warnings" in its run.js
 
 int main(int argc, char** argv) {
   prepare_process();
+  frontlux::app::end_at_interrupts();
   try {
     return run(argc, argv);
   } catch (const frontlux::app::BadInput& error) {
     return complain(error.what(), kBadInput);
   } catch (const frontlux::app::Interrupted& stop) {
-    return complain(stop.what(), kInterrupted);
+    return complain(stop.what(), frontlux::app::kInterruptedCode);
   } catch (const std::bad_alloc&) {
     return complain("not enough memory", kFailure);
   } catch (const std::exception& error) {

@@ -17,6 +17,27 @@ struct Moment {
 
 class KilledCommand : public ExploreMotion {
  protected:
+  // Starts a command and stops it as soon as it writes a file, wherever in the folder, or when it is done.
+  // @return whether it was stopped
+  bool stop_while_it_writes(const std::vector<std::string>& words, int signal) const {
+    const pid_t child = start(joined({FRONTLUX_COMMAND}, words), folder_);
+    const auto writes = [&] {
+      for (const auto& entry : fs::directory_iterator(folder_))
+        if (entry.path().string().find(".part") != std::string::npos) return true;
+      return false;
+    };
+    siginfo_t ended{};
+    while (!writes() && waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid == 0)
+      ;
+    kill(child, signal);
+    const int code = exit_code(status_of(child));
+    EXPECT_TRUE(code == 0 || code == 130) << code;
+    if (code == 130) EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");
+    EXPECT_FALSE(writes()) << "a part is left";
+    return code == 130;
+  }
+
   // Starts a command and kills it at a random moment of the time that it takes.
   void kill_once(const std::vector<std::string>& words, std::chrono::duration<double> whole,
                  Moment& moment) const {
@@ -180,6 +201,16 @@ TEST_F(KilledCommand, LeavesARunInMotionThatGoesOn) {
   expect_motions_survive(joined({"explore"}, quick("4")), 3);
 }
 TEST_F(KilledCommand, LeavesEarlierFilesIntact) { expect_files_survive(2); }
+TEST_F(KilledCommand, LeavesNoPartOfAFileWhenItIsStopped) {
+  expect_explored("run");
+  int stopped = 0;
+  for (int i = 0; i < 5; ++i)
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"world", "factory", "-o", path("factory.ply")},
+          {"report", path("run"), "-o", path("page.html")}})
+      stopped += stop_while_it_writes(words, i % 2 == 0 ? SIGTERM : SIGINT) ? 1 : 0;
+  EXPECT_GT(stopped, 0);
+}
 TEST_F(KilledCommand, LongLeavesARunThatGoesOn) { expect_runs_survive(50); }
 TEST_F(KilledCommand, LongLeavesARunInMotionThatGoesOn) { expect_motions_survive({"explore", "room"}, 10); }
 TEST_F(KilledCommand, LongLeavesEarlierFilesIntact) { expect_files_survive(50); }

@@ -35,6 +35,10 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 /// Removes what processes that were killed while they wrote this file have left beside it.
 FRONTLUX_EXPORT void remove_unfinished(const std::filesystem::path& file);
 
+/// Removes what this process has begun to write and not ended, for the handler of a signal that ends the
+/// process at once: calls only what a handler may call. Threads that are writing never return.
+FRONTLUX_EXPORT void remove_own_unfinished() noexcept;
+
 /// Writes a file complete or not at all: one beside it takes its name. It replaces regular files only.
 /// @param write  writes the bytes
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws

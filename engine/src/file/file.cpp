@@ -1,7 +1,10 @@
 #include <frontlux/file.hpp>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 #include <stdexcept>
 #include <unistd.h>
@@ -11,15 +14,29 @@ namespace {
 
 constexpr std::string_view kUnfinished = ".part";  // and the number of the process that writes it
 
+// The names of files that are being written. Who takes one out of its place has it for himself.
+constexpr std::size_t kAtOnce = 64;
+std::array<std::atomic<const char*>, kAtOnce> being_written{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
 // Removed, unless the file got its name.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& file) : path_(file) {
     path_ += std::string(kUnfinished) + std::to_string(::getpid());
+    for (std::atomic<const char*>& place : being_written) {
+      const char* none = nullptr;
+      if (!place.compare_exchange_strong(none, path_.c_str())) continue;
+      place_ = &place;
+      break;
+    }
   }
   ~UnfinishedFile() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
+    // A signal has taken the name, and ends the process soon: it needs the name until then.
+    if (place_ != nullptr && place_->exchange(nullptr) == nullptr)
+      for (;;) ::pause();
   }
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -27,6 +44,7 @@ class UnfinishedFile {
 
  private:
   std::filesystem::path path_;
+  std::atomic<const char*>* place_ = nullptr;
 };
 
 }  // namespace
@@ -78,6 +96,11 @@ void remove_unfinished(const std::filesystem::path& file) {
     std::error_code ignored;
     if (gone) std::filesystem::remove(entry->path(), ignored);
   }
+}
+
+void remove_own_unfinished() noexcept {
+  for (std::atomic<const char*>& place : being_written)
+    if (const char* const path = place.exchange(nullptr)) ::unlink(path);
 }
 
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write) {

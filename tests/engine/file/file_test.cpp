@@ -3,9 +3,13 @@
 #include <frontlux/file.hpp>
 
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <atomic>
+#include <csignal>
+#include <ranges>
 #include <thread>
+#include <unistd.h>
 
 namespace frontlux {
 namespace {
@@ -61,6 +65,31 @@ TEST_F(FileTest, RefusesWhatIsTooLargeOrNoFile) {
 }
 
 // A pipe or a device does not become a file by being named as one.
+// A process that a signal ends in the middle of a file.
+TEST_F(FileTest, RemovesWhatAHandlerFindsUnfinished) {
+  write("table.csv", "old");
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGTERM, [](int) {
+      remove_own_unfinished();
+      _exit(3);
+    });
+    write_file(path("other.csv"), "whole");
+    write_file(path("table.csv"), [&](std::ostream& stream) {
+      stream << "half" << std::flush;
+      if (std::ranges::distance(std::filesystem::directory_iterator(folder_)) != 3) _exit(1);
+      std::raise(SIGTERM);
+    });
+    _exit(2);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_EQ(test::content_of(path("table.csv")), "old");
+  EXPECT_EQ(test::content_of(path("other.csv")), "whole");
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 2);
+}
+
 TEST_F(FileTest, LeavesWhatIsNoFileAsItIs) {
   const std::string pipe = path("pipe"), link = path("link");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
