@@ -30,7 +30,8 @@ std::optional<std::vector<Number>> list_in(std::string_view word) {
 std::string describe(const Range<double>& range) {
   const bool bounded = range.high < std::numeric_limits<double>::max();
   if (range.low == kAnyNumber.low && !bounded) return "a finite number";
-  if (range.low == kAboveZero.low && !bounded) return "a number above 0";
+  if (range.low == kAboveZero.low)
+    return bounded ? "a number above 0, at most " + to_text(range.high) : "a number above 0";
   return bounded ? "a number from " + to_text(range.low) + " to " + to_text(range.high)
                  : "a number of at least " + to_text(range.low);
 }

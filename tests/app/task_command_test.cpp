@@ -7,6 +7,8 @@
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
+#include <csignal>
+
 namespace frontlux::planner {
 namespace {
 
@@ -218,6 +220,26 @@ TEST_F(TaskCommand, RefusesStartsInEachOther) {
   expect_refused({"--task", apart, "--pose", "second=1.5,1.2,1,0", "-o", path("run")},
                  {"--pose: 'second=1.5,1.2,1,0': " + overlap});
   expect_done(apart, "run");
+}
+
+// A step of a minute with a thousand scans a second.
+TEST_F(TaskCommand, NoticesAnInterruptInALongStep) {
+  write_court();
+  const std::string busy = test::replaced(kUav, R"("rate_hz": 10)", R"("rate_hz": 10000)");
+  const std::string file =
+      write("busy.json", R"({"world": "court.ply", "resolution_m": 0.1, "latency_s": 60, )"
+                         R"("box_m": [[0, 0, 0], [6, 6, 2]], "robots": [)" +
+                             busy + "]}");
+  const pid_t child = start_and_wait({"--task", file, "--report", "off", "-o", path("run")}, 0);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  kill(child, SIGINT);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(test::exit_code(test::status_of(child)), 130) << content_of(path("err"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
+  EXPECT_EQ(json_in("run").at("end"), "stopped");
+  EXPECT_EQ(read_recording(path("run/run.frontlux")).end, "stopped");
+  expect_refused({"--task", file, "--latency", "60.1", "-o", path("none")},
+                 {"--latency: '60.1' is not a number above 0, at most 60"});
 }
 
 TEST_F(TaskCommand, WithoutABoxIsShiftedLikeTheCommandLine) {

@@ -176,6 +176,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {with(R"("resolution_m": 0.1)", R"("resolution_m": 0)"),
        "resolution_m is 0; give a number from 0.001 to 1000 m"},
       {with("0.25", "0"), "latency_s is 0; give a number above 0 s"},
+      {with("0.25", "60.5"), "latency_s is 60.5; give a number above 0 s, at most 60 s"},
       {with("0.25", "-1"), "latency_s is -1; give a number above 0 s"},
       {with("0.25", "NaN"), "this is not JSON (after 'latency_s')"},
       {with("0.25", "Infinity"), "this is not JSON (after 'latency_s')"},

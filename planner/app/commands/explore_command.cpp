@@ -115,7 +115,7 @@ void add_explore_command(CLI::App& app) {
       command.add_flag("--lockstep", options.lockstep,
                        "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
   command.add("--latency", options.latency, "SECONDS", "Time from a planning to the begin of its trajectory",
-              kAboveZero);
+              Range<double>{kAboveZero.low, io::kMostLatency});
   command.group("Stopping");
   command.add("--stop-coverage", options.stop_coverage, "PART",
               "Stop when this part of the observable space is mapped, 0 to 1", kProbability);

@@ -1,8 +1,12 @@
 #include "explore/continuous_loop.hpp"
 
 #include "explore/csv_row.hpp"
+#include "interrupt.hpp"
+
+#include <frontlux/stopwatch.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -10,6 +14,8 @@ namespace frontlux::app {
 namespace {
 
 using planner::ExplorationStep, planner::Pose;
+
+constexpr double kPatience = 2.0;  // [s] for the end of a step, when the run is to stop
 
 std::vector<Pose> start_poses(const ExploreSetup& setup) {
   std::vector<Pose> poses;
@@ -52,7 +58,12 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
       count({exploration_.mapping().grid(), start.known_free});
     return first;
   }
+  std::optional<Stopwatch> waiting;  // since somebody wants the run to stop
   for (;;) {
+    if (InterruptNote::taken()) {
+      if (!waiting) waiting.emplace();
+      if (waiting->seconds() > kPatience) throw Interrupted();
+    }
     // All scans of one moment come before the plannings.
     if (robots_.next_time() > time_)
       if (auto planned = exploration_.plan(time_)) {

@@ -20,6 +20,7 @@
 #include <tbb/task_arena.h>
 
 #include <array>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -122,6 +123,16 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
     return nothing;
   } catch (const std::runtime_error&) {
     return "; " + file.string() + " is damaged: the run cannot be continued";
+  }
+}
+
+// Whether a step comes to its end before somebody has waited for that for long.
+bool completes(const std::function<void()>& step) {
+  try {
+    step();
+    return true;
+  } catch (const Interrupted&) {
+    return false;
   }
 }
 
@@ -283,10 +294,9 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       std::span<const RecordedStep> before;
       if (recording) before = recording->steps;
       for (const RecordedStep& step : before) {  // before any file is touched
-        exploring.repeat(step);
-        display.repeated(step.step.number + 1, before.size(), watch.seconds());
-        if (InterruptNote::taken())
+        if (!completes([&] { exploring.repeat(step); }) || InterruptNote::taken())
           throw Interrupted("stopped while recorded steps were repeated; the run is as it was");
+        display.repeated(step.step.number + 1, before.size(), watch.seconds());
       }
       if (!recording) prepare_folder(run);
       // The recording comes first and is locked: another process may still be writing this run.
@@ -306,7 +316,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       };
       const RunLoop& loop = exploring.loop();
       while (!loop.end() && !InterruptNote::taken()) {
-        exploring.step();
+        if (!completes([&] { exploring.step(); })) break;
         record();
       }
       const auto reason = loop.end();

@@ -57,6 +57,8 @@ class RunLoop {
   virtual ~RunLoop() = default;
 
   /// The next step, from step 0 on. @pre there is no `end` yet
+  /// @throws Interrupted if an interrupt is noted and the step has long not ended; so does `repeat`. The step
+  /// is lost then, and there is no next one
   [[nodiscard]] virtual planner::ExplorationStep step() = 0;
   /// Takes a recorded step again, so that the next ones are as then.
   /// @return false if the robots did not map what they mapped then

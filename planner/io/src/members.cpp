@@ -20,6 +20,8 @@ using nlohmann::json;
 
 std::string describe(const char* unit, const Range& range) {
   const std::string end = *unit == '\0' ? "" : std::string(" ") + unit;
+  if (range.low == kAboveZero.low && range.high < kAboveZero.high)
+    return "a number above 0" + end + ", at most " + decimals_of(range.high) + end;
   if (range.high < kAboveZero.high)
     return "a number from " + decimals_of(range.low) + " to " + decimals_of(range.high) + end;
   return (range.low == kAboveZero.low ? "a number above 0"

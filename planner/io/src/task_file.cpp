@@ -183,7 +183,7 @@ Task read_task(const std::filesystem::path& file) {
     task.resolution = members.number("resolution_m", *edge, "m", {0.001, 1000.0});
   seed("seed", task.seed);
   if (const json* latency = members.find("latency_s"))
-    task.latency = members.number("latency_s", *latency, "s", kAboveZero);
+    task.latency = members.number("latency_s", *latency, "s", {kAboveZero.low, kMostLatency});
   if (members.find("lockstep") != nullptr) task.lockstep = members.flag("lockstep", false);
   if (const json* method = members.find("method")) task.method = read_method(members, *method);
   if (const json* end = members.find("end")) read_end(members.object("end", *end, kSeeTasks), task);

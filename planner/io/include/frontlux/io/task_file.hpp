@@ -19,6 +19,7 @@
 namespace frontlux::io {
 
 inline constexpr std::size_t kMostRobots = 32;  ///< in a task
+inline constexpr double kMostLatency = 60.0;    ///< [s]
 
 /// How robots choose where to go.
 enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNearest };
