@@ -202,6 +202,21 @@ TEST_F(TaskCommand, NumbersEqualNamesPastThoseThatAreTaken) {
   expect_same_runs("run", "again");
 }
 
+TEST_F(TaskCommand, MayNameItsGoalTwice) {
+  for (const auto& [method, goal] : {std::pair("render", "render"), {"paper", "nearest"}}) {
+    const std::string file =
+        write("goal.json", std::string(R"({"world": "room", "method": ")") + method +
+                               R"(", "options": {"max-steps": 1, "goal": ")" + goal + "\"}}");
+    expect_done(file, method);
+    EXPECT_EQ(json_in(method).at("goal"), goal);
+    expect_done(task_of(method), std::string(method) + "_again");
+  }
+  // Contradictions with the command line name the task.
+  const std::string file = write("steps.json", R"({"world": "room", "lockstep": true})");
+  expect_refused({"--task", file, "--goal", "tour", "-o", path("none")},
+                 {"--goal tour is not for --lockstep", "the task " + file});
+}
+
 TEST_F(TaskCommand, RefusesStartsInEachOther) {
   write_court();
   const std::string other = test::replaced(test::replaced(kUav, R"("uav")", R"("second")"),
@@ -275,6 +290,17 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
   refuse(R"({"world": "room", "options": {"noise": -1}})",
          {"options.noise", "'-1' is not a number of at least 0"});
   refuse(R"({"world": "room", "robots": [{"file": "none.json"}]})", {"none.json"});
+  // Members that contradict each other, by their names.
+  const std::string lockstep = R"({"world": "room", "lockstep": true, )";
+  refuse(lockstep + R"("method": "tour"})",
+         {"lockstep is true, but method is 'tour'", "leave one of them out"});
+  refuse(lockstep + R"("options": {"goal": "tour"}})", {"lockstep is true, but options.goal is 'tour'"});
+  refuse(lockstep + R"("options": {"drift": 0.01}})", {"lockstep is true, but there is options.drift"});
+  refuse(lockstep + R"("options": {"fail": "uav=3"}})", {"lockstep is true, but there is options.fail"});
+  refuse(R"({"world": "room", "method": "render", "options": {"goal": "nearest"}})",
+         {"method is 'render', but options.goal is 'nearest'", "leave one of them out"});
+  refuse(R"({"world": "room", "method": "paper", "options": {"goal": "tour"}})",
+         {"method is 'paper', but options.goal is 'tour'"});
   refuse(court_with("[6, 6, 2]", "[6, 6, 0.5]"), {"robots[0].start is [1.5,1.5,1,30], outside of box_m"});
   refuse(court_with("\"speed_m_s\": 2", "\"speed_m_s\": -2"), {"robots[0].limits.speed_m_s is -2"});
   // What only the world shows.

@@ -82,13 +82,19 @@ std::size_t robot_named(const std::string& name, const std::string& giver,
   throw BadInput(giver + " is for a robot that is not in the team; its robots are " + names);
 }
 
+// Where else options may come from, for the end of a message.
+std::string or_in_task(const ExploreOptions& options) {
+  return options.task.empty() ? "" : " (some options are those of the task " + options.task + ")";
+}
+
 // When each robot fails [s].
 std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
                                                std::span<const RobotDescription> robots) {
   const bool drifts = options.pose_errors.drift > 0.0 || options.pose_errors.fix_every > 0.0;
   if (options.lockstep && (drifts || !options.failures.each.empty()))
     throw BadInput(std::string(drifts ? "--drift and --fix-every are" : "--fail is") +
-                   " not for --lockstep, in which robots stop and wait; leave one of the options out");
+                   " not for --lockstep, in which robots stop and wait; leave one of the options out" +
+                   or_in_task(options));
   std::vector<std::optional<double>> times(robots.size());
   for (const auto& [name, time] : options.failures.each)
     times[robot_named(name, "--fail: " + quote(options.failures.word), robots)] = time;
@@ -210,7 +216,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   if (options.goal == GoalSearch::kTour && (options.lockstep || options.mode == Method::kPaper))
     throw BadInput(std::string("--goal tour is not for ") +
                    (options.lockstep ? "--lockstep" : "--mode paper") +
-                   "; give another goal, or leave it out");
+                   "; give another goal, or leave it out" + or_in_task(options));
   planner::ExplorationOptions exploration = options.lockstep ? planner::exploration_options(options.mode)
                                             : makes_tours(options)
                                                 ? planner::tour_options(options.source.resolution)

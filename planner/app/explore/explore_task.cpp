@@ -71,6 +71,35 @@ void read_further(const std::string& file, const io::Task& task, const Command::
   }
 }
 
+// Members that contradict each other. What the command line adds is not read yet.
+void check_members(const std::string& file, const io::Task& task, const ExploreOptions& options) {
+  const auto goal = std::find_if(task.options.begin(), task.options.end(),
+                                 [](const auto& option) { return option.first == "goal"; });
+  const bool has_goal = goal != task.options.end();
+  // Only the paper's method leaves the goal open.
+  const auto agrees = [&] {
+    return *task.method == TaskMethod::kPaper ? options.goal != GoalSearch::kTour
+                                              : goal->second == name_of(*task.method);
+  };
+  if (task.method && has_goal && !agrees())
+    fail(file,
+         "method is '" + std::string(name_of(*task.method)) + "', but options.goal is " + quote(goal->second),
+         "leave one of them out");
+  if (!options.lockstep) return;
+  if (options.goal == GoalSearch::kTour)
+    fail(file,
+         std::string("lockstep is true, but ") + (has_goal ? "options.goal" : "method") +
+             " is 'tour', which is for robots in motion",
+         "give another one, or leave one of them out");
+  for (const auto& [given, name] : {std::pair(options.pose_errors.drift > 0.0, "drift"),
+                                    {options.pose_errors.fix_every > 0.0, "fix-every"},
+                                    {!options.failures.each.empty(), "fail"}})
+    if (given)
+      fail(file,
+           std::string("lockstep is true, but there is options.") + name + ", which is for robots in motion",
+           "leave one of them out");
+}
+
 // The options that a task's members do not stand for, without those that are as by default.
 std::vector<std::pair<std::string, std::string>> further_options(const ExploreOptions& options) {
   std::vector<std::pair<std::string, std::string>> words;
@@ -144,6 +173,7 @@ void apply_task(const std::string& file, const Command::ReadOption& read_option,
     options.robots = task.robots;
     if (!options.robots.empty()) options.team.clear();
     read_further(file, task, read_option);
+    check_members(file, task, options);
   });
 }
 
