@@ -83,6 +83,23 @@ TEST_F(MapCommandTest, AFolderGivesTheMapOfTheGraph) {
   EXPECT_GT(tree_in(path("folder.bt"))->size(), 100U);
 }
 
+TEST_F(MapCommandTest, TellsOfCloudsAndPointsThatItLeavesOut) {
+  // A folder that its poses fit to is mapped without a word.
+  const std::string whole =
+      expect_answer({path("clouds"), "-o", path("whole.bt")}, {"points       900\nfree "});
+  const std::string begin = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 4\nHEIGHT 1\nDATA ascii\n";
+  write("clouds/more.PCD", begin + "1 0 0\nnan 0 0\n9 0 0\n0 8 0\n");
+  write("clouds/other.ply", "not read");
+  std::ofstream(path("clouds/poses.csv"), std::ios::app) << "more.PCD,0,0,1,0\n./a.pcd,0,0,1,0\n";
+  const test::Answer answer = run({path("clouds"), "-o", path("map.bt"), "--max-range", "7.5"});
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_EQ(answer.err, "frontlux: warning: " + path("clouds/poses.csv") +
+                            ": clouds of the folder without a line are left out: 1, the first is other.ply; "
+                            "clouds with several lines are mapped with each: 1, the first is a.pcd\n");
+  test::expect_parts(answer.out, {"points       1204\n", "beyond       2 of them beyond 7.5 m",
+                                  "left out     1 of them, which are not finite\n"});
+}
+
 TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");

@@ -4,6 +4,7 @@
 #include "terminal.hpp"
 #include "text.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/scan_graph.hpp>
@@ -15,6 +16,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -38,28 +40,64 @@ struct Recording {
   std::size_t scans = 0;
   std::function<std::string(std::size_t)> name;  // for messages
   std::function<RecordedScan(std::size_t)> scan;
+  std::string warning;  // empty: there is none
 };
 
-Recording open_folder(const std::filesystem::path& folder, const std::string& pose_file) {
-  const auto poses = std::make_shared<std::vector<io::RecordedPose>>(
-      io::read_pose_file(pose_file.empty() ? folder / "poses.csv" : std::filesystem::path(pose_file)));
+// Which clouds are not mapped, and which again and again, in words.
+std::string differences(const std::filesystem::path& folder, const std::filesystem::path& pose_file,
+                        const std::vector<io::RecordedPose>& poses) {
+  std::map<std::filesystem::path, int> lines;
+  for (const io::RecordedPose& pose : poses) ++lines[(folder / pose.file).lexically_normal()];
+  std::size_t without = 0, again = 0;
+  std::filesystem::path first_without, first_again;
+  const auto note = [](const std::filesystem::path& file, std::size_t& count, std::filesystem::path& first) {
+    if (count++ == 0 || file < first) first = file;
+  };
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string ending = lower_extension(entry.path());
+    const std::filesystem::path file = entry.path().lexically_normal();
+    if ((ending == ".pcd" || ending == ".ply") && !lines.contains(file)) note(file, without, first_without);
+  }
+  for (const auto& [file, count] : lines)
+    if (count > 1) note(file, again, first_again);
+  std::string what;
+  if (without > 0)
+    what += "clouds of the folder without a line are left out: " + std::to_string(without) +
+            ", the first is " + first_without.filename().string();
+  if (again > 0)
+    what += (what.empty() ? "" : "; ") + std::string("clouds with several lines are mapped with each: ") +
+            std::to_string(again) + ", the first is " + first_again.filename().string();
+  return what.empty() ? what : pose_file.string() + ": " + what;
+}
+
+Recording open_folder(const std::filesystem::path& folder, const std::string& given) {
+  const std::filesystem::path pose_file = given.empty() ? folder / "poses.csv" : std::filesystem::path(given);
+  const auto poses = std::make_shared<std::vector<io::RecordedPose>>(io::read_pose_file(pose_file));
   const auto file = [folder, poses](std::size_t i) { return folder / (*poses)[i].file; };
   return {poses->size(), [file](std::size_t i) { return file(i).string(); },
           [file, poses](std::size_t i) {
             return RecordedScan{(*poses)[i].T_world_sensor, io::read_point_cloud(file(i))};
-          }};
+          },
+          differences(folder, pose_file, *poses)};
 }
 
 Recording open_graph(const std::filesystem::path& file, const std::string& pose_file) {
   if (!pose_file.empty()) throw BadInput("--poses: a scan graph has its own poses; leave the option out");
   const auto scans = std::make_shared<std::vector<RecordedScan>>(io::read_scan_graph(file));
-  return {scans->size(), [file](std::size_t i) { return file.string() + ": scan " + std::to_string(i + 1); },
-          [scans](std::size_t i) { return (*scans)[i]; }};
+  return {scans->size(),
+          [file](std::size_t i) { return file.string() + ": scan " + std::to_string(i + 1); },
+          [scans](std::size_t i) { return (*scans)[i]; },
+          {}};
 }
 
-std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& mapping) {
+struct Points {
+  std::uint64_t all = 0, not_finite = 0, beyond = 0;  // the range
+};
+
+Points map_scans(const Recording& recording, double max_range, Mapping& mapping) {
   const ProgressLine progress;
-  std::uint64_t points = 0;
+  Points points;
   for (std::size_t i = 0; i < recording.scans; ++i) {
     progress.show("scan " + std::to_string(i + 1) + " of " + std::to_string(recording.scans));
     const RecordedScan scan = recording.scan(i);
@@ -67,8 +105,14 @@ std::uint64_t map_scans(const Recording& recording, double max_range, Mapping& m
     if (!mapping.grid().lattice().key(origin))
       throw BadInput(recording.name(i) +
                      ": its pose lies outside the map's key range; check it, or give a coarser --resolution");
-    mapping.insert(origin, io::points_in_world(scan), max_range);
-    points += scan.points.size();
+    const std::vector<Eigen::Vector3f> in_world = io::points_in_world(scan);
+    mapping.insert(origin, in_world, max_range);
+    points.all += in_world.size();
+    for (const Eigen::Vector3f& point : in_world)
+      if (!point.allFinite())
+        ++points.not_finite;
+      else if (static_cast<double>((point - origin).norm()) > max_range)
+        ++points.beyond;
   }
   return points;
 }
@@ -90,16 +134,23 @@ void map(const Options& options) {
   const Recording recording = std::filesystem::is_directory(options.scans)
                                   ? open_folder(options.scans, options.poses)
                                   : open_graph(options.scans, options.poses);
-  const std::uint64_t points =
-      map_scans(recording, options.max_range.value_or(std::numeric_limits<double>::infinity()), mapping);
+  const double max_range = options.max_range.value_or(std::numeric_limits<double>::infinity());
+  const Points points = map_scans(recording, max_range, mapping);
   const auto voxels = mapping.grid().count();
   if (voxels[1] + voxels[2] == 0)
-    throw BadInput(options.scans + ": its " + std::to_string(points) +
+    throw BadInput(options.scans + ": its " + std::to_string(points.all) +
                    " points make no voxel within the bounds known; give other --bounds");
   mapping.write(options.output);
+  if (!recording.warning.empty()) std::cerr << "frontlux: warning: " << recording.warning << '\n';
+  std::string left_out;
+  if (points.beyond > 0)
+    left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " + to_text(max_range) +
+                                  " m, which only free the space up to it");
+  if (points.not_finite > 0)
+    left_out += row("left out", std::to_string(points.not_finite) + " of them, which are not finite");
   std::cout << row("map", options.output) << row("resolution", to_text(mapping.grid().resolution()) + " m")
-            << row("scans", std::to_string(recording.scans)) << row("points", std::to_string(points))
-            << row("free", std::to_string(voxels[1]) + " voxels")
+            << row("scans", std::to_string(recording.scans)) << row("points", std::to_string(points.all))
+            << left_out << row("free", std::to_string(voxels[1]) + " voxels")
             << row("occupied", std::to_string(voxels[2]) + " voxels");
 }
 
