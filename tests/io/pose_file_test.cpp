@@ -25,6 +25,20 @@ TEST_F(PoseFile, ReadsPoses) {
             1e-12);
 }
 
+// As spreadsheets write them.
+TEST_F(PoseFile, TakesAByteOrderMarkAtTheBegin) {
+  const std::string mark = "\xEF\xBB\xBF";
+  for (const std::string names : {"", "file,x,y,z,yaw\n"}) {
+    const auto table = read_pose_file(save("poses.csv", mark + names + "a.pcd,1,2,3,0\n"));
+    ASSERT_EQ(table.size(), 1U);
+    EXPECT_EQ(table[0].file, "a.pcd");
+  }
+  for (const std::string names : {"", "x,y,z,yaw\n"})
+    EXPECT_EQ(read_pose_list(save("list.csv", mark + names + "1,2,3,0\n")).at(0).pose.position,
+              Eigen::Vector3d(1, 2, 3));
+  expect_refused("poses.csv", "a.pcd,1,2,3,0\n" + mark + "b.pcd,1,2,3,zero\n", "line 2: 'zero'");
+}
+
 TEST_F(PoseFile, RefusesBadPoses) {
   const auto bad = [&](const std::string& bytes, const std::string& part) {
     expect_refused("poses.csv", bytes, part);

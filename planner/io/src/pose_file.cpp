@@ -39,7 +39,10 @@ struct Row {
 template <class Take>
 void for_each_row(const std::filesystem::path& file, const char* format, std::string_view name,
                   std::size_t numeric, const Take& take) {
-  const std::string text = read_file(file);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const std::string bytes = read_file(file);
+  std::string_view text = bytes;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Lines lines(text);
   bool first = true, empty = true;
   while (auto line = lines.next()) {
