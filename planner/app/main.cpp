@@ -76,7 +76,8 @@ std::string instructions() {
   }
 }
 
-// Else the first file that is opened becomes the stream that came closed, and gets what is printed.
+// Else the first file that is opened becomes the stream that came closed, and gets what is printed. Writing
+// to a standard output that came closed fails all the same.
 void open_standard_streams() {
   for (const auto& [stream, how] :
        {std::pair(STDIN_FILENO, O_RDONLY), {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}})
@@ -124,7 +125,7 @@ int run(int argc, const char* const* argv) {
   frontlux scan station --seed 3 -o station.bt
   frontlux explore station --seed 3 -o station_run
 frontlux help COMMAND, or frontlux COMMAND --help, prints the options of a command; --help-all adds the rare ones.
-Lengths are in metres, angles in radians.
+Lengths are in metres, angles on the command line and in tables in radians, in task and robot files in degrees.
 Exit codes: 0 success, 2 unusable input, 130 stopped by Ctrl-C or SIGTERM, 1 any other failure. An exploration that
 ended by itself has success even if it ended badly: see "warnings" in its run.json.)");
   using namespace frontlux::app;
