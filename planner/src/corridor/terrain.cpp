@@ -11,11 +11,14 @@ Terrain::Terrain(Options options)
       occupied_(options_.box),
       closed_(options_.box, true),
       empty_(options_.box, true),
+      filled_(options_.box, true),
       level_(options_.box, {{-options_.half_x, -options_.half_y, 0}, {options_.half_x, options_.half_y, 0}},
              true),
       bare_(options_.box,
             {{-options_.reach, -options_.reach, -options_.gap.value_or(0)},
              {options_.reach, options_.reach, 0}},
+            true),
+      firm_(options_.box, {{-options_.half_x, -options_.half_y, 0}, {options_.half_x, options_.half_y, 0}},
             true) {}
 
 void Terrain::read(const VoxelGrid& grid) {
@@ -39,22 +42,27 @@ void Terrain::decide() {
     for (std::size_t w = 0; w < words; ++w) clear[w] = ~occupied_.bits[first + w];
     and_along_z(clear, -options_.below, options_.above, true, no_ground);
     for (std::size_t w = 0; w < words; ++w) {
-      closed_.bits[first + w] = ~(free_.bits[first + w] & no_ground[w]);
+      const std::uint64_t hole = free_.bits[first + w] & no_ground[w];
+      const std::uint64_t below = free_.bits[first + w] << 1 | (w > 0 ? free_.bits[first + w - 1] >> 63 : 0);
+      closed_.bits[first + w] = ~hole;
+      filled_.bits[first + w] = ~(hole & below);
       // What is occupied has no ground if the voxel above it is occupied as well.
       const std::uint64_t above = (~clear[w] >> 1) | (w + 1 < words ? ~clear[w + 1] << 63 : 0);
       empty_.bits[first + w] = options_.gap ? clear[w] | above : clear[w];
     }
-    closed_.stale[i] = empty_.stale[i] = 1;
+    closed_.stale[i] = empty_.stale[i] = filled_.stale[i] = 1;
   }
   level_.erode(closed_);
   bare_.erode(empty_);
-  for (VoxelColumns* done : {&free_, &occupied_, &closed_, &empty_}) done->settle();
+  if (options_.gap && !options_.exempt.empty()) firm_.erode(filled_);
+  for (VoxelColumns* done : {&free_, &occupied_, &closed_, &empty_, &filled_}) done->settle();
 }
 
 bool Terrain::carries(const VoxelKey& floor) const {
   const auto holds_floor = [&](const KeyBox& box) { return box.contains(floor); };
-  return holds_floor(options_.box) &&
-         (std::ranges::any_of(options_.exempt, holds_floor) || (level_.whole(floor) && !bare_.whole(floor)));
+  if (!holds_floor(options_.box)) return false;
+  if (std::ranges::any_of(options_.exempt, holds_floor)) return !options_.gap || firm_.whole(floor);
+  return level_.whole(floor) && !bare_.whole(floor);
 }
 
 }  // namespace frontlux::planner::detail

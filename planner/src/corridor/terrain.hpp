@@ -13,7 +13,8 @@ namespace frontlux::planner::detail {
 /// Where what is known of the floor carries a robot.
 ///
 /// A voxel of floor does if one near it is known to be the ground, and none under the robot is known to be a
-/// hole: free, with no ground a little above or below it.
+/// hole: free, with no ground a little above or below it. Where floor need not be known and ground has
+/// several heights, only a hole of two voxels counts.
 class Terrain {
  public:
   struct Options {
@@ -41,7 +42,8 @@ class Terrain {
   VoxelColumns free_, occupied_;
   VoxelColumns closed_;  // no holes
   VoxelColumns empty_;   // no ground
-  Erosion level_, bare_;
+  VoxelColumns filled_;  // no holes of two voxels
+  Erosion level_, bare_, firm_;
 };
 
 }  // namespace frontlux::planner::detail

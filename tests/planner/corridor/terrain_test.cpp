@@ -29,17 +29,24 @@ bool is_hole(const VoxelGrid& grid, const Terrain::Options& options, int x, int 
 
 bool is_carried(const VoxelGrid& grid, const Terrain::Options& options, const VoxelKey& floor) {
   if (!options.box.contains(floor)) return false;
+  const auto no_hole_under_it = [&](const auto& is_one) {
+    for (int x = -options.half_x; x <= options.half_x; ++x)
+      for (int y = -options.half_y; y <= options.half_y; ++y)
+        if (is_one(floor.x + x, floor.y + y)) return false;
+    return true;
+  };
+  const auto hole = [&](int x, int y) { return is_hole(grid, options, x, y, floor.z); };
   for (const KeyBox& box : options.exempt)
-    if (box.contains(floor)) return true;
+    if (box.contains(floor))
+      return !options.gap || no_hole_under_it([&](int x, int y) {
+        return hole(x, y) && is(grid, options.box, Occupancy::kFree, x, y, floor.z - 1);
+      });
   bool near = false;
   for (int x = -options.reach; x <= options.reach; ++x)
     for (int y = -options.reach; y <= options.reach; ++y)
       for (int z = -options.gap.value_or(0); z <= 0; ++z)
         near = near || is_ground(grid, options, floor.x + x, floor.y + y, floor.z + z);
-  for (int x = -options.half_x; x <= options.half_x; ++x)
-    for (int y = -options.half_y; y <= options.half_y; ++y)
-      if (is_hole(grid, options, floor.x + x, floor.y + y, floor.z)) return false;
-  return near;
+  return near && no_hole_under_it(hole);
 }
 
 // Layers and boxes of up to two words a column, at both ends of the key range and in its middle.

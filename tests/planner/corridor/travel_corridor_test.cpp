@@ -71,8 +71,6 @@ bool Rule::is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const {
   const auto is = [&](const VoxelKey& v, Occupancy state) {
     return kBounds.contains(v) && grid.at(v) == state;
   };
-  for (const KeyBox& exempt : without_ground)
-    if (exempt.contains(cell)) return kBounds.contains(moved(cell, 0, 0, -down));
   const VoxelKey floor = moved(cell, 0, 0, -down);
   if (!kBounds.contains(floor)) return false;
   const auto is_hole = [&](const VoxelKey& v) {
@@ -84,6 +82,11 @@ bool Rule::is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const {
   const auto is_ground = [&](const VoxelKey& v) {
     return is(v, Occupancy::kOccupied) && !is(moved(v, 0, 0, 1), Occupancy::kOccupied);
   };
+  for (const KeyBox& exempt : without_ground)
+    if (exempt.contains(cell))
+      return all_of(grown({floor, floor}, ground, ground, 0), [&](const VoxelKey& v) {
+        return !is_hole(v) || !is(moved(v, 0, 0, -1), Occupancy::kFree);
+      });
   return all_of(grown({floor, floor}, ground, ground, 0), [&](const VoxelKey& v) { return !is_hole(v); }) &&
          !all_of(grown({floor, floor}, 1, 1, 0), [&](const VoxelKey& v) { return !is_ground(v); });
 }

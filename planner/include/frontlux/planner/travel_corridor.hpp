@@ -82,7 +82,8 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// hole may be known; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;                ///< [voxels] along x and y
-  std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its floor
+  std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its
+                                       ///< floor; on the ground holes of two voxels count there, too
 
   /// [m] On the ground: the highest step, at least a voxel, which is rounded down to whole ones. Floor is an
   /// occupied voxel with none on top of it, from the lower face of the box down to one voxel less than a

@@ -32,7 +32,7 @@ class Sensor {
   [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
   [[nodiscard]] const RangeErrors& errors() const { return errors_; }
 
-  /// Unit vectors in the sensor's frame (x forward, y left, z up), columns() * rows() of them.
+  /// Unit vectors in the sensor's frame (x forward, y left, z up): one for each column and row.
   [[nodiscard]] std::span<const Eigen::Vector3d> directions() const& { return directions_; }
   void directions() const&& = delete;  // they would go with the sensor
 
