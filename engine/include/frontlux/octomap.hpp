@@ -137,8 +137,8 @@ class FRONTLUX_EXPORT OctreeRayCaster {
   /// Takes a new snapshot, after any change of the tree. Not while another thread casts.
   void refresh();
 
-  /// The queries beyond castRay's: visibility between points and between voxels, and counts
-  /// along paths.
+  /// The queries beyond castRay's: visibility between points and between voxels, and
+  /// counts along paths.
   [[nodiscard]] const RayCaster& caster() const;
 
  private:

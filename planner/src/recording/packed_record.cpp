@@ -49,14 +49,6 @@ std::string decompressed(std::string_view packed, std::size_t size) {
   return bytes;
 }
 
-}  // namespace
-
-std::string_view without_zeros(std::string_view bytes) {
-  return bytes.substr(0, bytes.find_last_not_of('\0') + 1);
-}
-
-namespace {
-
 bool begins_a_tag(std::string_view bytes) {
   for (const std::string_view tag : {kHeadTag, kStepTag, kEndTag})
     if (tag.starts_with(bytes.substr(0, kTag))) return true;
@@ -77,6 +69,10 @@ std::string packed_record(std::string_view tag, const std::string& bytes) {
   record += packed;
   append_number(record, checksum(packed));
   return record;
+}
+
+std::string_view without_zeros(std::string_view bytes) {
+  return bytes.substr(0, bytes.find_last_not_of('\0') + 1);
 }
 
 std::optional<Record> record_at(std::string_view file, std::size_t begin, std::size_t zeros) {

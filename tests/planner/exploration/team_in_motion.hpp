@@ -76,8 +76,7 @@ class TeamInMotion {
     }
   }
 
-  static planner::ExplorationOptions options(const TeamInWorld& team,
-                                             GoalChoice choice = GoalChoice::kGoals,
+  static planner::ExplorationOptions options(const TeamInWorld& team, GoalChoice choice = GoalChoice::kGoals,
                                              double epsilon = 10.0) {
     planner::ExplorationOptions options = team.options();
     options.epsilon = epsilon;

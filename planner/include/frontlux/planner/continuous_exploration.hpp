@@ -79,8 +79,7 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
   ///                 them as it is, the cell that it is in will not be entered again
   /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose that is not
-  /// finite;
-  ///         so does `lose`
+  ///         finite; so does `lose`
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,

@@ -123,7 +123,8 @@ std::optional<Pose> if_free(const GroundTruth& truth, const Robot& robot, const 
   const KeyBox box = taken_by(truth.lattice(), robot, pose);
   const Eigen::AlignedBox3d body = body_at(robot, pose);
   if (std::ranges::any_of(placed, [&](const Placed& other) {
-        return intersection(box, other.taken).has_value() || body.exteriorDistance(other.body) < planner::kSeparation;
+        return intersection(box, other.taken).has_value() ||
+               body.exteriorDistance(other.body) < planner::kSeparation;
       }))
     return std::nullopt;
   return pose;
