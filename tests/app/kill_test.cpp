@@ -33,7 +33,9 @@ class KilledCommand : public ExploreMotion {
     kill(child, signal);
     const int code = exit_code(status_of(child));
     EXPECT_TRUE(code == 0 || code == 130) << code;
-    if (code == 130) EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");
+    if (code == 130) {
+      EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");
+    }
     EXPECT_FALSE(writes()) << "a part is left";
     return code == 130;
   }
