@@ -184,7 +184,7 @@ TEST_F(TaskCommand, NumbersEqualNamesPastThoseThatAreTaken) {
   write_court();
   const auto robot = [](const std::string& name, int x) {
     return test::replaced(test::replaced(kUav, R"("name": "uav")", R"("name": ")" + name + '"'),
-                          "[1.5, 1.5, 1, 30]", "[" + std::to_string(x) + ", 1.5, 1, 30]");
+                          "[1.5, 1.5, 1, 30]", '[' + std::to_string(x) + ", 1.5, 1, 30]");
   };
   const std::string longest(40, 'n');
   write("team.json", R"({"world": "court.ply", "box_m": [[0, 0, 0], [6, 6, 2]], "resolution_m": 0.2, )"

@@ -106,7 +106,6 @@ TEST_P(TeamInMotionBy, DoesNotGoOnThroughARobotThatFails) {
 // A robot on its way to something worth it keeps the exploration from its end, also if what it goes for has
 // become too small for a stop since.
 TEST(TeamInMotion, LowGainIsOfAllThatIsStillGoneFor) {
-  std::size_t ends = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed)
     for (const std::size_t count : {2U, 3U, 5U}) {
       TeamInMotion scene(test::TeamInWorld("room", seed, std::vector<RobotDescription>(count, small_uav())),
