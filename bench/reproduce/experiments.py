@@ -41,14 +41,15 @@ class Experiments:
         try:
             self.declared = json.loads(Path(file).read_text(encoding="utf-8"))
             self.tasks, self.methods, self.sets = (self.declared[k] for k in ("tasks", "methods", "sets"))
-            self.common, self.seed_offset, self.start_shifts = (
-                self.declared[k] for k in ("common", "seed_offset", "start_shifts"))
+            self.common, self.robots, self.seed_offset, self.start_shifts = (
+                self.declared[k] for k in ("common", "robots", "seed_offset", "start_shifts"))
         except KeyError as error:
             raise ValueError(f"{file}: the member {error} is missing; add it") from error
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from error
         for name in self.sets:
-            self.runs(name)
+            for run in self.runs(name):
+                self.task_file(run)
 
     def wrong(self, what, do):
         return ValueError(f"{self.file}: {what}; {do}")
@@ -83,16 +84,28 @@ class Experiments:
     def title(self, method):
         return self.methods[method]["title"]
 
+    def team(self, words):
+        """The robots that 3uav+ugv stands for."""
+        robots = []
+        for word in words.split("+"):
+            name = word.lstrip("0123456789")
+            if name not in self.robots:
+                raise self.wrong(f"robot {name!r} of team {words!r} is not declared", f"there are {', '.join(self.robots)}")
+            robots += [self.robots[name]] * int(word.removesuffix(name) or 1)
+        return robots
+
     def task_file(self, run):
         """What the run is, without the folder of the world's file."""
         declared = self.tasks[run.task]
         task = merged(merged(self.common, declared.get("task", {})), self.methods[run.method]["task"])
         task["name"], task["seed"] = run.name, run.seed + self.seed_offset
+        if "team" in task and not task.get("lockstep"):
+            task["robots"] = self.team(task.pop("team"))
         if self.file_of(run.task) is None:
             return {**task, "world_seed": run.seed}
         shift = self.start_shifts[(run.seed - FIRST_SEED) % len(self.start_shifts)]
         start = [round(p + d, 3) for p, d in zip(declared["start"], shift)] + declared["start"][2:]
-        if "robots" in task:  # with a yaw
+        if len(start) == 4:  # with a yaw
             task["robots"] = [{**task["robots"][0], "start": start}, *task["robots"][1:]]
         else:
             task = merged(task, {"options": {"start": ",".join(map(str, start))}})

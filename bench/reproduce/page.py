@@ -19,8 +19,8 @@ All have the same map, sensors, robots, limits and clock. The paper's tables fur
 printed (`--mode paper --lockstep`)."""
 
 LIMITS = f"""\
-- Worlds are simulated: nothing moves in them, sensors and poses have no errors unless a row says so, and robots hear each
-  other always: lost and late messages are not simulated.
+- Worlds are simulated: nothing moves in them, sensors, poses and messages have no errors unless a row says so. All
+  robots plan with one map; maps that differ from robot to robot, and radios with a radius, are not simulated.
 - In worlds of others nothing is random but the start, which is moved by up to 0.6 m: their intervals say how far
   that moves a result, not how other worlds would do.
 - Percentile intervals of few values are too narrow: of normal values they hold the mean in about 87 % of cases for six,
@@ -65,8 +65,9 @@ the end of the page.
 
 {METHODS}
 
-Robots, unless a row says otherwise: a UGV (1.0 m/s, lidar 6 m) and a UAV (1.5 m/s, camera 10 m), both with 2 m/s2 and
-60 degrees/s; voxels of 0.3 m; the clock charges 0.25 s for each planning. The offices have one UAV of 2 m/s, voxels of
+Robots, unless a row says otherwise: a UGV (1.0 m/s, lidar of 6 m, 480 x 32 rays at 4 Hz) and a UAV (1.5 m/s, camera of
+10 m, 96 x 72 rays at 5 Hz), both with 2 m/s2 and 60 degrees/s; voxels of 0.3 m; the clock charges 0.25 s for each planning. In
+lock-step they are the built-in robots, with 720 x 32 and 160 x 120 rays. The offices have one UAV of 2 m/s, voxels of
 0.1 m and 0.15 s. **No bumpers**: a body that touches a surface goes on, and that is a contact.
 `bench/reproduce/experiments.json` declares all of it.
 
@@ -102,7 +103,7 @@ View quality:
 {variants_table(results, "render")}
 ## What reality adds
 
-Errors of sensors and poses, and a robot that fails, otherwise as above; tours:
+Errors of sensors, poses and messages, and a robot that fails, otherwise as above; tours:
 
 {variants_table(results, "tour", of_reality=True)}
 What that does to the map:

@@ -10,7 +10,7 @@ from results import LEVELS
 MAIN = ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "render_uav", "tour_2uav", "tour_3uav",
         "tour_4uav")
 BUMPERS = {"tour_bumper": "tour", "render_bumper": "render"}  # with bumpers: the same without
-REALITY = ("tour_noise", "tour_dropout", "tour_drift", "tour_lost_place", "tour_fail")
+REALITY = ("tour_noise", "tour_dropout", "tour_drift", "tour_lost_place", "tour_late", "tour_lost_scans", "tour_fail")
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):

@@ -176,13 +176,17 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
       expect_refused(with({option, number}),
                      {option + std::string(": '") + number + "' is not a number of at least 0"});
   expect_refused(with({"--samples", "0"}), {"--samples"});
-  for (const char* option : {"--dropout", "--drift"}) expect_refused(with({option, "1.01"}), {option});
+  for (const char* option : {"--dropout", "--drift", "--scan-loss"})
+    expect_refused(with({option, "1.01"}), {option});
   expect_refused(with({"--fix-every", "-1"}), {"--fix-every"});
+  for (const char* seconds : {"-1", "nan", "61"})
+    expect_refused(with({"--scan-delay", seconds}), {"--scan-delay"});
   for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})
     expect_refused(with({"--fail", word}), {"--fail", "NAME=SECONDS"});
   expect_refused(with({"--fail", "car=3"}), {"--fail: 'car=3'", "not in the team", "ugv, uav"});
   expect_refused(with({"--fail", "uav=3", "--lockstep"}), {"--fail is not for --lockstep"});
-  expect_refused(with({"--drift", "0.1", "--lockstep"}), {"--drift", "not for --lockstep"});
+  expect_refused(with({"--drift", "0.1", "--lockstep"}), {"--drift is not for --lockstep"});
+  expect_refused(with({"--scan-loss", "0.1", "--lockstep"}), {"--scan-loss is not for --lockstep"});
   expect_refused(with({"--what"}), {"--what"});
   expect_refused(with({"--resume", output}), {"--resume"});
 }

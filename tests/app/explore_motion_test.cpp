@@ -218,9 +218,10 @@ TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
   EXPECT_EQ(json_in("steps").at("contacts_in_free"), nullptr) << "not judged in lock-step";
 }
 
-TEST_F(ExploreMotion, RobotsFailAndDriftAsAsked) {
+TEST_F(ExploreMotion, RobotsFailAndDriftAndAreHeardLateAsAsked) {
   const auto words = [&](const std::string& output, const std::string& seconds) {
-    return joined(quick(output, seconds), {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2"});
+    return joined(quick(output, seconds), {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2",
+                                           "--scan-delay", "0.5", "--scan-loss", "0.1"});
   };
   const test::Answer answer = run(joined(words("run", "6"), {"--threads", "1"}));
   EXPECT_EQ(answer.code, 0);
@@ -231,6 +232,8 @@ TEST_F(ExploreMotion, RobotsFailAndDriftAsAsked) {
   EXPECT_NEAR(json.at("by_robot").at("two").at("failed_s").get<double>(), 3.0, 0.2);
   EXPECT_EQ(json.at("task").at("options").at("fail"), "two=3");
   EXPECT_EQ(json.at("task").at("options").at("drift"), "0.02");
+  EXPECT_EQ(json.at("task").at("options").at("scan-delay"), "0.5");
+  EXPECT_EQ(json.at("task").at("options").at("scan-loss"), "0.1");
   EXPECT_GT(json.at("map").at("surface_found"), 0.1);
   EXPECT_GT(json.at("map").at("false_free"), 0.0);
   const Table events(path("run/events.csv"));

@@ -62,9 +62,13 @@ class Made(unittest.TestCase):
 class Declared(Made):
     def test_tasks_of_runs(self):
         task = self.experiments.task_file(Run("maze", "tour", 7))
+        robots = task.pop("robots")
         self.assertEqual(task, {"name": "maze-tour-7", "world": "maze", "world_seed": 7, "seed": 1007, "method": "tour",
-                                "resolution_m": 0.3, "latency_s": 0.25, "team": "uav+ugv", "end": {"time_s": 7200},
+                                "resolution_m": 0.3, "latency_s": 0.25, "end": {"time_s": 7200},
                                 "options": {"bumper": "off"}})
+        self.assertEqual([r["name"] for r in robots], ["uav", "ugv"])
+        three = self.experiments.task_file(Run("station", "tour_3uav", 7))["robots"]
+        self.assertEqual([r["name"] for r in three], ["uav"] * 3)
         steps = self.experiments.task_file(Run("maze", "steps_uav", 7))
         self.assertEqual((steps["lockstep"], steps["team"], "end" in steps), (True, "uav", False))
         mesh = self.experiments.task_file(Run("hospital", "tour", 7))
@@ -96,6 +100,7 @@ class Declared(Made):
         for change_it, said in ((lambda d: d.pop("tasks"), "'tasks' is missing"),
                                 (lambda d: d["sets"]["quick"][0].update(seeds=[1, 9]), "seeds of set 'quick' are 1 to 9"),
                                 (lambda d: d["sets"]["quick"][0].update(seeds=[9, 8]), "9 to 8"),
+                                (lambda d: d["common"].update(team="2uav+car"), "'car' of team '2uav\\+car' is not declared"),
                                 (lambda d: d["sets"]["quick"][0].update(methods=["tuor"]), "method 'tuor' of set 'quick'")):
             wrong = json.loads(json.dumps(good))
             change_it(wrong)
@@ -260,17 +265,17 @@ def all_hold(make):
                                     ("paper", 300.0), ("tour_uav", 150.0), ("tour_2uav", 80.0), ("tour_4uav", 50.0)):
                 make(Run(world, method, seed), seconds=seconds + seed)
             for steps in LOCKSTEP:
-                make(Run(world, steps, seed), seconds=100.0, uav_part=0.93, steps=40)
-                make(Run(world, f"{steps}_uav", seed), seconds=200.0, steps=80)
-                make(Run(world, f"{steps}_unassigned", seed), seconds=130.0, uav_part=0.75, steps=50)
-                make(Run(world, f"{steps}_yaw_ahead", seed), seconds=400.0, uav_part=0.6, steps=60)
+                make(Run(world, steps, seed), seconds=400.0, uav_part=0.93, steps=40)
+                make(Run(world, f"{steps}_uav", seed), seconds=800.0, steps=80)
+                make(Run(world, f"{steps}_unassigned", seed), seconds=520.0, uav_part=0.75, steps=50)
+                make(Run(world, f"{steps}_yaw_ahead", seed), seconds=1600.0, uav_part=0.6, steps=60)
         for method, seconds in (("tour", 100.0), ("render", 200.0), ("tour_uav", 150.0)):
             make(Run("small_maze", method, seed), seconds=seconds)
         make(Run("maze", "tour_grid_caster", seed), seconds=100.0 + seed)
     for world in BUILT_IN:
         make(Run(world, "tour", 6, True), seconds=106.0)
         for steps in LOCKSTEP:
-            make(Run(world, steps, 6, True), seconds=100.0, uav_part=0.93, steps=40)
+            make(Run(world, steps, 6, True), seconds=400.0, uav_part=0.93, steps=40)
 
 
 def none_hold(make):

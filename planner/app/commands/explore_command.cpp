@@ -143,6 +143,11 @@ void add_explore_command(CLI::App& app) {
               "By which part of its way a robot is elsewhere than it believes, 0 to 1", kProbability);
   command.add("--fix-every", options.pose_errors.fix_every, "SECONDS",
               "After how long it learns where it is; 0: never", kFromZero);
+  command.add("--scan-delay", options.message_errors.delay, "SECONDS",
+              "Time that a scan takes to the map that the robots share",
+              Range<double>{kFromZero.low, io::kMostLatency});
+  command.add("--scan-loss", options.message_errors.loss, "P", "Probability that a scan never gets there",
+              kProbability);
   command.add("--fail", options.failures, "NAME=SECONDS",
               "A robot fails after this time, and stays where it is; more with commas between");
   const auto method = add_method_options(command, options);

@@ -37,6 +37,7 @@ ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
     : setup_(setup),
       robots_(setup.sourced.world, *setup.truth, setup.head.robots, start_poses(setup), setup.errors,
               setup.exploration.seed, setup.at_contact, setup.pose_errors),
+      scans_(setup.message_errors, setup.exploration.seed),
       exploration_(setup.exploration,
                    planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
       known_(setup.head.resolution),
@@ -104,12 +105,13 @@ void ContinuousLoop::sense() {
   const double next = robots_.next_time();
   note_motion(next);
   const auto where = [this](std::size_t robot, double time) { return exploration_.at(robot, time); };
-  const sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
+  sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
   time_ = next;
   judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
-  if (!numbers_.robots[sensed.robot].failed)
-    count(exploration_.insert(sensed.robot, sensed.pose, sensed.scan));
+  if (!numbers_.robots[sensed.robot].failed) scans_.send(std::move(sensed));
+  for (const auto& [taken, robot, pose, scan] : scans_.arrived(time_))
+    count(exploration_.insert(robot, pose, scan));
 }
 
 // New ones, by the map that the robots had at the time.

@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/continuous_exploration.hpp>
 #include <frontlux/sim/moving_robots.hpp>
+#include <frontlux/sim/scan_messages.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <cstddef>
@@ -39,6 +40,7 @@ class ContinuousLoop final : public RunLoop {
 
   const ExploreSetup& setup_;
   sim::MovingRobots robots_;
+  sim::ScanMessages scans_;
   planner::ContinuousExploration exploration_;
   VoxelGrid known_;  // what is counted as mapped
   RunNumbers numbers_;

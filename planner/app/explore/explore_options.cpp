@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace frontlux::app {
 namespace {
@@ -55,6 +56,8 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("dropout", options.errors.dropout);
   visit("drift", options.pose_errors.drift);
   visit("fix_every", options.pose_errors.fix_every);
+  visit("scan_delay", options.message_errors.delay);
+  visit("scan_loss", options.message_errors.loss);
   visit("fail", options.failures);
 }
 
@@ -201,6 +204,19 @@ void read(std::string_view word, RobotFailures& failures) {
 bool makes_tours(const ExploreOptions& options) {
   return !options.lockstep && options.mode == planner::Method::kDefault &&
          options.goal.value_or(GoalSearch::kTour) == GoalSearch::kTour;
+}
+
+std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {
+  const auto& [drift, fix_every] = options.pose_errors;
+  const auto& [delay, loss] = options.message_errors;
+  std::vector<std::string_view> names;
+  for (const auto& [given, name] : {std::pair(drift > 0.0, "drift"),
+                                    {fix_every > 0.0, "fix-every"},
+                                    {delay > 0.0, "scan-delay"},
+                                    {loss > 0.0, "scan-loss"},
+                                    {!options.failures.each.empty(), "fail"}})
+    if (given) names.emplace_back(name);
+  return names;
 }
 
 void note_paths(ExploreOptions& options) {

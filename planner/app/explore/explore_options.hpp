@@ -7,6 +7,7 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/sim/moving_robots.hpp>
+#include <frontlux/sim/scan_messages.hpp>
 #include <frontlux/sim/sensor.hpp>
 
 #include <cstdint>
@@ -71,11 +72,15 @@ struct ExploreOptions {
   std::optional<double> stop_coverage, stop_time;  ///< part of the observable voxels, [s]
   sim::RangeErrors errors;
   sim::PoseErrors pose_errors;
+  sim::MessageErrors message_errors;
   RobotFailures failures;
 };
 
 /// Whether robots go on tours, the default in motion.
 [[nodiscard]] bool makes_tours(const ExploreOptions& options);
+
+/// The options given, by their names, of errors that only robots in motion have.
+[[nodiscard]] std::vector<std::string_view> errors_in_motion(const ExploreOptions& options);
 
 /// Notes the absolute paths of the world's and the robots' files, as they are named from here.
 void note_paths(ExploreOptions& options);

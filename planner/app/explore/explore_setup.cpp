@@ -90,10 +90,10 @@ std::string or_in_task(const ExploreOptions& options) {
 // When each robot fails [s].
 std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
                                                std::span<const RobotDescription> robots) {
-  const bool drifts = options.pose_errors.drift > 0.0 || options.pose_errors.fix_every > 0.0;
-  if (options.lockstep && (drifts || !options.failures.each.empty()))
-    throw BadInput(std::string(drifts ? "--drift and --fix-every are" : "--fail is") +
-                   " not for --lockstep, in which robots stop and wait; leave one of the options out" +
+  const std::vector<std::string_view> errors = errors_in_motion(options);
+  if (options.lockstep && !errors.empty())
+    throw BadInput("--" + std::string(errors.front()) +
+                   " is not for --lockstep, in which robots stop and wait; leave one of the options out" +
                    or_in_task(options));
   std::vector<std::optional<double>> times(robots.size());
   for (const auto& [name, time] : options.failures.each)
@@ -303,6 +303,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
   ExploreSetup setup;
   setup.errors = options.errors;
   setup.pose_errors = options.pose_errors;
+  setup.message_errors = options.message_errors;
   setup.lockstep = options.lockstep;
   setup.at_contact = options.bumper ? sim::AtContact::kStay : sim::AtContact::kGoOn;
   setup.stop_coverage = options.stop_coverage;

@@ -7,6 +7,7 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/ground_truth.hpp>
+#include <frontlux/sim/scan_messages.hpp>
 #include <frontlux/sim/sensor.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
@@ -25,6 +26,7 @@ struct ExploreSetup {
   std::unique_ptr<const sim::GroundTruth> truth;
   sim::RangeErrors errors;
   sim::PoseErrors pose_errors;
+  sim::MessageErrors message_errors;
   std::vector<std::optional<double>> failures;  // [s] of each robot
   bool lockstep = false;
   sim::AtContact at_contact = sim::AtContact::kStay;

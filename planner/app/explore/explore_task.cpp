@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 22> kFurther = {
-    "start",  "ground",   "scale",   "up",     "goal",      "planner", "renderer",     "samples",
-    "assign", "optimize", "caster",  "lambda", "advance",   "epsilon", "min-distance", "max-steps",
-    "bumper", "noise",    "dropout", "drift",  "fix-every", "fail"};
+constexpr std::array<std::string_view, 24> kFurther = {
+    "start",  "ground",   "scale",   "up",     "goal",      "planner",    "renderer",     "samples",
+    "assign", "optimize", "caster",  "lambda", "advance",   "epsilon",    "min-distance", "max-steps",
+    "bumper", "noise",    "dropout", "drift",  "fix-every", "scan-delay", "scan-loss",    "fail"};
 
 void set_method(TaskMethod method, ExploreOptions& options) {
   options.mode = method == TaskMethod::kPaper ? Method::kPaper : Method::kDefault;
@@ -91,13 +91,10 @@ void check_members(const std::string& file, const io::Task& task, const ExploreO
          std::string("lockstep is true, but ") + (has_goal ? "options.goal" : "method") +
              " is 'tour', which is for robots in motion",
          "give another one, or leave one of them out");
-  for (const auto& [given, name] : {std::pair(options.pose_errors.drift > 0.0, "drift"),
-                                    {options.pose_errors.fix_every > 0.0, "fix-every"},
-                                    {!options.failures.each.empty(), "fail"}})
-    if (given)
-      fail(file,
-           std::string("lockstep is true, but there is options.") + name + ", which is for robots in motion",
-           "leave one of them out");
+  for (const std::string_view name : errors_in_motion(options))
+    fail(file,
+         "lockstep is true, but there is options." + std::string(name) + ", which is for robots in motion",
+         "leave one of them out");
 }
 
 // The options that a task's members do not stand for, without those that are as by default.
@@ -138,6 +135,8 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add_number("dropout", options.errors.dropout, other.errors.dropout);
   add_number("drift", options.pose_errors.drift, other.pose_errors.drift);
   add_number("fix-every", options.pose_errors.fix_every, other.pose_errors.fix_every);
+  add_number("scan-delay", options.message_errors.delay, other.message_errors.delay);
+  add_number("scan-loss", options.message_errors.loss, other.message_errors.loss);
   if (!options.failures.each.empty()) words.emplace_back("fail", options.failures.word);
   return words;
 }
