@@ -84,14 +84,16 @@ class Experiments:
     def title(self, method):
         return self.methods[method]["title"]
 
-    def team(self, words):
-        """The robots that 3uav+ugv stands for."""
+    def team(self, words, faster):
+        """The robots that 3uav+ugv stands for, with some limits by factors of what they are."""
         robots = []
         for word in words.split("+"):
             name = word.lstrip("0123456789")
             if name not in self.robots:
                 raise self.wrong(f"robot {name!r} of team {words!r} is not declared", f"there are {', '.join(self.robots)}")
-            robots += [self.robots[name]] * int(word.removesuffix(name) or 1)
+            robot = self.robots[name]
+            limits = {limit: factor * robot["limits"][limit] for limit, factor in faster.items()}
+            robots += [merged(robot, {"limits": limits})] * int(word.removesuffix(name) or 1)
         return robots
 
     def task_file(self, run):
@@ -100,7 +102,7 @@ class Experiments:
         task = merged(merged(self.common, declared.get("task", {})), self.methods[run.method]["task"])
         task["name"], task["seed"] = run.name, run.seed + self.seed_offset
         if "team" in task and not task.get("lockstep"):
-            task["robots"] = self.team(task.pop("team"))
+            task["robots"] = self.team(task.pop("team"), self.methods[run.method].get("faster", {}))
         if self.file_of(run.task) is None:
             return {**task, "world_seed": run.seed}
         shift = self.start_shifts[(run.seed - FIRST_SEED) % len(self.start_shifts)]

@@ -27,8 +27,7 @@ LIMITS = f"""\
   89 % for eight and 93 % for twenty, instead of {100 * LEVEL:.0f} %.
 - Many lines are judged at once, each by itself: among forty intervals two are expected to miss.
 - The observable space is the free space connected with the start and the surfaces around it, at the run's voxels. The
-  paper does not define its coverage, and does not publish its worlds: ours have the same names and other sizes.
-- Speeds and accelerations were not varied."""
+  paper does not define its coverage, and does not publish its worlds: ours have the same names and other sizes."""
 
 
 def summary(lines):

@@ -69,6 +69,9 @@ class Declared(Made):
         self.assertEqual([r["name"] for r in robots], ["uav", "ugv"])
         three = self.experiments.task_file(Run("station", "tour_3uav", 7))["robots"]
         self.assertEqual([r["name"] for r in three], ["uav"] * 3)
+        faster = self.experiments.task_file(Run("maze", "tour_speed", 7))["robots"]
+        self.assertEqual([r["limits"]["speed_m_s"] for r in faster], [2.25, 1.5])
+        self.assertEqual([r["limits"]["yaw_rate_deg_s"] for r in faster], [60, 60])
         steps = self.experiments.task_file(Run("maze", "steps_uav", 7))
         self.assertEqual((steps["lockstep"], steps["team"], "end" in steps), (True, "uav", False))
         mesh = self.experiments.task_file(Run("hospital", "tour", 7))
