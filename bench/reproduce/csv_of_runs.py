@@ -5,7 +5,7 @@ import io
 
 from results import LEVELS
 
-FACTS = ("end", "coverage_observable", "auc", "contacts", "held_back", "clearance_min_m", "separation_min_m")
+FACTS = ("end", "coverage_observable", "auc", "contacts", "contacts_in_free", "held_back", "clearance_min_m", "separation_min_m")
 HEADER = ("task", "method", "seed", "failure", *(f"s_to_{level}" for level in LEVELS), "m_ugv", "m_uav",
           "revisited_ugv", "revisited_uav", "share_uav", "steps", "steps_to_90", *FACTS)
 

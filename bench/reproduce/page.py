@@ -77,7 +77,8 @@ observable space mapped (hospital 90 %, the paper's steps 90 %). A failed run en
 
 ## Main table
 
-Means of the runs that did not fail; contacts, least clearance of a body to a surface and least distance of two bodies
+Means of the runs that did not fail; contacts, and those at which the map had all voxels around the body as free, since
+beams had passed the surface that is in them; least clearance of a body to a surface and least distance of two bodies
 of all runs. What was not mapped is in view only of smaller robots (narrow), of none (hidden), or of these (in view), by
 estimates.
 
