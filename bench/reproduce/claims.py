@@ -11,6 +11,7 @@ UNDECIDED = "open: the interval contains the limit"
 TOO_FEW = f"open: fewer than {FEWEST} runs in a world"
 TEAMS = ("tour", "tour_uav", "tour_2uav", "tour_3uav", "tour_4uav")  # as they are by default, without bumpers
 CLEARANCE = 0.01  # [m], less is luck: a trajectory keeps the robot's margin, which is 0 here
+LIMITS_KEPT = 1.001
 SEPARATION = 0.32  # [m], what a trajectory keeps between bodies (kSeparation)
 
 
@@ -247,6 +248,12 @@ def safety_lines(results):
     least = min((r.facts["separation_min_m"] for r in several), default=None)
     yield Line(f"Tours: bodies stay {SEPARATION} m apart",
                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several))
+
+    moving = [r for r in runs if r.facts.get("worst_of_limits") is not None]
+    over = [r for r in moving if r.facts["worst_of_limits"] > LIMITS_KEPT]
+    yield Line("Tours: speed, acceleration and yaw rate, sampled at 100 Hz, exceed no limit by more than 0.1 %",
+               f"at most {max(r.facts['worst_of_limits'] for r in moving):.6f} of a limit in {counted(len(moving), 'run')}"
+               if moving else "", none_of(over, moving))
 
     failures = [r for r in everything if r.failure]
     yield Line("Tours: every run ends by itself with the world mapped (99 %, hospital 90 %)",

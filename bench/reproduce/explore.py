@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import math
 import shutil
 import signal
 import socket
@@ -13,7 +14,8 @@ from pathlib import Path
 LONGEST = 3600  # [s], after which a run counts as hanging
 # Of run.json: what is the same on every machine, and what is not.
 FACTS = ("version", "end", "steps", "coverage_observable", "coverage_box", "unseen", "time_s", "auc", "explored_m3",
-         "clearance_min_m", "contacts", "contacts_in_free", "collisions", "held_back", "separation_min_m", "by_robot", "path_length_m", "map")
+         "clearance_min_m", "contacts", "contacts_in_free", "collisions", "held_back", "separation_min_m", "by_robot", "path_length_m", "map",
+         "worst_of_limits")
 MEASURED = ("planning_mean_s", "planning_p99_s", "planning_max_s", "phases_s", "wall_s", "memory_mb", "machine",
             "instructions", "threads")
 GAINS = ("gain_tangent", "gain_predicted", "gained")
@@ -68,6 +70,32 @@ def read_steps(file):
     return curve, means
 
 
+def worst_of_limits(file, robots):
+    """By motion.csv, the largest speed, acceleration and yaw rate of any robot as a part of its limit; speeds and yaw
+    rates also by where it was a row before. None if it has no two rows of a robot. Raises ValueError."""
+    limits = {robot["name"]: robot["limits"] for robot in robots}
+    worst, before = None, {}
+    with open(file, encoding="utf-8", newline="") as stream:
+        rows = csv.reader(stream)
+        next(rows, None)  # time_s, robot, x_m, y_m, z_m, yaw_rad, vx_m_s, vy_m_s, vz_m_s, yaw_rate_rad_s
+        for time, name, *row in rows:
+            time, (x, y, z, yaw, *velocity, yaw_rate) = float(time), map(float, row)
+            last, before[name] = before.get(name), (time, (x, y, z), yaw, velocity)
+            if last is None:
+                continue
+            limit, seconds = limits[name], time - last[0]
+            size = (lambda v: max(map(abs, v))) if limit["per_axis"] else (lambda v: math.hypot(*v))
+
+            def rate(now, then):
+                return size([(b - a) / seconds for a, b in zip(then, now)])
+
+            turned = abs(math.remainder(yaw - last[2], 2 * math.pi)) / seconds
+            worst = max(worst or 0.0, size(velocity) / limit["speed_m_s"], rate((x, y, z), last[1]) / limit["speed_m_s"],
+                        rate(velocity, last[3]) / limit["acceleration_m_s2"],
+                        max(abs(yaw_rate), turned) / math.radians(limit["yaw_rate_deg_s"]))
+    return None if worst is None else round(worst, 6)
+
+
 def explore(command, version, task, world, threads=1, folder=None):
     """Runs a task: what came of it, either "facts", "gains" and "curve", or why it failed, "failure"; "measured"
     depends on the machine, nothing else does. The world's file is given apart, or empty. Files go to a new folder in
@@ -105,6 +133,8 @@ def explore(command, version, task, world, threads=1, folder=None):
         try:
             facts = json.loads((run / "run.json").read_text(encoding="utf-8"))
             curve, gains = read_steps(run / "steps.csv")
+            if (run / "motion.csv").exists():
+                facts["worst_of_limits"] = worst_of_limits(run / "motion.csv", facts["task"]["robots"])
             measured = {key: facts.get(key) for key in MEASURED}
             measured["program"] = hashlib.sha256(Path(program).read_bytes()).hexdigest()[:12]
             return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,

@@ -6,6 +6,7 @@ reproduce_test.py FOLDER, that of bench/reproduce; runs are made up in a tempora
 import csv
 import io
 import json
+import math
 import os
 import re
 import subprocess
@@ -113,6 +114,37 @@ class Declared(Made):
                 Experiments(file)
         with self.assertRaisesRegex(ValueError, "there is no set 'all'"):
             self.experiments.runs("all")
+
+
+class Motion(Made):
+    HEAD = "time_s,robot,x_m,y_m,z_m,yaw_rad,vx_m_s,vy_m_s,vz_m_s,yaw_rate_rad_s\n"
+
+    def worst(self, rows, **limits):
+        robot = {"name": "one", "limits": {"speed_m_s": 2, "acceleration_m_s2": 4, "yaw_rate_deg_s": 180 / math.pi,
+                                           "per_axis": False, **limits}}
+        file = self.folder / "motion.csv"
+        file.write_text(self.HEAD + "".join(",".join(map(str, row)) + "\n" for row in rows))
+        return explore.worst_of_limits(file, [robot, {**robot, "name": "two"}])
+
+    def test_each_limit_can_be_the_worst(self):
+        rest = [0, "one", 0, 0, 0, 3.1, 0, 0, 0, 0]
+        for row, per_axis, worst in (([0.5, "one", 0.6, 0.8, 0, 3.1, 0, 0, 0, 0], False, 1.0),  # moved
+                                     ([0.5, "one", 0.6, 0.8, 0, 3.1, 0, 0, 0, 0], True, 0.8),
+                                     ([2.0, "one", 0, 0, 0, 3.1, 0, 0, 3, 0], False, 1.5),  # speed
+                                     ([0.5, "one", 0, 0, 0, 3.1, 1.8, 0, 0, 0], False, 0.9),
+                                     ([0.25, "one", 0, 0, 0, 3.1, 1.5, 0, 0, 0], False, 1.5),  # acceleration
+                                     ([1.0, "one", 0, 0, 0, -3.1, 0, 0, 0, 0], False, round(2 * math.pi - 6.2, 6)),
+                                     ([1.0, "one", 0, 0, 0, 3.1, 0, 0, 0, -1.25], False, 1.25)):
+            self.assertEqual(self.worst([rest, [0, "two", 9, 9, 9, 0, 0, 0, 0, 0], row], per_axis=per_axis), worst, row)
+
+    def test_nothing_moves_in_one_row(self):
+        self.assertIsNone(self.worst([]))
+        self.assertIsNone(self.worst([[0, "one", 0, 0, 0, 0, 9, 0, 0, 0], [0, "two", 0, 0, 0, 0, 9, 0, 0, 0]]))
+
+    def test_what_is_cut_off_is_refused(self):
+        for row in ([1, "one", 0, 0], [1, "one", 0, 0, 0, 0, 0, 0, 0, "x"], [1]):
+            with self.assertRaises(ValueError):
+                self.worst([[0, "one", 0, 0, 0, 0, 0, 0, 0, 0], row])
 
 
 class Intervals(unittest.TestCase):
@@ -288,7 +320,7 @@ def none_hold(make):
             for method, seconds in (("tour", 300.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 100.0),
                                     ("paper", 100.0), ("tour_uav", 150.0), ("tour_2uav", 280.0), ("tour_4uav", 250.0)):
                 make(Run(world, method, seed), seconds=seconds + seed, contacts=int(method in ("tour", "render")),
-                     separation_min_m=0.01, clearance_min_m=0.0)
+                     separation_min_m=0.01, clearance_min_m=0.0, worst_of_limits=1.0011)
             for steps in LOCKSTEP:
                 make(Run(world, steps, seed), seconds=200.0, uav_part=0.5, coverage=0.91, steps=90, gains=(100, 90, 80))
                 make(Run(world, f"{steps}_uav", seed), seconds=100.0, steps=80)
