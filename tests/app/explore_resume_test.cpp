@@ -104,6 +104,17 @@ TEST_F(ExploreCommand, RefusesALimitBelowTheRecordedSteps) {
   expect_refused({"--resume", path("lockstep")}, {"5 steps", "the limit of 4", "give --max-steps 5 or more"});
 }
 
+// What a robot's file may not hold, a recording may.
+TEST_F(ExploreCommand, RefusesARecordedSensorOfTooManyRays) {
+  expect_explored("run");
+  Recording recording = read_recording(path("run/run.frontlux"));
+  recording.head.robots.back().columns = recording.head.robots.back().rows = 8000;
+  RecordingWriter(path("run/run.frontlux"), recording.head).write(recording.steps[0]);
+  expect_refused({"--resume", path("run")}, {"--resume: " + path("run/run.frontlux") +
+                                                 ": the robot 'uav': columns and rows are 8000 and 8000",
+                                             "GB of memory"});
+}
+
 // A world that is large enough to be caught in the middle of.
 TEST_F(ExploreCommand, GoesOnAfterItWasKilledAndAfterCtrlC) {
   const auto to = [&](const std::string& output) {

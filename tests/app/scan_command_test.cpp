@@ -5,7 +5,6 @@
 #include <frontlux/sim/mesh_file.hpp>
 
 #include <octomap/OcTree.h>
-
 #include <sys/stat.h>
 
 namespace frontlux::sim {
@@ -76,6 +75,9 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({"room", "--sweep", "0"}, {"--sweep", "0"});
   expect({"room", "--sweep", "-1"}, {"--sweep", "-1"});
   expect({"room", "--sweep", "wide"}, {"--sweep", "wide"});
+  expect(
+      {"room", "--resolution", "0.05", "--sweep", "0.05"},
+      {"room: sweep: a spacing of 0.05 m means looking at ", " places, more than 262144", "give a larger"});
   expect({"room", "--robot", "tank"}, {"--robot", "'tank'"});
   expect({"room", "--noise", "-1"}, {"--noise", "-1"});
   expect({"room", "--noise", "nan"}, {"--noise", "nan"});

@@ -125,8 +125,15 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with("\"columns\": 16", "\"columns\": 0"), "sensor.columns is 0; give a whole number from 1"},
       {with("\"columns\": 16", "\"columns\": -5"), "sensor.columns is -5; give"},
       {with("\"columns\": 16", "\"columns\": 16.5"), "sensor.columns is 16.5; give a whole number"},
-      {with("\"columns\": 16, \"rows\": 12", "\"columns\": 60000, \"rows\": 60000"),
-       "sensor.rows is 60000, too many with 60000 columns; give at most 67108864 rays in all"},
+      {with("\"columns\": 16", "\"columns\": 5000000"),
+       "sensor.columns is 5000000; give a whole number from 1 to 4194304"},
+      {with("\"columns\": 16, \"rows\": 12", "\"columns\": 8000, \"rows\": 4000"),
+       "sensor.columns and rows are 8000 and 4000: a scan would take about 4 GB of memory; give at most "
+       "4194304 "
+       "rays in all"},
+      {with("\"columns\": 16, \"rows\": 12", "\"columns\": 2048, \"rows\": 2048, \"rate_hz\": 100"),
+       "sensor.columns and rows are 2048 and 2048: with a rate_hz of 100 they are 419430400 rays a second; "
+       "give at most 67108864"},
       {with("\"columns\"", "\"colums\""), "sensor.columns is missing"},
       {with("0.75", "0.75, \"margin_m\": -1"), "margin_m is -1; give a number from 0 to 100 m"},
       {with("0.75", "0.75, \"limits\": 3"), "limits is 3; give an object"},

@@ -177,6 +177,15 @@ class Run {
   std::optional<RecordedStep> last_;
 };
 
+// A recording holds more than a robot's file may.
+void check_rays(const planner::RobotDescription& robot, const fs::path& recording) {
+  try {
+    io::check_rays(robot);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(recording.string() + ": the robot '" + robot.robot.name + "': " + error.what());
+  }
+}
+
 Recording read_run(const ExploreRun& run) {
   const fs::path file = run.folder / kRecording;
   std::error_code error;
@@ -190,6 +199,7 @@ Recording read_run(const ExploreRun& run) {
         "to -o, or begin it anew, without --resume");
   try {
     Recording recording = planner::read_recording(file);
+    for (const planner::RobotDescription& robot : recording.head.robots) check_rays(robot, file);
     // Before the recorded steps are repeated, which may take long.
     for (const auto& [written, mode] : {std::pair(run.folder, W_OK | X_OK), {file, W_OK}})
       if (::access(written.c_str(), mode) != 0)

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -98,6 +99,10 @@ json parse_json(const std::filesystem::path& file, const std::string& text, cons
 
 Members::Members(const std::filesystem::path& file, const json& object, std::string prefix)
     : file_(file), object_(object), prefix_(std::move(prefix)) {}
+
+void Members::refuse(const std::string& sentence) const {
+  throw std::runtime_error(file_.string() + ": " + prefix_ + sentence);
+}
 
 void Members::refuse(const std::string& name, const std::string& what, const std::string& advice) const {
   fail(file_, prefix_ + name + " " + what, advice);

@@ -46,6 +46,8 @@ class Members {
   /// @param prefix        of the members' names in messages: "sensor."
   Members(const std::filesystem::path& file, const nlohmann::json& object, std::string prefix = "");
 
+  /// "file: sentence", which begins with a member's name.
+  [[noreturn]] void refuse(const std::string& sentence) const;
   /// "file: name what; advice"
   [[noreturn]] void refuse(const std::string& name, const std::string& what, const std::string& advice) const;
   /// "file: name is <value>; give ..."

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,7 +18,6 @@ using planner::BodyShape, planner::Motion, planner::MotionLimits, planner::Robot
     planner::TravelOptions;
 using Shape = FieldOfView::Shape;
 
-constexpr std::uint64_t kMaxRays = std::uint64_t{1} << 26;
 constexpr Range kHeights{0.0, 100.0}, kMargins{0.0, 100.0}, kSensorRanges{0.01, 1000.0}, kAngles{0.1, 179.0};
 constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.01, 36000.0}, kRates{0.01, 10000.0};
 constexpr Range kSteps{0.001, 10.0}, kSlopes{0.0, 80.0};
@@ -57,15 +56,15 @@ void read_sensor(Members members, RobotDescription& robot) {
   if (view.shape != Shape::kCone)
     view.vertical = members.number("vertical_deg", "degrees", kAngles) * kDegree;
   view.max_range = members.number("range_m", "m", kSensorRanges);
-  robot.columns = members.whole("columns", 1, kMaxRays);
-  robot.rows = members.whole("rows", 1, kMaxRays);
-  if (robot.columns > kMaxRays / robot.rows)
-    members.refuse(
-        "rows",
-        "is " + std::to_string(robot.rows) + ", too many with " + std::to_string(robot.columns) + " columns",
-        "give at most " + std::to_string(kMaxRays) + " rays in all");
+  robot.columns = members.whole("columns", 1, kMostRays);
+  robot.rows = members.whole("rows", 1, kMostRays);
   robot.rate = members.number("rate_hz", "scans a second", kRates,
                               view.shape == Shape::kPyramid ? kCameraRate : robot.rate);
+  try {
+    check_rays(robot);
+  } catch (const std::runtime_error& error) {
+    members.refuse(error.what());
+  }
   members.expect_no_more();
 }
 

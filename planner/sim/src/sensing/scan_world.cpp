@@ -1,5 +1,6 @@
 #include "sensing/keyed_random.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/sim/scan_world.hpp>
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -16,7 +18,8 @@ namespace {
 using planner::Pose;
 using Cell = Eigen::Vector3i;
 
-constexpr int kLongestEdge = 256;  // voxels
+constexpr int kLongestEdge = 256;                           // voxels
+constexpr std::int64_t kMostCubes = std::int64_t{1} << 18;  // with a scan or more each: hours
 
 // The cells of a cube from its lowest corner, those in the middle first; ties by z, y, x.
 std::vector<Cell> from_the_middle(const Cell& size) {
@@ -53,6 +56,12 @@ std::vector<Pose> sweep(const GroundTruth& truth, const planner::Robot& robot, c
   const Cell size(edge, edge, drives ? 1 : edge);
   const int lowest = drives ? lattice.key(start.position.z()).value() : first.z(),
             highest = drives ? lowest : last.z();
+  const Cell extent(last.x() - first.x() + 1, last.y() - first.y() + 1, highest - lowest + 1);
+  const auto cubes = ((extent + size - Cell::Ones()).array() / size.array()).cast<std::int64_t>().prod();
+  if (cubes > kMostCubes)
+    throw std::invalid_argument("sweep: a spacing of " + decimals_of(spacing) + " m means looking at " +
+                                std::to_string(cubes) + " places, more than " + std::to_string(kMostCubes) +
+                                "; give a larger one");
   const std::vector<Cell> candidates = from_the_middle(size);
 
   std::vector<Pose> views;

@@ -26,7 +26,8 @@ struct View {
 /// the layer that it starts on. In the order of the cubes: x fastest, z slowest.
 /// @param start   of the robot's sensor
 /// @param spacing [m], rounded to whole voxels, one at least
-/// @throws std::invalid_argument unless the spacing is finite, positive and 256 voxels at most
+/// @throws std::invalid_argument unless the spacing is finite, positive and 256 voxels at most, and there are
+/// no more than 2^18 cubes
 [[nodiscard]] std::vector<planner::Pose> sweep(const GroundTruth& truth, const planner::Robot& robot,
                                                const planner::Pose& start, double spacing);
 
