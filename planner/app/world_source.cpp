@@ -7,6 +7,7 @@
 
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
+#include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/map_world.hpp>
 
 #include <algorithm>
@@ -54,8 +55,7 @@ void check_options(const WorldSource& source, WorldKind kind) {
   only_for(source.up.has_value(), WorldKind::kMesh, "--up", "mesh file");
 }
 
-sim::World make_map_world(const std::string& file) {
-  const VoxelGrid grid = make_grid(read_map_file(file));  // the tree's memory is free again
+sim::World make_map_world(const std::string& file, const VoxelGrid& grid) {
   try {
     sim::World world = sim::make_map_world(grid);
     world.name = std::filesystem::path(file).filename().string();
@@ -66,10 +66,10 @@ sim::World make_map_world(const std::string& file) {
 }
 
 // What a map of the world would hold; refused before anybody tries.
-double count_voxels(const WorldSource& source, const sim::World& world, WorldKind kind) {
-  const double voxels = sim::voxel_count(world.bounds, source.resolution);
+double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds, WorldKind kind) {
+  const double voxels = sim::voxel_count(bounds, source.resolution);
   if (voxels <= kManyVoxels) return voxels;
-  const Eigen::Vector3d size = world.bounds.sizes();
+  const Eigen::Vector3d size = bounds.sizes();
   const std::string what = source.world + ": " + rounded(size.x()) + " x " + rounded(size.y()) + " x " +
                            rounded(size.z()) + " m are " + rounded(voxels) + " voxels of " +
                            rounded(source.resolution) + " m";
@@ -129,16 +129,28 @@ SourcedWorld make_world(const WorldSource& source) {
   sourced.kind = kind_of(source.world);
   check_options(source, sourced.kind);
   work_on(source.world, "give a larger --resolution", [&] {
+    // As soon as the bounds are known: all that follows may take long.
+    const auto count = [&](const Eigen::AlignedBox3d& bounds) {
+      sourced.voxels = count_voxels(source, bounds, sourced.kind);
+    };
+    if (source.box) {
+      count(*source.box);
+      static_cast<void>(sim::voxels_within(*source.box, Lattice(source.resolution)));
+    }
     if (sourced.kind == WorldKind::kBuiltIn) {
       sourced.seed = source.seed.value_or(1);
       sourced.world = sim::make_world(source.world, sourced.seed);
+    } else if (sourced.kind == WorldKind::kMap) {
+      const VoxelGrid grid = make_grid(read_map_file(source.world));  // the tree's memory is free again
+      if (!source.box) count(sim::bounds_of(grid));
+      sourced.world = make_map_world(source.world, grid);
     } else {
-      sourced.world = sourced.kind == WorldKind::kMap
-                          ? make_map_world(source.world)
-                          : sim::read_mesh_world(source.world, {source.scale.value_or(1.0), source.up});
+      sourced.world = sim::read_mesh_world(source.world, {source.scale.value_or(1.0), source.up});
     }
-    if (source.box) sourced.world.bounds = *source.box;
-    sourced.voxels = count_voxels(source, sourced.world, sourced.kind);
+    if (source.box)
+      sourced.world.bounds = *source.box;
+    else if (sourced.kind != WorldKind::kMap)
+      count(sourced.world.bounds);
     const auto& own = sourced.world.start;
     if (source.start)
       put_start(*source.start, "--start", sourced.world);

@@ -303,6 +303,17 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
          {"method is 'paper', but options.goal is 'tour'"});
   refuse(court_with("[6, 6, 2]", "[6, 6, 0.5]"), {"robots[0].start is [1.5,1.5,1,30], outside of box_m"});
   refuse(court_with("\"speed_m_s\": 2", "\"speed_m_s\": -2"), {"robots[0].limits.speed_m_s is -2"});
+  // Boxes, before their worlds are read.
+  write("none.ply", "ply");
+  for (const auto& [box, part] :
+       {std::pair("[[0, 0, 0], [6000, 6000, 20]]", "none.ply: 6000 x 6000 x 20 m are"),
+        std::pair("[[1e6, 0, 0], [1000006, 6, 2]]", "the map ends at")})
+    expect_refused({"--task",
+                    write("bad.json", std::string(R"({"world": "none.ply", "resolution_m": 0.1, "box_m": )") +
+                                          box + ", \"robots\": [" +
+                                          test::replaced(kUav, R"(, "start": [1.5, 1.5, 1, 30])", "") + "]}"),
+                    "-o", output},
+                   {part});
   // What only the world shows.
   const auto refuse_in_world = [&](const std::string& text, const std::vector<std::string>& parts) {
     expect_refused({"--task", write("bad.json", text), "-o", output}, joined({"bad.json"}, parts));

@@ -1,4 +1,5 @@
 #include "support/command_test.hpp"
+#include "support/giant_leaf.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -101,6 +102,14 @@ TEST_F(WorldCommand, RefusesBadInput) {
   expect_refused({"room", "-o", path("no/out.ply")}, {"--output: ", path("no/out.ply")});
   write("empty.bt", "# Octomap OcTree binary file\nid OcTree\nsize 0\nres 0.1\ndata\n");
   expect_refused({path("empty.bt")}, {path("empty.bt"), "no occupied voxel"});
+}
+
+// Before its surface is made, of which there is too much as well.
+TEST_F(WorldCommand, RefusesATooLargeMapByItsBounds) {
+  const std::string map = write("giant.bt", test::giant_leaf(3, test::kOccupiedLeaf));
+  expect_refused({map},
+                 {"giant.bt: 819.3 x 819.3 x 819.3 m are", "too many: a map holds at most 2147483648"});
+  expect_refused({map, "--resolution", "5"}, {"giant.bt: the map's occupied voxels have more than"});
 }
 
 TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {

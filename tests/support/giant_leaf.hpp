@@ -4,9 +4,11 @@
 
 namespace frontlux::test {
 
-/// A .bt map of two leaves: a free block at the origin, of 2^(16 - depth) voxels a side, and a free voxel at
-/// its corner.
-inline std::string giant_leaf(unsigned depth) {
+inline constexpr unsigned kFreeLeaf = 0x0001, kOccupiedLeaf = 0x0002;
+
+/// A .bt map of two leaves: a block at the origin, of 2^(16 - depth) voxels a side, and a free voxel at its
+/// corner.
+inline std::string giant_leaf(unsigned depth, unsigned block = kFreeLeaf) {
   std::string data;
   const auto nodes = [&](unsigned count, unsigned children) {
     for (; count > 0; --count)
@@ -16,7 +18,7 @@ inline std::string giant_leaf(unsigned depth) {
   nodes(14, 0xC000);
   nodes(1, 0x4000);
   nodes(depth - 2, 0x0003);
-  nodes(1, 0x0001);
+  nodes(1, block);
   return "# Octomap OcTree binary file\nid OcTree\nsize " + std::to_string(depth + 17) + "\nres 0.1\ndata\n" +
          data;
 }

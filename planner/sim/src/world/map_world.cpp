@@ -77,6 +77,15 @@ class SurfaceFaces {
 
 }  // namespace
 
+Eigen::AlignedBox3d bounds_of(const VoxelGrid& grid) {
+  const auto known = grid.known_bounds();
+  if (!known) return {};
+  const auto face_at = [&](int line) { return lower_face(grid.lattice(), line); };
+  const auto& [low, high] = *known;
+  return {Eigen::Vector3d(face_at(low.x), face_at(low.y), face_at(low.z)),
+          Eigen::Vector3d(face_at(high.x + 1), face_at(high.y + 1), face_at(high.z + 1))};
+}
+
 World make_map_world(const VoxelGrid& grid) {
   SurfaceFaces faces(grid);
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
@@ -96,9 +105,7 @@ World make_map_world(const VoxelGrid& grid) {
   World world;
   world.mesh =
       mesh_of(faces.take(), [&](int, std::int32_t line) { return static_cast<float>(face_at(line)); });
-  const auto [low, high] = grid.known_bounds().value();
-  world.bounds = {Eigen::Vector3d(face_at(low.x), face_at(low.y), face_at(low.z)),
-                  Eigen::Vector3d(face_at(high.x + 1), face_at(high.y + 1), face_at(high.z + 1))};
+  world.bounds = bounds_of(grid);
   return world;
 }
 

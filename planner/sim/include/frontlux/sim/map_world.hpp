@@ -11,4 +11,7 @@ namespace frontlux::sim {
 /// @throws std::runtime_error if nothing is occupied, or the surface has more than 2^26 voxel faces
 [[nodiscard]] World make_map_world(const VoxelGrid& grid);
 
+/// [m] Of that world, before it is made; empty if no voxel is known.
+[[nodiscard]] Eigen::AlignedBox3d bounds_of(const VoxelGrid& grid);
+
 }  // namespace frontlux::sim
