@@ -200,6 +200,19 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   expect_refused({"room", "-o", path("file/run")}, {"--output"});
   expect_refused({"room", "-o", path("no/folder/run")}, {"--output", "cannot be created"});
   expect_refused({"room", "-o", ""}, {"--output"});
+  // Before a world is read; here it is none.
+  write("none.ply", "ply");
+  fs::create_directories(path("blocked/map.bt/mine"));
+  for (const auto& [output, part] :
+       {std::pair("kept", "is not empty"), {"no/folder/run", "cannot be created"}})
+    expect_refused({path("none.ply"), "--start", "1,1,1", "-o", path(output)}, {"--output", part});
+  expect_refused({path("none.ply"), "--start", "1,1,1", "--force", "-o", path("blocked")},
+                 {"--output: " + path("blocked") + " holds a folder map.bt"});
+  // A run may not replace the world that it explores.
+  fs::create_directory(path("mine"));
+  fs::copy_file(fs::path(FRONTLUX_DATA_DIR) / "maps/room_0.2m.ot", path("mine/map.ot"));
+  expect_refused({path("mine/map.ot"), "--start", "6,3,1", "--force", "-o", path("mine")},
+                 {"holds the world to explore, " + path("mine/map.ot")});
   expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
   expect_refused({"--resume", path("nowhere")}, {"--resume: there is no folder " + path("nowhere")});
   // With --force all that is not of a run stays.

@@ -99,8 +99,12 @@ TEST_F(ExploreCommand, RefusesALimitBelowTheRecordedSteps) {
     expect_resumed(folder, {"--max-steps", std::to_string(steps)});
     EXPECT_EQ(json_in(folder).at("steps"), steps);
   }
-  // The limit that the run began with, too.
+  // A larger limit holds from then on, as long as run.json tells it.
   expect_resumed("lockstep", {"--max-steps", "5"});
+  expect_resumed("lockstep");
+  EXPECT_EQ(json_in("lockstep").at("steps"), 5);
+  EXPECT_EQ(json_in("lockstep").at("options").at("max_steps"), 5);
+  fs::remove(path("lockstep/run.json"));
   expect_refused({"--resume", path("lockstep")}, {"5 steps", "the limit of 4", "give --max-steps 5 or more"});
 }
 
@@ -169,6 +173,12 @@ TEST_F(ExploreCommand, KeepsWhatItHasWhenTheDiskIsFull) {
     expect_resumed("full");
     expect_same_runs("whole", "full");
   }
+  // What cannot be replaced is found before the recorded steps are repeated.
+  fs::remove(path("whole/map.ot"));
+  fs::create_directories(path("whole/map.ot/mine"));
+  expect_refused({"--resume", path("whole")},
+                 {"--resume: " + path("whole/map.ot") + " cannot be written to"});
+  fs::remove_all(path("whole/map.ot"));
   // A table on a full device.
   for (const char* table : {"steps.csv", "paths.csv"}) {
     fs::remove(path("whole") + "/" + table);

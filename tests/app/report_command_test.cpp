@@ -1,5 +1,6 @@
 #include "report/explored_run.hpp"
 #include "support/command_test.hpp"
+#include "support/input_test.hpp"
 
 #include <frontlux/planner/recording.hpp>
 
@@ -158,6 +159,66 @@ TEST_F(ReportCommandTest, ShowsWhatIsLeftOfATruncatedRecording) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / "report.html"));
   std::filesystem::resize_file(file, 20);
   expect_refused({"one"}, "run.frontlux");
+}
+
+// All of them, before the recording is read; here it is damaged.
+TEST_F(ReportCommandTest, RefusesOutputsBeforeItReadsTheRecording) {
+  write("one/run.frontlux", "damaged");
+  for (const auto& [blocked, option] : std::vector<std::pair<std::string, std::string>>{
+           {"final_map.png", "--png"}, {"coverage.svg", "--svg"}, {"video.mp4", "--video"}}) {
+    std::filesystem::create_directories(path("one/" + blocked + "/mine"));
+    expect_refused({"one", option}, option + ": one/" + blocked + " is a folder");
+  }
+  write("one/video", "a user's");
+  std::filesystem::remove_all(path("one/video.mp4"));
+  expect_refused({"one", "--video"},
+                 "--video: one/video/frame_0001.png cannot be written: there is no folder");
+  std::filesystem::create_directories(path("one/report.html"));
+  expect_refused({"one"}, "--output: one/report.html is a folder");
+  std::filesystem::copy_file(path("two/run.frontlux"), path("run.html"));
+  expect_refused({"run.html", "-o", "run.html"}, "is what is read");
+}
+
+TEST_F(ReportCommandTest, SaysWhatIsWrongWithRunJson) {
+  const std::string good = R"({"world": "room", "robots": ["ugv", "uav"], "end": "stopped", "steps": 3, )"
+                           R"("by_robot": {"ugv": {"idle_s": 1.5}, "uav": {}}, "clearance_min_m": 0.25})";
+  const auto warning = [&](const std::string& json) {
+    write("one/run.json", json);
+    const Answer answer = CommandTest::run({"one"}, in_folder_);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.out, "one/report.html\n");
+    return answer.err;
+  };
+  EXPECT_EQ(warning(good), "");
+  for (const auto& [from, to, what] : std::vector<std::array<std::string, 3>>{
+           {good, "", ""},
+           {good, "{\"end\": ", "is damaged: it holds no JSON object"},
+           {"0.25", "\"0.25\"", "is damaged: a clearance"},
+           {"1.5", "[]", "is damaged: a clearance"},
+           {"\"stopped\"", "\"step_limit\"", "does not fit the recording: end is not \"stopped\""},
+           {"\"steps\": 3", "\"steps\": 4", "does not fit the recording: steps is not 3"},
+           {"\"room\"", "\"maze\"", "does not fit the recording: world is not \"room\""},
+           {"\"uav\"]", "\"car\"]", "does not fit the recording: robots is not"}}) {
+    const std::string said = warning(test::replaced(good, from, to));
+    if (what.empty())
+      EXPECT_EQ(said, "");
+    else
+      test::expect_parts(said, {"frontlux: warning: one/run.json", what, "leaves out"});
+  }
+  std::filesystem::remove(path("one/run.json"));
+  std::filesystem::create_directory(path("one/run.json"));
+  test::expect_parts(CommandTest::run({"one"}, in_folder_).err, {"warning: one/run.json: is a directory"});
+}
+
+TEST_F(ReportCommandTest, LeavesNoFramesWhenStopped) {
+  const pid_t child = test::start({FRONTLUX_COMMAND, "report", path("one"), "--video"}, folder_);
+  ASSERT_GT(child, 0);
+  for (int i = 0; i < 6000 && !std::filesystem::exists(path("one/video/frame_0002.png")); ++i) usleep(5000);
+  kill(child, SIGINT);
+  EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
+  test::expect_parts(content_of(path("err")), {"stopped; no film was written"});
+  EXPECT_FALSE(std::filesystem::exists(path("one/video")));
+  EXPECT_TRUE(std::filesystem::exists(path("one/report.html")));
 }
 
 TEST_F(ReportCommandTest, RefusesADamagedRecording) {

@@ -103,6 +103,9 @@ TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
   ASSERT_EQ(mkfifo(path("pipe.bt").c_str(), 0600), 0);
   expect_refused({"station", "-o", path("pipe.bt")}, {"--output", "pipe.bt", "not a regular file"});
   expect_refused({"station"}, {"--output"});
+  std::filesystem::copy_file(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps/room_0.2m.ot", path("room.ot"));
+  expect_refused({path("room.ot"), "--start", "6,3,1", "-o", path("room.ot")},
+                 {"--output", "is what is read: " + path("room.ot")});
 }
 
 TEST_F(ScanCommand, WritesNothingWhenStopped) {

@@ -104,6 +104,37 @@ TEST_F(WorldCommand, RefusesBadInput) {
   expect_refused({path("empty.bt")}, {path("empty.bt"), "no occupied voxel"});
 }
 
+TEST_F(WorldCommand, RefusesOutputsBeforeItReadsTheWorld) {
+  write("none.ply", "ply");
+  std::filesystem::create_directory(path("folder.ply"));
+  expect_refused({path("none.ply"), "-o", path("folder.ply")}, {"--output", "is a folder"});
+  expect_refused({path("none.ply"), "-o", path("no/out.ply")}, {"--output", "there is no folder"});
+  expect_refused({path("none.ply"), "-o", path("out.obj")}, {"--output", "does not end in .ply"});
+  expect_refused({path("none.ply"), "-o", path(std::string(245, 'n') + ".ply")},
+                 {"--output", "name is too long"});
+  // The world itself, by another name too.
+  box("box.ply");
+  std::filesystem::create_symlink("box.ply", path("link.ply"));
+  for (const char* output : {"box.ply", "link.ply"})
+    expect_refused({path("box.ply"), "--up", "y", "-o", path(output)},
+                   {"--output", "is what is read: " + path("box.ply"), "name another file"});
+}
+
+// A link is replaced, whether it points to a file or not, and nothing else is left.
+TEST_F(WorldCommand, ReplacesALinkByTheFile) {
+  write("mine.ply", "mine");
+  std::filesystem::create_symlink("mine.ply", path("link.ply"));
+  std::filesystem::create_symlink("/proc/none.ply", path("dangling.ply"));
+  for (const char* output : {"link.ply", "dangling.ply"}) {
+    expect_answer({"room", "-o", path(output)});
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(path(output)))) << output;
+    EXPECT_GT(std::filesystem::file_size(path(output)), 1000U);
+  }
+  EXPECT_EQ(content_of(path("mine.ply")), "mine");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+}
+
 // Before its surface is made, of which there is too much as well.
 TEST_F(WorldCommand, RefusesATooLargeMapByItsBounds) {
   const std::string map = write("giant.bt", test::giant_leaf(3, test::kOccupiedLeaf));

@@ -71,13 +71,15 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   Recording recording = room();
   recording.end = "low_gain";
   recording.head.robots[1].robot.name = "fly\xff";
-  const nlohmann::json whole = {{"end", "low_gain"},
+  const nlohmann::json whole = {{"world", recording.head.world},
+                                {"robots", {recording.head.robots[0].robot.name, "fly\xef\xbf\xbd"}},
+                                {"end", "low_gain"},
                                 {"steps", recording.steps.back().step.number},
                                 {"clearance_min_m", 0.125},
                                 {"separation_min_m", nullptr},
                                 {"by_robot",
                                  {{recording.head.robots[0].robot.name, {{"idle_s", 3.5}, {"held_back", 2}}},
-                                  {"fly\xef\xbf\xbd", {{"idle_s", "long"}, {"held_back", 0}}}}}};
+                                  {"fly\xef\xbf\xbd", {{"idle_s", nullptr}, {"held_back", 0}}}}}};
   const auto measured = [&](const std::string& text) {
     return decode(packed_runs(page_of({{"room", &recording, text}})).at(0)).facts["measured"];
   };
@@ -85,20 +87,23 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
                                                     {"separation_min_m", nullptr},
                                                     {"idle", {3.5, nullptr}},
                                                     {"held_back", {2, 0}}}));
-  // Of another run, of another end of this one, and no run.json at all.
-  nlohmann::json other = whole, longer = whole, odd = whole;
-  other["end"] = "stopped";
-  longer["steps"] = recording.steps.back().step.number + 1;
+  nlohmann::json odd = whole;
   odd["by_robot"] = nlohmann::json::array({1});
   EXPECT_EQ(measured(odd.dump())["idle"], nlohmann::json({nullptr, nullptr}));
+  // Of another run, of another end of this one, damaged, and no run.json at all.
+  nlohmann::json other = whole, longer = whole, words = whole;
+  other["end"] = "stopped";
+  longer["steps"] = recording.steps.back().step.number + 1;
+  words["by_robot"]["fly\xef\xbf\xbd"]["idle_s"] = "long";
   // As deep as a stranger likes.
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']'), all = whole.dump();
   const std::string name = "\"" + recording.head.robots[0].robot.name + "\":";
   const std::size_t at = all.find(name) + name.size();
   EXPECT_EQ(measured(all.substr(0, at) + deep + all.substr(all.find('}', at) + 1))["held_back"],
             nlohmann::json({nullptr, 0}));
-  for (const std::string& text : {other.dump(), longer.dump(), whole.dump().substr(1), std::string(),
-                                  std::string("[]"), std::string("{}"), std::string(100'000, '[')})
+  for (const std::string& text :
+       {other.dump(), longer.dump(), words.dump(), whole.dump().substr(1), std::string(), std::string("[]"),
+        std::string("{}"), std::string(100'000, '[')})
     EXPECT_TRUE(measured(text).is_null()) << text.substr(0, 40);
   recording.end.reset();
   EXPECT_TRUE(measured(whole.dump()).is_null()) << "it goes on";

@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
 
@@ -10,6 +11,7 @@
 #include <frontlux/io/scan_graph.hpp>
 #include <frontlux/planner/mapping.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -130,7 +132,7 @@ MappingOptions mapping_options(const Options& options) {
 
 void map(const Options& options) {
   Mapping mapping(mapping_options(options));
-  check_output(options.output, {".bt", ".ot"});
+  check_output(options.output, {".bt", ".ot"}, std::array{options.scans, options.poses});
   const Recording recording = std::filesystem::is_directory(options.scans)
                                   ? open_folder(options.scans, options.poses)
                                   : open_graph(options.scans, options.poses);

@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
 
@@ -17,6 +18,7 @@
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/stopwatch.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -227,7 +229,7 @@ void print(const Options& options, const planner::Robot& robot, const TravelCorr
 
 void plan(const Options& options) {
   check_options(options);
-  if (!options.output.empty()) check_output(options.output, {".csv", ".ply"});
+  if (!options.output.empty()) check_output(options.output, {".csv", ".ply"}, std::array{options.map});
   const planner::Robot robot = make_robot(options);
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);

@@ -2,6 +2,7 @@
 #include "cell_table.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
 #include "text.hpp"
@@ -10,6 +11,7 @@
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/stopwatch.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -230,7 +232,7 @@ void print(const Options& options, const View& view, double write_ms) {
 
 void render(const Options& options) {
   check_options(options);
-  check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"});
+  check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"}, std::array{options.map});
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);
   const View view = look(map, grid, options, make_member(options));

@@ -1,9 +1,11 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "draw/film.hpp"
 #include "draw/stills.hpp"
 #include "explore/run_files.hpp"
+#include "interrupt.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
@@ -14,8 +16,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace frontlux::app {
@@ -53,10 +57,11 @@ std::string name_of(const std::filesystem::path& file) {
   return full.filename() == "run.frontlux" ? full.parent_path().filename().string() : full.stem().string();
 }
 
-std::vector<Run> read_runs(const Options& options) {
+std::vector<Run> read_runs(const Options& options, const std::vector<std::string>& files) {
   std::vector<Run> runs;
-  for (const std::string& given : options.runs) {
-    const std::filesystem::path file = recording_of(given);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& given = options.runs[i];
+    const std::filesystem::path file = files[i];
     std::string name = name_of(file);
     const auto same = [&](const Run& run) { return run.name == name; };
     if (std::any_of(runs.begin(), runs.end(), same)) name = given;
@@ -69,21 +74,56 @@ std::vector<Run> read_runs(const Options& options) {
   return runs;
 }
 
-std::filesystem::path output_of(const Options& options, const std::vector<Run>& runs) {
-  if (!options.output.empty()) {
-    check_output(options.output, {".html"});
-    return options.output;
-  }
-  if (runs.size() > 1) throw BadInput("--output: give a file for the report of several runs");
-  return runs.front().file.parent_path() / kReport;
-}
-
-// The pictures of a run beside its recording, each drawn once.
-void write_stills(const Options& options, const Run& run) {
+// The stills' endings that are asked for.
+std::vector<const char*> still_endings(const Options& options) {
   std::vector<const char*> endings;
   const std::array wanted = {options.png, options.svg, options.pdf};
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (wanted[i]) endings.push_back(kStillEndings[i]);
+  return endings;
+}
+
+// Before the recordings are read. @return the page to write
+std::filesystem::path check_outputs(const Options& options, const std::vector<std::string>& files) {
+  if (options.output.empty() && files.size() > 1)
+    throw BadInput("--output: give a file for the report of several runs");
+  const std::filesystem::path output = options.output.empty()
+                                           ? std::filesystem::path(files.front()).parent_path() / kReport
+                                           : std::filesystem::path(options.output);
+  check_output(output, {".html"}, files);
+  for (const std::filesystem::path file : files) {
+    const std::filesystem::path folder = file.parent_path();
+    for (const std::string ending : still_endings(options))
+      for (const std::string name : {kFinalMap, kCoverage})
+        check_writable("--" + ending.substr(1), folder / (name + ending));
+    if (options.video) check_writable("--video", folder / kFilms[0]);
+    if (options.gif) check_writable("--gif", folder / kFilms[1]);
+    std::error_code error;
+    const std::filesystem::path frames = folder / kFrames;
+    if ((options.video || options.gif) && std::filesystem::exists(frames, error))
+      check_writable(options.video ? "--video" : "--gif", frames / "frame_0001.png");
+  }
+  return output;
+}
+
+// What run.json says besides the recording; empty if there is none, or none that can be used.
+std::string run_json_of(const std::filesystem::path& folder, const planner::Recording& recording) {
+  std::string json, wrong;
+  try {
+    json = read_run_json(folder);
+    wrong = report::misfit(json, recording);
+    if (!wrong.empty()) wrong = (folder / kRunJson).string() + ": " + wrong;
+  } catch (const std::runtime_error& error) {
+    wrong = error.what();
+  }
+  if (wrong.empty()) return json;
+  std::cerr << "frontlux: warning: " << wrong << "; the report leaves out what only run.json tells\n";
+  return {};
+}
+
+// The pictures of a run beside its recording, each drawn once.
+void write_stills(const Options& options, const Run& run) {
+  const std::vector<const char*> endings = still_endings(options);
   if (endings.empty()) return;
   const auto write = [&](const char* name, const Picture& picture) {
     for (const char* ending : endings) {
@@ -96,31 +136,48 @@ void write_stills(const Options& options, const Run& run) {
   write(kCoverage, draw_coverage(run.recording, run.name));
 }
 
+// Frames that are gone in the end, however that comes, unless they are to be kept.
+struct Frames {
+  std::filesystem::path folder;
+  bool keep = false;
+
+  explicit Frames(std::filesystem::path of) : folder(std::move(of)) {}
+  ~Frames() {
+    if (!keep) remove_frames(folder);
+  }
+  Frames(const Frames&) = delete;
+  Frames& operator=(const Frames&) = delete;
+};
+
 // Films of a run beside its recording; its frames where there is no ffmpeg.
 void write_films(const Options& options, const Run& run) {
   constexpr int kWidth = 1200;  // [px]
-  const std::filesystem::path folder = run.file.parent_path(), frames = folder / kFrames;
-  write_frames(frames, run.recording, run.name, kWidth);
+  const std::filesystem::path folder = run.file.parent_path();
+  const InterruptNote note;
+  Frames frames(folder / kFrames);
+  write_frames(frames.folder, run.recording, run.name, kWidth);
   if (!has_ffmpeg()) {
-    std::cout << (frames / "").string() << '\n';
+    frames.keep = true;
+    std::cout << (frames.folder / "").string() << '\n';
     return;
   }
   const auto write = [&](const char* name) {
-    write_film(folder / name, frames);
+    write_film(folder / name, frames.folder);
     std::cout << (folder / name).string() << '\n';
   };
   if (options.video) write(kFilms[0]);
   if (options.gif) write(kFilms[1]);
-  remove_frames(frames);
 }
 
 void report(const Options& options) {
   if (options.gif && !has_ffmpeg()) throw BadInput("--gif: needs ffmpeg, which is not installed here");
-  const std::vector<Run> runs = read_runs(options);
-  const std::filesystem::path output = output_of(options, runs);
+  std::vector<std::string> files;
+  for (const std::string& given : options.runs) files.push_back(recording_of(given).string());
+  const std::filesystem::path output = check_outputs(options, files);
+  const std::vector<Run> runs = read_runs(options, files);
   std::vector<report::ReportedRun> reported;
   for (const Run& run : runs)
-    reported.push_back({run.name, &run.recording, read_run_json(run.file.parent_path())});
+    reported.push_back({run.name, &run.recording, run_json_of(run.file.parent_path(), run.recording)});
   report::write_report(output, reported, FRONTLUX_VERSION);
   std::cout << output.string() << '\n';
   for (const Run& run : runs) {

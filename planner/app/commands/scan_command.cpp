@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "interrupt.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
@@ -14,6 +15,7 @@
 #include <frontlux/sim/start_pose.hpp>
 #include <frontlux/stopwatch.hpp>
 
+#include <array>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -147,7 +149,7 @@ void run(Options& options) {
   const Stopwatch watch;
   WorldSource& source = options.source;
   if (is_built_in_world(source.world)) source.seed = options.seed;
-  check_output(options.output, {".bt", ".ot"});
+  check_output(options.output, {".bt", ".ot"}, std::array{source.world, options.poses});
   std::vector<io::ListedPose> poses;
   if (!options.poses.empty()) poses = io::read_pose_list(options.poses);
 

@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/output_file.hpp"
 #include "text.hpp"
 #include "world_source.hpp"
 
@@ -10,6 +11,7 @@
 #include <frontlux/sim/mesh_file.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
+#include <array>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -99,8 +101,10 @@ void add_world_command(CLI::App& app) {
 prints the measures of the seventh factory and writes it as a mesh.)");
   command.run([options, world] {
     if (!world.given()) return print_list();
+    const bool writes = !options->output.empty();
+    if (writes) check_output(options->output, {".ply"}, std::array{options->source.world});
     const SourcedWorld sourced = make_world(options->source);
-    if (!options->output.empty()) {
+    if (writes) {
       try {
         sim::write_ply(options->output, sourced.world.mesh);
       } catch (const std::runtime_error& error) {

@@ -1,6 +1,7 @@
 #include "draw/film.hpp"
 
 #include "draw/map_view.hpp"
+#include "interrupt.hpp"
 
 #include <sys/wait.h>
 
@@ -69,6 +70,7 @@ void write_frames(const std::filesystem::path& folder, const planner::Recording&
   MapView view(recording, all, {.width = width, .height = width * 3 / 4, .fine = 2});
   double shown = -1.0;
   for (int i = 1; i <= kGrowing + kLast; ++i) {
+    if (InterruptNote::taken()) throw Interrupted("stopped; no film was written");
     const double moment = i >= kGrowing ? end : end * i / kGrowing;
     const std::string file = frame_name(i);
     if (std::exchange(shown, moment) != moment) {
@@ -96,7 +98,9 @@ void write_film(const std::filesystem::path& file, const std::filesystem::path& 
                                      "-crf", "20",      "-movflags", "+faststart"};
   words.insert(words.end(), format.begin(), format.end());
   words.insert(words.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact", made});
-  if (ffmpeg(folder, words) != 0) throw std::runtime_error(file.string() + ": cannot be made by ffmpeg");
+  const int code = ffmpeg(folder, words);  // which Ctrl-C reaches as well
+  if (InterruptNote::taken()) throw Interrupted("stopped; no film was written");
+  if (code != 0) throw std::runtime_error(file.string() + ": cannot be made by ffmpeg");
   std::error_code error;
   std::filesystem::rename(folder / made, file, error);
   if (error) throw std::runtime_error(file.string() + ": cannot be written: " + error.message());

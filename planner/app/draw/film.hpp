@@ -18,7 +18,7 @@ inline constexpr const char* kFrames = "video";
 /// Writes how a run's map grows, in 12 seconds and a last picture that stays, as frame_0001.png and so on.
 /// @param folder  is made; what it holds under such names is replaced
 /// @param width   of the map, at most [px]
-/// @throws std::runtime_error naming the file, if one cannot be written
+/// @throws std::runtime_error naming the file, if one cannot be written; Interrupted
 void write_frames(const std::filesystem::path& folder, const planner::Recording& recording,
                   const std::string& name, int width);
 
@@ -27,7 +27,7 @@ void remove_frames(const std::filesystem::path& folder);
 
 /// Makes a film of a folder's frames by ffmpeg, in the format of the file's ending: .mp4, or .gif at half the
 /// rate. The file appears complete or not at all.
-/// @throws std::runtime_error naming the file, if it cannot be made
+/// @throws std::runtime_error naming the file, if it cannot be made; Interrupted
 void write_film(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace frontlux::app

@@ -19,6 +19,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <span>
@@ -70,23 +71,49 @@ void remove_unfinished_files(const fs::path& folder) {
   for (const std::string& file : pictures()) remove_unfinished(folder / file);
 }
 
-void prepare_folder(const ExploreRun& run) {
+[[noreturn]] void refuse_folder(const ExploreRun& run, const std::string& why) {
+  throw BadInput("--output: " + run.folder.string() + " " + why);
+}
+
+[[noreturn]] void refuse_to_make(const ExploreRun& run, const std::string& why) {
+  refuse_folder(run,
+                "cannot be created: " + why + "; name a folder in one that exists and may be written to");
+}
+
+// Before the world is made, which may take long.
+void check_folder(const ExploreRun& run, const std::string& world) {
   std::error_code error;
-  const auto refuse = [&](const std::string& why) {
-    throw BadInput("--output: " + run.folder.string() + " " + why);
-  };
-  if (fs::exists(run.folder, error) && !fs::is_directory(run.folder, error))
-    refuse("is a file; name a folder");
-  if (run.make_parents) fs::create_directories(run.folder.parent_path(), error);
-  if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))
-    refuse("cannot be created: " + (error ? error.message() : "its parent folder does not exist") +
-           "; name a folder in one that exists and may be written to");
-  if (::access(run.folder.c_str(), W_OK | X_OK) != 0) refuse("cannot be written to; check its permissions");
+  if (!fs::exists(run.folder, error)) {
+    fs::path folder = run.folder.has_filename() ? run.folder : run.folder.parent_path();
+    do folder = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+    while (run.make_parents && !fs::exists(folder, error));
+    if (!fs::is_directory(folder, error)) refuse_to_make(run, "its parent folder does not exist");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse_to_make(run, folder.string() + " is read-only");
+    return;
+  }
+  if (!fs::is_directory(run.folder, error)) refuse_folder(run, "is a file; name a folder");
+  if (::access(run.folder.c_str(), W_OK | X_OK) != 0)
+    refuse_folder(run, "cannot be written to; check its permissions");
   remove_unfinished_files(run.folder);
   if (!run.force && !is_unused(run.folder))
-    refuse(
+    refuse_folder(
+        run,
         "is not empty; name another folder, continue the run in it with --resume, or replace it with "
         "--force");
+  for (const char* file : kFiles) {
+    if (fs::is_directory(run.folder / file, error))
+      refuse_folder(run, "holds a folder " + std::string(file) + "; move it away, or name another folder");
+    if (fs::equivalent(run.folder / file, world, error))
+      refuse_folder(run, "holds the world to explore, " + world + "; name another folder");
+  }
+}
+
+void make_folder(const ExploreRun& run, const std::string& world) {
+  check_folder(run, world);  // again: another process may have begun a run there since
+  std::error_code error;
+  if (run.make_parents) fs::create_directories(run.folder.parent_path(), error);
+  if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))
+    refuse_to_make(run, error ? error.message() : "its parent folder does not exist");
 }
 
 // All but the recording, which the new one replaces.
@@ -201,9 +228,13 @@ Recording read_run(const ExploreRun& run) {
     Recording recording = planner::read_recording(file);
     for (const planner::RobotDescription& robot : recording.head.robots) check_rays(robot, file);
     // Before the recorded steps are repeated, which may take long.
-    for (const auto& [written, mode] : {std::pair(run.folder, W_OK | X_OK), {file, W_OK}})
-      if (::access(written.c_str(), mode) != 0)
-        throw BadInput("--resume: " + written.string() + " cannot be written to; check its permissions");
+    if (::access(run.folder.c_str(), W_OK | X_OK) != 0)
+      throw BadInput("--resume: " + run.folder.string() + " cannot be written to; check its permissions");
+    for (const char* written : kFiles)
+      if (fs::exists(run.folder / written, error) && (fs::is_directory(run.folder / written, error) ||
+                                                      ::access((run.folder / written).c_str(), W_OK) != 0))
+        throw BadInput("--resume: " + (run.folder / written).string() +
+                       " cannot be written to; check its permissions, or move it away");
     return recording;
   } catch (const BadInput&) {
     throw;
@@ -273,7 +304,10 @@ std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& l
 void explore(ExploreOptions options, const ExploreRun& run) {
   const Stopwatch watch;
   std::optional<Recording> recording;
-  if (!run.resume) note_paths(options);
+  if (!run.resume) {
+    check_folder(run, options.source.world);
+    note_paths(options);
+  }
   if (run.resume) {
     recording = read_run(run);
     try {
@@ -282,7 +316,10 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       throw BadInput("--resume: the options in " + (run.folder / kRecording).string() +
                      " cannot be read: " + error.what());
     }
-    if (run.max_steps) options.max_steps = *run.max_steps;
+    if (run.max_steps)
+      options.max_steps = *run.max_steps;
+    else if (options.max_steps)  // the run may have gone on with a larger limit than it began with
+      options.max_steps = std::max(*options.max_steps, last_limit(run.folder).value_or(0));
   }
   ExploreOptions here = options;
   if (recording) here.source.world = find_world(options, run);
@@ -308,7 +345,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
           throw Interrupted("stopped while recorded steps were repeated; the run is as it was");
         display.repeated(step.step.number + 1, before.size(), watch.seconds());
       }
-      if (!recording) prepare_folder(run);
+      if (!recording) make_folder(run, options.source.world);
       // The recording comes first and is locked: another process may still be writing this run.
       const fs::path file = run.folder / kRecording;
       planner::RecordingWriter writer =

@@ -34,7 +34,6 @@ constexpr const char* kPaths = "paths.csv";
 constexpr const char* kEvents = "events.csv";
 constexpr const char* kMotion = "motion.csv";
 constexpr const char* kTours = "tours.csv";
-constexpr const char* kRunJson = "run.json";
 
 std::string path_rows(const RecordedStep& recorded, const planner::RecordingHead& head) {
   std::string rows;
@@ -310,11 +309,16 @@ std::string result_line(const std::string& run_json, const ExploreRun& run) {
 }
 
 std::string read_run_json(const std::filesystem::path& folder) {
+  constexpr std::uint64_t kMostBytes = 1 << 24;
+  std::error_code error;
+  return std::filesystem::exists(folder / kRunJson, error) ? read_file(folder / kRunJson, kMostBytes) : "";
+}
+
+std::optional<int> last_limit(const std::filesystem::path& folder) {
   try {
-    constexpr std::uint64_t kMostBytes = 1 << 24;
-    return read_file(folder / kRunJson, kMostBytes);
-  } catch (const std::runtime_error&) {
-    return {};
+    return Json::parse(read_run_json(folder)).at("options").at("max_steps").get<int>();
+  } catch (const std::exception&) {  // there is none, or it is damaged
+    return std::nullopt;
   }
 }
 

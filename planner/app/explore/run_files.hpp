@@ -90,7 +90,12 @@ inline constexpr const char* kReport = "report.html";
 /// What run.json holds as one line, with the run's `folder` and its `report`, which is null if there is none.
 [[nodiscard]] std::string result_line(const std::string& run_json, const ExploreRun& run);
 
-/// The text of a run's run.json, for its report; empty if it cannot be read.
+inline constexpr const char* kRunJson = "run.json";
+/// The text of a run's run.json, for its report; empty if there is none.
+/// @throws std::runtime_error naming the file, if it cannot be read
 [[nodiscard]] std::string read_run_json(const std::filesystem::path& folder);
+
+/// The limit of the steps of the run that wrote run.json last; nothing if that cannot be told.
+[[nodiscard]] std::optional<int> last_limit(const std::filesystem::path& folder);
 
 }  // namespace frontlux::app

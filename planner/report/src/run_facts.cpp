@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace frontlux::report::detail {
@@ -79,17 +80,17 @@ const json& member(const json& object, std::string_view name) {
   return found == object.end() ? kNothing : *found;
 }
 
+bool is_number_or_null(const json& value) { return value.is_number() || value.is_null(); }
+
 json number_in(const json& object, const char* name) {
   const json& number = member(object, name);
   return number.is_number() ? number : json();
 }
 
-// What run.json says besides the recording; null if it is not of this recording's end.
+// What run.json says besides the recording; null if there is none of this recording.
 json measured_of(const std::string& run_json, const planner::Recording& recording) {
+  if (run_json.empty() || !misfit(run_json, recording).empty()) return nullptr;
   const json all = json::parse(run_json, nullptr, false);
-  if (!recording.end || member(all, "end") != *recording.end ||
-      member(all, "steps") != recording.steps.back().step.number)
-    return nullptr;
   json measured = {{"idle", json::array()}, {"held_back", json::array()}};
   for (const char* name : {"clearance_min_m", "separation_min_m"}) measured[name] = number_in(all, name);
   for (const planner::RobotDescription& description : recording.head.robots) {
@@ -134,3 +135,36 @@ std::string run_facts(const ReportedRun& run, const std::string& version) {
 }
 
 }  // namespace frontlux::report::detail
+
+namespace frontlux::report {
+
+using namespace detail;
+
+std::string misfit(const std::string& run_json, const planner::Recording& recording) {
+  if (run_json.empty()) return {};
+  const json all = json::parse(run_json, nullptr, false);
+  if (!all.is_object()) return "is damaged: it holds no JSON object";
+  if (!recording.end || recording.steps.empty()) return "is older than the recording, which has no end";
+  json robots = json::array();
+  for (const planner::RobotDescription& description : recording.head.robots)
+    robots.push_back(unicode_of(description.robot.name));
+  for (const auto& [name, recorded] :
+       {std::pair<const char*, json>("world", unicode_of(recording.head.world)),
+        {"robots", robots},
+        {"end", *recording.end},
+        {"steps", recording.steps.back().step.number}})
+    if (member(all, name) != recorded)
+      return std::string("does not fit the recording: ") + name + " is not " +
+             recorded.dump(-1, ' ', true, json::error_handler_t::replace);
+  bool whole = true;
+  const auto check = [&](const json& object, const char* name) {
+    whole = whole && is_number_or_null(member(object, name));
+  };
+  for (const char* name : {"clearance_min_m", "separation_min_m"}) check(all, name);
+  for (const json& robot : robots)
+    for (const char* name : {"idle_s", "held_back"})
+      check(member(member(all, "by_robot"), robot.get_ref<const std::string&>()), name);
+  return whole ? "" : "is damaged: a clearance, a separation or a robot's numbers are no numbers";
+}
+
+}  // namespace frontlux::report

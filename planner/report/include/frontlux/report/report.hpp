@@ -13,9 +13,13 @@ struct ReportedRun {
   std::string name;                               ///< for people; any text
   const planner::Recording* recording = nullptr;  ///< not null; lives as long as the report is being made
   /// The run.json of `frontlux explore`, for what the recording does not hold: times at rest, clearances,
-  /// what bumpers did. Left out if it is empty, damaged, or not of this recording's end.
+  /// what bumpers did. Left out if it is empty or a `misfit`.
   std::string run_json = {};
 };
+
+/// Why a run.json tells nothing about a recording: it is damaged, or of another run or another end; empty if
+/// it does, or is empty.
+[[nodiscard]] std::string misfit(const std::string& run_json, const planner::Recording& recording);
 
 /// Writes runs into one HTML file that shows them in a browser: replay in 3-D, charts, tables. The file needs
 /// nothing else, asks no host for anything, and appears complete or not at all. The same runs give the same
