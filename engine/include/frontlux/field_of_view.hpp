@@ -27,6 +27,9 @@ struct FRONTLUX_EXPORT FieldOfView {
   /// @throws std::invalid_argument naming the value that is out of bounds
   void check() const;
 
+  /// Whether the yaw makes no difference to what is in view.
+  [[nodiscard]] bool sees_all_around() const { return shape == Shape::kSpinning; }
+
   /// Whether a point is in view at this yaw [rad]. The sensor's own position never is.
   /// @param offset  from the sensor to the point [m], along the world's axes
   [[nodiscard]] bool contains(const Eigen::Vector3d& offset, double yaw) const;

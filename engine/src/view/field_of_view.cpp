@@ -17,7 +17,7 @@ void check_angle(const char* name, double angle, bool used) {
 }  // namespace
 
 void FieldOfView::check() const {
-  check_angle("horizontal", horizontal, shape != Shape::kSpinning);
+  check_angle("horizontal", horizontal, !sees_all_around());
   check_angle("vertical", vertical, shape != Shape::kCone);
   if (!(max_range > 0.0 && std::isfinite(max_range)))
     throw std::invalid_argument("field of view: max_range is " + std::to_string(max_range) +

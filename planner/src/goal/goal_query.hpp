@@ -23,9 +23,7 @@ struct GoalQuery {
   std::span<const VoxelKey> targets;  ///< its frontiers, sorted
 
   /// Number of azimuth bins to render with; 0 if the robot sees all around.
-  [[nodiscard]] int bins() const {
-    return view.shape == FieldOfView::Shape::kSpinning ? 0 : options.rendering.azimuth_bins;
-  }
+  [[nodiscard]] int bins() const { return view.sees_all_around() ? 0 : options.rendering.azimuth_bins; }
 
   /// [m] from the robot to a cell of the corridor, as eq. 1 takes it.
   [[nodiscard]] double distance(const VoxelKey& cell) const {

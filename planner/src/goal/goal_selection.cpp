@@ -18,8 +18,7 @@ namespace {
 void check(const TeamMember& member) {
   member.robot.check();
   member.options.check();
-  if (member.robot.view.shape == FieldOfView::Shape::kSpinning || member.options.rule == GoalRule::kNearest)
-    return;
+  if (member.robot.view.sees_all_around() || member.options.rule == GoalRule::kNearest) return;
   const std::vector<std::uint32_t> bins(static_cast<std::size_t>(member.options.rendering.azimuth_bins));
   static_cast<void>(best_window(bins, member.robot.view.horizontal));
 }
@@ -27,7 +26,7 @@ void check(const TeamMember& member) {
 ViewQualityOptions rendering_of(const TeamMember& member, std::size_t robot) {
   ViewQualityOptions rendering = member.options.rendering;
   rendering.seed += robot * SplitMix64::kStep;  // robots draw different numbers at the same place
-  if (member.robot.view.shape == FieldOfView::Shape::kSpinning) rendering.azimuth_bins = 0;
+  if (member.robot.view.sees_all_around()) rendering.azimuth_bins = 0;
   return rendering;
 }
 

@@ -66,7 +66,7 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
   }
   std::vector<std::uint8_t> visible(segments.size());
   query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
-  const bool all_around = query.view.shape == FieldOfView::Shape::kSpinning;
+  const bool all_around = query.view.sees_all_around();
   std::vector<ClusterViewpoint> viewpoints;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const Eigen::Vector3d from = query.lattice.exact_center(cells[c]);

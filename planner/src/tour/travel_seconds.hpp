@@ -15,8 +15,8 @@ namespace frontlux::planner::detail {
 
 /// [s] for a way [m] and a turn [rad]; robots that see all around need not turn.
 [[nodiscard]] inline double travel_seconds(const Robot& robot, double distance, double turn) {
-  const bool turns = robot.view.shape != FieldOfView::Shape::kSpinning;
-  return std::max(distance / robot.limits.speed, turns ? turn / robot.limits.yaw_rate : 0.0);
+  return std::max(distance / robot.limits.speed,
+                  robot.view.sees_all_around() ? 0.0 : turn / robot.limits.yaw_rate);
 }
 
 }  // namespace frontlux::planner::detail

@@ -117,9 +117,8 @@ InformationGain::InformationGain(std::span<const Pose> viewpoints, std::span<con
       seen_.push_back(j);
       // The same comparisons as in FieldOfView, for `in_view` to be exact.
       const double squared = offset.squaredNorm();
-      within_.push_back(view.shape == FieldOfView::Shape::kSpinning
-                            ? view.contains_at_some_yaw(offset)
-                            : squared > 0.0 && squared <= view.max_range * view.max_range);
+      within_.push_back(view.sees_all_around() ? view.contains_at_some_yaw(offset)
+                                               : squared > 0.0 && squared <= view.max_range * view.max_range);
     }
     first_.push_back(seen_.size());
   }

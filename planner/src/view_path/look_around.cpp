@@ -7,7 +7,7 @@ namespace frontlux::planner {
 
 std::vector<Pose> look_around(const FieldOfView& view, const Pose& sensor_pose) {
   view.check();
-  if (view.shape == FieldOfView::Shape::kSpinning) return {sensor_pose};
+  if (view.sees_all_around()) return {sensor_pose};
   constexpr double kRounding = 1e-9;
   const double count = std::ceil(2 * std::numbers::pi / view.horizontal - kRounding);
   std::vector<Pose> poses;

@@ -25,7 +25,7 @@ void check_limit(const char* name, double value, const char* unit) {
 // Why there is nothing to climb, if so.
 std::optional<PathEnd> no_ascent(const InformationGain& gain, const PathOptimizerOptions& options) {
   if (gain.viewpoints() < 3) return PathEnd::kNothingToTurn;
-  if (gain.view().shape == FieldOfView::Shape::kSpinning) return PathEnd::kYawHasNoEffect;
+  if (gain.view().sees_all_around()) return PathEnd::kYawHasNoEffect;
   bool visible = false;
   for (std::size_t i = 1; i + 1 < gain.viewpoints(); ++i) visible = visible || !gain.frontiers_of(i).empty();
   if (!visible) return PathEnd::kNothingVisible;
