@@ -239,9 +239,7 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   update(extent_of_tours(robot));
   if (!has_way() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();
-  const auto quality = [lambda = options.team[robot].options.lambda](double distance, double gain) {
-    return std::exp(-lambda * distance) * gain;  // eq. 1
-  };
+  const GoalOptions& rating = options.team[robot].options;
   const PhaseClock clock(step, Phase::kGoals);
   targets[robot].clear();
   std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
@@ -262,12 +260,12 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     goal.distance = tours->first_distance(robot);
     goal.gain = static_cast<double>(first.seen);
     goal.assigned = tours->frontiers_of(robot).size();
-    goal.quality = quality(goal.distance, goal.gain);
+    goal.quality = rating.discount(goal.distance) * goal.gain;
     goal.reason =
         "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
   }
   std::vector<RenderedCell> candidates = tours->candidates(robot);
-  for (RenderedCell& cell : candidates) cell.quality = quality(cell.distance, cell.gain);
+  for (RenderedCell& cell : candidates) cell.quality = rating.discount(cell.distance) * cell.gain;
   step.robots[robot].image = best_candidates(std::move(candidates), goal);
 }
 

@@ -6,7 +6,6 @@
 #include <frontlux/planner/path_planner.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -43,7 +42,7 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
         .has_value();
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
   const Keys others = frontiers_of_others(robot);
-  const double from_afar = std::exp(-options.team[robot].options.lambda * length);
+  const double from_afar = options.team[robot].options.discount(length);
   double gain = 0.0;
   for (const std::uint32_t i : find_visible_frontiers(*caster, mapping.grid(), wanted, there).frontiers)
     gain += std::ranges::binary_search(others, wanted[i]) ? from_afar : 1.0;

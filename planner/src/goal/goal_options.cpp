@@ -16,6 +16,8 @@ void check_number(const char* name, double value, double low, const char* unit) 
 
 }  // namespace
 
+double GoalOptions::discount(double length) const { return std::exp(-lambda * length); }
+
 void GoalOptions::check() const {
   if (rule > GoalRule::kNearest)
     throw std::invalid_argument("goal selection: rule is " + std::to_string(static_cast<int>(rule)) +

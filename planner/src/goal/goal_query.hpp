@@ -43,7 +43,7 @@ struct GoalQuery {
   /// Eq. 1 with the factor of `GoalOptions::advance`.
   [[nodiscard]] double quality(double distance, double gain) const {
     const double advanced = distance < options.advance ? distance / options.advance : 1.0;
-    return std::exp(-options.lambda * distance) * advanced * gain;
+    return options.discount(distance) * advanced * gain;
   }
 
   /// From one voxel to another [m].

@@ -34,7 +34,7 @@ enum class TravelDistance : std::uint8_t {
   kStraight,  ///< Euclidean, as printed
 };
 
-/// How goals are chosen. Eq. 1: view quality = exp(-lambda * distance) * gain.
+/// How goals are chosen. The paper's eq. 1: view quality = exp(-lambda * distance) * gain.
 struct FRONTLUX_EXPORT GoalOptions {
   /// What makes a goal.
   GoalRule rule = GoalRule::kViewQuality;
@@ -67,6 +67,9 @@ struct FRONTLUX_EXPORT GoalOptions {
   bool prune = false;
 
   double cluster_edge = 4.8;  ///< [m] clusters are the frontiers in octree nodes of at least this edge
+
+  /// What is left of a gain at a distance of this length [m], 0 to 1: the factor of eq. 1, without `advance`.
+  [[nodiscard]] double discount(double length) const;
 
   /// @throws std::invalid_argument naming the value that is out of bounds
   void check() const;
