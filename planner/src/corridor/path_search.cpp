@@ -14,7 +14,7 @@ namespace {
 
 using Place = std::array<int, 3>;
 
-// 0 for a cell that was not looked at, else closed, open, or 1 plus the length of the way so far.
+// 0 for a cell that was not looked at, else closed, open, or 1 plus the length of the path so far.
 using Label = std::uint32_t;
 constexpr Label kUntested = 0, kStart = 1, kClosed = ~Label{0}, kUnreached = kClosed - 1;
 
@@ -33,7 +33,7 @@ class Labels {
   std::unique_ptr<Label, Free> labels_;
 };
 
-// A cell on the way: least length in all first, of these the longest way so far, then the lowest cell.
+// A cell to go on from: least length in all first, of these the longest path so far, then the lowest cell.
 struct Entry {
   Label total, label;
   Place place;
@@ -46,7 +46,7 @@ Place moved(const Place& place, const CellMove& move) {
   return {place[0] + move.step[0], place[1] + move.step[1], place[2] + move.step[2]};
 }
 
-// The length of the way if all cells were open.
+// The length of the path to the goal if all cells were open.
 Label at_least(const Place& from, const Place& to, PathMetric metric) {
   std::array<Label, 3> away{};
   for (std::size_t a = 0; a < 3; ++a) away[a] = static_cast<Label>(std::abs(to[a] - from[a]));
@@ -86,8 +86,8 @@ class Search {
   }
 
   /// From the goal back to the start. @pre it was reached
-  [[nodiscard]] std::vector<VoxelKey> way_back() const {
-    std::vector<VoxelKey> way{key(goal_)};
+  [[nodiscard]] std::vector<VoxelKey> path_back() const {
+    std::vector<VoxelKey> path{key(goal_)};
     Place place = goal_;
     while (labels_[number(place)] != kStart) {
       const std::size_t cell = number(place);
@@ -96,9 +96,9 @@ class Search {
         place = moved(place, move);
         return false;
       });
-      way.push_back(key(place));
+      path.push_back(key(place));
     }
-    return way;
+    return path;
   }
 
  private:
@@ -157,7 +157,7 @@ std::vector<VoxelKey> shortest_path(const CellFrame& frame, PathMetric metric, c
   if (!start || !goal || !open(from) || !open(to)) return {};
   Search search(frame, metric, *goal, open);
   if (!search.spread(*start)) return {};
-  std::vector<VoxelKey> path = search.way_back();
+  std::vector<VoxelKey> path = search.path_back();
   std::ranges::reverse(path);
   return path;
 }

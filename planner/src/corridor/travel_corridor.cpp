@@ -197,7 +197,7 @@ struct TravelCorridor::State {
   std::optional<detail::Terrain> terrain;
   std::optional<detail::PathDistances> distances;  // of all cells, or of those near by
   std::optional<VoxelKey> start;                   // the robot's cell
-  std::vector<VoxelKey> way;                       // that was searched
+  std::vector<VoxelKey> found;                     // the path that `find_way` searched last
   CorridorExtent extent = CorridorExtent::kAllCells;
   std::vector<VoxelKey> cells;
   std::vector<VoxelKey> blocked;  // sorted
@@ -361,7 +361,7 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, Corr
   const bool all_before = std::exchange(state_->extent, extent) == CorridorExtent::kAllCells;
   state_->start = state_->cell_of(robot);
   state_->cells.clear();
-  state_->way.clear();
+  state_->found.clear();
   if (!all || !all_before || !state_->distances)
     state_->distances.emplace(all ? state_->frame : state_->frame.around(*state_->start, kNearby),
                               state_->options.metric);
@@ -373,14 +373,14 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, Corr
 
 bool TravelCorridor::find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through) {
   State& state = *state_;
-  state.way.clear();
+  state.found.clear();
   if (state.state != CorridorState::kReady) return false;
   if (state.distances->distance(cell)) return true;
   if (state.extent == CorridorExtent::kNearby)
-    state.way =
+    state.found =
         detail::shortest_path(state.frame, state.options.metric, *state.start, cell,
                               [&](const VoxelKey& key) { return state.passable(key) && through(key); });
-  return !state.way.empty();
+  return !state.found.empty();
 }
 
 void TravelCorridor::block(std::span<const VoxelKey> cells) {
@@ -403,7 +403,7 @@ std::optional<double> TravelCorridor::distance(const VoxelKey& key) const {
 }
 
 std::vector<VoxelKey> TravelCorridor::path_to(const VoxelKey& key) const {
-  if (!state_->way.empty() && state_->way.back() == key) return state_->way;
+  if (!state_->found.empty() && state_->found.back() == key) return state_->found;
   return state_->distances ? state_->distances->path_to(key) : std::vector<VoxelKey>{};
 }
 

@@ -80,14 +80,14 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   if (const auto here = state.team.lattice().key(pose.position); here && !learns) cells.push_back(*here);
   member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
   state.team.block(robot, cells);
-  state.note_in_way(robot, time);
+  state.tell_of_stop(robot, time);
 }
 
 void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double time) {
   stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
   State::Member& member = state_->members[robot];
   member.lost = true;
-  member.going = member.goes_back = member.makes_room = member.blocked = member.meets_other = false;
+  member.going = member.retreats = member.makes_room = member.blocked = member.meets_other = false;
   member.request.reset();
   state_->withdraw_requests(robot);
   state_->tell_of_loss(robot);

@@ -79,7 +79,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (age < team.options.latency) return std::nullopt;
   if (member.meets_other) return PlanReason::kBlocked;
   const bool arrives = time + team.options.latency >= member.motion.last().end();
-  if (member.goes_back && !arrives) return std::nullopt;  // its way back need not be free: it came on it
+  if (member.retreats && !arrives) return std::nullopt;  // its path need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
   if (member.makes_room && !arrives) return std::nullopt;
   if (member.going &&
@@ -193,9 +193,9 @@ std::optional<KeyBox> ContinuousExploration::State::cells_too_near(std::size_t r
   return KeyBox{*low, *high};
 }
 
-// The cells that are too near to where others will come to rest. A robot whose way past the others has turned
-// out to be too near keeps out of all cells in which it might be; but every other time, since it may rest in
-// one of them.
+// The cells that are too near to where others will come to rest. A robot whose path past the others has
+// turned out to be too near keeps out of all cells in which it might be; but every other time, since it may
+// rest in one of them.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot, Others which) const {
   std::vector<KeyBox> places;
   for (std::size_t other = 0; other < members.size(); ++other) {
@@ -259,7 +259,7 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
   return voxels;
 }
 
-// Out of another one's way, or back along the way it came, to the last place from which it can go on.
+// Off another one's path, or back on the path on which it came, to the last place from which it can go on.
 Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double start,
                                                       ExplorationStep& step) {
   Member& member = members[robot];
@@ -267,30 +267,30 @@ Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double 
   const Trajectory& old = member.motion.last();
   const MotionState then = old.at(start);
   member.going = true;  // when it has come to rest, it plans again
-  std::vector<Pose> way;
+  std::vector<Pose> path;
   if (then.velocity.isZero()) {
     ask_for_room(robot, step);
     const detail::PhaseClock clock(step, Phase::kPaths);
-    way = way_out(robot);
-    member.makes_room = !way.empty();
+    path = path_aside(robot);
+    member.makes_room = !path.empty();
     if (!member.makes_room) {
       end_request(robot);
-      if (!waits_for_room(robot)) way = team.take_way_back(robot, now.goal);
-      member.goes_back = !way.empty();
+      if (!waits_for_room(robot)) path = team.plan_retreat(robot, now.goal);
+      member.retreats = !path.empty();
     }
-    member.going = !way.empty();
+    member.going = !path.empty();
   }
   if (member.makes_room) now.goal.reason = "no goal: it makes room for another robot";
   if (waits_for_room(robot)) now.goal.reason = "no goal: it waits for another robot to make room";
-  if (!way.empty()) {
-    way.insert(way.begin(), then.pose);
+  if (!path.empty()) {
+    path.insert(path.begin(), then.pose);
     now.path = PathOutcome::kFound;
   }
   const detail::PhaseClock clock(step, Phase::kPaths);
-  return old.after_stop(start, way, team.options.team[robot].robot.limits, segment_test(robot));
+  return old.after_stop(start, path, team.options.team[robot].robot.limits, segment_test(robot));
 }
 
-// The way to the robot's goal, or back, or to rest.
+// To the robot's goal, or back, or to rest.
 Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, double start,
                                                          ExplorationStep& step) {
   Member& member = members[robot];
@@ -298,11 +298,11 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const Trajectory& old = member.motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   member.goal_frontiers.clear();
-  member.goes_back = member.makes_room = false;
+  member.retreats = member.makes_room = false;
   if (!now.goal.pose) return without_goal(robot, start, step);
   member.request.reset();
   withdraw_requests(robot);
-  team.went_back_to[robot].clear();
+  team.retreated_to[robot].clear();
   const SegmentTest is_free = segment_test(robot);
   std::optional<detail::Departure> departure;
   {
@@ -398,17 +398,17 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   trajectory = member.motion.last();  // which keeps apart
   member.going = trajectory.end() > start;
   member.makes_room = false;
-  const bool went_back = std::exchange(member.goes_back, false);
+  const bool retreated = std::exchange(member.retreats, false);
   const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-  if (member.going || !went_back || std::ranges::none_of(members, moves)) return false;
-  // Another one may make room: it tries the way back again.
-  team.went_back_to[robot].pop_back();
+  if (member.going || !retreated || std::ranges::none_of(members, moves)) return false;
+  // Another one may make room: it tries the retreat again.
+  team.retreated_to[robot].pop_back();
   member.going = true;
   return false;
 }
 
-// Of a robot whose way is neither free nor can be left: it brakes, if that keeps apart from the others. If it
-// would run into one that has stopped, it brakes in any case.
+// Of a robot whose path is neither free nor can be left: it brakes, if that keeps apart from the others. If
+// it would run into one that has stopped, it brakes in any case.
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
   member.goal_frontiers.clear();
@@ -424,7 +424,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
 void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step) {
   Member& member = members[robot];
   double gain = step.goal.gain;
-  if (team.tours) {  // its goal may show little, on the way to others
+  if (team.tours) {  // its goal may show little, on the path to others
     double seen = 0.0;
     for (const detail::TourStop& stop : team.tours->tour(robot)) seen += static_cast<double>(stop.seen);
     gain = std::max(gain, seen);

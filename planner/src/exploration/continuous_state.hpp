@@ -17,10 +17,10 @@ namespace frontlux::planner {
 struct ContinuousExploration::State {
   using Keys = std::vector<VoxelKey>;
 
-  /// To make room for a robot, which has nothing to do on this side of the one that rests in its way.
+  /// To make room for a robot, which has nothing to do on this side of the one that rests on its path.
   struct Request {
     std::size_t by = 0;
-    Keys way;  // cells
+    Keys path;  // cells
   };
 
   /// One robot in motion.
@@ -32,8 +32,8 @@ struct ContinuousExploration::State {
     bool stopped = false, blocked = false;
     bool meets_other = false;       // its trajectory leads too near to another one that has stopped
     bool lost = false;              // takes no more part
-    bool goes_back = false;         // on the way on which it came
-    bool makes_room = false;        // on its way out of another one's way
+    bool retreats = false;          // on the path on which it came
+    bool makes_room = false;        // by leaving the path of another one
     bool going = false;             // it moves, or plans again when it has come to rest: nothing ends before
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     int waits = 0;                  // plannings in a row after which it could not set out, or waited for room
@@ -60,12 +60,12 @@ struct ContinuousExploration::State {
   [[nodiscard]] ExplorationStep collect(double time);
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
-  /// A robot has come to rest: the others may ask it, or have a way that it has kept closed.
+  /// A robot has come to rest: the others may ask it, or have a path that it has kept closed.
   void tell_others(std::size_t robot);
   /// A robot is lost: each of the others decides anew what there is for it to do.
   void tell_of_loss(std::size_t robot);
   /// A robot has stopped where none of the others knew that it would: they may not go on through it.
-  void note_in_way(std::size_t robot, double time);
+  void tell_of_stop(std::size_t robot, double time);
   /// Or it has waited for others long enough.
   [[nodiscard]] static bool has_nothing_to_do(const Member& member);
 
@@ -78,10 +78,10 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot, Others which) const;
   [[nodiscard]] bool rests(const Member& member) const;
   [[nodiscard]] bool waits_for_room(std::size_t robot) const;
-  [[nodiscard]] Keys way_without_resting(std::size_t robot, ExplorationStep& step);
+  [[nodiscard]] Keys path_without_resting(std::size_t robot, ExplorationStep& step);
   void end_request(std::size_t robot);
   void ask_for_room(std::size_t robot, ExplorationStep& step);
-  [[nodiscard]] std::vector<Pose> way_out(std::size_t robot) const;
+  [[nodiscard]] std::vector<Pose> path_aside(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] bool take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);

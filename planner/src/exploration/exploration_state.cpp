@@ -105,7 +105,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   assigned.resize(size());
   trails.resize(size());
   ahead.resize(size());
-  went_back_to.resize(size());
+  retreated_to.resize(size());
 }
 
 // Lines 1 and 2.
@@ -198,23 +198,23 @@ CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
   return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
 }
 
-// Of a long way only the first part is planned voxel by voxel: the robot plans again long before its end.
-bool ExplorationState::find_way_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
+// Of a long path only the first part is planned voxel by voxel: the robot plans again long before its end.
+bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
   constexpr double kAhead = 80.0;  // [m]
   const PhaseClock clock(step, Phase::kPaths);
-  const auto near_way = tours->around_way_to(robot, cell);
+  const auto near_path = tours->around_path_to(robot, cell);
   ahead[robot].reset();
   if (const auto here = lattice().key(poses[robot].position))
-    ahead[robot] = tours->cell_on_way_to(robot, cell, *here, kAhead);
-  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_way)) return true;
+    ahead[robot] = tours->cell_on_path_to(robot, cell, *here, kAhead);
+  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_path)) return true;
   ahead[robot].reset();
-  return selection->find_way(robot, cell, near_way);
+  return selection->find_way(robot, cell, near_path);
 }
 
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   keep_goal(robot, step, extent_of_tours(robot));
   const VoxelKey& cell = step.robots[robot].goal.cell;
-  if (find_way_to_stop(robot, cell, step)) return;
+  if (find_path_to_stop(robot, cell, step)) return;
   const PhaseClock clock(step, Phase::kPaths);
   selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
 }
@@ -232,12 +232,12 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
     const PhaseClock clock(step, Phase::kGoals);
     tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
   };
-  const auto has_way = [&] {
+  const auto has_path = [&] {
     const auto tour = tours->tour(robot);
-    return tour.empty() || find_way_to_stop(robot, tour.front().cell, step);
+    return tour.empty() || find_path_to_stop(robot, tour.front().cell, step);
   };
   update(extent_of_tours(robot));
-  if (!has_way() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
+  if (!has_path() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
   step.rays += counting.rays();
   const GoalOptions& rating = options.team[robot].options;
   const PhaseClock clock(step, Phase::kGoals);
@@ -287,11 +287,11 @@ void ExplorationState::plan_paths(ExplorationStep& step) {
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     if (!robot.goal.pose) {
-      robot.planned = take_way_back(r, robot.goal);
+      robot.planned = plan_retreat(r, robot.goal);
       robot.path = robot.planned.empty() ? PathOutcome::kNoCorridor : PathOutcome::kFound;
       continue;
     }
-    went_back_to[r].clear();
+    retreated_to[r].clear();
     PathPlan plan = plan_path(path_corridor(r), lattice(), poses[r], *robot.goal.pose,
                               {options.seed, number, r}, options.path);
     robot.path = plan.outcome;

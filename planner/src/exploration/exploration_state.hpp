@@ -31,14 +31,14 @@ struct ExplorationState {
   AbandonedFrontiers abandoned;
   std::optional<GoalSelection> selection = {};  // from the start on
   std::optional<TourPlanning> tours = {};       // if they are wanted
-  std::vector<Keys> targets = {};               // what each robot looks at on its way
+  std::vector<Keys> targets = {};               // what each robot looks at on its path
   // Of robots whose corridor is one of nodes: between the nodes they travel by voxels.
   std::vector<std::optional<TravelCorridor>> voxel_corridors = {};
   std::vector<Pose> poses = {};
   std::vector<std::vector<Pose>> trails = {};       // where each robot has been
   std::vector<Goal> last_goals = {};                // of the last step
-  std::vector<std::optional<VoxelKey>> ahead = {};  // on the way to a far stop: up to here it is planned
-  std::vector<Keys> went_back_to = {};              // by robots that had no goal since
+  std::vector<std::optional<VoxelKey>> ahead = {};  // of a path to a far stop: up to here it is planned
+  std::vector<Keys> retreated_to = {};              // by robots that had no goal since
   std::vector<Keys> assigned = {};                  // frontiers that are each robot's, as last noted; sorted
   Keys wanted = {};                                 // frontiers that are not abandoned, at the last selection
   Keys changed = {};                                // by the last step, sorted
@@ -51,7 +51,7 @@ struct ExplorationState {
 
   /// How a robot travels between the nodes of its corridor, if it has such.
   [[nodiscard]] TravelOptions travel_by_voxels(std::size_t robot) const;
-  /// What robots find their ways in. On tours it is `solid`: a robot that does not move measures the same
+  /// What robots find their paths in. On tours it is `solid`: a robot that does not move measures the same
   /// again and again, and if beams that graze the floor had freed it before the robot, it would never go on.
   [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *solid : mapping.grid(); }
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
@@ -91,7 +91,7 @@ struct ExplorationState {
   }
   /// For a robot without a goal: back to the last place of its trail from which it could go on, from where it
   /// is; empty if there is none.
-  [[nodiscard]] std::vector<Pose> take_way_back(std::size_t robot, const Goal& goal);
+  [[nodiscard]] std::vector<Pose> plan_retreat(std::size_t robot, const Goal& goal);
   /// Whether a robot cannot get to where it came from, although there is something to see, and is in the
   /// smaller part of what it has been in.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
@@ -99,13 +99,13 @@ struct ExplorationState {
 
  private:
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
-  bool find_way_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
+  bool find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
-  // The place of the robot's trail to which it goes back, but for cells that it has tried.
-  [[nodiscard]] std::optional<std::size_t> place_to_go_back_to(std::size_t robot, const Goal& goal,
+  // The place of the robot's trail to which it retreats, but for cells that it has tried.
+  [[nodiscard]] std::optional<std::size_t> place_to_retreat_to(std::size_t robot, const Goal& goal,
                                                                const Keys& tried) const;
-  [[nodiscard]] std::vector<Pose> way_back_to(std::size_t robot, std::size_t place);
+  [[nodiscard]] std::vector<Pose> retreat_to(std::size_t robot, std::size_t place);
   [[nodiscard]] bool gets_to_as_many_as(std::size_t robot, std::size_t count) const;
   [[nodiscard]] bool can_get_to(std::size_t robot, const VoxelKey& cell) const;
   [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,

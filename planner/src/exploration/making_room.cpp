@@ -1,4 +1,4 @@
-// Robots that rest in the way of others, and make room for them.
+// Robots that rest on the paths of others, and make room for them.
 
 #include "exploration/continuous_state.hpp"
 #include "exploration/phase_clock.hpp"
@@ -49,7 +49,7 @@ void ContinuousExploration::State::tell_of_loss(std::size_t robot) {
   }
 }
 
-void ContinuousExploration::State::note_in_way(std::size_t robot, double time) {
+void ContinuousExploration::State::tell_of_stop(std::size_t robot, double time) {
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];
     if (other != robot && !member.lost && member.motion.last().end() > time)
@@ -64,8 +64,8 @@ void ContinuousExploration::State::end_request(std::size_t robot) {
   request.reset();
 }
 
-// The way of a robot to something to see, if the others that rest were not there; empty if there is none.
-Keys ContinuousExploration::State::way_without_resting(std::size_t robot, ExplorationStep& step) {
+// The path of a robot to something to see, if the others that rest were not there; empty if there is none.
+Keys ContinuousExploration::State::path_without_resting(std::size_t robot, ExplorationStep& step) {
   const detail::CountingRayCaster counting(*team.caster, team.lattice());
   const TravelCorridor& corridor = team.selection->corridor(robot);
   const auto keep_out_of = [&](Others which, CorridorExtent extent) {
@@ -74,20 +74,20 @@ Keys ContinuousExploration::State::way_without_resting(std::size_t robot, Explor
   };
   const CorridorExtent extent = corridor.extent();
   keep_out_of(Others::kThatDoNotRest, CorridorExtent::kAllCells);
-  Keys way;
+  Keys path;
   {
     const detail::PhaseClock clock(step, Phase::kGoals);
     const auto to = team.tours->place_to_see_from(
         robot, counting, [&](const VoxelKey& cell) { return corridor.contains(cell); });
-    if (to) way = corridor.path_to(*to);
+    if (to) path = corridor.path_to(*to);
   }
   step.rays += counting.rays();
   keep_out_of(Others::kAll, extent);
-  return way;
+  return path;
 }
 
 // Of a robot on tours that has no goal: if others that rest keep it from what it would see, they are asked to
-// leave its way to there. It is asked for when another one has come to rest, and no more than twice with all
+// leave its path to there. It is asked for when another one has come to rest, and no more than twice with all
 // in the same places, or they would go to and fro.
 void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationStep& step) {
   constexpr int kTimes = 2;
@@ -104,16 +104,16 @@ void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationSt
   }
   if (resting.empty() || std::ranges::count(member.others_rested, places) >= kTimes) return;
   member.others_rested.push_back(std::move(places));
-  const Keys way = way_without_resting(robot, step);
+  const Keys path = path_without_resting(robot, step);
   for (const std::size_t other : resting) {
     const auto place = cells_too_near(robot, other, team.poses[other].position, 0.0);
     const auto in_place = [&](const VoxelKey& cell) { return place && place->contains(cell); };
-    if (std::ranges::any_of(way, in_place)) members[other].request = Request{robot, way};
+    if (std::ranges::any_of(path, in_place)) members[other].request = Request{robot, path};
   }
 }
 
-// To a place near by, beside the way of the robot that has asked; empty if there is none, or it is there.
-std::vector<Pose> ContinuousExploration::State::way_out(std::size_t robot) const {
+// To a place near by, beside the path of the robot that has asked; empty if there is none, or it is there.
+std::vector<Pose> ContinuousExploration::State::path_aside(std::size_t robot) const {
   constexpr std::size_t kMost = 100'000;  // cells
   const Member& member = members[robot];
   const auto here = team.lattice().key(team.poses[robot].position);
@@ -121,7 +121,7 @@ std::vector<Pose> ContinuousExploration::State::way_out(std::size_t robot) const
   const TravelCorridor& corridor = team.path_corridor(robot);
   const auto is_beside = [&](const VoxelKey& cell) {
     const auto near = cells_too_near(member.request->by, robot, team.lattice().exact_center(cell), 0.0);
-    return !near || std::ranges::none_of(member.request->way,
+    return !near || std::ranges::none_of(member.request->path,
                                          [&](const VoxelKey& key) { return near->contains(key); });
   };
   std::set<VoxelKey> known{*here};

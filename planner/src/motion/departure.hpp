@@ -18,8 +18,8 @@ struct Departure {
   std::vector<Pose> viewpoints;  ///< the first is where the robot is, or where it rests
 };
 
-/// The way to take up a new path at a time that arrives first: straight on for a part of the way on which the
-/// robot could stop, then to the goal, or after a stop. Nothing if there is no path.
+/// Of the departures at a time the one that arrives first: straight on for a part of the distance in which
+/// the robot could stop, then to the goal, or after a stop. Nothing if there is no path.
 [[nodiscard]] std::optional<Departure> best_departure(const Trajectory& old, double time,
                                                       const PathFrom& path_from, const MotionLimits& limits,
                                                       const SegmentTest& is_free);

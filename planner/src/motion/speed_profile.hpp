@@ -16,13 +16,13 @@ struct SpeedNode {
   double speed;  ///< [m/s]
 };
 
-/// The fastest way along some pieces that join without a corner, from a speed to rest: a backward and a
+/// The fastest motion along some pieces that join without a corner, from a speed to rest: a backward and a
 /// forward pass over the length. On arcs the acceleration's norm keeps the limit also where it is one for
 /// each axis. Empty if the robot cannot get slow enough.
 [[nodiscard]] std::vector<SpeedNode> speed_profile(std::span<const PathPiece> pieces, double speed,
                                                    const MotionLimits& limits);
 
-/// [m] The shortest way on which the robot can stop along some pieces, at most all of their length.
+/// [m] The shortest distance in which the robot can stop along some pieces, at most all of their length.
 [[nodiscard]] double braking_distance(std::span<const PathPiece> pieces, double speed,
                                       const MotionLimits& limits);
 

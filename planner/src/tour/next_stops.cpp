@@ -53,13 +53,14 @@ double TourPlanning::seconds_to_first(const Query& query, const NextStops& next,
                     next.distances[viewpoint]);
 }
 
-// @pre the ways from the first viewpoint are measured
+// @pre the distances from the first viewpoint are measured
 double TourPlanning::seconds_between(const Query& query, const NextStops& next, std::size_t a,
                                      std::size_t b) const {
   const Member& member = members_[query.robot];
-  double way = member.ways.between(next.viewpoints[a].cell, next.viewpoints[b].cell);
-  if (way == TourProblem::kNever) way = next.distances[a] + next.distances[b];  // by where the robot is
-  return travel_seconds(member.robot, way, turn_between(next.viewpoints[a].yaw, next.viewpoints[b].yaw));
+  double distance = member.distances.between(next.viewpoints[a].cell, next.viewpoints[b].cell);
+  if (distance == TourProblem::kNever)
+    distance = next.distances[a] + next.distances[b];  // by where the robot is
+  return travel_seconds(member.robot, distance, turn_between(next.viewpoints[a].yaw, next.viewpoints[b].yaw));
 }
 
 // The stops in the order in which the robot gets to the clusters soon, each from its first viewpoint.
@@ -76,7 +77,7 @@ void TourPlanning::put_in_order(const Query& query, NextStops& next) {
     order.push_back(static_cast<std::uint32_t>(s));
     cells.push_back(next.viewpoints[first_of(s)].cell);
   }
-  members_[query.robot].ways.measure_from(cells);
+  members_[query.robot].distances.measure_from(cells);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = i + 1; j < count; ++j)
       robot.between(i, j) = robot.between(j, i) = seconds_between(query, next, first_of(i), first_of(j));
@@ -86,7 +87,7 @@ void TourPlanning::put_in_order(const Query& query, NextStops& next) {
   next.stops = std::move(ordered);
 }
 
-// The viewpoint of each stop: of the first few those between which the ways are shortest.
+// The viewpoint of each stop: of the first few those between which the paths are shortest.
 std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, const NextStops& next) {
   std::vector<VoxelKey> cells;
   std::vector<std::vector<std::size_t>> stages;
@@ -94,7 +95,7 @@ std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, con
     stages.push_back(next.stops[s].viewpoints);
     for (const std::size_t v : stages.back()) cells.push_back(next.viewpoints[v].cell);
   }
-  members_[query.robot].ways.measure_from(cells);
+  members_[query.robot].distances.measure_from(cells);
   std::vector<std::size_t> chosen = shortest_choice(
       stages, [&](std::size_t v) { return seconds_to_first(query, next, v); },
       [&](std::size_t a, std::size_t b) { return seconds_between(query, next, a, b); });
@@ -117,7 +118,7 @@ TourStop TourPlanning::stop_at(const NextStops& next, const JoinedStop& joined, 
 }
 
 // Looks at the clusters of the robot's tour that are nearest from as few places as see them. Their order, and
-// the viewpoints of the next few, are those of the shortest ways.
+// the viewpoints of the next few, are those of the shortest paths.
 void TourPlanning::join_next_stops(const Query& query) {
   put_nearest_first(query);
   Member& member = members_[query.robot];

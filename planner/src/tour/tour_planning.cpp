@@ -34,15 +34,16 @@ double greatest_range(std::span<const Robot> robots) {
   return greatest;
 }
 
-// Ways between places that are not known [m] are as short as those by one other place, or by where the robot
-// is.
-void complete(NumberTable& ways, std::span<const double> from_robot) {
-  const NumberTable known = ways;
+// Distances between places that are not known [m] are as short as those by one other place, or by where the
+// robot is.
+void complete(NumberTable& distances, std::span<const double> from_robot) {
+  const NumberTable known = distances;
   const std::size_t count = from_robot.size();
   for_each_index(count, [&](std::size_t i) {
     const auto shorten = [&](double to_middle, const auto& from_middle) {
       for (std::size_t j = 0; j < count && to_middle != TourProblem::kNever; ++j)
-        if (known(i, j) == TourProblem::kNever) ways(i, j) = std::min(ways(i, j), to_middle + from_middle(j));
+        if (known(i, j) == TourProblem::kNever)
+          distances(i, j) = std::min(distances(i, j), to_middle + from_middle(j));
     };
     shorten(from_robot[i], [&](std::size_t j) { return from_robot[j]; });
     for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), [&](std::size_t j) { return known(k, j); });
@@ -88,7 +89,7 @@ const FrontierCluster& TourPlanning::cluster(std::uint32_t id) const {
 
 double TourPlanning::first_distance(std::size_t robot) const {
   const Member& member = members_[robot];
-  const double distance = member.tour.empty() ? 0.0 : member.ways.from_start(member.tour.front().cell);
+  const double distance = member.tour.empty() ? 0.0 : member.distances.from_start(member.tour.front().cell);
   return distance == TourProblem::kNever ? 0.0 : distance;
 }
 
@@ -97,7 +98,7 @@ std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
   std::vector<RenderedCell> cells;
   for (const FrontierCluster& cluster : clusters_.clusters())
     for (const auto& [cell, yaw, seen] : member.sights.viewpoints(cluster.id))
-      if (const double distance = member.ways.from_start(cell); distance != TourProblem::kNever)
+      if (const double distance = member.distances.from_start(cell); distance != TourProblem::kNever)
         cells.push_back({.cell = cell,
                          .distance = distance,
                          .gain = static_cast<double>(seen),
@@ -107,9 +108,9 @@ std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
   return cells;
 }
 
-std::function<bool(const VoxelKey&)> TourPlanning::around_way_to(std::size_t robot,
-                                                                 const VoxelKey& to) const {
-  return members_[robot].ways.around_way_to(to);
+std::function<bool(const VoxelKey&)> TourPlanning::around_path_to(std::size_t robot,
+                                                                  const VoxelKey& to) const {
+  return members_[robot].distances.around_path_to(to);
 }
 
 // Boxes that hold all voxels that have changed since the robot's last planning.
@@ -126,7 +127,7 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
   return boxes;
 }
 
-void TourPlanning::update_ways(const Query& query, std::span<const KeyBox> changes) {
+void TourPlanning::update_distances(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
   const BodyStencil stencil(member.robot.travel, lattice_.resolution());
   std::vector<KeyBox> cells;  // whose stencils may hold a changed voxel
@@ -136,17 +137,18 @@ void TourPlanning::update_ways(const Query& query, std::span<const KeyBox> chang
     cells.push_back(grown(box, by(reach.min.x, box.min.x, reach.max.x),
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
   }
-  member.ways.update(query.corridor, cells);
+  member.distances.update(query.corridor, cells);
 }
 
 // Of the robot that plans: exact near by.
 double TourPlanning::own_distance_to(const Query& query, const VoxelKey& cell) const {
   if (const auto distance = query.corridor.distance(cell)) return *distance;
-  return query.corridor.extent() == CorridorExtent::kAllCells ? TourProblem::kNever
-                                                              : members_[query.robot].ways.from_start(cell);
+  return query.corridor.extent() == CorridorExtent::kAllCells
+             ? TourProblem::kNever
+             : members_[query.robot].distances.from_start(cell);
 }
 
-// Other robots may be in the way only if the corridor knows its cells.
+// Other robots may keep it closed only if the corridor knows its cells.
 bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
   return query.corridor.extent() == CorridorExtent::kAllCells
              ? query.corridor.contains(cell)
@@ -154,7 +156,7 @@ bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
 }
 
 bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
-  return members_[robot].ways.reaches(cell);
+  return members_[robot].distances.reaches(cell);
 }
 
 std::optional<VoxelKey> TourPlanning::place_to_see_from(
@@ -176,17 +178,17 @@ std::optional<VoxelKey> TourPlanning::place_to_see_from(
 
 ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster) const {
   const Member& member = members_[robot];
-  return {caster, lattice_, member.ways.graph(), member.robot.view, member.region, options_.least_gain};
+  return {caster, lattice_, member.distances.graph(), member.robot.view, member.region, options_.least_gain};
 }
 
-// Of a robot in motion, to a viewpoint at a distance [m] by its way.
+// Of a robot in motion, to a viewpoint at a distance [m] on its path.
 double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
                                 const ClusterViewpoint& viewpoint, double distance) const {
   constexpr double kReluctance = 2.0;  // to change direction; the time that it takes would be 1
   const double time = travel_seconds(robot, distance, turn_between(start.pose.yaw, viewpoint.yaw));
-  const Eigen::Vector3d way = lattice_.exact_center(viewpoint.cell) - start.pose.position;
-  if (way.isZero()) return time;
-  const double lost = start.velocity.norm() - start.velocity.dot(way.normalized());
+  const Eigen::Vector3d offset = lattice_.exact_center(viewpoint.cell) - start.pose.position;
+  if (offset.isZero()) return time;
+  const double lost = start.velocity.norm() - start.velocity.dot(offset.normalized());
   return time + kReluctance * lost / robot.limits.acceleration;
 }
 
@@ -260,19 +262,19 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), NumberTable(count, count)};
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
-  if (!member.ways.has_start()) return robot;
+  if (!member.distances.has_start()) return robot;
 
   std::vector<const ClusterViewpoint*> at(count);
   std::vector<VoxelKey> cells;
   for (std::size_t i = 0; i < count; ++i)
     if ((at[i] = best_viewpoint(member, stops[i].front())) != nullptr) cells.push_back(at[i]->cell);
-  member.ways.measure_from(cells);
+  member.distances.measure_from(cells);
   std::vector<double> to(count, TourProblem::kNever);  // [m] to each stop
   std::vector<double> within(count);                   // [s] from cluster to cluster of a stop
   for (std::size_t i = 0; i < count; ++i) {
     if (at[i] == nullptr) continue;
     const double distance =
-        r == query.robot ? own_distance_to(query, at[i]->cell) : member.ways.from_start(at[i]->cell);
+        r == query.robot ? own_distance_to(query, at[i]->cell) : member.distances.from_start(at[i]->cell);
     if (distance == TourProblem::kNever) {
       at[i] = nullptr;
       continue;
@@ -286,20 +288,22 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
     }
     robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
   }
-  NumberTable ways(count, count);  // [m] from stop to stop
+  NumberTable distances(count, count);  // [m] from stop to stop
   for_each_index(count, [&](std::size_t i) {
     for (std::size_t j = 0; j < i; ++j)
-      ways(i, j) = at[i] != nullptr && at[j] != nullptr ? member.ways.between(at[i]->cell, at[j]->cell)
-                                                        : TourProblem::kNever;
+      distances(i, j) = at[i] != nullptr && at[j] != nullptr
+                            ? member.distances.between(at[i]->cell, at[j]->cell)
+                            : TourProblem::kNever;
   });
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = i + 1; j < count; ++j) ways(i, j) = ways(j, i);
-  complete(ways, to);
+    for (std::size_t j = i + 1; j < count; ++j) distances(i, j) = distances(j, i);
+  complete(distances, to);
   for_each_index(count, [&](std::size_t i) {
     for (std::size_t j = 0; j < count; ++j)
-      if (i != j && ways(i, j) != TourProblem::kNever)
-        robot.between(i, j) = travel_seconds(member.robot, ways(i, j), turn_between(at[i]->yaw, at[j]->yaw)) +
-                              (within[i] + within[j]) / 2;
+      if (i != j && distances(i, j) != TourProblem::kNever)
+        robot.between(i, j) =
+            travel_seconds(member.robot, distances(i, j), turn_between(at[i]->yaw, at[j]->yaw)) +
+            (within[i] + within[j]) / 2;
   });
   return robot;
 }
@@ -311,15 +315,15 @@ TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stop
   return problem;
 }
 
-// The ways, the clusters, and from where the robot sees them.
+// The distances, the clusters, and from where the robot sees them.
 void TourPlanning::follow_map(const Query& query) {
   Member& member = members_[query.robot];
   std::vector<KeyBox> changes = take_changes(member);
   if (!std::exchange(member.planned, true))
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
-  update_ways(query, changes);
+  update_distances(query, changes);
   for (std::size_t r = 0; r < members_.size(); ++r)
-    members_[r].ways.start_from(lattice_.key(query.starts[r].pose.position));
+    members_[r].distances.start_from(lattice_.key(query.starts[r].pose.position));
   clusters_.update(query.frontiers);
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);

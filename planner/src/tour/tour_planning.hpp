@@ -5,7 +5,7 @@
 #include "tour/frontier_clusters.hpp"
 #include "tour/joined_stops.hpp"
 #include "tour/tour_search.hpp"
-#include "tour/travel_ways.hpp"
+#include "tour/travel_distances.hpp"
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -43,7 +43,7 @@ class TourPlanning {
     double least_gain = 10.0;     ///< [frontiers] that a stop shows
     std::size_t joined = 40;      ///< nearest clusters, which are looked at from as few places as see them
     std::size_t refined = 5;      ///< stops whose viewpoints are chosen together
-    std::size_t measured = 2500;  ///< nearest nodes to which the ways from a stop are known
+    std::size_t measured = 2500;  ///< nearest nodes to which the distances from a stop are known
   };
 
   /// @param starts  of the robots; those on a plane stay on it
@@ -84,15 +84,15 @@ class TourPlanning {
   [[nodiscard]] bool gets_to(std::size_t robot, const VoxelKey& cell) const;
   /// [m] from where the robot will be to the first stop of its tour, about; 0 if there is none.
   [[nodiscard]] double first_distance(std::size_t robot) const;
-  /// On a short way of the robot to some cell, as far [m] beyond where it is by now; nothing if the way is no
-  /// longer.
-  [[nodiscard]] std::optional<VoxelKey> cell_on_way_to(std::size_t robot, const VoxelKey& cell,
-                                                       const VoxelKey& here, double ahead) const {
-    return members_[robot].ways.cell_on_way_to(cell, here, ahead);
+  /// On a short path of the robot to some cell, as far [m] beyond where it is by now; nothing if the path is
+  /// no longer.
+  [[nodiscard]] std::optional<VoxelKey> cell_on_path_to(std::size_t robot, const VoxelKey& cell,
+                                                        const VoxelKey& here, double ahead) const {
+    return members_[robot].distances.cell_on_path_to(cell, here, ahead);
   }
-  /// Whether a cell is near a short way of the robot to some cell; for none if there is no way.
-  [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(std::size_t robot,
-                                                                   const VoxelKey& cell) const;
+  /// Whether a cell is near a short path of the robot to some cell; for none if there is no path.
+  [[nodiscard]] std::function<bool(const VoxelKey&)> around_path_to(std::size_t robot,
+                                                                    const VoxelKey& cell) const;
   /// Where the robot would have a stop among some cells if it could get to them: it sees a cluster from there
   /// that is in no tour of another robot. Nothing if there is no such place.
   [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
@@ -106,9 +106,9 @@ class TourPlanning {
   struct Member {
     Robot robot;
     ViewRegion region;
-    TravelWays ways;                     // from where it is when its trajectory begins
+    TravelDistances distances;           // from where it is when its trajectory begins
     bool planned = false;                // before
-    std::vector<VoxelKey> changed = {};  // since its ways were updated
+    std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
     std::vector<VoxelKey> frontiers = {};  // of the clusters in the tour
@@ -118,7 +118,7 @@ class TourPlanning {
   [[nodiscard]] double own_distance_to(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
-  void update_ways(const Query& query, std::span<const KeyBox> changes);
+  void update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster) const;
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;

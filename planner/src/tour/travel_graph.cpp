@@ -140,7 +140,7 @@ void TravelGraph::for_each_touching(Name name, const Visit& visit) const {
         if (other == name) visit(name_of(index - back, part));
 }
 
-// Connects each node of a cube with its neighbours and with theirs: so a way along a diagonal is about as
+// Connects each node of a cube with its neighbours and with theirs: so a path along a diagonal is about as
 // long as it is.
 void TravelGraph::connect(std::size_t index) {
   Cube& cube = cubes_[index];
@@ -219,7 +219,7 @@ class TravelGraph::Search {
  public:
   explicit Search(const TravelGraph& graph) : graph_(graph), lengths_(graph.size(), kFar) {}
 
-  // Ends when the ways to so many nodes are known. Those of other nodes are `kFar` afterwards.
+  // Ends when the distances of so many nodes are known. Those of other nodes are `kFar` afterwards.
   void run(std::uint32_t from, std::size_t count) {
     for (const std::uint32_t node : reached_) lengths_[node] = kFar;
     reached_.assign(1, from);
@@ -294,7 +294,8 @@ std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
   return near;
 }
 
-std::vector<std::uint32_t> TravelGraph::way_back(const std::vector<double>& lengths, std::uint32_t to) const {
+std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& lengths,
+                                                  std::uint32_t to) const {
   std::vector<std::uint32_t> nodes{to};
   for (;;) {
     const std::uint32_t node = nodes.back();
@@ -322,10 +323,10 @@ VoxelKey TravelGraph::middle_cell(std::uint32_t node) const {
   return *best;  // each part has some
 }
 
-std::vector<std::uint32_t> TravelGraph::around_way(const std::vector<double>& lengths,
-                                                   std::uint32_t to) const {
+std::vector<std::uint32_t> TravelGraph::around_path(const std::vector<double>& lengths,
+                                                    std::uint32_t to) const {
   std::vector<std::uint32_t> nodes;
-  for (const std::uint32_t node : way_back(lengths, to)) {
+  for (const std::uint32_t node : path_back(lengths, to)) {
     nodes.push_back(node);
     for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) nodes.push_back(edges_[e].to);
   }

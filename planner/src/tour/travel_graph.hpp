@@ -43,7 +43,7 @@ class TravelGraph {
   /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
-  /// [m] from a node to others, from middle to middle; `kFar` where there is no way.
+  /// [m] from a node to others, from middle to middle; `kFar` where there is no path.
   /// @param count  how many are enough: of the nodes that are farther than so many, most are `kFar`, too
   [[nodiscard]] std::vector<double> distances(std::uint32_t from, std::size_t count = kAll) const;
 
@@ -62,16 +62,16 @@ class TravelGraph {
   /// Whether the last update has found the node's cells or neighbours anew.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
-  /// The nodes of a shortest way to a node, from its end to its begin.
-  /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
-  [[nodiscard]] std::vector<std::uint32_t> way_back(const std::vector<double>& lengths,
-                                                    std::uint32_t to) const;
+  /// The nodes of a shortest path to a node, from its end to its begin.
+  /// @param lengths  `distances` from where the path begins; that to the node is not `kFar`
+  [[nodiscard]] std::vector<std::uint32_t> path_back(const std::vector<double>& lengths,
+                                                     std::uint32_t to) const;
   /// The cell of a node that is nearest to its middle, of those that `spread_cells` returns.
   [[nodiscard]] VoxelKey middle_cell(std::uint32_t node) const;
-  /// The nodes of a shortest way to a node and those next to them, sorted: their cells connect.
-  /// @param lengths  `distances` from where the way begins; that to the node is not `kFar`
-  [[nodiscard]] std::vector<std::uint32_t> around_way(const std::vector<double>& lengths,
-                                                      std::uint32_t to) const;
+  /// The nodes of a shortest path to a node and those next to them, sorted: their cells connect.
+  /// @param lengths  `distances` from where the path begins; that to the node is not `kFar`
+  [[nodiscard]] std::vector<std::uint32_t> around_path(const std::vector<double>& lengths,
+                                                       std::uint32_t to) const;
 
  private:
   struct Cube {

@@ -13,7 +13,7 @@ namespace frontlux::planner::detail {
   return std::abs(std::remainder(b - a, 2 * std::numbers::pi));
 }
 
-/// [s] for a way [m] and a turn [rad]; robots that see all around need not turn.
+/// [s] for a distance [m] and a turn [rad]; robots that see all around need not turn.
 [[nodiscard]] inline double travel_seconds(const Robot& robot, double distance, double turn) {
   return std::max(distance / robot.limits.speed,
                   robot.view.sees_all_around() ? 0.0 : turn / robot.limits.yaw_rate);

@@ -11,11 +11,11 @@ namespace {
 using test::Random;
 
 // In the units of `kMoveLengths`; -1 if one of its steps is not allowed.
-int length_of(const std::vector<VoxelKey>& way, const std::set<VoxelKey>& open, PathMetric metric,
+int length_of(const std::vector<VoxelKey>& path, const std::set<VoxelKey>& open, PathMetric metric,
               int stride) {
   int length = 0;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const VoxelKey &a = way[i - 1], &b = way[i];
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const VoxelKey &a = path[i - 1], &b = path[i];
     const std::array<int, 3> step = {(b.x - a.x) / stride, (b.y - a.y) / stride, (b.z - a.z) / stride};
     const int added = test::length_of_step(open, a, step, stride, metric);
     if (added == 0) return -1;
@@ -46,18 +46,18 @@ TEST(PathSearch, FindsShortestWays) {
     const auto expected = test::dijkstra(open, start, frame.stride, metric);
     for (int i = 0; i < 20; ++i) {
       const VoxelKey goal = random.pick(cells);
-      const auto way =
+      const auto path =
           shortest_path(frame, metric, start, goal, [&](const VoxelKey& key) { return open.contains(key); });
       const auto length = expected.find(goal);
-      ASSERT_EQ(way.empty(), length == expected.end());
-      if (way.empty()) {
+      ASSERT_EQ(path.empty(), length == expected.end());
+      if (path.empty()) {
         ++none;
         continue;
       }
       ++found;
-      ASSERT_EQ(way.front(), start);
-      ASSERT_EQ(way.back(), goal);
-      ASSERT_EQ(length_of(way, open, metric, frame.stride), length->second);
+      ASSERT_EQ(path.front(), start);
+      ASSERT_EQ(path.back(), goal);
+      ASSERT_EQ(length_of(path, open, metric, frame.stride), length->second);
     }
   }
   EXPECT_GT(found, 300U);

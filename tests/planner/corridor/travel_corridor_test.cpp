@@ -237,7 +237,7 @@ TEST(TravelCorridor, EqualsANewCorridorAfterEveryChange) {
   }
 }
 
-// Near by the same as with all cells, as far as the ways do not lead away and back; far away by a search.
+// Near by the same as with all cells, as far as the paths do not lead away and back; far away by a search.
 TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
   std::size_t near = 0, none = 0;
   for (const Robot& robot : robots()) {

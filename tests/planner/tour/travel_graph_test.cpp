@@ -231,8 +231,8 @@ TEST(TravelGraph, FindsTheCellsAroundAWay) {
     graph.update(corridor, {{kBounds}});
     const VoxelKey goal = random.pick(corridor.cells());
     const std::vector<double> lengths = graph.distances(graph.node(robot).value());
-    const auto nodes = graph.around_way(lengths, graph.node(goal).value());
-    const auto back = graph.way_back(lengths, graph.node(goal).value());
+    const auto nodes = graph.around_path(lengths, graph.node(goal).value());
+    const auto back = graph.path_back(lengths, graph.node(goal).value());
     EXPECT_EQ(back.front(), graph.node(goal));
     EXPECT_EQ(back.back(), graph.node(robot));
     for (std::size_t i = 0; i < back.size(); ++i) {

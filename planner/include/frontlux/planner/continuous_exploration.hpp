@@ -45,7 +45,7 @@ struct PlannedMotion {
 /// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.
 /// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
 /// thread. Each robot plans for itself: when it is about to arrive, when what it was going for has been
-/// mapped by anybody, when its way is blocked, and at least every `ExplorationOptions::period`. It knows the
+/// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period`. It knows the
 /// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
 /// others for all time to come. If there is none such, the robot keeps the one it has.
 ///
@@ -75,7 +75,7 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ///         refuses
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
 
-  /// A robot rests at a pose since it could not go on: something that no sensor saw is in the way.
+  /// A robot rests at a pose since it could not go on: something that no sensor saw blocks its path.
   /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
   ///                 them as it is, the cell that it is in will not be entered again
   /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose that is not
@@ -83,7 +83,7 @@ class FRONTLUX_EXPORT ContinuousExploration {
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
-  /// where the others keep apart from it, and what it was to see becomes theirs. There is no way back for it.
+  /// where the others keep apart from it, and what it was to see becomes theirs. It does not come back.
   void lose(std::size_t robot, const Pose& pose, double time);
 
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.

@@ -48,7 +48,7 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   int low_gain_steps = 3;    ///< this many steps, in motion plannings, of low gain in a row end it
   int max_steps = 1000;      ///< so does this number of steps, in motion plannings
   double latency = 0.1;      ///< [s] that the clock charges for a planning
-  double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its way anew
+  double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its path anew
   double commitment = 30.0;  ///< [s] in motion: a goal that is not seen yet is kept for this long
   int max_visits = 2;        ///< a frontier that stays unknown after so many looks at it is abandoned
   int min_cluster_size = 4;  ///< frontiers in connected clusters of fewer come last

@@ -43,8 +43,8 @@ struct RefinedPath {
 /// frontiers are in view than before, or as many with a greater fuzzy gain; else the refinement ends with the
 /// result before it. So `after.distinct` is never below `before.distinct`.
 ///
-/// A viewpoint moves only where the ways to both of its neighbours are free (`segment_is_free`) and no longer
-/// than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
+/// A viewpoint moves only where the segments to both of its neighbours are free (`segment_is_free`) and no
+/// longer than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
 /// Deterministic. Thread safety: as `optimize_path`.
 /// @param viewpoints  with yaws, all of which count for `before`
 /// @param grid        of the caster, the corridor and the keys of the frontiers

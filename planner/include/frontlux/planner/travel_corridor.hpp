@@ -193,7 +193,7 @@ class FRONTLUX_EXPORT TravelCorridor {
   void update(const MapChange& change, const VoxelKey& robot,
               CorridorExtent extent = CorridorExtent::kAllCells);
 
-  /// Searches a way to one cell, wherever it is. Until the next update `path_to` returns it.
+  /// Searches a path to one cell, wherever it is. Until the next update `path_to` returns it.
   /// @param through  cells that it may lead through, as far as they are passable
   /// @return whether there is one
   bool find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
@@ -203,7 +203,7 @@ class FRONTLUX_EXPORT TravelCorridor {
   void block(std::span<const VoxelKey> cells);
 
   /// Makes the cells in these boxes impassable from the next update on at the latest, in the place of those
-  /// of the call before: other robots are there, or on their way. Of a box that holds the robot's own cell
+  /// of the call before: other robots are there, or will be. Of a box that holds the robot's own cell
   /// there remains what lies beyond that cell, seen from the box's nearest face; of a robot that drives, from
   /// its nearest side.
   void keep_out_of(std::vector<KeyBox> boxes);

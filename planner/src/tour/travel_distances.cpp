@@ -1,4 +1,4 @@
-#include "tour/travel_ways.hpp"
+#include "tour/travel_distances.hpp"
 
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -7,10 +7,10 @@
 
 namespace frontlux::planner::detail {
 
-TravelWays::TravelWays(const Lattice& lattice, TravelGraph graph, std::size_t measured)
+TravelDistances::TravelDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured)
     : lattice_(lattice), graph_(std::move(graph)), measured_(measured) {}
 
-void TravelWays::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
+void TravelDistances::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   graph_.update(corridor, changed);
   from_start_.clear();
   // What was not asked for since the update before will not be soon, either.
@@ -23,13 +23,13 @@ void TravelWays::update(const TravelCorridor& corridor, std::span<const KeyBox> 
   for (auto& [from, near] : near_) near.asked = false;
 }
 
-void TravelWays::start_from(const std::optional<VoxelKey>& cell) {
+void TravelDistances::start_from(const std::optional<VoxelKey>& cell) {
   const auto node = cell ? graph_.node(*cell) : std::nullopt;
   start_ = node ? cell : std::nullopt;
   if (node && (from_start_.empty() || from_start_[*node] != 0.0)) from_start_ = graph_.distances(*node);
 }
 
-void TravelWays::measure_from(std::span<const VoxelKey> cells) {
+void TravelDistances::measure_from(std::span<const VoxelKey> cells) {
   std::vector<std::uint32_t> nodes;
   for (const VoxelKey& cell : cells) {
     const auto node = graph_.node(cell);
@@ -45,16 +45,16 @@ void TravelWays::measure_from(std::span<const VoxelKey> cells) {
   for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
 }
 
-bool TravelWays::reaches(const VoxelKey& cell) const {
+bool TravelDistances::reaches(const VoxelKey& cell) const {
   const auto node = graph_.node(cell);
   return node && start_ && from_start_[*node] != TravelGraph::kFar;
 }
 
-double TravelWays::from_start(const VoxelKey& cell) const {
+double TravelDistances::from_start(const VoxelKey& cell) const {
   return reaches(cell) ? straightened(*start_, cell, from_start_[*graph_.node(cell)]) : TravelGraph::kFar;
 }
 
-double TravelWays::between(const VoxelKey& from, const VoxelKey& to) const {
+double TravelDistances::between(const VoxelKey& from, const VoxelKey& to) const {
   const auto a = graph_.node(from), b = graph_.node(to);
   if (!a || !b) return TravelGraph::kFar;
   const auto& near = near_.at(graph_.name_of(*a)).distances;
@@ -63,32 +63,32 @@ double TravelWays::between(const VoxelKey& from, const VoxelKey& to) const {
   return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
 }
 
-// Nodes are wide: a way is no shorter than the straight line, and near by often that.
-double TravelWays::straightened(const VoxelKey& from, const VoxelKey& to, double way) const {
+// Nodes are wide: a path is no shorter than the straight line, and near by often that.
+double TravelDistances::straightened(const VoxelKey& from, const VoxelKey& to, double distance) const {
   constexpr double kClear = 8.0;  // [m]
   const Eigen::Vector3d a = lattice_.exact_center(from), b = lattice_.exact_center(to);
   const double straight = (b - a).norm();
-  if (straight >= way) return straight;
+  if (straight >= distance) return straight;
   const bool clear = straight < kClear && SegmentVoxels(lattice_, a, b).all_of([&](const VoxelKey& key) {
     return graph_.node(key).has_value();
   });
-  return clear ? straight : way;
+  return clear ? straight : distance;
 }
 
-std::optional<VoxelKey> TravelWays::cell_on_way_to(const VoxelKey& to, const VoxelKey& robot,
-                                                   double ahead) const {
+std::optional<VoxelKey> TravelDistances::cell_on_path_to(const VoxelKey& to, const VoxelKey& robot,
+                                                         double ahead) const {
   if (!reaches(to) || !reaches(robot)) return std::nullopt;
   const double length = from_start(robot) + ahead;
   if (from_start(to) <= length) return std::nullopt;
-  for (const std::uint32_t node : graph_.way_back(from_start_, *graph_.node(to)))
+  for (const std::uint32_t node : graph_.path_back(from_start_, *graph_.node(to)))
     if (from_start_[node] <= length) return graph_.middle_cell(node);
   return std::nullopt;
 }
 
-std::function<bool(const VoxelKey&)> TravelWays::around_way_to(const VoxelKey& to) const {
+std::function<bool(const VoxelKey&)> TravelDistances::around_path_to(const VoxelKey& to) const {
   if (!reaches(to)) return [](const VoxelKey&) { return false; };
   std::vector<bool> around(graph_.size());
-  for (const std::uint32_t node : graph_.around_way(from_start_, *graph_.node(to))) around[node] = true;
+  for (const std::uint32_t node : graph_.around_path(from_start_, *graph_.node(to))) around[node] = true;
   return [this, around = std::move(around)](const VoxelKey& cell) {
     const auto node = graph_.node(cell);
     return node && around[*node];

@@ -91,21 +91,21 @@ TEST_P(WayBack, LeadsThroughTheClosedPassageAndNowhereElse) {
   rooms.close_door();
   const Goal goal = rooms.choose();
   ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
-  const std::vector<Pose> way = rooms.state.take_way_back(0, goal);
-  ASSERT_GE(way.size(), 2U);
-  EXPECT_EQ(way.front().position, rooms.state.poses[0].position);
-  EXPECT_EQ(way.back().position, TwoRooms::at(26, 15).position) << "its last place in the first room";
-  const double straight = (way.back().position - way.front().position).norm();
-  EXPECT_LT(path_length(way), 1.05 * straight) << "not by way of the corners where it has been";
+  const std::vector<Pose> path = rooms.state.plan_retreat(0, goal);
+  ASSERT_GE(path.size(), 2U);
+  EXPECT_EQ(path.front().position, rooms.state.poses[0].position);
+  EXPECT_EQ(path.back().position, TwoRooms::at(26, 15).position) << "its last place in the first room";
+  const double straight = (path.back().position - path.front().position).norm();
+  EXPECT_LT(path_length(path), 1.05 * straight) << "not by way of the corners where it has been";
   // If it still stands here, it tries the place before; after that it is cut off.
-  const std::vector<Pose> longer = rooms.state.take_way_back(0, goal);
+  const std::vector<Pose> longer = rooms.state.plan_retreat(0, goal);
   ASSERT_FALSE(longer.empty());
   EXPECT_EQ(longer.back().position, rooms.start.position);
-  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
   EXPECT_TRUE(rooms.state.is_cut_off(0, goal));
 }
 
-// What it has left closed is smaller than where it is: it has lost something to see, and not its way.
+// What it has left closed is smaller than where it is: it has lost something to see, and not its path.
 TEST_P(WayBack, ThatIsClosedToASmallPartCutsNobodyOff) {
   TwoRooms rooms(GetParam(), 5);
   rooms.close_door();
@@ -121,9 +121,9 @@ TEST_P(WayBack, ThatIsClosedToASmallPartCutsNobodyOff) {
   rooms.state.update_views(rooms.step);
   const Goal goal = rooms.choose();
   ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
-  const std::vector<Pose> way = rooms.state.take_way_back(0, goal);
-  ASSERT_FALSE(way.empty());
-  EXPECT_EQ(way.back().position, TwoRooms::at(-28, 15).position);
+  const std::vector<Pose> path = rooms.state.plan_retreat(0, goal);
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(path.back().position, TwoRooms::at(-28, 15).position);
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
@@ -132,7 +132,7 @@ TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   rooms.close_door();
   const Goal goal = rooms.choose();
   ASSERT_FALSE(goal.pose);
-  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
@@ -171,7 +171,7 @@ TEST(WayBackWithTours, IsNotWorthTakingForWhatIsNoStop) {
   rooms.close_door();
   const Goal goal = rooms.choose();
   ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
-  EXPECT_TRUE(rooms.state.take_way_back(0, goal).empty());
+  EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 

@@ -1,4 +1,4 @@
-// The ways by which a robot without a goal goes back along its trail.
+// The path on which a robot without a goal retreats along its trail.
 
 #include "exploration/exploration_state.hpp"
 
@@ -14,16 +14,16 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// A way that comes to no voxel twice.
-std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> way) {
+// A path that comes to no voxel twice.
+std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> path) {
   std::map<std::optional<VoxelKey>, std::size_t> last;
-  for (std::size_t i = 0; i < way.size(); ++i) last[lattice.key(way[i].position)] = i;
+  for (std::size_t i = 0; i < path.size(); ++i) last[lattice.key(path[i].position)] = i;
   std::vector<Pose> rest;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    rest.push_back(way[i]);
-    const std::size_t leaves = last[lattice.key(way[i].position)];
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    rest.push_back(path[i]);
+    const std::size_t leaves = last[lattice.key(path[i].position)];
     if (leaves == i) continue;
-    rest.push_back(way[leaves]);
+    rest.push_back(path[leaves]);
     i = leaves;
   }
   return rest;
@@ -31,8 +31,8 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> wa
 
 }  // namespace
 
-// Whether a robot would have a goal if it were in a cell, to which its way has this length [m]. Without tours
-// what other robots see anyhow is worth less from afar, as eq. 1 has it.
+// Whether a robot would have a goal if it were in a cell, to which its path has this length [m]. Without
+// tours what other robots see anyhow is worth less from afar, as eq. 1 has it.
 bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                       double length) const {
   elsewhere.update({travel_map()}, cell);
@@ -55,10 +55,10 @@ bool ExplorationState::can_get_to(std::size_t robot, const VoxelKey& cell) const
                                                         : tours->gets_to(robot, cell);
 }
 
-// A robot beside which a closer look has found something is in no corridor; it goes back to the last place
-// that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it goes
-// back through the passage, if there is something to see from beyond.
-std::optional<std::size_t> ExplorationState::place_to_go_back_to(std::size_t robot, const Goal& goal,
+// A robot beside which a closer look has found something is in no corridor; it retreats to the last place
+// that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it
+// retreats through the passage, if there is something to see from beyond.
+std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t robot, const Goal& goal,
                                                                  const Keys& tried) const {
   const std::vector<Pose>& trail = trails[robot];
   const bool lost = goal.state == GoalState::kNoCorridor;
@@ -78,47 +78,47 @@ std::optional<std::size_t> ExplorationState::place_to_go_back_to(std::size_t rob
   return std::nullopt;
 }
 
-// By a short way to where the robot has last left what it can get to; from there on, or if it can get
+// On a short path to where the robot has last left what it can get to; from there on, or if it can get
 // nowhere, as it came.
-std::vector<Pose> ExplorationState::way_back_to(std::size_t robot, std::size_t place) {
+std::vector<Pose> ExplorationState::retreat_to(std::size_t robot, std::size_t place) {
   const std::vector<Pose>& trail = trails[robot];
   const auto back_from = [&](std::size_t last) {
     const auto first = trail.begin() + static_cast<std::ptrdiff_t>(place);
-    std::vector<Pose> way(first, trail.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-    std::ranges::reverse(way);
-    return without_loops(lattice(), way);
+    std::vector<Pose> path(first, trail.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+    std::ranges::reverse(path);
+    return without_loops(lattice(), path);
   };
   for (std::size_t i = place; i < trail.size(); ++i) {
     const auto cell = lattice().key(trail[i].position);
     if (!cell || !can_get_to(robot, *cell)) continue;
     if (path_corridor(robot).extent() == CorridorExtent::kNearby &&
-        !selection->find_way(robot, *cell, tours->around_way_to(robot, *cell)))
+        !selection->find_way(robot, *cell, tours->around_path_to(robot, *cell)))
       break;
-    std::vector<Pose> way = plan_path(path_corridor(robot), lattice(), poses[robot], trail[i],
-                                      {options.seed, number, robot}, options.path)
-                                .viewpoints;
-    if (way.empty()) break;
+    std::vector<Pose> path = plan_path(path_corridor(robot), lattice(), poses[robot], trail[i],
+                                       {options.seed, number, robot}, options.path)
+                                 .viewpoints;
+    if (path.empty()) break;
     const std::vector<Pose> rest = back_from(i);
-    way.insert(way.end(), rest.begin(), rest.end());
-    return way;
+    path.insert(path.end(), rest.begin(), rest.end());
+    return path;
   }
   return back_from(trail.size() - 1);
 }
 
 // To each place once for each goal that the robot had, or it would go back and forth, or try for ever.
-std::vector<Pose> ExplorationState::take_way_back(std::size_t robot, const Goal& goal) {
-  const auto place = place_to_go_back_to(robot, goal, went_back_to[robot]);
+std::vector<Pose> ExplorationState::plan_retreat(std::size_t robot, const Goal& goal) {
+  const auto place = place_to_retreat_to(robot, goal, retreated_to[robot]);
   if (!place) return {};
-  went_back_to[robot].push_back(lattice().key(trails[robot][*place].position).value());
-  return way_back_to(robot, *place);
+  retreated_to[robot].push_back(lattice().key(trails[robot][*place].position).value());
+  return retreat_to(robot, *place);
 }
 
 bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   if (goal.state == GoalState::kNoCorridor)  // where it started it has been put
     return std::ranges::any_of(trails[robot],
                                [&](const Pose& place) { return place.position != poses[robot].position; });
-  if (went_back_to[robot].empty()) return false;
-  const auto place = place_to_go_back_to(robot, goal, {});
+  if (retreated_to[robot].empty()) return false;
+  const auto place = place_to_retreat_to(robot, goal, {});
   if (!place) return false;
   // What has closed off a part that is smaller than that where it is has not locked it in.
   TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());

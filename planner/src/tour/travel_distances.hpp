@@ -14,12 +14,12 @@
 
 namespace frontlux::planner::detail {
 
-/// How long one robot's ways are: from where it starts to everywhere, and between places that are not far
-/// from each other.
-class TravelWays {
+/// Lengths of one robot's paths: from where it starts to everywhere, and between places that are not far from
+/// each other.
+class TravelDistances {
  public:
-  /// @param measured  nearest nodes of the graph to which the ways from a place are known
-  TravelWays(const Lattice& lattice, TravelGraph graph, std::size_t measured);
+  /// @param measured  nearest nodes of the graph to which the distances from a place are known
+  TravelDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured);
 
   [[nodiscard]] const TravelGraph& graph() const { return graph_; }
 
@@ -28,25 +28,25 @@ class TravelWays {
   /// Where the robot will be; none if it is not in the map, or does not fit there.
   void start_from(const std::optional<VoxelKey>& cell);
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Finds the ways from some cells, until the next update. Those that it does not change are kept.
+  /// Finds the distances from some cells, until the next update. Those that it does not change are kept.
   void measure_from(std::span<const VoxelKey> cells);
 
   /// Whether the robot can get to a cell from its start.
   [[nodiscard]] bool reaches(const VoxelKey& cell) const;
-  /// [m] from the start; `TravelGraph::kFar` if there is no way.
+  /// [m] from the start; `TravelGraph::kFar` if there is no path.
   [[nodiscard]] double from_start(const VoxelKey& cell) const;
-  /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no way.
+  /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no path.
   /// @param from  has been measured from
   [[nodiscard]] double between(const VoxelKey& from, const VoxelKey& to) const;
-  /// On a short way from the start to some cell, as far [m] beyond where the robot is by now; nothing if the
-  /// way is no longer.
-  [[nodiscard]] std::optional<VoxelKey> cell_on_way_to(const VoxelKey& to, const VoxelKey& robot,
-                                                       double ahead) const;
-  /// Whether a cell is near a short way from the start to some cell; for none if there is no way.
-  [[nodiscard]] std::function<bool(const VoxelKey&)> around_way_to(const VoxelKey& to) const;
+  /// On a short path from the start to some cell, as far [m] beyond where the robot is by now; nothing if the
+  /// path is no longer.
+  [[nodiscard]] std::optional<VoxelKey> cell_on_path_to(const VoxelKey& to, const VoxelKey& robot,
+                                                        double ahead) const;
+  /// Whether a cell is near a short path from the start to some cell; for none if there is no path.
+  [[nodiscard]] std::function<bool(const VoxelKey&)> around_path_to(const VoxelKey& to) const;
 
  private:
-  [[nodiscard]] double straightened(const VoxelKey& from, const VoxelKey& to, double way) const;
+  [[nodiscard]] double straightened(const VoxelKey& from, const VoxelKey& to, double distance) const;
 
   Lattice lattice_;
   TravelGraph graph_;
