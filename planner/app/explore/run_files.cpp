@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <ostream>
 #include <stdexcept>
@@ -78,6 +79,80 @@ double fraction(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+// What a row of steps.csv tells of: a robot in a step.
+struct StepRow {
+  const RecordedStep& recorded;
+  const planner::RecordingHead& head;
+  const RunSums& sums;  // up to the end of the step
+  std::size_t r;
+  const ExplorationStep& step = recorded.step;
+  const RobotStep& robot = step.robots[r];
+
+  // Empty without a goal.
+  [[nodiscard]] std::string of_goal(double number) const { return robot.goal.pose ? csv_cell(number) : ""; }
+  [[nodiscard]] Pose goal() const { return robot.goal.pose.value_or(Pose()); }
+};
+
+struct StepColumn {
+  std::string name;
+  std::function<std::string(const StepRow&)> cell;
+};
+
+std::vector<StepColumn> step_columns() {
+  using Row = const StepRow&;
+  std::vector<StepColumn> columns = {
+      {"step", [](Row row) { return csv_cell(row.step.number); }},
+      {"time_s", [](Row row) { return csv_cell(row.step.time); }},
+      {"robot", [](Row row) { return csv_cell(row.head.robots[row.r].robot.name); }},
+      {"coverage_observable", [](Row row) { return csv_cell(row.sums.observable); }},
+      {"coverage_box", [](Row row) { return csv_cell(row.sums.bounding); }},
+      {"robot_observable",
+       [](Row row) { return csv_cell(fraction(row.recorded.known[row.r].observable, row.head.observable)); }},
+      {"robot_box",
+       [](Row row) { return csv_cell(fraction(row.recorded.known[row.r].bounding, row.head.bounding)); }},
+      {"frontiers", [](Row row) { return csv_cell(row.step.frontiers); }},
+      {"unassigned", [](Row row) { return csv_cell(row.step.unassigned); }},
+      {"abandoned", [](Row row) { return csv_cell(row.step.abandoned); }},
+      {"goal_state",
+       [](Row row) {
+         return csv_cell(row.step.number == 0 ? "start" : planner::name_of(row.robot.goal.state));
+       }},
+      {"assigned", [](Row row) { return csv_cell(row.robot.goal.assigned); }},
+      {"released", [](Row row) { return csv_cell(row.robot.goal.released); }},
+      {"received", [](Row row) { return csv_cell(row.robot.goal.received); }},
+      {"uncovered", [](Row row) { return csv_cell(row.robot.goal.uncovered); }},
+      {"goal_x_m", [](Row row) { return row.of_goal(row.goal().position.x()); }},
+      {"goal_y_m", [](Row row) { return row.of_goal(row.goal().position.y()); }},
+      {"goal_z_m", [](Row row) { return row.of_goal(row.goal().position.z()); }},
+      {"goal_yaw_rad", [](Row row) { return row.of_goal(row.goal().yaw); }},
+      {"goal_gain", [](Row row) { return row.of_goal(row.robot.goal.gain); }},
+      {"path", [](Row row) { return csv_cell(planner::name_of(row.robot.path)); }},
+      {"viewpoints", [](Row row) { return csv_cell(row.robot.planned.size()); }},
+      {"length_m", [](Row row) { return csv_cell(row.robot.length); }},
+      {"travelled_m", [](Row row) { return csv_cell(row.sums.travelled[row.r]); }},
+      {"gain_tangent", [](Row row) { return csv_cell(row.robot.gain_tangent); }},
+      {"gain_predicted", [](Row row) { return csv_cell(row.robot.gain_predicted); }},
+      {"gained", [](Row row) { return csv_cell(row.robot.gained); }},
+      {"still_unknown", [](Row row) { return csv_cell(row.robot.still_unknown.size()); }},
+      {"collisions", [](Row row) { return csv_cell(row.recorded.collisions); }},
+      {"rays", [](Row row) { return csv_cell(row.step.rays); }}};
+  for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
+    if (static_cast<planner::Phase>(phase) == planner::Phase::kMoving)
+      columns.push_back({"planning_s", [](Row row) { return csv_cell(row.step.planning_seconds()); }});
+    columns.push_back({std::string(planner::name_of(static_cast<planner::Phase>(phase))) + "_s",
+                       [phase](Row row) { return csv_cell(row.step.seconds[phase]); }});
+  }
+  return columns;
+}
+
+// A line for which `cell` makes the cell of each column.
+std::string step_line(const auto& cell) {
+  static const std::vector<StepColumn> kColumns = step_columns();
+  std::string line;
+  for (const StepColumn& column : kColumns) line.append(line.empty() ? "" : ",").append(cell(column));
+  return line + '\n';
+}
+
 }  // namespace
 
 RecordedStep with_known_voxels(ExplorationStep step, const RecordedStep* before,
@@ -104,18 +179,7 @@ RunFiles::RunFiles(const std::filesystem::path& folder, const planner::Recording
       tours_file_(folder / kTours, std::ios::binary | std::ios::trunc),
       sums_{.seconds = std::vector<double>(planner::kPhases),
             .travelled = std::vector<double>(head.robots.size())} {
-  std::string header =
-      "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
-      "abandoned,"
-      "goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,goal_gain,"
-      "path,"
-      "viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays";
-  for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
-    const auto name = planner::name_of(static_cast<planner::Phase>(phase));
-    if (name == "moving") header += ",planning_s";
-    header.append(",").append(name).append("_s");
-  }
-  write(steps_file_, kSteps, header + '\n');
+  write(steps_file_, kSteps, step_line([](const StepColumn& column) { return column.name; }));
   write(paths_file_, kPaths, "step,robot,viewpoint,reached,x_m,y_m,z_m,yaw_rad\n");
   write(events_file_, kEvents,
         "time_s,step,robot,reason,goal_state,gain_predicted,begin_s,end_s,length_m,planning_s\n");
@@ -155,29 +219,9 @@ void RunFiles::add(const RecordedStep& recorded) {
   }
   std::string rows;
   for (std::size_t r = 0; r < step.robots.size(); ++r) {
-    const RobotStep& robot = step.robots[r];
-    sums_.travelled[r] += robot.length;
-    std::string seconds;
-    for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
-      if (static_cast<planner::Phase>(phase) == planner::Phase::kMoving)
-        seconds += ',' + csv_cell(step.planning_seconds());
-      seconds += ',' + csv_cell(step.seconds[phase]);
-    }
-    const std::string goal =
-        robot.goal.pose ? csv_cell(*robot.goal.pose) + ',' + csv_cell(robot.goal.gain) : ",,,,";
-    std::string row =
-        csv_row(step.number, step.time, head_.robots[r].robot.name, sums_.observable, sums_.bounding,
-                fraction(recorded.known[r].observable, head_.observable),
-                fraction(recorded.known[r].bounding, head_.bounding), step.frontiers, step.unassigned,
-                step.abandoned, step.number == 0 ? "start" : planner::name_of(robot.goal.state),
-                robot.goal.assigned, robot.goal.released, robot.goal.received, robot.goal.uncovered);
-    row.back() = ',';
-    row += goal + ',' +
-           csv_row(planner::name_of(robot.path), robot.planned.size(), robot.length, sums_.travelled[r],
-                   robot.gain_tangent, robot.gain_predicted, robot.gained, robot.still_unknown.size(),
-                   recorded.collisions, step.rays);
-    row.pop_back();
-    rows += row + seconds + '\n';
+    sums_.travelled[r] += step.robots[r].length;
+    const StepRow row{recorded, head_, sums_, r};
+    rows += step_line([&](const StepColumn& column) { return column.cell(row); });
   }
   write(steps_file_, kSteps, rows);
   write(paths_file_, kPaths, path_rows(recorded, head_));
