@@ -5,10 +5,10 @@
 #include "corridor/whole_voxels.hpp"
 
 #include <frontlux/planner/body_stencil.hpp>
-#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -24,16 +24,7 @@ using detail::half_width, detail::kMaxWindow, detail::kSlack, detail::layers_bel
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSteepest = 80.0 * kDegree;
 constexpr int kNearby = 40;  // [cells] along each axis
-constexpr std::array<std::string_view, 3> kMotions = {"plane", "space", "ground"};
-constexpr std::array<std::string_view, 3> kShapes = {"box", "cylinder", "sphere"};
 constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
-
-template <class Value>
-std::optional<Value> value_named(const std::array<std::string_view, 3>& names, std::string_view name) {
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<Value>(found - names.begin());
-}
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("travel corridor: " + what); }
 
@@ -102,58 +93,6 @@ VoxelKey aligned(const TravelOptions& options, const BodyStencil& stencil, const
 std::uint16_t clamped(int key) { return static_cast<std::uint16_t>(std::clamp(key, 0, 0xFFFF)); }
 
 }  // namespace
-
-std::string_view name_of(Motion motion) { return kMotions.at(static_cast<std::size_t>(motion)); }
-
-std::string_view name_of(BodyShape shape) { return kShapes.at(static_cast<std::size_t>(shape)); }
-
-std::optional<BodyShape> body_shape_named(std::string_view name) {
-  return value_named<BodyShape>(kShapes, name);
-}
-
-std::optional<Motion> motion_named(std::string_view name) { return value_named<Motion>(kMotions, name); }
-
-TravelOptions ugv_travel() {
-  TravelOptions options;
-  options.motion = Motion::kPlane;
-  options.extents = {1.0, 1.0, 0.7};
-  // Where the wheels are. Some beam always grazes a floor voxel under the rest of the box.
-  options.ground_extents = Eigen::Vector2d(0.9, 0.9);
-  return options;
-}
-
-TravelOptions uav_travel() {
-  TravelOptions options;
-  options.extents = {0.8, 0.8, 0.8};
-  return options;
-}
-
-TravelOptions uav_node_travel() {
-  TravelOptions options = uav_travel();
-  options.node_edge = 1.2;
-  return options;
-}
-
-Robot ugv() { return {"ugv", ugv_travel(), {FieldOfView::Shape::kSpinning, 0.0, 40.0 * kDegree, 6.0}, {}}; }
-
-Robot uav(Method method) {
-  return {"uav",
-          method == Method::kPaper ? uav_node_travel() : uav_travel(),
-          {FieldOfView::Shape::kPyramid, 90.0 * kDegree, 72.0 * kDegree, 10.0},
-          {.speed = 1.5}};
-}
-
-RobotDescription ugv_description() { return {ugv(), 720, 32, 10.0}; }
-
-RobotDescription uav_description(Method method) { return {uav(method), 160, 120, 15.0}; }
-
-Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
-  const Eigen::Vector3d half = travel.extents / 2;
-  if (travel.motion == Motion::kSpace) return {-half, half};
-  const double bottom = -travel.sensor_height;
-  return {Eigen::Vector3d(-half.x(), -half.y(), bottom + travel.clearance()),
-          Eigen::Vector3d(half.x(), half.y(), bottom + travel.extents.z())};
-}
 
 VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const VoxelKey& voxel) {
   return aligned(options, BodyStencil(options, lattice.resolution()), voxel);
