@@ -22,10 +22,6 @@ class AbandonedFrontiers {
       if (++visits_[key] == max_visits_) abandoned_.insert(std::ranges::lower_bound(abandoned_, key), key);
   }
 
-  [[nodiscard]] bool abandoned(const VoxelKey& key) const {
-    return std::ranges::binary_search(abandoned_, key);
-  }
-
   /// Those that are not abandoned.
   /// @param frontiers  sorted
   [[nodiscard]] std::vector<VoxelKey> without_abandoned(std::span<const VoxelKey> frontiers) const {
