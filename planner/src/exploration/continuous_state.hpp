@@ -1,7 +1,6 @@
 #pragma once
 
 #include "exploration/exploration_state.hpp"
-#include "motion/departure.hpp"
 #include "motion/separation.hpp"
 
 #include <frontlux/planner/continuous_exploration.hpp>

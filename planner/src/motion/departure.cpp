@@ -1,7 +1,6 @@
 #include "motion/departure.hpp"
 
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace frontlux::planner::detail {

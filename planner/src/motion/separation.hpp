@@ -1,9 +1,10 @@
 #pragma once
 
 #include <frontlux/planner/trajectory.hpp>
-#include <frontlux/planner/travel_corridor.hpp>
 
 #include <Eigen/Geometry>
+
+#include <optional>
 
 namespace frontlux::planner::detail {
 

@@ -5,7 +5,6 @@
 
 #include <frontlux/key_box.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>

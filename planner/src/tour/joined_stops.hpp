@@ -3,7 +3,6 @@
 #include "tour/number_table.hpp"
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace frontlux::planner::detail {

@@ -5,7 +5,6 @@
 #include <frontlux/planner/travel_corridor.hpp>
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>

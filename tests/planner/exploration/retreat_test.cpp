@@ -76,9 +76,9 @@ struct TwoRooms {
   }
 };
 
-class WayBack : public testing::TestWithParam<bool> {};
+class Retreat : public testing::TestWithParam<bool> {};
 
-TEST_P(WayBack, IsForRobotsThatCannotGoOn) {
+TEST_P(Retreat, IsForRobotsThatCannotGoOn) {
   TwoRooms rooms(GetParam(), 5);
   const Goal goal = rooms.choose();
   ASSERT_TRUE(goal.pose);
@@ -86,7 +86,7 @@ TEST_P(WayBack, IsForRobotsThatCannotGoOn) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
-TEST_P(WayBack, LeadsThroughTheClosedPassageAndNowhereElse) {
+TEST_P(Retreat, LeadsThroughTheClosedPassageAndNowhereElse) {
   TwoRooms rooms(GetParam(), 5);
   rooms.close_door();
   const Goal goal = rooms.choose();
@@ -106,7 +106,7 @@ TEST_P(WayBack, LeadsThroughTheClosedPassageAndNowhereElse) {
 }
 
 // What it has left closed is smaller than where it is: it has lost something to see, and not its path.
-TEST_P(WayBack, ThatIsClosedToASmallPartCutsNobodyOff) {
+TEST_P(Retreat, ThatIsClosedToASmallPartCutsNobodyOff) {
   TwoRooms rooms(GetParam(), 5);
   rooms.close_door();
   Keys pane;  // the first room but for its end
@@ -127,7 +127,7 @@ TEST_P(WayBack, ThatIsClosedToASmallPartCutsNobodyOff) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
-TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
+TEST_P(Retreat, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   TwoRooms rooms(GetParam(), 0);
   rooms.close_door();
   const Goal goal = rooms.choose();
@@ -138,7 +138,7 @@ TEST_P(WayBack, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
 
 // A door that a scan finds open while the robot keeps its stop is open at the next planning, when the robot
 // is in it.
-TEST(WayBackWithTours, IsOpenOnceAScanHasFoundItOpen) {
+TEST(RetreatWithTours, IsOpenOnceAScanHasFoundItOpen) {
   const Keys door = test::keys_of(TwoRooms::kDoor);
   TwoRooms rooms(true, 5, door);
   const auto is_beyond = [&](const Goal& goal) {
@@ -162,7 +162,7 @@ TEST(WayBackWithTours, IsOpenOnceAScanHasFoundItOpen) {
 }
 
 // Where single voxels have stayed unknown there is no stop for a tour, however many they are.
-TEST(WayBackWithTours, IsNotWorthTakingForWhatIsNoStop) {
+TEST(RetreatWithTours, IsNotWorthTakingForWhatIsNoStop) {
   Keys holes;
   for (int y = 3; y < 30; y += 6)
     for (int x = 3; x < 30; x += 6) holes.push_back(key_at(x, y, 5));
@@ -175,7 +175,7 @@ TEST(WayBackWithTours, IsNotWorthTakingForWhatIsNoStop) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
-INSTANTIATE_TEST_SUITE_P(Planners, WayBack, testing::Bool(),
+INSTANTIATE_TEST_SUITE_P(Planners, Retreat, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Tours" : "Render"; });
 
 }  // namespace

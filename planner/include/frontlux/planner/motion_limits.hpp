@@ -16,11 +16,11 @@ struct FRONTLUX_EXPORT MotionLimits {
   /// Speed and acceleration hold for x, y and z each, so that diagonals are faster; else for the norm.
   bool per_axis = false;
 
-  /// The greatest speed [m/s] and acceleration [m/s2] straight along a direction of length 1.
+  /// The greatest speed [m/s] straight along a direction of length 1.
   [[nodiscard]] double speed_along(const Eigen::Vector3d& direction) const {
     return per_axis ? speed / direction.cwiseAbs().maxCoeff() : speed;
   }
-  /// The greatest acceleration in a direction [m/s^2].
+  /// The greatest acceleration [m/s2] straight along a direction of length 1.
   [[nodiscard]] double acceleration_along(const Eigen::Vector3d& direction) const {
     return per_axis ? acceleration / direction.cwiseAbs().maxCoeff() : acceleration;
   }

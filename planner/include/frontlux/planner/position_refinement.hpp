@@ -44,14 +44,13 @@ struct RefinedPath {
 /// result before it. So `after.distinct` is never below `before.distinct`.
 ///
 /// A viewpoint moves only where the segments to both of its neighbours are free (`segment_is_free`) and no
-/// longer than the spacing; on a plane its height stays. Ways between viewpoints that stay are not looked at.
-/// Deterministic. Thread safety: as `optimize_path`.
+/// longer than the spacing; on a plane its height stays. Segments between viewpoints that stay are not
+/// tested. Deterministic. Thread safety: as `optimize_path`.
 /// @param viewpoints  with yaws, all of which count for `before`
 /// @param grid        of the caster, the corridor and the keys of the frontiers
 /// @param corridor    of voxels, not of nodes
 /// @throws std::invalid_argument if a viewpoint is not finite, or a value of the options or of the field of
-/// view is
-///                               out of bounds
+/// view is out of bounds
 [[nodiscard]] FRONTLUX_EXPORT RefinedPath refine_positions(std::span<const Pose> viewpoints,
                                                            std::span<const VoxelKey> frontiers,
                                                            const RayCaster& caster, const VoxelGrid& grid,

@@ -50,7 +50,7 @@ using SegmentTest = std::function<bool(const Eigen::Vector3d& from, const Eigen:
 /// acceleration, keeps its rate. A trajectory is a value.
 class FRONTLUX_EXPORT Trajectory {
  public:
-  /// A robot that rests.
+  /// A robot that rests. @throws std::invalid_argument if the pose or the time is not finite
   Trajectory(const Pose& pose, double time);
 
   /// The fastest one through some viewpoints from a moving robot. Corners are rounded as far as the test
