@@ -1,6 +1,7 @@
 #include "assignment/unseen_frontiers.hpp"
 
 #include "mapping/box_array.hpp"
+#include "mapping/sort_once.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -21,8 +22,7 @@ std::vector<VoxelKey> cubes_of(std::span<const VoxelKey> keys) {
   std::vector<VoxelKey> cubes;
   for (const VoxelKey& key : keys)
     if (const VoxelKey cube = cube_of(key); cubes.empty() || cubes.back() != cube) cubes.push_back(cube);
-  std::sort(cubes.begin(), cubes.end());
-  cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
+  sort_once(cubes);
   return cubes;
 }
 

@@ -1,6 +1,7 @@
 #include "corridor/voxel_columns.hpp"
 
 #include "mapping/octree_order.hpp"
+#include "mapping/sort_once.hpp"
 
 #include <algorithm>
 
@@ -68,8 +69,7 @@ void VoxelColumns::read(const VoxelGrid& grid, Occupancy state, std::span<const 
     const VoxelKey corner = brick_corner(key);
     if (corners.empty() || corners.back() != corner) corners.push_back(corner);
   }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sort_once(corners);
   for (const VoxelKey& corner : corners) read_brick(grid, state, corner);
 }
 

@@ -3,6 +3,8 @@
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
 #include "goal/counting_ray_caster.hpp"
+#include "mapping/sort_once.hpp"
+#include "motion/departure.hpp"
 
 #include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
@@ -14,6 +16,8 @@
 
 namespace frontlux::planner {
 namespace {
+
+using detail::sort_once;
 
 using Keys = std::vector<VoxelKey>;
 
@@ -52,11 +56,6 @@ std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
     kept = i;
   }
   return some;
-}
-
-void sort_once(Keys& keys) {
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
 }  // namespace
@@ -135,9 +134,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     robot.planned = std::move(members[r].sensed);
     robot.travelled = robot.planned.size();
     robot.length = path_length(robot.planned);
-    robot.gained = static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& v) {
-      return v.before == Occupancy::kUnknown && team.frontiers.contains(v.key);
-    }));
+    robot.gained = team.mapped_frontiers(robot.changed);
     members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
     team.trails[r].insert(team.trails[r].end(), robot.planned.begin() + (team.number == 0 ? 0 : 1),

@@ -1,5 +1,7 @@
 #include "exploration/execute_path.hpp"
 
+#include "mapping/sort_once.hpp"
+
 #include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -42,8 +44,7 @@ std::vector<VoxelKey> cells_beyond(const Lattice& lattice, const Pose& from, con
     return true;
   }));
   if (const auto own = lattice.key(from.position)) std::erase(cells, *own);
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_once(cells);
   return cells;
 }
 
@@ -56,8 +57,7 @@ Pose look_towards(const Pose& from, const Pose& to) {
 // Those of some voxels, in any order, that differ between two maps. Sorted by key.
 std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& after,
                                      std::vector<VoxelKey> keys) {
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sort_once(keys);
   std::vector<VoxelChange> changed;
   for (const VoxelKey& key : keys) {
     const Occupancy was = before.at(key), is = after.at(key);

@@ -5,9 +5,8 @@
 #include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
 #include "goal/counting_ray_caster.hpp"
+#include "mapping/sort_once.hpp"
 
-#include <frontlux/octomap.hpp>
-#include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/trajectory.hpp>
@@ -31,8 +30,7 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
   for (std::size_t i = 1; i < viewpoints.size(); ++i)
     for (const std::uint32_t frontier : frontiers_in_view(gain, i, viewpoints[i].yaw))
       if (grid.at(targets[frontier]) == Occupancy::kUnknown) keys.push_back(targets[frontier]);
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sort_once(keys);
   return keys;
 }
 
@@ -219,6 +217,34 @@ void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
 }
 
+// The goal at the first stop of a robot's tour, or why there is none.
+Goal ExplorationState::first_stop(std::size_t robot) const {
+  Goal goal;
+  const CorridorState corridor = path_corridor(robot).state();
+  const auto tour = tours->tour(robot);
+  if (corridor != CorridorState::kReady) {
+    goal.state = GoalState::kNoCorridor;
+    goal.reason = "no goal: the robot " + std::string(describe(corridor));
+    return goal;
+  }
+  if (tour.empty()) {
+    goal.state = GoalState::kNothingAssigned;
+    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
+    return goal;
+  }
+  const TourStop& first = tour.front();
+  goal.state = GoalState::kAssigned;
+  goal.pose = first.pose;
+  goal.cell = first.cell;
+  goal.distance = tours->first_distance(robot);
+  goal.gain = static_cast<double>(first.seen);
+  goal.assigned = tours->frontiers_of(robot).size();
+  goal.quality = options.team[robot].options.discount(goal.distance) * goal.gain;
+  goal.reason =
+      "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
+  return goal;
+}
+
 void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
                                   ExplorationStep& step) {
   const CountingRayCaster counting(*caster, lattice());
@@ -243,27 +269,7 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   const PhaseClock clock(step, Phase::kGoals);
   targets[robot].clear();
   std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
-  Goal& goal = step.robots[robot].goal;
-  goal = {};
-  const auto tour = tours->tour(robot);
-  if (path_corridor(robot).state() != CorridorState::kReady) {
-    goal.state = GoalState::kNoCorridor;
-    goal.reason = "no goal: the robot " + std::string(describe(path_corridor(robot).state()));
-  } else if (tour.empty()) {
-    goal.state = GoalState::kNothingAssigned;
-    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
-  } else {
-    const TourStop& first = tour.front();
-    goal.state = GoalState::kAssigned;
-    goal.pose = first.pose;
-    goal.cell = first.cell;
-    goal.distance = tours->first_distance(robot);
-    goal.gain = static_cast<double>(first.seen);
-    goal.assigned = tours->frontiers_of(robot).size();
-    goal.quality = rating.discount(goal.distance) * goal.gain;
-    goal.reason =
-        "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
-  }
+  const Goal& goal = step.robots[robot].goal = first_stop(robot);
   std::vector<RenderedCell> candidates = tours->candidates(robot);
   for (RenderedCell& cell : candidates) cell.quality = rating.discount(cell.distance) * cell.gain;
   step.robots[robot].image = best_candidates(std::move(candidates), goal);
@@ -345,10 +351,7 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
     const TravelOptions body = travel_by_voxels(r);
     // A retreat need not be free: the robot came on it.
     execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
-    robot.gained =
-        static_cast<std::uint64_t>(std::ranges::count_if(robot.changed, [&](const VoxelChange& voxel) {
-          return voxel.before == Occupancy::kUnknown && frontiers.contains(voxel.key);
-        }));
+    robot.gained = mapped_frontiers(robot.changed);
     // The look at an obstacle is not from where the path would have led.
     const std::size_t reached = robot.travelled - (robot.blocked.empty() ? 0 : 1);
     if (gains[r])
@@ -371,6 +374,12 @@ bool ExplorationState::execute_again(const ExplorationStep& recorded, const Driv
     remember(r, then);
   }
   return true;
+}
+
+std::uint64_t ExplorationState::mapped_frontiers(std::span<const VoxelChange> changes) const {
+  return static_cast<std::uint64_t>(std::ranges::count_if(changes, [&](const VoxelChange& voxel) {
+    return voxel.before == Occupancy::kUnknown && frontiers.contains(voxel.key);
+  }));
 }
 
 void ExplorationState::block(std::size_t robot, std::span<const VoxelKey> cells) {

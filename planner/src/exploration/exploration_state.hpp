@@ -79,6 +79,8 @@ struct ExplorationState {
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);
+  /// How many of these changes have made a frontier known.
+  [[nodiscard]] std::uint64_t mapped_frontiers(std::span<const VoxelChange> changes) const;
   /// Cells that the robot does not go through any more, in all its corridors.
   void block(std::size_t robot, std::span<const VoxelKey> cells);
   void advance_clock(ExplorationStep& step);
@@ -100,6 +102,7 @@ struct ExplorationState {
  private:
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
   bool find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
+  [[nodiscard]] Goal first_stop(std::size_t robot) const;
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
   // The place of the robot's trail to which it retreats, but for cells that it has tried.

@@ -1,6 +1,7 @@
 #include "goal/counting_ray_caster.hpp"
 #include "goal/goal_selection_state.hpp"
 #include "goal/rendered_cell.hpp"
+#include "mapping/sort_once.hpp"
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/split_mix.hpp>
@@ -71,8 +72,7 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
     refuse("the grid has a resolution of " + std::to_string(change.grid.resolution()) +
            " m, the goal selection was made for " + std::to_string(state.lattice.resolution()) + " m");
   State::Keys sorted(frontiers.begin(), frontiers.end());
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  detail::sort_once(sorted);
 
   TeamGoals result;
   result.frontiers = sorted.size();

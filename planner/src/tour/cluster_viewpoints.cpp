@@ -1,5 +1,7 @@
 #include "tour/cluster_viewpoints.hpp"
 
+#include "mapping/sort_once.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,8 +51,7 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
                                  std::clamp(middle.z() + above * query.view.max_range, lowest, highest));
         if (const auto cell = query.lattice.key(at); cell && query.graph.node(*cell)) cells.push_back(*cell);
       }
-  std::ranges::sort(cells);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_once(cells);
   return cells;
 }
 

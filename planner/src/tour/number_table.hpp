@@ -5,11 +5,12 @@
 
 namespace frontlux::planner::detail {
 
-/// A table of numbers, zero at first.
+/// A table of numbers, all the same at first.
 class NumberTable {
  public:
   NumberTable() = default;
-  NumberTable(std::size_t rows, std::size_t columns) : columns_(columns), numbers_(rows * columns) {}
+  NumberTable(std::size_t rows, std::size_t columns, double number = 0.0)
+      : columns_(columns), numbers_(rows * columns, number) {}
   [[nodiscard]] double& operator()(std::size_t row, std::size_t column) {
     return numbers_[row * columns_ + column];
   }

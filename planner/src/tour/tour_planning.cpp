@@ -1,5 +1,6 @@
 #include "tour/tour_planning.hpp"
 
+#include "mapping/sort_once.hpp"
 #include "tour/travel_seconds.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -119,8 +120,7 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
   Keys cubes;
   for (const VoxelKey& key : std::exchange(member.changed, {}))
     cubes.push_back(make_key(key.x / kCube, key.y / kCube, key.z / kCube));
-  std::ranges::sort(cubes);
-  cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
+  sort_once(cubes);
   std::vector<KeyBox> boxes;
   for (const VoxelKey& at : cubes)
     boxes.push_back(cube(make_key(at.x * kCube, at.y * kCube, at.z * kCube), kCube));
@@ -259,9 +259,8 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   Member& member = members_[r];
   const MotionState& start = query.starts[r];
   const std::size_t count = stops.size();
-  TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever), NumberTable(count, count)};
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j) robot.between(i, j) = TourProblem::kNever;
+  TourProblem::Robot robot{std::vector<double>(count, TourProblem::kNever),
+                           NumberTable(count, count, TourProblem::kNever)};
   if (!member.distances.has_start()) return robot;
 
   std::vector<const ClusterViewpoint*> at(count);

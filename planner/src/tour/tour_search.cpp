@@ -165,63 +165,77 @@ class Search {
     return any;
   }
 
+  // A tour from which a stretch has been taken out.
+  struct Rest {
+    Tour tour;
+    Steps steps;
+    double length = 0.0;  // [s]
+  };
+  [[nodiscard]] Rest without(std::size_t r, std::size_t begin, std::size_t end, double inner) const {
+    const auto take_out = [&](auto numbers) {
+      numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(begin),
+                    numbers.begin() + static_cast<std::ptrdiff_t>(end));
+      return numbers;
+    };
+    Rest rest{take_out(tours_[r]), take_out(steps_[r]), lengths_[r] - steps_[r][begin] - inner};
+    if (end == tours_[r].size()) return rest;
+    rest.steps[begin] = step(problem_.robots[r], rest.tour, begin);
+    rest.length -= steps_[r][end];
+    rest.length += rest.steps[begin];
+    return rest;
+  }
+
+  // [s] from the first to the last stop of a stretch; `kNever` if it is not for the robot.
+  [[nodiscard]] static double time_within(const TourProblem::Robot& robot,
+                                          std::span<const std::uint32_t> stretch) {
+    if (robot.first[stretch.front()] == TourProblem::kNever) return TourProblem::kNever;
+    double time = 0.0;
+    for (std::size_t i = 1; i < stretch.size(); ++i) time += robot.between(stretch[i - 1], stretch[i]);
+    return time;
+  }
+
+  struct Move {
+    std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
+    bool turned = false;
+  };
+
   // Or-opt: the best move of a few stops to another place, in their own tour or another one.
   bool move_stops() {
     double best = cost() - kWorth;
-    struct {
-      std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
-      bool turned = false;
-    } move;
-    Tour rest;
-    for (std::size_t a = 0; a < tours_.size(); ++a) {
-      const TourProblem::Robot& robot = problem_.robots[a];
-      const Tour& tour = tours_[a];
-      for (std::size_t begin = robot.fixed; begin < tour.size(); ++begin)
-        for (std::size_t count = 1; count <= kMoved && begin + count <= tour.size(); ++count) {
-          const std::size_t end = begin + count;
-          const std::uint32_t first = tour[begin], last = tour[end - 1];
-          double inner = 0.0;
-          for (std::size_t i = begin + 1; i < end; ++i) inner += steps_[a][i];
-          double left = lengths_[a] - steps_[a][begin] - inner;
-          rest.assign(tour.begin(), tour.begin() + static_cast<std::ptrdiff_t>(begin));
-          rest.insert(rest.end(), tour.begin() + static_cast<std::ptrdiff_t>(end), tour.end());
-          Steps rest_steps = steps_[a];
-          rest_steps.erase(rest_steps.begin() + static_cast<std::ptrdiff_t>(begin),
-                           rest_steps.begin() + static_cast<std::ptrdiff_t>(end));
-          if (end < tour.size()) {
-            rest_steps[begin] = step(robot, rest, begin);
-            left -= steps_[a][end];
-            left += rest_steps[begin];
-          }
+    Move move;
+    for (std::size_t a = 0; a < tours_.size(); ++a)
+      for (std::size_t begin = problem_.robots[a].fixed; begin < tours_[a].size(); ++begin)
+        for (std::size_t count = 1; count <= kMoved && begin + count <= tours_[a].size(); ++count) {
+          const std::span stretch = std::span(tours_[a]).subspan(begin, count);
+          const Rest rest = without(a, begin, begin + count, time_within(problem_.robots[a], stretch));
           for (std::size_t b = 0; b < tours_.size(); ++b) {
-            const Tour& into = b == a ? rest : tours_[b];
-            const Steps& steps = b == a ? rest_steps : steps_[b];
-            double within = inner;
-            if (b != a) {
-              if (problem_.robots[b].first[first] == TourProblem::kNever) continue;
-              within = 0.0;
-              for (std::size_t i = begin + 1; i < end; ++i)
-                within += problem_.robots[b].between(tour[i - 1], tour[i]);
-            }
+            const double within = time_within(problem_.robots[b], stretch);
             if (within == TourProblem::kNever) continue;
+            const Tour& into = b == a ? rest.tour : tours_[b];
+            const Steps& steps = b == a ? rest.steps : steps_[b];
             double least = TourProblem::kNever;  // added; what adds more costs no less
             for (std::size_t at = std::min(problem_.robots[b].fixed, into.size()); at <= into.size(); ++at)
               for (const bool turned : {false, true}) {
                 if (turned && count == 1) continue;
-                const double added =
-                    within + detour(b, into, steps, at, turned ? last : first, turned ? first : last);
+                const std::uint32_t first = turned ? stretch.back() : stretch.front();
+                const std::uint32_t last = turned ? stretch.front() : stretch.back();
+                const double added = within + detour(b, into, steps, at, first, last);
                 if (!(added < least)) continue;
                 least = added;
-                const double cost = b == a ? cost_with(a, left + added, a, left + added)
-                                           : cost_with(a, left, b, lengths_[b] + added);
+                const double cost = b == a ? cost_with(a, rest.length + added, a, rest.length + added)
+                                           : cost_with(a, rest.length, b, lengths_[b] + added);
                 if (!(cost < best)) continue;
                 best = cost;
                 move = {a, begin, count, b, at, turned};
               }
           }
         }
-    }
     if (move.count == 0) return false;
+    take(move);
+    return true;
+  }
+
+  void take(const Move& move) {
     Tour& tour = tours_[move.from];
     const auto begin = tour.begin() + static_cast<std::ptrdiff_t>(move.begin);
     Tour stretch(begin, begin + static_cast<std::ptrdiff_t>(move.count));
@@ -230,7 +244,6 @@ class Search {
     Tour& into = tours_[move.to];
     into.insert(into.begin() + static_cast<std::ptrdiff_t>(move.at), stretch.begin(), stretch.end());
     for (const std::size_t r : {move.from, move.to}) measure(r);
-    return true;
   }
 
   const TourProblem& problem_;

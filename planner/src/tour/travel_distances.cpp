@@ -1,5 +1,7 @@
 #include "tour/travel_distances.hpp"
 
+#include "mapping/sort_once.hpp"
+
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -39,8 +41,7 @@ void TravelDistances::measure_from(std::span<const VoxelKey> cells) {
     else
       nodes.push_back(*node);
   }
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_once(nodes);
   auto near = graph_.near_distances(nodes, measured_);
   for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
 }

@@ -1,10 +1,13 @@
 #include "tour/travel_graph.hpp"
 
+#include "mapping/sort_once.hpp"
+
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -124,8 +127,7 @@ void TravelGraph::link(std::size_t index) {
         cube.links.emplace_back(part_[key] - 1u, name_of(other, part_[next] - 1u));
     });
   }
-  std::ranges::sort(cube.links);
-  cube.links.erase(std::unique(cube.links.begin(), cube.links.end()), cube.links.end());
+  sort_once(cube.links);
 }
 
 // Calls `visit(name)` for the nodes that touch one.
@@ -152,8 +154,7 @@ void TravelGraph::connect(std::size_t index) {
     for_each_touching(name, [&](Name next) { touching.push_back(next); });
     near = touching;
     for (const Name next : touching) for_each_touching(next, [&](Name beyond) { near.push_back(beyond); });
-    std::ranges::sort(near);
-    near.erase(std::unique(near.begin(), near.end()), near.end());
+    sort_once(near);
     for (const Name to : near)
       if (to != name)
         cube.edges.push_back({part, to, static_cast<float>((center_of(to) - center_of(name)).norm())});
@@ -275,9 +276,9 @@ class TravelGraph::Search {
   std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
 };
 
-std::vector<double> TravelGraph::distances(std::uint32_t from, std::size_t count) const {
+std::vector<double> TravelGraph::distances(std::uint32_t from) const {
   Search search(*this);
-  search.run(from, count);
+  search.run(from, std::numeric_limits<std::size_t>::max());
   return search.take_lengths();
 }
 
@@ -330,8 +331,7 @@ std::vector<std::uint32_t> TravelGraph::around_path(const std::vector<double>& l
     nodes.push_back(node);
     for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) nodes.push_back(edges_[e].to);
   }
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_once(nodes);
   return nodes;
 }
 

@@ -23,7 +23,6 @@ namespace frontlux::planner::detail {
 class TravelGraph {
  public:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
   /// @param bounds  of the cells
   /// @param edge    [voxels] of a cube, at most 40
@@ -44,8 +43,7 @@ class TravelGraph {
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
   /// [m] from a node to others, from middle to middle; `kFar` where there is no path.
-  /// @param count  how many are enough: of the nodes that are farther than so many, most are `kFar`, too
-  [[nodiscard]] std::vector<double> distances(std::uint32_t from, std::size_t count = kAll) const;
+  [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
 
   /// What a node is called until its cells change, whatever its number.
   using Name = std::uint64_t;
@@ -55,8 +53,9 @@ class TravelGraph {
     double length;  ///< [m]
     auto operator<=>(const Distance&) const = default;
   };
-  /// From each of some nodes, of `distances` those that are known, sorted by name. Whatever has changed
+  /// From each of some nodes, of `distances` those to the nearest nodes, sorted by name. Whatever has changed
   /// elsewhere, they are the same as long as none of these nodes `has_changed`.
+  /// @param count  how many are enough; there may be somewhat more
   [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
                                                                   std::size_t count) const;
   /// Whether the last update has found the node's cells or neighbours anew.
