@@ -269,6 +269,38 @@ TEST_F(ExploreMotion, LongRunsMapTheirWorld) {
       }
 }
 
+// A goal of low gain counts when it is chosen, and not again at each planning until the robot is there: this
+// run once ended on its way to one, at 62 %.
+TEST_F(ExploreMotion, GoalsOfLowGainAreReachedBeforeTheEnd) {
+  expect_answer({"room", "--team", "ugv", "--goal", "cluster", "--report", "off", "-o", path("run")});
+  EXPECT_GT(json_in("run").at("coverage_observable"), 0.98);
+}
+
+// Ten frontiers are more than a place shows if voxels are large, or if a sensor is short: these runs ended at
+// once.
+TEST_F(ExploreMotion, LargeVoxelsAndShortSensorsHaveSomethingToDo) {
+  const auto robot = [&](const std::string& range) {
+    return write("robot" + range + ".json",
+                 R"({"name": "uav", "motion": "space", "body": {"kind": "box", "size_m": [0.4, 0.4, 0.3]},
+    "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": )" +
+                     range + R"(, "columns": 48, "rows": 36, "rate_hz": 4}})");
+  };
+  for (const char* resolution : {"0.6", "0.8", "1"}) {
+    expect_answer({"room", "--team", "", "--robot", robot("10"), "--resolution", resolution, "--report",
+                   "off", "--force", "-o", path("run")});
+    EXPECT_GT(json_in("run").at("coverage_observable"), 0.97) << resolution;
+  }
+  expect_answer({"room", "--team", "", "--robot", robot("1"), "--stop-time", "40", "--report", "off",
+                 "--force", "-o", path("run")});
+  EXPECT_EQ(json_in("run").at("end"), "time_limit");
+}
+
+TEST_F(ExploreMotion, EndsInTimeIfNoScanArrives) {
+  expect_answer(joined(quick("run", "3"), {"--scan-loss", "1"}));
+  EXPECT_EQ(json_in("run").at("end"), "time_limit");
+  EXPECT_NEAR(json_in("run").at("time_s").at("end").get<double>(), 3.0, 0.2);
+}
+
 TEST_F(ExploreMotion, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_answer(quick("whole", "5"));
   // In the middle of a step, and at the very end.

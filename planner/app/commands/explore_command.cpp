@@ -127,7 +127,7 @@ void add_explore_command(CLI::App& app) {
               "Stop when the expected gain stays below this for 3 steps,\n"
               "in motion for 3 plannings of each robot;\n"
               "goals of at least this gain come first [10; --goal nearest: 1;\n"
-              "tours: 0.3 m2 if that is more]",
+              "tours: at least 0.3 m2, at most 0.9 m2]",
               kFromZero);
   command.group("Robots");
   Option team = command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");

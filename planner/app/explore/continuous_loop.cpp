@@ -55,8 +55,10 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
   if (!begun_) {
     begun_ = true;
     ExplorationStep first = exploration_.begin(setup_.head.starts, 0.0);
+    Mapped mapped;
     for (const planner::ExplorationStart& start : setup_.head.starts)
-      count({exploration_.mapping().grid(), start.known_free});
+      count({exploration_.mapping().grid(), start.known_free}, mapped);
+    note_numbers(mapped);
     return first;
   }
   std::optional<Stopwatch> waiting;  // since somebody wants the run to stop
@@ -110,8 +112,10 @@ void ContinuousLoop::sense() {
   judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
   if (!numbers_.robots[sensed.robot].failed) scans_.send(std::move(sensed));
+  Mapped mapped = numbers_.mapped.back();
   for (const auto& [taken, robot, pose, scan] : scans_.arrived(time_))
-    count(exploration_.insert(robot, pose, scan));
+    count(exploration_.insert(robot, pose, scan), mapped);
+  note_numbers(mapped);
 }
 
 // New ones, by the map that the robots had at the time.
@@ -130,8 +134,7 @@ void ContinuousLoop::judge_contacts() {
   }
 }
 
-void ContinuousLoop::count(const MapChange& change) {
-  Mapped mapped = numbers_.mapped.back();
+void ContinuousLoop::count(const MapChange& change, Mapped& mapped) {
   for (const VoxelKey& key : change.keys) {
     const Occupancy is = change.grid.at(key);
     if (is == Occupancy::kUnknown || known_.at(key) != Occupancy::kUnknown) continue;
@@ -139,6 +142,10 @@ void ContinuousLoop::count(const MapChange& change) {
     ++mapped.bounding;
     mapped.observable += setup_.truth->contains(key) ? 1 : 0;
   }
+}
+
+// What is mapped now, and what the robots have done until now.
+void ContinuousLoop::note_numbers(Mapped mapped) {
   mapped.time = time_;
   mapped.length = 0.0;
   double clearance = 1.0;

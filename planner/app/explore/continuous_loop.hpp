@@ -33,7 +33,8 @@ class ContinuousLoop final : public RunLoop {
   void note_end();
   bool lose_robots();
   void sense();
-  void count(const MapChange& change);
+  void count(const MapChange& change, Mapped& mapped);
+  void note_numbers(Mapped mapped);
   void judge_contacts();
   void note_motion(double until);
   void note_plan(const planner::PlannedMotion& planned, const planner::ExplorationStep& measured);

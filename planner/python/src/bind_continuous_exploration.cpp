@@ -188,7 +188,7 @@ robots: list of Robot. bounds: (2, 3) [m], lower and upper corner of what is exp
 resolution: [m] edge of a voxel. goal: 'tour', through clusters of frontiers for all robots together; 'render', the best view
 quality; 'cluster'; 'nearest'. seed: of all that is random. latency: [s] from a planning to its trajectory's begin.
 period: [s] after which a robot plans anew at the latest. epsilon: frontiers that a goal has to show, else the end is near;
-None: 0.3 m2 of them and at least 10, with 'nearest' 1. max_steps: plannings at most; None: any number.)")
+None: 10, but not less than 0.3 m2 nor more than 0.9 m2 of them, with 'nearest' 1. max_steps: plannings at most; None: any number.)")
       .def("begin", &begin, py::arg("starts"), py::arg("time") = 0.0, py::arg("free_radius") = 0.0,
            R"(All robots rest at their starts. Returns Step 0.
 

@@ -94,6 +94,8 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
   member.goal = {};
   member.goal_frontiers.clear();
   member.needed.clear();
+  state_->team.selection->lose(robot);
+  state_->team.targets[robot].clear();
   if (state_->team.tours) state_->team.tours->lose(robot);
 }
 

@@ -347,7 +347,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   note_look(robot, reason, step);
   // Along a tour a robot that has learnt next to nothing has no reason to change its mind: it would turn back
   // and forth between stops that are about as good.
-  const bool as_before = !team.tours || static_cast<double>(member.gained) < team.options.epsilon;
+  const bool as_before = !team.tours || static_cast<double>(member.gained) < team.tours->least_gain(robot);
   const bool keeps = as_before && reason == PlanReason::kPeriod && member.going && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   member.gained = 0;
@@ -371,7 +371,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (rests(member) && !rested) tell_others(robot);
   member.blocked = member.blocked && !took_it && member.going;  // it tries again to brake
   member.meets_other = member.stopped = false;
-  count_low_gain(robot, step.robots[robot]);
+  count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
   step.robots[robot].trajectory = poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
@@ -417,18 +417,19 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
   return true;
 }
 
-// And plannings in which it waits: `end` decides by both.
-void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step) {
+// And plannings in which it waits: `end` decides by both. A goal that is kept counts once: it is not reached.
+void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step, bool kept) {
   Member& member = members[robot];
-  double gain = step.goal.gain;
+  double gain = step.goal.gain, least = team.options.epsilon;
   if (team.tours) {  // its goal may show little, on the path to others
     double seen = 0.0;
     for (const detail::TourStop& stop : team.tours->tour(robot)) seen += static_cast<double>(stop.seen);
     gain = std::max(gain, seen);
+    least = team.tours->least_gain(robot);
   }
   const bool waits = !member.going && (step.goal.pose || member.request || waits_for_room(robot));
-  const bool low = step.goal.pose ? gain < team.options.epsilon : !member.going && !waits;
-  member.low_gains = low ? member.low_gains + 1 : 0;
+  const bool low = step.goal.pose ? gain < least : !member.going && !waits;
+  if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = waits ? member.waits + 1 : 0;
   if (member.waits > kPatience && member.request) end_request(robot);
 }

@@ -85,7 +85,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] bool take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
-  void count_low_gain(std::size_t robot, const RobotStep& step);
+  void count_low_gain(std::size_t robot, const RobotStep& step, bool kept);
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
                                  std::size_t other) const;

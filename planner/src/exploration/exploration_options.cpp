@@ -57,10 +57,13 @@ ExplorationOptions motion_options(Method method) {
 }
 
 ExplorationOptions tour_options(double resolution) {
-  constexpr double kWorthAStop = 0.3;  // [m2]: ten frontiers of 0.1 m are no reason to go anywhere
+  // [m2] Ten frontiers of 0.1 m are no reason to go anywhere, and of 1 m they are more than many places show.
+  constexpr double kLeast = 0.3, kMost = 0.9;
   ExplorationOptions options = motion_options();
   options.tours = true;
-  options.epsilon = std::max(options.epsilon, std::round(kWorthAStop / (resolution * resolution)));
+  const double face = resolution * resolution;
+  options.epsilon =
+      std::clamp(options.epsilon, std::round(kLeast / face), std::max(1.0, std::round(kMost / face)));
   return options;
 }
 

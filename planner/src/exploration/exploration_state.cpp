@@ -371,6 +371,10 @@ bool ExplorationState::execute_again(const ExplorationStep& recorded, const Driv
     now.planned.resize(then.travelled);
     execute_path(r, now, nullptr, drive, mapping);
     if (now.travelled != then.travelled || now.changed != then.changed) return false;
+    if (then.goal.pose)
+      retreated_to[r].clear();
+    else if (!then.planned.empty())
+      retreated_to[r].push_back(lattice().key(then.planned.back().position).value());
     remember(r, then);
   }
   return true;

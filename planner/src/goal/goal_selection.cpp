@@ -113,6 +113,14 @@ void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
   member.corridor.block(cells);
 }
 
+void GoalSelection::lose(std::size_t robot) {
+  State::Member& member = state_->members[robot];
+  member.goal = {};
+  member.assigned.clear();
+  member.targets.clear();
+  member.previous_viewpoints.clear();
+}
+
 void GoalSelection::keep_out_of(std::size_t robot, std::vector<KeyBox> boxes) {
   state_->members[robot].corridor.keep_out_of(std::move(boxes));
 }

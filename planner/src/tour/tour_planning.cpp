@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -49,6 +50,16 @@ void complete(NumberTable& distances, std::span<const double> from_robot) {
     shorten(from_robot[i], [&](std::size_t j) { return from_robot[j]; });
     for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), [&](std::size_t j) { return known(k, j); });
   });
+}
+
+// [frontiers] A sensor of short range never has many in view: a fifth of those that cover its view at half of
+// the range.
+double most_to_ask(const FieldOfView& view, double resolution) {
+  const double away = view.max_range / 2;
+  const auto across = [&](double angle) { return 2 * away * std::tan(angle / 2); };
+  const double width = view.sees_all_around() ? 2 * std::numbers::pi * away : across(view.horizontal);
+  const double height = across(view.shape == FieldOfView::Shape::kCone ? view.horizontal : view.vertical);
+  return std::max(1.0, width * height / (resolution * resolution) / 5);
 }
 
 }  // namespace
@@ -178,7 +189,11 @@ std::optional<VoxelKey> TourPlanning::place_to_see_from(
 
 ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster) const {
   const Member& member = members_[robot];
-  return {caster, lattice_, member.distances.graph(), member.robot.view, member.region, options_.least_gain};
+  return {caster, lattice_, member.distances.graph(), member.robot.view, member.region, least_gain(robot)};
+}
+
+double TourPlanning::least_gain(std::size_t robot) const {
+  return std::min(options_.least_gain, most_to_ask(members_[robot].robot.view, lattice_.resolution()));
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] on its path.

@@ -71,6 +71,9 @@ class TourPlanning {
   /// From the next planning on these voxels have changed.
   void note(std::span<const VoxelKey> changed);
 
+  /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little.
+  [[nodiscard]] double least_gain(std::size_t robot) const;
+
   /// The robot's tour as of the last update.
   [[nodiscard]] std::span<const TourStop> tour(std::size_t robot) const { return members_[robot].tour; }
   /// The places from which the robot that planned last sees clusters, one by one, and can get to: its stops

@@ -412,5 +412,11 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   EXPECT_EQ(name_of(PlanReason::kGoalSeen), "goal_seen");
 }
 
+TEST(TourOptions, AskAStopForTenFrontiersButNotForMoreOrLessThanAnArea) {
+  for (const auto& [resolution, epsilon] :
+       {std::pair(0.05, 120.0), {0.1, 30.0}, {0.2, 10.0}, {0.3, 10.0}, {0.5, 4.0}, {1.0, 1.0}, {3.0, 1.0}})
+    EXPECT_EQ(tour_options(resolution).epsilon, epsilon) << resolution;
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -175,6 +175,27 @@ TEST(RetreatWithTours, IsNotWorthTakingForWhatIsNoStop) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
+// Steps that are taken again leave what was known of retreats then.
+TEST(RetreatRepeated, IsNotTriedOnceMore) {
+  TwoRooms then(false, 5), now(false, 5);
+  const Drive stays = [](std::size_t, const Pose&) { return std::optional<Scan>(); };
+  for (TwoRooms* rooms : {&then, &now}) {
+    rooms->close_door();
+    ASSERT_FALSE(rooms->choose().pose);
+  }
+  then.state.plan_paths(then.step);
+  ASSERT_GE(then.step.robots[0].planned.size(), 2U);
+  then.state.execute_paths(ExplorationState::Gains(1), stays, then.step);
+  ASSERT_TRUE(now.state.execute_again(then.step, stays, now.step));
+  EXPECT_EQ(then.state.retreated_to, now.state.retreated_to);
+  for (TwoRooms* rooms : {&then, &now}) {
+    rooms->step = rooms->state.new_step();
+    ASSERT_FALSE(rooms->choose().pose);
+    rooms->state.plan_paths(rooms->step);
+  }
+  EXPECT_EQ(then.step.robots[0].planned.back().position, now.step.robots[0].planned.back().position);
+}
+
 INSTANTIATE_TEST_SUITE_P(Planners, Retreat, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Tours" : "Render"; });
 

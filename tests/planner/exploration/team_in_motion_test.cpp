@@ -139,6 +139,21 @@ TEST_P(TeamInMotionBy, ALossIsNoEnd) {
   EXPECT_GT(losses, 2U);
 }
 
+TEST_P(TeamInMotionBy, ALostRobotHasNoGoal) {
+  TeamInMotion scene(test::TeamInWorld("room", 1, {small_uav(), small_uav()}), sim::AtContact::kGoOn,
+                     GetParam());
+  scene.explore(4.0);
+  ContinuousExploration& exploration = scene.exploration();
+  exploration.lose(1, exploration.at(1, scene.time()).pose, scene.time());
+  const std::size_t before = scene.steps.size();
+  scene.explore(10.0);
+  ASSERT_GT(scene.steps.size(), before + 3);
+  for (std::size_t i = before; i < scene.steps.size(); ++i) {
+    EXPECT_FALSE(scene.steps[i].robots[1].goal.pose) << i;
+    EXPECT_EQ(scene.steps[i].robots[1].goal.assigned, 0U) << i;
+  }
+}
+
 // Two rooms of 6 x 6 x 2.4 m with a corridor of 6 x 1.8 x 2 m between them: the x of its ends [m]. There a
 // UAV cannot pass over a UGV.
 constexpr double kCorridor[] = {6.0, 12.0};

@@ -97,8 +97,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
   /// Why the exploration is over; nothing while it goes on. Of low gain is an
-  /// exploration in which each robot has had a goal of low gain, or none, for `low_gain_steps` plannings in a
-  /// row. Robots that are lost have nothing to do.
+  /// exploration in which each robot has chosen a goal of low gain, or found none, `low_gain_steps` times in
+  /// a row. Robots that are lost have nothing to do.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   /// As given.

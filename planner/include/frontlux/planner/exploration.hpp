@@ -63,8 +63,8 @@ struct FRONTLUX_EXPORT ExplorationOptions {
 /// The same for robots in motion, which note what each scan has in view: a frontier that stays unknown after
 /// one look is abandoned, and the number of plannings has no limit.
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions motion_options(Method method = Method::kDefault);
-/// All but the team as `frontlux explore` has it by default: in motion, on tours, whose stops show 0.3 m2 of
-/// frontiers and at least ten.
+/// All but the team as `frontlux explore` has it by default: in motion, on tours, whose stops show ten
+/// frontiers, and not less than 0.3 m2 of them nor more than 0.9 m2.
 /// @param resolution  [m] of the map
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions tour_options(double resolution);
 

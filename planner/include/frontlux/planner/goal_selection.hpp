@@ -189,6 +189,9 @@ class FRONTLUX_EXPORT GoalSelection {
   /// @pre robot < team().size()
   void block(std::size_t robot, std::span<const VoxelKey> cells);
 
+  /// A robot that will not choose again has no goal any more. @pre robot < team().size()
+  void lose(std::size_t robot);
+
   /// At the next step these boxes of cells are impassable for a robot: see `TravelCorridor::keep_out_of`.
   /// @pre robot < team().size()
   void keep_out_of(std::size_t robot, std::vector<KeyBox> boxes);
