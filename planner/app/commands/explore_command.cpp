@@ -125,7 +125,7 @@ void add_explore_command(CLI::App& app) {
   command.group("Stopping", Command::Shown::kInHelpAll);
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps,\n"
-              "in motion for 3 plannings of each robot;\n"
+              "in motion for 3 goals of each robot;\n"
               "goals of at least this gain come first [10; --goal nearest: 1;\n"
               "tours: at least 0.3 m2, at most 0.9 m2]",
               kFromZero);
