@@ -137,7 +137,7 @@ class Session {
     for (const Rendering& rendering : renderings) {
       // A caster of its own for the map after the scan, so that only rendering is timed.
       std::shared_ptr<RayCaster> after = make_grid_ray_caster(scene.scanned);
-      if (rendering.name == kFast) after = make_ray_caster(scene.scanned);
+      if (rendering.name == kFast || rendering.name == kExact) after = make_ray_caster(scene.scanned);
       if (rendering.name == kEmbree) after = make_embree_ray_caster(scene.scanned);
       const auto render = [&scene, rendering] {
         ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, rendering.options);

@@ -113,7 +113,7 @@ Rendering all_frontiers(const Subject& subject, const std::string& name, int azi
   options.azimuth_bins = azimuth_bins;
   options.samples = ViewQualityOptions::kAll;
   if (name == kExact) options.renderer = ViewQualityOptions::Renderer::kExact;
-  return {name, &subject.caster(name == kExact ? kGrid : name), options};
+  return {name, &subject.caster(name == kExact ? kFast : name), options};
 }
 
 std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count) {

@@ -24,6 +24,7 @@ namespace detail {
 class AzimuthBins;
 class RayTries;
 class TargetIndex;
+struct Kept;
 struct Viewpoint;
 }  // namespace detail
 
@@ -154,10 +155,10 @@ class FRONTLUX_EXPORT ViewQualityImage {
   [[nodiscard]] const ViewQualityOptions& options() const { return options_; }
 
  private:
-  // `kept`: for each of the sorted viewpoints the index of its value, or none.
+  // `kept`: for each of the sorted viewpoints.
   std::size_t remake(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                      std::shared_ptr<const std::vector<detail::Viewpoint>> order,
-                     std::shared_ptr<const detail::TargetIndex> targets, std::span<const std::uint32_t> kept);
+                     std::shared_ptr<const detail::TargetIndex> targets, std::span<const detail::Kept> kept);
   [[nodiscard]] std::size_t bins() const { return static_cast<std::size_t>(options_.azimuth_bins); }
 
   ViewQualityOptions options_;

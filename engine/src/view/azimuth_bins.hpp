@@ -1,5 +1,8 @@
 #pragma once
 
+#include "view/sector_set.hpp"
+
+#include <frontlux/key_box.hpp>
 #include <frontlux/view_region.hpp>
 
 #include <cstdint>
@@ -11,15 +14,25 @@ namespace frontlux::detail {
 /// @param azimuth [rad] finite
 [[nodiscard]] int azimuth_bin(double azimuth, int count);
 
-/// The azimuth bin of each horizontal offset in reach of a region, by its entry in the region's table.
+/// The azimuth bin of each horizontal offset that a region's table has, by its entry there.
 class AzimuthBins {
  public:
   /// @param count  of bins; 0: no table
   AzimuthBins(const ViewRegion& region, int count);
 
+  /// How many there are.
+  [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::uint16_t operator[](std::int32_t entry) const { return bins_.data()[middle_ + entry]; }
 
+  /// The bins in which a voxel sees points of a box, at any height. @pre count() > 0
+  [[nodiscard]] SectorSet sectors_of(const VoxelKey& from, const KeyBox& box) const;
+
  private:
+  [[nodiscard]] int bin_of(int dx, int dy) const;
+
+  int count_;
+  int reach_;      // of the table
+  int width_ = 0;  // of its rows
   std::ptrdiff_t middle_ = 0;
   std::vector<std::uint16_t> bins_;
 };

@@ -12,8 +12,19 @@
 #include <utility>
 
 namespace frontlux {
+
+// What the image before knows of a viewpoint.
+struct detail::Kept {
+  static constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t index = kNothing;
+  SectorSet stale = SectorSet::all();  // what is not right any more; without bins all or none
+};
+
 namespace {
 
+using detail::Kept;
+using detail::SectorSet;
+using detail::StaleViewpoint;
 using detail::Viewpoint;
 
 void check_count(std::size_t viewpoints) {
@@ -26,12 +37,11 @@ std::shared_ptr<const std::vector<Viewpoint>> sorted(std::span<const VoxelKey> v
   return std::make_shared<const std::vector<Viewpoint>>(detail::sort_viewpoints(viewpoints));
 }
 
-// For each of the sorted viewpoints the index at which its value is still right in the image before, or
-// kStale.
-constexpr std::uint32_t kStale = std::numeric_limits<std::uint32_t>::max();
-std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<const Viewpoint> before,
-                                     const ViewRegion& view, std::span<const KeyBox> changed) {
-  std::vector<std::uint32_t> kept(now.size(), kStale);
+// For each of the sorted viewpoints.
+std::vector<Kept> find_kept(std::span<const Viewpoint> now, std::span<const Viewpoint> before,
+                            const ViewRegion& view, std::span<const KeyBox> changed,
+                            const detail::AzimuthBins* bins) {
+  std::vector<Kept> kept(now.size());
   const std::vector<std::size_t> tiles = detail::tiles_of(now);
   for_each_range(tiles.size() - 1, [&](std::size_t begin, std::size_t end) {
     std::vector<KeyBox> near;
@@ -46,10 +56,12 @@ std::vector<std::uint32_t> find_kept(std::span<const Viewpoint> now, std::span<c
         while (old != before.end() && old->code < now[i].code) ++old;
         if (old == before.end() || old->code != now[i].code) continue;
         const VoxelKey here = detail::cell_of_code(now[i].code);
-        const bool stale = std::any_of(near.begin(), near.end(), [&](const KeyBox& box) {
-          return view.may_contain_point({here, here}, box);
-        });
-        if (!stale) kept[i] = old->index;
+        SectorSet stale;
+        for (const KeyBox& box : near) {
+          const SectorSet there = bins != nullptr ? bins->sectors_of(here, box) : SectorSet::all();
+          if (!stale.contains(there) && view.may_contain_point({here, here}, box)) stale |= there;
+        }
+        kept[i] = {old->index, stale};
       }
     }
   });
@@ -108,7 +120,7 @@ void ViewQualityImage::render(const RayCaster& caster, std::span<const VoxelKey>
                               std::span<const VoxelKey> targets) {
   check_count(viewpoints.size());
   auto order = sorted(viewpoints);
-  const std::vector<std::uint32_t> kept(order->size(), kStale);
+  const std::vector<Kept> kept(order->size());
   remake(caster, viewpoints, std::move(order), std::make_shared<const detail::TargetIndex>(targets), kept);
 }
 
@@ -123,11 +135,14 @@ std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const Vo
                                      std::span<const VoxelKey> targets, const MapChange& change) {
   check_count(viewpoints.size());
   auto index = std::make_shared<const detail::TargetIndex>(targets);
-  const bool buckets = effective(options_).sampling == ViewQualityOptions::Sampling::kBuckets;
+  const ViewQualityOptions options = effective(options_);
+  const bool buckets = options.sampling == ViewQualityOptions::Sampling::kBuckets;
   const auto boxes = detail::changed_boxes(change.keys, *targets_, *index, buckets);
   const bool same = std::equal(viewpoints.begin(), viewpoints.end(), viewpoints_.begin(), viewpoints_.end());
   auto order = same ? order_ : sorted(viewpoints);
-  const auto kept = find_kept(*order, *order_, *region_, boxes);
+  // What is drawn anew is drawn in all directions.
+  const bool by_sector = options.samples == ViewQualityOptions::kAll && !buckets && options.azimuth_bins > 0;
+  const auto kept = find_kept(*order, *order_, *region_, boxes, by_sector ? azimuth_bins_.get() : nullptr);
   return remake(caster, viewpoints, std::move(order), std::move(index), kept);
 }
 
@@ -135,20 +150,18 @@ std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const Vo
 std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
                                      std::shared_ptr<const std::vector<Viewpoint>> order,
                                      std::shared_ptr<const detail::TargetIndex> targets,
-                                     std::span<const std::uint32_t> kept) {
+                                     std::span<const Kept> kept) {
   const std::size_t bins = this->bins();
   std::vector<VoxelKey> keys(viewpoints.begin(), viewpoints.end());
   std::vector<ViewQuality> values(keys.size());
   std::vector<std::uint32_t> bin_hits(keys.size() * bins);
-  std::vector<Viewpoint> stale;
+  std::vector<StaleViewpoint> stale;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const Viewpoint& viewpoint = (*order)[i];
-    if (kept[i] == kStale) {
-      stale.push_back(viewpoint);
-      continue;
-    }
-    values[viewpoint.index] = values_[kept[i]];
-    std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i] * bins), bins,
+    if (kept[i].stale.any()) stale.push_back({viewpoint.code, viewpoint.index, kept[i].stale});
+    if (kept[i].index == Kept::kNothing) continue;
+    values[viewpoint.index] = values_[kept[i].index];
+    std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i].index * bins), bins,
                 bin_hits.begin() + static_cast<std::ptrdiff_t>(viewpoint.index * bins));
   }
   const std::size_t rendered = stale.size();

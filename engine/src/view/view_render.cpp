@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 namespace frontlux::detail {
@@ -46,10 +47,10 @@ struct Surroundings {
 // What a task needs for its tiles. Not thread-local: a task that waits may start another one on its thread.
 class TileRenderer {
  public:
-  void render(const ViewScene& scene, std::span<const Viewpoint> tile, std::span<ViewQuality> values,
+  void render(const ViewScene& scene, std::span<const StaleViewpoint> tile, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits) {
     surroundings_.list(scene.view, scene.targets, cube_of_code(tile.front().code));
-    for (const Viewpoint& viewpoint : tile) {
+    for (const StaleViewpoint& viewpoint : tile) {
       draw(scene, viewpoint);
       if (segments_.size() >= kEnoughSegments) finish(scene, values, bin_hits);
     }
@@ -67,10 +68,13 @@ class TileRenderer {
       ViewQuality& value = values[drawn.index];
       const std::size_t end = begin + drawn.in_view;
       std::uint32_t hits = 0;
-      for (std::size_t s = begin; s < end; ++s) hits += visible_[s];
-      if (bins != 0) {
+      if (bins == 0) {
+        for (std::size_t s = begin; s < end; ++s) hits += visible_[s];
+      } else {
         const auto counts = bin_hits.subspan(drawn.index * bins, bins);
+        drawn.sectors.clear(counts);
         for (std::size_t s = begin; s < end; ++s) counts[scene.azimuth_bins[entries_[s]]] += visible_[s];
+        hits = std::reduce(counts.begin(), counts.end());
       }
       value = estimate(drawn, hits, scene.options.estimator);
       begin = end;
@@ -82,7 +86,10 @@ class TileRenderer {
 
  private:
   struct Drawn {
-    std::uint32_t index, population, count, in_view;
+    std::uint32_t index;
+    SectorSet sectors;
+    std::uint32_t population, count;
+    std::uint32_t in_view;  // of those that were drawn, in these sectors
   };
 
   static ViewQuality estimate(const Drawn& drawn, std::uint32_t hits,
@@ -95,15 +102,20 @@ class TileRenderer {
     return value;
   }
 
-  void draw(const ViewScene& scene, const Viewpoint& viewpoint) {
+  void draw(const ViewScene& scene, const StaleViewpoint& viewpoint) {
     const VoxelKey from = cell_of_code(viewpoint.code);
     const VoxelRandom random(scene.options.seed, from);
     const auto samples = static_cast<std::uint32_t>(scene.options.samples);
     const std::int32_t origin =
         scene.view.entry(from.x - surroundings_.corner.x, from.y - surroundings_.corner.y);
+    const int bins = scene.options.azimuth_bins;
     const auto add = [&](std::uint32_t target) {
+      if (bins != 0) {
+        const std::int32_t entry = surroundings_.entries[target] - origin;
+        if (!viewpoint.sectors.contains(SectorSet::of(scene.azimuth_bins[entry], bins))) return;
+        entries_.push_back(entry);
+      }
       segments_.push_back({from, surroundings_.keys[target]});
-      if (scene.options.azimuth_bins != 0) entries_.push_back(surroundings_.entries[target] - origin);
     };
     const std::size_t begin = segments_.size();
     std::uint32_t population = 0, count = 0;
@@ -123,8 +135,8 @@ class TileRenderer {
         if (scene.view.contains(from, surroundings_.keys[target])) add(target);
       }
     }
-    drawn_.push_back(
-        {viewpoint.index, population, count, static_cast<std::uint32_t>(segments_.size() - begin)});
+    drawn_.push_back({viewpoint.index, viewpoint.sectors, population, count,
+                      static_cast<std::uint32_t>(segments_.size() - begin)});
   }
 
   // Writes every target and advances only past those in view: no branch to mispredict.
@@ -204,16 +216,7 @@ std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints) {
   return sorted;
 }
 
-std::vector<std::size_t> tiles_of(std::span<const Viewpoint> viewpoints) {
-  std::vector<std::size_t> begins;
-  for (std::size_t i = 0; i < viewpoints.size(); ++i)
-    if (i == 0 || viewpoints[i].code >> kBlockCode != viewpoints[i - 1].code >> kBlockCode)
-      begins.push_back(i);
-  begins.push_back(viewpoints.size());
-  return begins;
-}
-
-void render_views(const ViewScene& scene, std::span<const Viewpoint> viewpoints,
+void render_views(const ViewScene& scene, std::span<const StaleViewpoint> viewpoints,
                   std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
   const std::vector<std::size_t> tiles = tiles_of(viewpoints);
   SpareRenderers spares;

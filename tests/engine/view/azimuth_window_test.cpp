@@ -89,5 +89,44 @@ TEST(AzimuthBins, CountFromAzimuthZeroUpwards) {
       ASSERT_EQ(bins[region.entry(dx, dy)], detail::azimuth_bin(std::atan2(dy, dx), 36));
 }
 
+// Every voxel of a box is in one of the box's sectors, and a box to one side leaves others out.
+TEST(AzimuthBins, OfABoxAreThoseOfItsVoxels) {
+  const ViewRegion region({FieldOfView::Shape::kSpinning, 0, 1, 2.0}, 0.25);
+  Random random(11);
+  std::size_t in_part = 0;
+  for (const int count : {1, 2, 7, 36, 64, 65, 100, 3600}) {
+    const detail::AzimuthBins bins(region, count);
+    for (int i = 0; i < 2000; ++i) {
+      const VoxelKey from{32768, 32768, 32768};
+      const VoxelKey corner =
+          *offset_key(from, random.below(61) - 30, random.below(61) - 30, random.below(9) - 4);
+      const KeyBox box{corner, *offset_key(corner, random.below(10), random.below(10), random.below(10))};
+      const detail::SectorSet sectors = bins.sectors_of(from, box);
+      in_part += sectors == detail::SectorSet::all() ? 0 : 1;
+      for (int x = box.min.x; x <= box.max.x; ++x)
+        for (int y = box.min.y; y <= box.max.y; ++y) {
+          const int bin = detail::azimuth_bin(std::atan2(y - from.y, x - from.x), count);
+          ASSERT_TRUE(sectors.contains(detail::SectorSet::of(bin, count)))
+              << count << " bins, " << x - from.x << ' ' << y - from.y;
+        }
+    }
+  }
+  EXPECT_GT(in_part, 8000U);
+}
+
+TEST(SectorSet, GoesOnFromTheLastToTheFirst) {
+  using detail::SectorSet;
+  const SectorSet few = SectorSet::between(34, 1, 36);
+  for (int bin = 0; bin < 36; ++bin)
+    EXPECT_EQ(few.contains(SectorSet::of(bin, 36)), bin >= 34 || bin <= 1) << bin;
+  std::vector<std::uint32_t> numbers(36, 5);
+  few.clear(numbers);
+  EXPECT_EQ(std::ranges::count(numbers, 0U), 4);
+  EXPECT_FALSE(SectorSet().any());
+  // More than 64 are taken together: 0 and 1 of 128.
+  EXPECT_TRUE(SectorSet::of(0, 128).contains(SectorSet::of(1, 128)));
+  EXPECT_FALSE(SectorSet::of(0, 128).contains(SectorSet::of(2, 128)));
+}
+
 }  // namespace
 }  // namespace frontlux::test

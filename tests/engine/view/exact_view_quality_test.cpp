@@ -94,6 +94,12 @@ Truth brute_force(const Case& some, int bins) {
   return truth;
 }
 
+std::vector<detail::StaleViewpoint> all_stale(std::span<const VoxelKey> viewpoints) {
+  std::vector<detail::StaleViewpoint> stale;
+  for (const detail::Viewpoint& v : detail::sort_viewpoints(viewpoints)) stale.push_back({v.code, v.index});
+  return stale;
+}
+
 // By walks alone, however few the viewpoints.
 Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
   const ViewRegion view(some.view, kResolution);
@@ -103,7 +109,7 @@ Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
   mine.values.resize(some.viewpoints.size());
   mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
   const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, bins, {1, 1}},
-                                           detail::sort_viewpoints(some.viewpoints), mine.values, mine.bins);
+                                           all_stale(some.viewpoints), mine.values, mine.bins);
   EXPECT_EQ(left.size(), 0U);
   return mine;
 }
@@ -265,13 +271,16 @@ Case hall(std::uint64_t seed, int stride) {
 
 // Edits of a map: voxels of all states, targets that come and go, viewpoints likewise.
 TEST(ExactViewQuality, AfterUpdatesEqualsRenderingAgain) {
-  for (const int bins : {0, 36}) {
+  for (const int bins : {0, 1, 36, 100}) {
     Case some = hall(3, bins == 0 ? 1 : 2);
     ASSERT_GT(some.viewpoints.size(), 4000U);
     Random random(5);
     const auto caster = make_ray_caster(some.grid);
     ViewQualityImage updated(some.grid.lattice(), some.view, exact(bins));
     updated.render(*caster, some.viewpoints, some.targets);
+    const ViewQualityOptions by_rays{.samples = ViewQualityOptions::kAll, .azimuth_bins = bins};
+    ViewQualityImage rays(some.grid.lattice(), some.view, by_rays);
+    rays.render(*caster, some.viewpoints, some.targets);
     std::size_t rendered = 0, all = 0;
     for (int step = 0; step < 16; ++step) {
       const VoxelGrid before = some.grid;
@@ -288,13 +297,16 @@ TEST(ExactViewQuality, AfterUpdatesEqualsRenderingAgain) {
       const std::vector<VoxelKey> changed = changed_keys(before, some.grid);
       caster->update(some.grid);
       rendered += updated.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
+      rays.update(*caster, some.viewpoints, some.targets, {some.grid, changed});
       all += some.viewpoints.size();
       const auto render = [&](const ViewQualityOptions& options) {
         return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
                                    options);
       };
       expect_equal(updated, render(exact(bins)));
-      expect_equal(updated, render({.samples = ViewQualityOptions::kAll, .azimuth_bins = bins}));
+      const ViewQualityImage again = render(by_rays);
+      expect_equal(updated, again);
+      expect_equal(rays, again);
       if (HasFatalFailure()) return;
     }
     EXPECT_GT(rendered, 0U);
@@ -325,7 +337,7 @@ TEST(ExactViewQuality, LeavesFewOrLoneViewpointsToRays) {
   detail::RayTries tries;
   const auto& walk = detail::trie_walks().front();
   std::vector<ViewQuality> values(some.viewpoints.size());
-  const auto all = detail::sort_viewpoints(some.viewpoints);
+  const auto all = all_stale(some.viewpoints);
   const auto few = std::span(all).first(1000);
   EXPECT_EQ(detail::render_exactly({some.grid, view, targets, walk, tries, 0}, few, values, {}).size(),
             1000U);

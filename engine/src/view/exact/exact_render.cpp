@@ -21,6 +21,7 @@ struct Placed {
   std::uint32_t place;
   std::uint32_t index;
   std::uint32_t number;  // among those that are sorted
+  SectorSet sectors;     // that are stale
 
   [[nodiscard]] std::uint64_t column() const { return order >> 16U; }
 };
@@ -31,11 +32,11 @@ struct Tiling {
   std::array<int, 2> stride{1, 1};
   static constexpr int kLevels = 32;  // of viewpoints in a column of tiles
 
-  explicit Tiling(std::span<const Viewpoint> viewpoints) {
+  explicit Tiling(std::span<const StaleViewpoint> viewpoints) {
     const VoxelKey first = cell_of_code(viewpoints.front().code);
     corner = {first.x, first.y, first.z};
     std::array<int, 2> apart{};
-    for (const Viewpoint& viewpoint : viewpoints) {
+    for (const StaleViewpoint& viewpoint : viewpoints) {
       const VoxelKey key = cell_of_code(viewpoint.code);
       apart = {std::gcd(apart[0], key.x - first.x), std::gcd(apart[1], key.y - first.y)};
       corner = {std::min<int>(corner[0], key.x), std::min<int>(corner[1], key.y),
@@ -45,14 +46,15 @@ struct Tiling {
       while (stride[a] < ViewTile::kMaxStride && apart[a] % (2 * stride[a]) == 0) stride[a] *= 2;
   }
 
-  [[nodiscard]] Placed place(const Viewpoint& viewpoint, std::uint32_t number) const {
+  [[nodiscard]] Placed place(const StaleViewpoint& viewpoint, std::uint32_t number) const {
     const VoxelKey key = cell_of_code(viewpoint.code);
     const int column = (key.x - corner[0]) / stride[0], row = (key.y - corner[1]) / stride[1];
     const int level = key.z - corner[2];
     const auto digits = [](int part) { return static_cast<std::uint64_t>(part); };
     return {digits(level / kLevels) << 48U | digits(row / ViewTile::kRows) << 32U |
                 digits(column / ViewTile::kColumns) << 16U | digits(level % kLevels),
-            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index, number};
+            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index, number,
+            viewpoint.sectors};
   }
 
   // Voxel of a tile's first place.
@@ -85,8 +87,9 @@ class ColumnRenderer {
     groups_.front().words.fill(~std::uint64_t{0});
   }
 
+  // To `left`, at `number`, go the sectors of each viewpoint in which rays take less time.
   void render(std::span<const Placed> column, std::span<ViewQuality> values,
-              std::span<std::uint32_t> bin_hits) {
+              std::span<std::uint32_t> bin_hits, std::span<SectorSet> left) {
     const std::array<int, 3> first = tiling_.first_place(column.front());
     const int top = tiling_.first_place(column.back())[2];
     targets_.aim(trie_.layout(), first, top);
@@ -100,44 +103,58 @@ class ColumnRenderer {
       const auto tile = column.subspan(tiles[t], tiles[t + 1] - tiles[t]);
       in_view_.clear();
       seen_.clear();
-      if (any) walk(tile, bin_hits);
       for (const Placed& placed : tile) {
-        const std::uint32_t in_view = in_view_.at(placed.place), seen = seen_.at(placed.place);
+        placed.sectors.clear(bins_of(placed, bin_hits));
+        left[placed.number] = {};
+      }
+      if (any) walk(tile, bin_hits, left);
+      for (const Placed& placed : tile) {
+        const auto bins = bins_of(placed, bin_hits);
+        const std::uint32_t in_view = in_view_.at(placed.place);
+        const std::uint32_t seen =
+            bins.empty() ? seen_.at(placed.place) : std::reduce(bins.begin(), bins.end());
         values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
       }
     }
   }
 
  private:
-  void walk(std::span<const Placed> tile, std::span<std::uint32_t> bin_hits) {
+  [[nodiscard]] std::span<std::uint32_t> bins_of(const Placed& placed,
+                                                 std::span<std::uint32_t> bin_hits) const {
+    const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
+    return bin_hits.subspan(placed.index * bins, bins);
+  }
+  void walk(std::span<const Placed> tile, std::span<std::uint32_t> bin_hits, std::span<SectorSet> left) {
     TileBits viewpoints{};
     for (const Placed& placed : tile) viewpoints.set(placed.place);
     const int z = tiling_.first_place(tile.front())[2];
     const std::byte* const targets = targets_.level(z);
-    const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
-    if (bins != 0) totals_.assign(tile.size(), 0);
     for (const RayTrie::Sector& sector : trie_.sectors()) {
       TileBits concerned{};
       scene_.walk.gather(trie_, sector, targets, viewpoints, in_view_, groups_, concerned);
+      if (scene_.azimuth_bins != 0) concerned &= find_stale(tile, sector.bin, left);
       if (!concerned.any()) continue;
       scene_.walk.count(trie_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
-      if (bins == 0) continue;
-      for (std::size_t i = 0; i < tile.size(); ++i) {
-        const std::uint32_t seen = seen_.at(tile[i].place);
-        bin_hits[tile[i].index * bins + static_cast<std::size_t>(sector.bin)] = seen;
-        totals_[i] += seen;
-      }
+      if (scene_.azimuth_bins == 0) continue;
+      for (const Placed* placed : stale_)
+        bins_of(*placed, bin_hits)[static_cast<std::size_t>(sector.bin)] = seen_.at(placed->place);
       seen_.clear();
     }
-    if (bins != 0) set(seen_, tile, totals_);
   }
 
-  static void set(TileCounts& counts, std::span<const Placed> tile, std::span<const std::uint32_t> numbers) {
-    for (std::size_t i = 0; i < tile.size(); ++i)
-      for (std::size_t p = 0; numbers[i] >> p != 0; ++p) {
-        if ((numbers[i] >> p & 1U) != 0) counts.planes[p].set(tile[i].place);
-        counts.used = std::max(counts.used, p + 1);
+  // The viewpoints for which a sector is to be walked: none if those are so few that it is left to rays.
+  TileBits find_stale(std::span<const Placed> tile, int bin, std::span<SectorSet> left) {
+    const SectorSet sector = SectorSet::of(bin, scene_.azimuth_bins);
+    stale_.clear();
+    TileBits places{};
+    for (const Placed& placed : tile)
+      if (placed.sectors.contains(sector)) {
+        stale_.push_back(&placed);
+        places.set(placed.place);
       }
+    if (stale_.size() >= scene_.thresholds.tile) return places;
+    for (const Placed* placed : stale_) left[placed->number] |= sector;
+    return {};
   }
 
   const ExactScene& scene_;
@@ -146,7 +163,7 @@ class ColumnRenderer {
   ViewWindow free_, targets_;
   TileCounts in_view_, seen_;
   std::vector<TileBits> reached_, groups_;
-  std::vector<std::uint32_t> totals_;
+  std::vector<const Placed*> stale_;
 };
 
 }  // namespace
@@ -165,9 +182,10 @@ std::shared_ptr<const RayTrie> RayTries::get(const ViewRegion& view, int azimuth
   return known_.back().trie;
 }
 
-std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const Viewpoint> viewpoints,
-                                      std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
-  std::vector<Viewpoint> left;
+std::vector<StaleViewpoint> render_exactly(const ExactScene& scene,
+                                           std::span<const StaleViewpoint> viewpoints,
+                                           std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
+  std::vector<StaleViewpoint> left;
   if (viewpoints.empty()) return left;
   const Tiling tiling(viewpoints);
   const auto [stride_x, stride_y] = tiling.stride;
@@ -178,7 +196,8 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
     return a.order < b.order || (a.order == b.order && a.number < b.number);
   });
 
-  std::vector<bool> walked(placed.size());
+  std::vector<SectorSet> sectors_left(placed.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) sectors_left[i] = viewpoints[i].sectors;
   std::vector<Placed> dense;
   const std::vector<std::size_t> tiles = runs(placed, [](const Placed& p) { return p.order; });
   for (std::size_t t = 0; t + 1 < tiles.size(); ++t)
@@ -192,12 +211,12 @@ std::vector<Viewpoint> render_exactly(const ExactScene& scene, std::span<const V
     for_each_range(columns.size() - 1, [&](std::size_t begin, std::size_t end) {
       ColumnRenderer renderer(scene, tiling, *trie);
       for (std::size_t c = begin; c < end; ++c)
-        renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits);
+        renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits,
+                        sectors_left);
     });
-    for (const Placed& one : dense) walked[one.number] = true;
   }
   for (std::size_t i = 0; i < viewpoints.size(); ++i)
-    if (!walked[i]) left.push_back(viewpoints[i]);
+    if (sectors_left[i].any()) left.push_back({viewpoints[i].code, viewpoints[i].index, sectors_left[i]});
   return left;
 }
 

@@ -35,7 +35,7 @@ class RayTries {
 
 /// From how many viewpoints on a walk over a trie takes less time than rays.
 struct WalkThresholds {
-  std::size_t tile = 24;    ///< in a tile
+  std::size_t tile = 24;    ///< in a tile, and again in each of its sectors
   std::size_t trie = 2000;  ///< in all such tiles, if the trie is still to be made
 };
 
@@ -54,12 +54,12 @@ struct ExactScene {
 /// takes less time than rays. Runs in the current task arena.
 /// @param viewpoints  sorted
 /// @param values      written at `index` of each viewpoint
-/// @param bin_hits    likewise, `azimuth_bins` to a viewpoint
-/// @return the other viewpoints, sorted, for which nothing is written: all if the rays are too many for a
-/// trie
-[[nodiscard]] std::vector<Viewpoint> render_exactly(const ExactScene& scene,
-                                                    std::span<const Viewpoint> viewpoints,
-                                                    std::span<ViewQuality> values,
-                                                    std::span<std::uint32_t> bin_hits);
+/// @param bin_hits    likewise, `azimuth_bins` to a viewpoint; of sectors that are not stale they stay
+/// @return what is left to rays, sorted: viewpoints, or the rest of their sectors. All if the rays are too
+/// many for a trie
+[[nodiscard]] std::vector<StaleViewpoint> render_exactly(const ExactScene& scene,
+                                                         std::span<const StaleViewpoint> viewpoints,
+                                                         std::span<ViewQuality> values,
+                                                         std::span<std::uint32_t> bin_hits);
 
 }  // namespace frontlux::detail

@@ -22,6 +22,10 @@ struct alignas(64) TileBits {
   }
   [[nodiscard]] bool at(std::uint32_t place) const { return (words[place / 64] >> place % 64 & 1U) != 0; }
   void set(std::uint32_t place) { words[place / 64] |= std::uint64_t{1} << place % 64; }
+  TileBits& operator&=(const TileBits& other) {
+    for (std::size_t w = 0; w < words.size(); ++w) words[w] &= other.words[w];
+    return *this;
+  }
   [[nodiscard]] bool any() const {
     std::uint64_t all = 0;
     for (const std::uint64_t word : words) all |= word;
