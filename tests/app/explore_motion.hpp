@@ -86,6 +86,24 @@ class ExploreMotion : public ExploreCommand {
     vertices += 8;
   }
 
+  /// Wires of a millimetre stand in a row across a room: beams pass them by, and bodies do not.
+  [[nodiscard]] std::string wires() const {
+    std::ostringstream obj;
+    int vertices = 0;
+    const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+      add_prism(obj, vertices, low, high, high.z());
+    };
+    add_box({-4.0, -2.5, 0.0}, {4.0, 2.5, 3.0});
+    for (double y = -2.2; y < 2.4; y += 0.6) add_box({0.3, y, 0.0}, {0.301, y + 0.001, 3.0});
+    return write("wires.obj", obj.str());
+  }
+  /// A UAV's file, with four scans a second.
+  [[nodiscard]] std::string slow_camera() const {
+    return write("robot.json", R"({"name": "uav", "motion": "space", "body": {"kind": "box",
+    "size_m": [0.7, 0.7, 0.5]}, "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72,
+    "range_m": 6, "columns": 32, "rows": 24, "rate_hz": 4}})");
+  }
+
  private:
   // events.csv and the recording tell the same times, also of plannings before the run was resumed.
   void expect_planning_times(const std::string& output) const {

@@ -189,22 +189,10 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
   test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
 }
 
-// Wires of a millimetre stand in a row across a room: beams pass them by, and bodies do not.
 TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
-  std::ostringstream obj;
-  int vertices = 0;
-  const auto add_box = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-    add_prism(obj, vertices, low, high, high.z());
-  };
-  add_box({-4.0, -2.5, 0.0}, {4.0, 2.5, 3.0});
-  for (double y = -2.2; y < 2.4; y += 0.6) add_box({0.3, y, 0.0}, {0.301, y + 0.001, 3.0});
-  const std::string world = write("wires.obj", obj.str());
-  const std::string robot = write("robot.json", R"({"name": "uav", "motion": "space", "body": {"kind": "box",
-    "size_m": [0.7, 0.7, 0.5]}, "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72,
-    "range_m": 6, "columns": 32, "rows": 24, "rate_hz": 4}})");
   const std::vector<std::string> words = {
-      world, "--start=-2.5,0.1,1.5", "--team", "",         "--robot", robot, "--bumper",
-      "off", "--stop-time",          "25",     "--report", "off"};
+      wires(), "--start=-2.5,0.1,1.5", "--team", "",         "--robot", slow_camera(), "--bumper",
+      "off",   "--stop-time",          "25",     "--report", "off"};
   const test::Answer answer = run(joined(words, {"-o", path("run")}));
   EXPECT_EQ(answer.code, 0) << answer.err;
   const nlohmann::json json = json_in("run");
@@ -216,6 +204,30 @@ TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
                       " with surfaces in free voxels, least clearance 0.00 m"});
   ASSERT_EQ(run(joined(words, {"--lockstep", "-o", path("steps")})).code, 0);
   EXPECT_EQ(json_in("steps").at("contacts_in_free"), nullptr) << "not judged in lock-step";
+}
+
+// The wires stop the robot between two scans, a quarter of a second apart. What is written down of its motion
+// ends at the contact, and does not go on to the scan and jump back.
+TEST_F(ExploreMotion, MotionEndsWhereABumperStopsIt) {
+  const std::vector<std::string> words = {
+      wires(), "--start=-2.5,0.1,1.5", "--team", "", "--robot", slow_camera(), "--report", "off", "--threads",
+      "1"};
+  expect_answer(joined(words, {"--stop-time", "25", "-o", path("run")}));
+  ASSERT_GT(json_in("run").at("held_back"), 0);
+  const auto expect_no_jump = [&](const std::string& run) {
+    const Table motion(path(run + "/motion.csv"));
+    for (std::size_t i = 1; i < motion.size(); ++i) {
+      const Eigen::Vector3d step = motion.point(i, "", "_m") - motion.point(i - 1, "", "_m");
+      const double speed =
+          std::max(motion.point(i, "v", "_m_s").norm(), motion.point(i - 1, "v", "_m_s").norm());
+      ASSERT_LE(step.norm(), 0.0101 * speed) << run << " at " << motion.number(i, "time_s") << " s";
+    }
+  };
+  expect_no_jump("run");
+  // In two parts it is the same, and so it is up to where a run is cut off.
+  ASSERT_EQ(run(joined(words, {"--stop-time", "25", "--max-steps", "12", "-o", path("parts")})).code, 0);
+  ASSERT_EQ(run({"--resume", path("parts"), "--max-steps", "1000000", "--report", "off"}).code, 0);
+  expect_same_motions("run", "parts");
 }
 
 TEST_F(ExploreMotion, RobotsFailAndDriftAndAreHeardLateAsAsked) {

@@ -105,10 +105,10 @@ bool ContinuousLoop::lose_robots() {
 void ContinuousLoop::sense() {
   std::vector<sim::MovingRobots::Stopped> stopped;
   const double next = robots_.next_time();
-  note_motion(next);
   const auto where = [this](std::size_t robot, double time) { return exploration_.at(robot, time); };
   sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
   time_ = next;
+  note_motion(stopped);
   judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
   if (!numbers_.robots[sensed.robot].failed) scans_.send(std::move(sensed));
@@ -161,13 +161,16 @@ void ContinuousLoop::note_numbers(Mapped mapped) {
   numbers_.mapped.push_back(mapped);
 }
 
-// A hundred rows a second for each robot.
-void ContinuousLoop::note_motion(double until) {
+// A hundred rows a second for each robot, up to now. The exploration has yet to learn who was stopped.
+void ContinuousLoop::note_motion(std::span<const sim::MovingRobots::Stopped> stopped) {
   constexpr double kRate = 100.0;
-  for (; static_cast<double>(samples_) / kRate <= until; ++samples_) {
+  for (; static_cast<double>(samples_) / kRate <= time_; ++samples_) {
     const double time = static_cast<double>(samples_) / kRate;
     for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
-      const planner::MotionState state = exploration_.at(r, time);
+      const auto stop = std::ranges::find(stopped, r, &sim::MovingRobots::Stopped::robot);
+      const bool rests = stop != stopped.end() && time > stop->time;
+      const planner::MotionState state =
+          rests ? planner::MotionState{.pose = stop->pose} : exploration_.at(r, time);
       const Eigen::Vector3d &p = state.pose.position, &v = state.velocity;
       rows_.motion += csv_row(time, setup_.head.robots[r].robot.name, p.x(), p.y(), p.z(), state.pose.yaw,
                               v.x(), v.y(), v.z(), state.yaw_rate);

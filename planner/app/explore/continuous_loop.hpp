@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,7 @@ class ContinuousLoop final : public RunLoop {
   void count(const MapChange& change, Mapped& mapped);
   void note_numbers(Mapped mapped);
   void judge_contacts();
-  void note_motion(double until);
+  void note_motion(std::span<const sim::MovingRobots::Stopped> stopped);
   void note_plan(const planner::PlannedMotion& planned, const planner::ExplorationStep& measured);
 
   const ExploreSetup& setup_;

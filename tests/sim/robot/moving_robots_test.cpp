@@ -219,8 +219,10 @@ TEST(MovingRobots, StayWhereABumperStopsThem) {
   EXPECT_TRUE(scene.stopped.empty());
   scene.go_on(1.5, where);
   ASSERT_EQ(scene.stopped.size(), 1U);
-  const auto [robot, pose, blocked] = scene.stopped[0];
+  const auto [robot, since, pose, blocked] = scene.stopped[0];
   EXPECT_EQ(robot, 0U);
+  // From the moment on at which it was there, long before the call's end.
+  EXPECT_NEAR(since, pose.position.x() - 1.5, 1e-9);
   // It is as near as a step of a fiftieth of a second allows.
   EXPECT_LE(pose.position.x(), 2.6 + GroundTruth::kMargin);
   EXPECT_GE(pose.position.x(), 2.6 - 0.021);

@@ -125,8 +125,8 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
     ++record.held_back;
     record.idle += seconds;
     now.halted = true;
-    stopped.push_back(
-        {robot, now.believed, cells_ahead(truth_->lattice(), now.believed.position, to.pose.position)});
+    stopped.push_back({robot, time_, now.believed,
+                       cells_ahead(truth_->lattice(), now.believed.position, to.pose.position)});
     return;
   }
   if (contact && !now.touching) record.contacts.push_back({time, swept.bounds()});

@@ -67,7 +67,8 @@ class MovingRobots {
   /// A robot whose bumper stopped it.
   struct Stopped {
     std::size_t robot = 0;
-    planner::Pose pose;             ///< where it rests, as it believes
+    double time = 0.0;              ///< [s] from when on it rests
+    planner::Pose pose;             ///< where, as it believes
     std::vector<VoxelKey> blocked;  ///< cells that it was about to enter; sorted
   };
 
