@@ -3,6 +3,7 @@
 #include <array>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace frontlux::planner {
 namespace {
@@ -32,15 +33,7 @@ void RecordedMap::apply(const RecordedStep& step) {
       if (const Occupancy is = after.at(change.key); is != change.before) refuse(step, robot, change, is);
       after.set(change.key, change.after);
     }
-  for (std::size_t robot = 0; robot < robots.size(); ++robot)
-    for (const VoxelChange& change : robots[robot].changed)
-      if (change.before == Occupancy::kUnknown) first_.try_emplace(change.key, robot);
   grid_ = std::move(after);
-}
-
-std::optional<std::size_t> RecordedMap::first_seen_by(const VoxelKey& key) const {
-  const auto found = first_.find(key);
-  return found == first_.end() ? std::nullopt : std::optional(found->second);
 }
 
 }  // namespace frontlux::planner

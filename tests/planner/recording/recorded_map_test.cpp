@@ -8,11 +8,7 @@ namespace {
 
 using test::Random;
 
-struct Known {
-  Occupancy state = Occupancy::kUnknown;
-  std::optional<std::size_t> seen_by;
-};
-using Oracle = std::map<VoxelKey, Known>;
+using Oracle = std::map<VoxelKey, Occupancy>;
 
 constexpr int kEdge = 20;  // [voxels] more than two bricks
 constexpr KeyBox kBox = cube({32760, 0, 65536 - kEdge}, kEdge);
@@ -23,13 +19,12 @@ RecordedStep play(Random& random, Oracle& oracle, int robots) {
   for (int robot = 0; robot < robots; ++robot) {
     const Oracle before = oracle;
     for (int scan = 0; scan < 300; ++scan)
-      oracle[random.key_in(kBox)].state = random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree;
+      oracle[random.key_in(kBox)] = random.one_in(3) ? Occupancy::kOccupied : Occupancy::kFree;
     RobotStep& step = recorded.step.robots.emplace_back();
-    for (auto& [key, known] : oracle) {
+    for (const auto& [key, state] : oracle) {
       const auto entry = before.find(key);
-      const Occupancy was = entry == before.end() ? Occupancy::kUnknown : entry->second.state;
-      if (was != known.state) step.changed.push_back({key, was, known.state});
-      if (!known.seen_by) known.seen_by = static_cast<std::size_t>(robot);
+      const Occupancy was = entry == before.end() ? Occupancy::kUnknown : entry->second;
+      if (was != state) step.changed.push_back({key, was, state});
     }
   }
   return recorded;
@@ -38,12 +33,11 @@ RecordedStep play(Random& random, Oracle& oracle, int robots) {
 void expect_equal(const RecordedMap& map, const Oracle& oracle) {
   for_each_key(kBox, [&](const VoxelKey& key) {
     const auto entry = oracle.find(key);
-    const Known known = entry == oracle.end() ? Known{} : entry->second;
-    ASSERT_EQ(map.grid().at(key), known.state) << key.x << " " << key.y << " " << key.z;
-    ASSERT_EQ(map.first_seen_by(key), known.seen_by) << key.x << " " << key.y << " " << key.z;
+    const Occupancy state = entry == oracle.end() ? Occupancy::kUnknown : entry->second;
+    ASSERT_EQ(map.grid().at(key), state) << key.x << " " << key.y << " " << key.z;
   });
   std::array<std::uint64_t, 3> count{};
-  for (const auto& [key, known] : oracle) ++count[static_cast<std::size_t>(known.state)];
+  for (const auto& [key, state] : oracle) ++count[static_cast<std::size_t>(state)];
   EXPECT_EQ(map.grid().count()[1], count[1]);
   EXPECT_EQ(map.grid().count()[2], count[2]);
 }
@@ -76,11 +70,9 @@ TEST(RecordedMap, RefusesChangesOfAnotherMap) {
   EXPECT_EQ(test::complaint_of([&] { map.apply(step); }),
             "recorded map: step 4, robot 1: voxel (1, 1, 2) is unknown and not, as the step says, occupied");
   EXPECT_EQ(map.grid(), VoxelGrid(0.3)) << "as it was";
-  EXPECT_EQ(map.first_seen_by(key), std::nullopt);
   step.step.robots[1].changed.pop_back();
   map.apply(step);
   EXPECT_EQ(map.grid().at(key), Occupancy::kOccupied);
-  EXPECT_EQ(map.first_seen_by(key), 0U);
   EXPECT_THROW(map.apply(step), std::invalid_argument) << "a second time";
 }
 

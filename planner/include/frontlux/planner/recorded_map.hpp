@@ -4,18 +4,14 @@
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/voxel_grid.hpp>
 
-#include <cstddef>
-#include <map>
-#include <optional>
-
 namespace frontlux::planner {
 
-/// The map of a recorded run, step by step, and which robot mapped each voxel first.
+/// The map of a recorded run, step by step.
 ///
 ///     RecordedMap map(recording.head.resolution);
 ///     for (const RecordedStep& step : recording.steps) map.apply(step);
 ///
-/// Takes some 50 megabytes for a map of a million known voxels. Thread safety: as a standard container.
+/// Thread safety: as a standard container.
 class FRONTLUX_EXPORT RecordedMap {
  public:
   /// The map before step 0: all is unknown.
@@ -31,12 +27,8 @@ class FRONTLUX_EXPORT RecordedMap {
   /// The map after the steps applied so far; a copy is a snapshot.
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
 
-  /// The robot that mapped a voxel first, by its place in the team; nothing if none did.
-  [[nodiscard]] std::optional<std::size_t> first_seen_by(const VoxelKey& key) const;
-
  private:
   VoxelGrid grid_;
-  std::map<VoxelKey, std::size_t> first_;  // the robot by voxel
 };
 
 }  // namespace frontlux::planner
