@@ -34,8 +34,8 @@ void check_ground(const TravelOptions& options, double resolution) {
            std::to_string(resolution) + " m, to " + std::to_string(kMaxWindow) +
            " of them: what is lower than a voxel cannot be told from flat floor");
   if (!(options.slope >= 0.0 && options.slope <= kSteepest))
-    refuse("slope is " + std::to_string(options.slope) + ", but has to be from 0 to " +
-           std::to_string(kSteepest));
+    refuse("slope is " + std::to_string(options.slope) + " rad, but has to be from 0 to " +
+           std::to_string(kSteepest) + " rad");
   if (options.clearance() > std::min(options.sensor_height, options.extents.z()))
     refuse("steps and slopes would reach " + std::to_string(options.clearance()) +
            " m up, above the sensor or all of the body");

@@ -419,6 +419,12 @@ TEST(TravelCorridor, RefusesOptionsThatAreNotValid) {
   refuses([&](TravelOptions& o) { o.min_height = 1 / 0.0; }, uav_travel());
   for (const double bad : {-1.0, 0.5, nan, 1e9})
     refuses([&](TravelOptions& o) { o.node_edge = bad; }, uav_travel());
+  TravelOptions steep = ugv_travel();
+  steep.motion = Motion::kGround;
+  steep.step = 0.3;
+  steep.slope = 1.5;
+  EXPECT_EQ(test::complaint_of([&] { TravelCorridor(steep, lattice, kBounds); }),
+            "travel corridor: slope is 1.500000 rad, but has to be from 0 to 1.396263 rad");
   EXPECT_REFUSED(TravelCorridor(uav_travel(), lattice, {key_at(1, 0, 0), key_at(0, 0, 0)}));
   EXPECT_REFUSED(TravelCorridor(uav_travel(), lattice, kAllVoxels));
   TravelCorridor corridor(uav_travel(), lattice, kBounds);
