@@ -23,8 +23,8 @@ TARGETS = {
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
     "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "frontier", "view"],
-    "planner": ["mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "tour", "view_path",
-                "exploration", "recording"],
+    "planner": ["casting", "mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "tour",
+                "view_path", "exploration", "recording"],
 }
 
 # Libraries, and the files that may include them; all others may not.

@@ -1,8 +1,8 @@
 #include "exploration/continuous_state.hpp"
 
+#include "casting/counting_ray_caster.hpp"
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
-#include "goal/counting_ray_caster.hpp"
 #include "mapping/sort_once.hpp"
 #include "motion/departure.hpp"
 

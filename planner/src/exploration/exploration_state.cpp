@@ -1,10 +1,10 @@
 #include "exploration/exploration_state.hpp"
 
+#include "casting/counting_ray_caster.hpp"
 #include "exploration/execute_path.hpp"
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
-#include "goal/counting_ray_caster.hpp"
 #include "mapping/sort_once.hpp"
 
 #include <frontlux/planner/look_around.hpp>

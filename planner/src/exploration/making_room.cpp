@@ -1,8 +1,8 @@
 // Robots that rest on the paths of others, and make room for them.
 
+#include "casting/counting_ray_caster.hpp"
 #include "exploration/continuous_state.hpp"
 #include "exploration/phase_clock.hpp"
-#include "goal/counting_ray_caster.hpp"
 
 #include <frontlux/planner/path_planner.hpp>
 

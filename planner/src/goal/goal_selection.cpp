@@ -1,4 +1,4 @@
-#include "goal/counting_ray_caster.hpp"
+#include "casting/counting_ray_caster.hpp"
 #include "goal/goal_selection_state.hpp"
 #include "goal/rendered_cell.hpp"
 #include "mapping/sort_once.hpp"

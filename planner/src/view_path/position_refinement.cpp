@@ -1,4 +1,4 @@
-#include "goal/counting_ray_caster.hpp"
+#include "casting/counting_ray_caster.hpp"
 
 #include <frontlux/planner/information_gain.hpp>
 #include <frontlux/planner/path_planner.hpp>
