@@ -1,6 +1,7 @@
 #include "tour/frontier_clusters.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -9,6 +10,19 @@ namespace frontlux::planner::detail {
 namespace {
 
 using Keys = std::vector<VoxelKey>;
+
+constexpr int kWidest = 3;  // cubes along an axis, of small pieces together
+
+// Of a cube in which a plane holds twice the least frontiers of a cluster: in smaller ones all pieces would
+// be small, and make one with all that they touch.
+int least_edge(std::size_t least) {
+  return static_cast<int>(std::ceil(std::sqrt(2.0 * static_cast<double>(least))));
+}
+
+KeyBox box_around(const KeyBox& a, const KeyBox& b) {
+  return {make_key(std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)),
+          make_key(std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z))};
+}
 
 // Calls `visit(neighbor)` for the voxels around one that lie in a box.
 template <class Visit>
@@ -19,7 +33,10 @@ void for_each_neighbor(const VoxelKey& key, const KeyBox& box, const Visit& visi
 }  // namespace
 
 FrontierClusters::FrontierClusters(const KeyBox& bounds, int edge, std::size_t least)
-    : edge_(std::max(edge, 1)), least_(std::max<std::size_t>(least, 1)), piece_(bounds), cluster_(bounds) {}
+    : edge_(std::max(edge, least_edge(std::max<std::size_t>(least, 1)))),
+      least_(std::max<std::size_t>(least, 1)),
+      piece_(bounds),
+      cluster_(bounds) {}
 
 std::uint32_t FrontierClusters::new_piece() {
   if (!free_.empty()) {
@@ -82,8 +99,8 @@ std::uint32_t FrontierClusters::piece_for(std::uint32_t small) const {
   return best;
 }
 
-// The pieces in order, sorted; those that are too small together with the largest ones that they touch. What
-// is too small all the same is left out.
+// The pieces in order, sorted; those that are too small together with the largest ones that they touch, up to
+// a width, and beyond it once where they would be left out. What is too small all the same is left out.
 std::vector<Keys> FrontierClusters::joined_pieces() const {
   std::vector<std::uint32_t> joined_to(pieces_.size());  // itself: the first piece of a cluster
   std::iota(joined_to.begin(), joined_to.end(), 0U);
@@ -92,11 +109,26 @@ std::vector<Keys> FrontierClusters::joined_pieces() const {
     return piece;
   };
   const std::vector<std::uint32_t> order = pieces_in_order();
+  std::vector<std::size_t> sizes(pieces_.size());  // of the clusters, by their first pieces
+  std::vector<KeyBox> boxes(pieces_.size());       // around them
+  for (const std::uint32_t piece : order) {
+    sizes[piece] = pieces_[piece].size();
+    boxes[piece] = bounds_of(pieces_[piece]);
+  }
+  const auto is_wide = [&](const KeyBox& box) {
+    const int most = kWidest * edge_ - 1;
+    return box.max.x - box.min.x > most || box.max.y - box.min.y > most || box.max.z - box.min.z > most;
+  };
   for (const std::uint32_t piece : order) {
     if (pieces_[piece].size() >= least_) continue;
     std::uint32_t a = first_of(piece), b = first_of(piece_for(piece));
+    if (a == b) continue;
+    const KeyBox both = box_around(boxes[a], boxes[b]);
+    if (is_wide(both) && (sizes[a] >= least_ || is_wide(boxes[a]) || is_wide(boxes[b]))) continue;
     if (pieces_[b].front() < pieces_[a].front()) std::swap(a, b);
     joined_to[b] = a;
+    sizes[a] += sizes[b];
+    boxes[a] = both;
   }
   std::vector<Keys> all(pieces_.size());
   for (const std::uint32_t piece : order) {

@@ -24,12 +24,14 @@ struct FrontierCluster {
 };
 
 /// The frontiers of a map in clusters. They connect by faces, edges and corners; clusters that reach from one
-/// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour. Only cubes
+/// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour, up to a
+/// bounded width of all together. Only cubes
 /// with other frontiers than before are looked at again.
 class FrontierClusters {
  public:
   /// @param bounds  of all frontiers
-  /// @param edge    [voxels] of a cube
+  /// @param edge    [voxels] of a cube, which is larger if a plane in it held less than two of the least
+  /// clusters
   /// @param least   [frontiers] smaller clusters are left out
   FrontierClusters(const KeyBox& bounds, int edge, std::size_t least);
 

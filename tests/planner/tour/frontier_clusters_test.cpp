@@ -79,11 +79,11 @@ TEST(FrontierClusters, HoldEachFrontierOnceInConnectedPartsOfBoundedSize) {
 }
 
 // Pieces of 4 x 1 x n frontiers, one in each cube along x, that touch each other in a row. None is large
-// enough alone, and no two of them in some orders.
+// enough alone.
 TEST(FrontierClusters, JoinSmallPiecesThatTouchInARow) {
   constexpr int kEdge = 4;
   for (const std::vector<int>& sizes : std::vector<std::vector<int>>{
-           {9, 8, 8}, {8, 8, 9}, {8, 9, 8}, {5, 4, 4}, {4, 4, 5}, {9, 4, 8}, {4, 4, 4, 4}}) {
+           {7, 6, 6}, {6, 6, 7}, {6, 7, 6}, {5, 4, 4}, {4, 4, 5}, {7, 4, 6}, {4, 4, 4, 4}}) {
     Keys frontiers;
     int x = 0;
     for (const int size : sizes) {
@@ -93,11 +93,33 @@ TEST(FrontierClusters, JoinSmallPiecesThatTouchInARow) {
       x += kEdge;
     }
     test::sort(frontiers);
-    FrontierClusters clusters(kBounds, kEdge, 10);
+    FrontierClusters clusters(kBounds, kEdge, 8);
     clusters.update(frontiers);
     ASSERT_EQ(clusters.clusters().size(), 1U) << sizes.front() << ", " << sizes[1] << ", " << sizes[2];
     EXPECT_EQ(clusters.clusters().front().keys, frontiers);
   }
+}
+
+// A floor all of frontiers, and lines of them, as cubes of a sensor of short range cut them: each piece is
+// too small, and touches the next.
+TEST(FrontierClusters, DoNotChainSmallPiecesThroughTheWorld) {
+  constexpr KeyBox kWide{{1000, 1000, 1000}, {1149, 1089, 1002}};
+  constexpr std::size_t kLeast = 17;
+  for (const int edge : {1, 2, 4})
+    for (const int apart : {1, 5}) {  // lines along x
+      Keys frontiers;
+      for (int x = kWide.min.x; x <= kWide.max.x; ++x)
+        for (int y = kWide.min.y; y <= kWide.max.y; y += apart) frontiers.push_back(make_key(x, y, 1001));
+      FrontierClusters clusters(kWide, edge, kLeast);
+      clusters.update(frontiers);
+      std::size_t held = 0;
+      for (const FrontierCluster& cluster : clusters.clusters()) {
+        held += cluster.keys.size();
+        EXPECT_LE(cluster.box.max.x - cluster.box.min.x, 40) << edge << ", " << apart;
+        EXPECT_LE(cluster.box.max.y - cluster.box.min.y, 40) << edge << ", " << apart;
+      }
+      EXPECT_GT(held, frontiers.size() * 9 / 10) << edge << ", " << apart;
+    }
 }
 
 TEST(FrontierClusters, KeepTheirIdsAndRevisionsWhileTheyStay) {
