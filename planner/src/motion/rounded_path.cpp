@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace frontlux::planner {
 
@@ -77,65 +78,95 @@ void round_corner(Corner& corner, double room, const MotionLimits& limits, const
   if (corner.radius < kLeastRadius) corner.radius = 0.0;
 }
 
-}  // namespace
+// A path's distinct places.
+struct Places {
+  std::vector<Eigen::Vector3d> at;   // [m]
+  std::vector<double> lengths;       // [m] from each place to the next
+  std::vector<std::size_t> of_path;  // of each viewpoint
 
-std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, const MotionLimits& limits,
-                                      const SegmentTest& is_free) {
-  // The path's distinct places, and at which of them each viewpoint is.
-  std::vector<Eigen::Vector3d> places;
-  std::vector<std::size_t> place_of;
-  for (const Pose& viewpoint : viewpoints) {
-    if (places.empty() || (viewpoint.position - places.back()).norm() > kSamePlace)
-      places.push_back(viewpoint.position);
-    place_of.push_back(places.size() - 1);
+  explicit Places(std::span<const Pose> viewpoints) {
+    for (const Pose& viewpoint : viewpoints) {
+      if (at.empty() || (viewpoint.position - at.back()).norm() > kSamePlace)
+        at.push_back(viewpoint.position);
+      of_path.push_back(at.size() - 1);
+    }
+    for (std::size_t i = 1; i < at.size(); ++i) lengths.push_back((at[i] - at[i - 1]).norm());
   }
-  std::vector<double> lengths;  // from each place to the next [m]
-  for (std::size_t i = 1; i < places.size(); ++i) lengths.push_back((places[i] - places[i - 1]).norm());
-  std::vector<Corner> corners(places.size());
-  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+};
+
+// One for each place; those at the ends are none.
+std::vector<Corner> corners_at(const Places& places, const MotionLimits& limits, const SegmentTest& is_free) {
+  const auto& [at, lengths, of_path] = places;
+  std::vector<Corner> corners(at.size());
+  for (std::size_t i = 1; i + 1 < at.size(); ++i) {
     Corner& corner = corners[i];
-    corner.at = places[i];
-    corner.before = (places[i] - places[i - 1]) / lengths[i - 1];
-    corner.after = (places[i + 1] - places[i]) / lengths[i];
+    corner.at = at[i];
+    corner.before = (at[i] - at[i - 1]) / lengths[i - 1];
+    corner.after = (at[i + 1] - at[i]) / lengths[i];
     corner.angle =
         2 * std::atan2((corner.after - corner.before).norm(), (corner.after + corner.before).norm());
     if (corner.angle < kStraight) continue;
     const double before = i == 1 ? lengths[i - 1] : lengths[i - 1] / 2,
-                 after = i + 2 == places.size() ? lengths[i] : lengths[i] / 2;
+                 after = i + 2 == at.size() ? lengths[i] : lengths[i] / 2;
     round_corner(corner, std::min(before, after), limits, is_free);
   }
+  return corners;
+}
 
-  std::vector<PathStretch> stretches(1);
-  double along = 0.0;  // the stretch
-  std::size_t next = 0;
-  const auto look_up_to = [&](std::size_t place, double at) {
-    for (; next < viewpoints.size() && place_of[next] <= place; ++next)
-      stretches.back().looks.push_back({at, viewpoints[next].yaw});
-  };
-  const auto add = [&](const PathPiece& piece) {
+// The stretches of a path, which grow along it.
+class Stretches {
+ public:
+  Stretches(std::span<const Pose> viewpoints, const Places& places)
+      : viewpoints_(viewpoints), places_(places) {}
+
+  void add(const PathPiece& piece) {
     if (piece.length <= kSamePlace) return;
-    stretches.back().pieces.push_back(piece);
-    along += piece.length;
-  };
-  look_up_to(0, 0.0);
-  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    stretches_.back().pieces.push_back(piece);
+    along_ += piece.length;
+  }
+  // The yaws of the viewpoints up to a place, so far [m] beyond the end of what is added.
+  void look_up_to(std::size_t place, double ahead) {
+    for (; next_ < viewpoints_.size() && places_.of_path[next_] <= place; ++next_)
+      stretches_.back().looks.push_back({along_ + ahead, viewpoints_[next_].yaw});
+  }
+  void stop() {
+    stretches_.emplace_back();
+    along_ = 0.0;
+  }
+  std::vector<PathStretch> take() { return std::move(stretches_); }
+
+ private:
+  std::span<const Pose> viewpoints_;
+  const Places& places_;
+  std::vector<PathStretch> stretches_ = std::vector<PathStretch>(1);
+  double along_ = 0.0;    // [m] the last stretch
+  std::size_t next_ = 0;  // viewpoint
+};
+
+}  // namespace
+
+std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, const MotionLimits& limits,
+                                      const SegmentTest& is_free) {
+  const Places places(viewpoints);
+  const std::vector<Corner> corners = corners_at(places, limits, is_free);
+  Stretches stretches(viewpoints, places);
+  stretches.look_up_to(0, 0.0);
+  for (std::size_t i = 0; i + 1 < places.at.size(); ++i) {
     const Corner &from = corners[i], &to = corners[i + 1];
-    const Eigen::Vector3d direction = (places[i + 1] - places[i]) / lengths[i];
-    add({places[i] + from.cut() * direction, direction, Eigen::Vector3d::Zero(), 0.0,
-         lengths[i] - from.cut() - to.cut()});
+    const double length = places.lengths[i];
+    const Eigen::Vector3d direction = (places.at[i + 1] - places.at[i]) / length;
+    stretches.add({places.at[i] + from.cut() * direction, direction, Eigen::Vector3d::Zero(), 0.0,
+                   length - from.cut() - to.cut()});
     if (to.radius > 0.0) {
       const PathPiece arc = to.arc();
-      look_up_to(i + 1, along + arc.length / 2);
-      add(arc);
-    } else {
-      look_up_to(i + 1, along);
-      if (to.angle >= kStraight) {
-        stretches.emplace_back();
-        along = 0.0;
-      }
+      stretches.look_up_to(i + 1, arc.length / 2);
+      stretches.add(arc);
+      continue;
     }
+    stretches.look_up_to(i + 1, 0.0);
+    if (to.angle >= kStraight) stretches.stop();
   }
-  return stretches;
+  return stretches.take();
 }
 
 }  // namespace detail

@@ -151,6 +151,42 @@ std::optional<PathOutcome> reason_for_none(const TravelCorridor& corridor, const
   return std::nullopt;
 }
 
+// What lies between a start that is free and a goal. Of a robot on one layer both are at the start's height.
+detail::SamplingQuery sampling_query(const TravelCorridor& corridor, const Eigen::Vector3d& start,
+                                     const Eigen::Vector3d& goal, const PathKey& key) {
+  detail::SamplingQuery query;
+  query.start = start;
+  query.goal = goal;
+  query.reach = corridor.reach();
+  query.cells = corridor.cells();
+  query.plane = !query.cells.empty() && on_one_layer(query.cells);
+  query.seed = seed_of(key);
+  if (query.plane) query.goal.z() = query.start.z();
+  return query;
+}
+
+// Straight if that is free, or by the search, or else through the corridor. Empty if there is none.
+// @param plan  learns how it was found
+Polyline find_path(const TravelCorridor& corridor, const Lattice& lattice, const detail::SamplingQuery& query,
+                   const PathOptions& options, const detail::SegmentCheck& is_free, PathPlan& plan) {
+  Polyline path;
+  plan.outcome = PathOutcome::kFound;
+  if (is_free(query.start, query.goal)) {
+    path = {query.start, query.goal};  // as shortening would make it of any path
+  } else if (options.search != PathSearch::kCorridor) {
+    auto [found, iterations] = detail::sampling_search(lattice, query, options, is_free);
+    path = std::move(found);
+    plan.iterations = iterations;
+    if (path.empty()) plan.outcome = PathOutcome::kFellBack;
+  }
+  if (path.empty()) path = corridor_path(corridor, lattice, query.start, query.goal);
+  if (path.empty()) return path;
+  path.front() = query.start;
+  path.back() = query.goal;
+  if (path.size() == 2 && path.front() == path.back()) path.pop_back();
+  return path;
+}
+
 }  // namespace
 
 std::string_view name_of(PathSearch search) {
@@ -210,38 +246,18 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
     return plan;
   }
 
-  detail::SamplingQuery query;
   const bool start_is_free = segment_is_free(corridor, lattice, start.position, start.position);
-  query.start = start_is_free ? start.position : nearest_fit(corridor, lattice, start.position);
-  query.goal = goal.position;
-  query.reach = corridor.reach();
-  query.cells = corridor.cells();
-  query.plane = !query.cells.empty() && on_one_layer(query.cells);
-  query.seed = seed_of(key);
-  if (query.plane) query.goal.z() = query.start.z();
-  const auto is_free = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-    return segment_is_free(corridor, lattice, from, to);
+  const Eigen::Vector3d from =
+      start_is_free ? start.position : nearest_fit(corridor, lattice, start.position);
+  const detail::SamplingQuery query = sampling_query(corridor, from, goal.position, key);
+  const detail::SegmentCheck is_free = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return segment_is_free(corridor, lattice, a, b);
   };
-
-  Polyline path;
-  plan.outcome = PathOutcome::kFound;
-  if (is_free(query.start, query.goal)) {
-    path = {query.start, query.goal};  // as shortening would make it of any path
-  } else if (options.search != PathSearch::kCorridor) {
-    auto [found, iterations] = detail::sampling_search(lattice, query, options, is_free);
-    path = std::move(found);
-    plan.iterations = iterations;
-    if (path.empty()) plan.outcome = PathOutcome::kFellBack;
-  }
-  if (path.empty()) path = corridor_path(corridor, lattice, query.start, query.goal);
+  Polyline path = find_path(corridor, lattice, query, options, is_free, plan);
   if (path.empty()) {
     plan.outcome = PathOutcome::kOutOfReach;
     return plan;
   }
-  path.front() = query.start;
-  path.back() = query.goal;
-  if (path.size() == 2 && path.front() == path.back()) path.pop_back();
-
   const double step = std::max(options.spacing / 2, lattice.resolution());  // smaller ones gain nothing
   path = detail::shortened(std::move(path), step, options.shortcut_rounds, is_free);
   if (query.plane) set_heights(path, query.start.z(), goal.position.z());
