@@ -203,7 +203,7 @@ TEST_F(ReportCommandTest, SaysWhatIsWrongWithRunJson) {
     if (what.empty())
       EXPECT_EQ(said, "");
     else
-      test::expect_parts(said, {"frontlux: warning: one/run.json", what, "leaves out"});
+      test::expect_parts(said, {"frontlux: warning: one/run.json " + what, "leaves out"});
   }
   std::filesystem::remove(path("one/run.json"));
   std::filesystem::create_directory(path("one/run.json"));

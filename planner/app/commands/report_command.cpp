@@ -112,7 +112,7 @@ std::string run_json_of(const std::filesystem::path& folder, const planner::Reco
   try {
     json = read_run_json(folder);
     wrong = report::misfit(json, recording);
-    if (!wrong.empty()) wrong = (folder / kRunJson).string() + ": " + wrong;
+    if (!wrong.empty()) wrong = (folder / kRunJson).string() + " " + wrong;
   } catch (const std::runtime_error& error) {
     wrong = error.what();
   }
