@@ -4,7 +4,8 @@
 #include "commands/output_file.hpp"
 #include "draw/film.hpp"
 #include "draw/stills.hpp"
-#include "explore/run_files.hpp"
+#include "explore/explore_run.hpp"
+#include "explore/run_json.hpp"
 #include "interrupt.hpp"
 
 #include <frontlux/planner/recording.hpp>

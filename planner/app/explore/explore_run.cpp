@@ -6,6 +6,7 @@
 #include "explore/explore_setup.hpp"
 #include "explore/run_display.hpp"
 #include "explore/run_files.hpp"
+#include "explore/run_json.hpp"
 #include "explore/run_loop.hpp"
 #include "explore/run_warnings.hpp"
 #include "interrupt.hpp"
@@ -14,6 +15,7 @@
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
+#include <frontlux/sim/ground_truth.hpp>
 #include <frontlux/sim/unseen.hpp>
 #include <frontlux/stopwatch.hpp>
 
@@ -163,6 +165,22 @@ bool completes(const std::function<void()>& step) {
   }
 }
 
+// A step with the voxels that it made known, as it is recorded.
+// @param before  the step before, or null for the first
+RecordedStep with_known_voxels(planner::ExplorationStep step, const RecordedStep* before,
+                               const sim::GroundTruth& truth) {
+  RecordedStep recorded;
+  recorded.known = before != nullptr ? before->known : std::vector<planner::KnownVoxels>(step.robots.size());
+  for (std::size_t r = 0; r < step.robots.size(); ++r)
+    for (const planner::VoxelChange& change : step.robots[r].changed) {
+      if (change.before != Occupancy::kUnknown) continue;
+      ++recorded.known[r].bounding;
+      if (truth.contains(change.key)) ++recorded.known[r].observable;
+    }
+  recorded.step = std::move(step);
+  return recorded;
+}
+
 // A run in progress: the loop, and the files that record it.
 class Run {
  public:
@@ -300,6 +318,8 @@ std::optional<sim::Unseen> unseen_of(const ExploreSetup& setup, const RunLoop& l
 }
 
 }  // namespace
+
+std::filesystem::path report_of(const ExploreRun& run) { return run.folder / kReport; }
 
 void explore(ExploreOptions options, const ExploreRun& run) {
   const Stopwatch watch;

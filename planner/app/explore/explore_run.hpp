@@ -22,6 +22,10 @@ struct ExploreRun {
   std::optional<std::string> world = std::nullopt;  ///< of a resumed run: where its world's file is now
 };
 
+inline constexpr const char* kReport = "report.html";
+/// Where a run's report is.
+[[nodiscard]] std::filesystem::path report_of(const ExploreRun& run);
+
 /// Explores, and writes the files of the run into its folder. Prints its progress and its result.
 /// @throws BadInput, Interrupted
 void explore(ExploreOptions options, const ExploreRun& run);

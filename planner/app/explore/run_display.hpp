@@ -2,6 +2,7 @@
 
 #include "explore/run_files.hpp"
 #include "explore/run_forecast.hpp"
+#include "explore/run_json.hpp"
 #include "explore/run_loop.hpp"
 #include "terminal.hpp"
 

@@ -46,6 +46,15 @@ struct RunNumbers {
   std::optional<double> clearance, separation;  ///< [m] if measured, and of more than one robot
 };
 
+/// A part of a whole, 0 to 1; 0 of nothing.
+[[nodiscard]] double fraction(std::uint64_t part, std::uint64_t whole);
+
+/// [s] when this part of the observable voxels was mapped; nothing if it was not.
+[[nodiscard]] std::optional<double> time_to(const RunNumbers& numbers, std::uint64_t observable, double part);
+
+/// The mapped part of the observable voxels, 0 to 1, on average over the run's time.
+[[nodiscard]] double mean_coverage(const RunNumbers& numbers, std::uint64_t observable);
+
 /// Rows of the tables that only runs in motion have, named after their files.
 struct MotionRows {
   std::string events, motion, tours;

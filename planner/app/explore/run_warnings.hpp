@@ -4,6 +4,8 @@
 #include "explore/run_files.hpp"
 #include "explore/run_loop.hpp"
 
+#include <frontlux/sim/unseen.hpp>
+
 #include <optional>
 #include <span>
 #include <string>
