@@ -166,6 +166,27 @@ TEST_F(RunFolder, BeginsAnewWhereARunHadNotBegun) {
   }
 }
 
+// What links in the folder point to, as another run's recording, stays as it is.
+TEST_F(RunFolder, ReplacesLinksAndNotWhatTheyPointTo) {
+  expect_explored("other");
+  const std::string recording = content_of(path("other/run.frontlux"));
+  fs::create_directory(path("run"));
+  fs::create_symlink("../other/run.frontlux", path("run/run.frontlux"));
+  expect_explored("run", {"--force"});
+  EXPECT_TRUE(content_of(path("other/run.frontlux")) == recording);
+  EXPECT_FALSE(fs::is_symlink(path("run/run.frontlux")));
+  expect_same_runs("other", "run");
+  // A run that goes on begins its tables anew.
+  write("mine", "precious");
+  for (const char* table : {"steps.csv", "paths.csv", "events.csv", "motion.csv", "tours.csv"}) {
+    fs::remove(path("run") + "/" + table);
+    fs::create_symlink("../mine", path("run") + "/" + table);
+  }
+  expect_resumed("run");
+  EXPECT_EQ(content_of(path("mine")), "precious");
+  expect_same_runs("other", "run");
+}
+
 // Neither a new run nor one that goes on stands beside pictures of what was before.
 TEST_F(RunFolder, LosesTheViewsOfAnOlderState) {
   const std::vector<std::string> views = {"final_map.png",        "coverage.svg", "video.mp4",

@@ -118,6 +118,12 @@ void make_folder(const ExploreRun& run, const std::string& world) {
     refuse_to_make(run, error ? error.message() : "its parent folder does not exist");
 }
 
+// The file that a link points to is none of the run's.
+void remove_link(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_symlink(file, ignored) && !fs::is_other(file, ignored)) fs::remove(file, ignored);
+}
+
 // All but the recording, which the new one replaces.
 void remove_old_files(const fs::path& folder) {
   std::error_code ignored;
@@ -368,12 +374,15 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       if (!recording) make_folder(run, options.source.world);
       // The recording comes first and is locked: another process may still be writing this run.
       const fs::path file = run.folder / kRecording;
+      if (!recording) remove_link(file);
       planner::RecordingWriter writer =
           recording ? planner::RecordingWriter(file, *recording) : planner::RecordingWriter(file, setup.head);
       recorded = before.size();
       if (!recording) remove_old_files(run.folder);
       if (!exploring.loop().end()) remove_views(run.folder);
       remove_unfinished_files(run.folder);
+      for (const char* written : kFiles)
+        if (written != kRecording) remove_link(run.folder / written);
       exploring.open_files(before);
       display.begin();
       const auto record = [&] {
