@@ -17,6 +17,8 @@ class NumberTable {
   [[nodiscard]] double operator()(std::size_t row, std::size_t column) const {
     return numbers_[row * columns_ + column];
   }
+  [[nodiscard]] double* row(std::size_t row) { return numbers_.data() + row * columns_; }
+  [[nodiscard]] const double* row(std::size_t row) const { return numbers_.data() + row * columns_; }
 
  private:
   std::size_t columns_ = 0;

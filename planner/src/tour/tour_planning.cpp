@@ -36,20 +36,29 @@ double greatest_range(std::span<const Robot> robots) {
   return greatest;
 }
 
-// Distances between places that are not known [m] are as short as those by one other place, or by where the
-// robot is.
+// Distances to places before that are not known [m] are as short as those by one other place, or by where the
+// robot is. They are the same in both directions.
 void complete(NumberTable& distances, std::span<const double> from_robot) {
-  const NumberTable known = distances;
   const std::size_t count = from_robot.size();
+  const auto mirror = [&] {
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j) distances(i, j) = distances(j, i);
+  };
+  mirror();
+  const NumberTable known = distances;
   for_each_index(count, [&](std::size_t i) {
-    const auto shorten = [&](double to_middle, const auto& from_middle) {
-      for (std::size_t j = 0; j < count && to_middle != TourProblem::kNever; ++j)
-        if (known(i, j) == TourProblem::kNever)
-          distances(i, j) = std::min(distances(i, j), to_middle + from_middle(j));
+    std::vector<double> by_one(i, TourProblem::kNever);
+    // Also where it is known: without a branch the compiler takes several at a time.
+    const auto shorten = [&](double to_middle, const double* from_middle) {
+      for (std::size_t j = 0; j < i && to_middle != TourProblem::kNever; ++j)
+        by_one[j] = std::min(by_one[j], to_middle + from_middle[j]);
     };
-    shorten(from_robot[i], [&](std::size_t j) { return from_robot[j]; });
-    for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), [&](std::size_t j) { return known(k, j); });
+    shorten(from_robot[i], from_robot.data());
+    for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), known.row(k));
+    for (std::size_t j = 0; j < i; ++j)
+      if (known(i, j) == TourProblem::kNever) distances(i, j) = by_one[j];
   });
+  mirror();
 }
 
 // [frontiers] A sensor of short range never has many in view: a fifth of those that cover its view at half of
@@ -302,15 +311,10 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
     }
     robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
   }
-  NumberTable distances(count, count);  // [m] from stop to stop
-  for_each_index(count, [&](std::size_t i) {
-    for (std::size_t j = 0; j < i; ++j)
-      distances(i, j) = at[i] != nullptr && at[j] != nullptr
-                            ? member.distances.between(at[i]->cell, at[j]->cell)
-                            : TourProblem::kNever;
-  });
+  std::vector<std::optional<VoxelKey>> places(count);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = i + 1; j < count; ++j) distances(i, j) = distances(j, i);
+    if (at[i] != nullptr) places[i] = at[i]->cell;
+  NumberTable distances = member.distances.between(places);  // [m]
   complete(distances, to);
   for_each_index(count, [&](std::size_t i) {
     for (std::size_t j = 0; j < count; ++j)

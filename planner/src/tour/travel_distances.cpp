@@ -2,6 +2,7 @@
 
 #include "mapping/sort_once.hpp"
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -64,6 +65,27 @@ double TravelDistances::between(const VoxelKey& from, const VoxelKey& to) const 
   return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
 }
 
+NumberTable TravelDistances::between(std::span<const std::optional<VoxelKey>> cells) const {
+  std::vector<std::pair<TravelGraph::Name, std::size_t>> names;  // sorted as those near by are
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (const auto node = cells[i] ? graph_.node(*cells[i]) : std::nullopt)
+      names.emplace_back(graph_.name_of(*node), i);
+  std::ranges::sort(names);
+  NumberTable distances(cells.size(), cells.size(), TravelGraph::kFar);
+  for_each_index(names.size(), [&](std::size_t n) {
+    const auto& [from, i] = names[n];
+    const auto& known = near_.at(from).distances;
+    auto near = known.begin();
+    for (const auto& [to, j] : names) {
+      if (j >= i) continue;
+      while (near != known.end() && near->to < to) ++near;
+      if (near == known.end()) break;
+      if (near->to == to) distances(i, j) = straightened(*cells[i], *cells[j], near->length);
+    }
+  });
+  return distances;
+}
+
 // Nodes are wide: a path is no shorter than the straight line, and near by often that.
 double TravelDistances::straightened(const VoxelKey& from, const VoxelKey& to, double distance) const {
   constexpr double kClear = 8.0;  // [m]
@@ -71,7 +93,7 @@ double TravelDistances::straightened(const VoxelKey& from, const VoxelKey& to, d
   const double straight = (b - a).norm();
   if (straight >= distance) return straight;
   const bool clear = straight < kClear && SegmentVoxels(lattice_, a, b).all_of([&](const VoxelKey& key) {
-    return graph_.node(key).has_value();
+    return graph_.fits(key);
   });
   return clear ? straight : distance;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tour/number_table.hpp"
 #include "tour/travel_graph.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
@@ -37,6 +38,9 @@ class TravelDistances {
   /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no path.
   /// @param from  has been measured from
   [[nodiscard]] double between(const VoxelKey& from, const VoxelKey& to) const;
+  /// The same from each of some cells to those before it.
+  /// @param cells  `kFar` from and to those that are left out; the others have been measured from
+  [[nodiscard]] NumberTable between(std::span<const std::optional<VoxelKey>> cells) const;
   /// On a short path from the start to some cell, as far [m] beyond where the robot is by now; nothing if the
   /// path is no longer.
   [[nodiscard]] std::optional<VoxelKey> cell_on_path_to(const VoxelKey& to, const VoxelKey& robot,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -15,6 +16,13 @@ namespace {
 
 constexpr std::array<std::array<int, 3>, 6> kFaces = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+
+std::vector<std::size_t> set_places(const std::vector<std::uint8_t>& flags) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i] != 0) places.push_back(i);
+  return places;
+}
 
 }  // namespace
 
@@ -55,9 +63,12 @@ void TravelGraph::for_each_cube(const KeyBox& box, const Visit& visit) const {
               static_cast<std::size_t>(z));
 }
 
-// Finds the parts of a cube.
-void TravelGraph::read(Cube& cube, const TravelCorridor& corridor) {
+// Finds the parts of a cube, if the robot fits in others of its cells than before.
+// @return whether it does
+bool TravelGraph::read(Cube& cube, const TravelCorridor& corridor) {
   constexpr std::uint16_t kOpen = 0xFFFF;
+  if (all_of(cube.cells, [&](const VoxelKey& key) { return corridor.fits(key) == (part_[key] != 0); }))
+    return false;
   cube.centers.clear();
   for_each_key(cube.cells, [&](const VoxelKey& key) { part_[key] = corridor.fits(key) ? kOpen : 0; });
   std::vector<VoxelKey> part;
@@ -80,6 +91,7 @@ void TravelGraph::read(Cube& cube, const TravelCorridor& corridor) {
     cube.centers.push_back(sum / static_cast<double>(part.size()));
   });
   spread(cube);
+  return true;
 }
 
 void TravelGraph::spread(Cube& cube) const {
@@ -187,30 +199,27 @@ void TravelGraph::number_nodes() {
 void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   std::vector<std::uint8_t> reads(cubes_.size());
   for (const KeyBox& box : changed) for_each_cube(box, [&](std::size_t cube) { reads[cube] = 1; });
+  const std::vector<std::size_t> read_cubes = set_places(reads);
+  for_each_index(read_cubes.size(), [&](std::size_t i) {
+    reads[read_cubes[i]] = read(cubes_[read_cubes[i]], corridor) ? 1 : 0;
+  });
   // A cube's links lead to those after it, and edges to neighbours of neighbours.
   std::vector<std::uint8_t> links = reads;
   changed_ = reads;
-  std::vector<std::size_t> read_cubes, connected_cubes;
-  for (std::size_t i = 0; i < cubes_.size(); ++i) {
-    if (reads[i] == 0) continue;
-    read_cubes.push_back(i);
+  for (const std::size_t i : set_places(reads)) {
     for (const std::size_t back : {count_[1] * count_[2], count_[2], std::size_t{1}})
       if (i >= back) links[i - back] = 1;
     for_each_cube(grown(cubes_[i].cells, 2 * edge_), [&](std::size_t cube) { changed_[cube] = 1; });
   }
-  if (read_cubes.empty()) return;
-  for_each_index(read_cubes.size(), [&](std::size_t i) { read(cubes_[read_cubes[i]], corridor); });
-  for_each_index(cubes_.size(), [&](std::size_t i) {
-    if (links[i] != 0) link(i);
-  });
-  for (std::size_t i = 0; i < cubes_.size(); ++i)
-    if (changed_[i] != 0) connected_cubes.push_back(i);
-  for_each_index(connected_cubes.size(), [&](std::size_t i) { connect(connected_cubes[i]); });
+  const std::vector<std::size_t> linked = set_places(links), connected = set_places(changed_);
+  if (connected.empty()) return;
+  for_each_index(linked.size(), [&](std::size_t i) { link(linked[i]); });
+  for_each_index(connected.size(), [&](std::size_t i) { connect(connected[i]); });
   number_nodes();
 }
 
 std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
-  if (!part_.box().contains(cell) || part_[cell] == 0) return std::nullopt;
+  if (!fits(cell)) return std::nullopt;
   return cubes_[cube_of(cell)].first + part_[cell] - 1u;
 }
 
@@ -218,7 +227,8 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
 // turn out to be nearer. Searches from several nodes after each other pay for what they reach only.
 class TravelGraph::Search {
  public:
-  explicit Search(const TravelGraph& graph) : graph_(graph), lengths_(graph.size(), kFar) {}
+  explicit Search(const TravelGraph& graph)
+      : graph_(graph), lengths_(graph.size(), kFar), marks_(graph.size() / 64 + 1) {}
 
   // Ends when the distances of so many nodes are known. Those of other nodes are `kFar` afterwards.
   void run(std::uint32_t from, std::size_t count) {
@@ -259,9 +269,14 @@ class TravelGraph::Search {
   std::vector<double> take_lengths() { return std::move(lengths_); }
 
   [[nodiscard]] std::vector<Distance> near() {
-    std::ranges::sort(reached_);
+    for (const std::uint32_t node : reached_) marks_[node / 64] |= std::uint64_t{1} << (node % 64);
     std::vector<Distance> near;
-    for (const std::uint32_t node : reached_) near.push_back({graph_.names_[node], lengths_[node]});
+    near.reserve(reached_.size());
+    for (std::size_t i = 0; i < marks_.size(); ++i)
+      for (std::uint64_t rest = std::exchange(marks_[i], 0); rest != 0; rest &= rest - 1) {
+        const std::size_t node = 64 * i + static_cast<std::size_t>(std::countr_zero(rest));
+        near.push_back({graph_.names_[node], lengths_[node]});
+      }
     return near;
   }
 
@@ -273,6 +288,7 @@ class TravelGraph::Search {
   const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
   std::vector<double> lengths_;
   std::vector<std::uint32_t> reached_;
+  std::vector<std::uint64_t> marks_;  // a bit for each node: sorts them
   std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
 };
 

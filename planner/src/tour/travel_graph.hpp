@@ -34,6 +34,10 @@ class TravelGraph {
   ///                  outside of which the robot does not fit
   void update(const TravelCorridor& corridor, std::span<const KeyBox> changed);
 
+  /// Whether the robot fits in a cell.
+  [[nodiscard]] bool fits(const VoxelKey& cell) const {
+    return part_.box().contains(cell) && part_[cell] != 0;
+  }
   /// The node that holds a cell; nothing if the robot does not fit there.
   [[nodiscard]] std::optional<std::uint32_t> node(const VoxelKey& cell) const;
   /// The lowest and the highest cell in which the robot fits; none if it fits nowhere.
@@ -103,7 +107,7 @@ class TravelGraph {
   [[nodiscard]] std::size_t cube_of(const VoxelKey& cell) const;
   template <class Visit>
   void for_each_cube(const KeyBox& box, const Visit& visit) const;
-  void read(Cube& cube, const TravelCorridor& corridor);
+  bool read(Cube& cube, const TravelCorridor& corridor);
   void spread(Cube& cube) const;
   void link(std::size_t index);
   template <class Visit>
