@@ -7,6 +7,7 @@
 #include <frontlux/planner/body_stencil.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -377,13 +378,13 @@ Tours TourPlanning::tours_before(const Query& query, std::span<const Stop> stops
 // their minds all the time.
 Tours TourPlanning::shared_out(const TourProblem& problem, const Tours& before) {
   constexpr double kWorth = 0.95;
-  Tours tours = shortened_tours(problem, before);
-  Tours begun(before.size());
+  std::array<Tours, 2> tours{before, Tours(before.size())};
   for (std::size_t r = 0; r < before.size(); ++r)
-    begun[r].assign(before[r].begin(),
-                    before[r].begin() + static_cast<std::ptrdiff_t>(problem.robots[r].fixed));
-  Tours anew = shortened_tours(problem, begun);
-  return cost_of(problem, anew) < kWorth * cost_of(problem, tours) ? anew : tours;
+    tours[1][r].assign(before[r].begin(),
+                       before[r].begin() + static_cast<std::ptrdiff_t>(problem.robots[r].fixed));
+  for_each_index(2, [&](std::size_t i) { tours[i] = shortened_tours(problem, std::move(tours[i])); });
+  const bool anew = cost_of(problem, tours[1]) < kWorth * cost_of(problem, tours[0]);
+  return tours[anew ? 1 : 0];
 }
 
 // A stop for each cluster, until the robot that plans joins its next ones.

@@ -1,5 +1,7 @@
 #include "tour/tour_search.hpp"
 
+#include <frontlux/parallel.hpp>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -150,9 +152,10 @@ class Search {
     for (std::size_t r = 0; r < tours_.size(); ++r) {
       Tour& tour = tours_[r];
       const TourProblem::Robot& robot = problem_.robots[r];
+      const Steps& steps = steps_[r];
       for (std::size_t i = robot.fixed; i + 1 < tour.size(); ++i)
         for (std::size_t j = i + 1; j < tour.size(); ++j) {
-          const double before = step(robot, tour, i) + (j + 1 < tour.size() ? step(robot, tour, j + 1) : 0.0);
+          const double before = steps[i] + (j + 1 < tour.size() ? steps[j + 1] : 0.0);
           const double to = i == 0 ? robot.first[tour[j]] : robot.between(tour[i - 1], tour[j]);
           const double after = to + (j + 1 < tour.size() ? robot.between(tour[i], tour[j + 1]) : 0.0);
           if (after >= before - kWorth) continue;
@@ -165,23 +168,30 @@ class Search {
     return any;
   }
 
-  // A tour from which a stretch has been taken out.
-  struct Rest {
-    Tour tour;
-    Steps steps;
-    double length = 0.0;  // [s]
+  struct Move {
+    std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
+    bool turned = false;
+    double cost = TourProblem::kNever;  // of all tours afterwards
+    [[nodiscard]] std::size_t end() const { return begin + count; }
   };
-  [[nodiscard]] Rest without(std::size_t r, std::size_t begin, std::size_t end, double inner) const {
-    const auto take_out = [&](auto numbers) {
-      numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(begin),
-                    numbers.begin() + static_cast<std::ptrdiff_t>(end));
-      return numbers;
-    };
-    Rest rest{take_out(tours_[r]), take_out(steps_[r]), lengths_[r] - steps_[r][begin] - inner};
-    if (end == tours_[r].size()) return rest;
-    rest.steps[begin] = step(problem_.robots[r], rest.tour, begin);
-    rest.length -= steps_[r][end];
-    rest.length += rest.steps[begin];
+  [[nodiscard]] std::span<const std::uint32_t> stretch_of(const Move& move) const {
+    return std::span(tours_[move.from]).subspan(move.begin, move.count);
+  }
+
+  // A tour from which a stretch has been taken out: the step over the gap, and the length.
+  struct Rest {
+    double step = 0.0, length = 0.0;  // [s]
+  };
+  [[nodiscard]] Rest rest_of(const Move& move) const {
+    const Tour& tour = tours_[move.from];
+    const Steps& steps = steps_[move.from];
+    const TourProblem::Robot& robot = problem_.robots[move.from];
+    Rest rest{0.0, lengths_[move.from] - steps[move.begin] - time_within(robot, stretch_of(move))};
+    if (move.end() == tour.size()) return rest;
+    const std::uint32_t next = tour[move.end()];
+    rest.step = move.begin == 0 ? robot.first[next] : robot.between(tour[move.begin - 1], next);
+    rest.length -= steps[move.end()];
+    rest.length += rest.step;
     return rest;
   }
 
@@ -194,44 +204,114 @@ class Search {
     return time;
   }
 
-  struct Move {
-    std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
-    bool turned = false;
-  };
+  // What a robot needs more at least to take in a stretch, either way round, before one of the places `begin`
+  // to `end` - 1 of its tour, none of which is at its begin or end.
+  [[nodiscard]] double least_detour(std::size_t r, std::span<const std::uint32_t> stretch, std::size_t begin,
+                                    std::size_t end) const {
+    const double* from_first = problem_.robots[r].between.row(stretch.front());
+    const double* from_last = problem_.robots[r].between.row(stretch.back());
+    const std::uint32_t* tour = tours_[r].data();
+    const double* steps = steps_[r].data();
+    double least = TourProblem::kNever;
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::uint32_t before = tour[at - 1], after = tour[at];
+      least = std::min(least, from_first[before] + from_last[after] - steps[at]);
+      least = std::min(least, from_last[before] + from_first[after] - steps[at]);
+    }
+    return least;
+  }
+
+  // What a robot needs more at least, wherever in its tour it takes in the stretch of a move.
+  [[nodiscard]] double least_detour(const Move& move, double step_of_rest) const {
+    const std::span stretch = stretch_of(move);
+    const Tour& tour = tours_[move.to];
+    double least = TourProblem::kNever;
+    const auto take_either_way = [&](const auto& added) {
+      least =
+          std::min({least, added(stretch.front(), stretch.back()), added(stretch.back(), stretch.front())});
+    };
+    const auto take_place = [&](std::size_t at) {
+      take_either_way([&](std::uint32_t first, std::uint32_t last) {
+        return detour(move.to, tour, steps_[move.to], at, first, last);
+      });
+    };
+    const std::size_t free = first_free_place(move.to), inner = std::max<std::size_t>(free, 1);
+    if (move.to != move.from) {
+      if (free == 0) take_place(0);
+      take_place(tour.size());
+      return std::min(least, least_detour(move.to, stretch, inner, tour.size()));
+    }
+    if (free == 0 && move.begin > 0) take_place(0);
+    if (move.end() < tour.size()) take_place(tour.size());
+    least = std::min(least, least_detour(move.to, stretch, inner, move.begin));
+    least = std::min(least, least_detour(move.to, stretch, move.end() + 1, tour.size()));
+    take_either_way([&](std::uint32_t first, std::uint32_t last) {  // where it was
+      const TourProblem::Robot& robot = problem_.robots[move.to];
+      const double to = move.begin == 0 ? robot.first[first] : robot.between(first, tour[move.begin - 1]);
+      return move.end() == tour.size() ? to : to + robot.between(last, tour[move.end()]) - step_of_rest;
+    });
+    return least;
+  }
+
+  [[nodiscard]] double cost_of_move(const Move& move, const Rest& rest, double added) const {
+    return move.to == move.from ? cost_with(move.from, rest.length + added, move.from, rest.length + added)
+                                : cost_with(move.from, rest.length, move.to, lengths_[move.to] + added);
+  }
+
+  // The best move of a stretch that begins at a stop, but for the place in the tour where it leads.
+  [[nodiscard]] Move best_move_from(std::size_t from, std::size_t begin) const {
+    Move best;
+    for (std::size_t count = 1; count <= kMoved && begin + count <= tours_[from].size(); ++count) {
+      Move move{.from = from, .begin = begin, .count = count};
+      const Rest rest = rest_of(move);
+      for (move.to = 0; move.to < tours_.size(); ++move.to) {
+        const double within = time_within(problem_.robots[move.to], stretch_of(move));
+        if (within == TourProblem::kNever) continue;
+        move.cost = cost_of_move(move, rest, within + least_detour(move, rest.step));
+        if (move.cost < best.cost) best = move;
+      }
+    }
+    return best;
+  }
+
+  // The first place where the move has its cost: what adds more may cost the same, after rounding.
+  void find_place(Move& move) const {
+    const Rest rest = rest_of(move);
+    const std::span stretch = stretch_of(move);
+    const double within = time_within(problem_.robots[move.to], stretch);
+    Tour into = tours_[move.to];
+    Steps steps = steps_[move.to];
+    if (move.to == move.from) {
+      const auto take_out = [&](auto& numbers) {
+        numbers.erase(numbers.begin() + static_cast<std::ptrdiff_t>(move.begin),
+                      numbers.begin() + static_cast<std::ptrdiff_t>(move.end()));
+      };
+      take_out(into);
+      take_out(steps);
+      if (move.begin < into.size()) steps[move.begin] = rest.step;
+    }
+    for (move.at = std::min(problem_.robots[move.to].fixed, into.size()); move.at <= into.size(); ++move.at)
+      for (const bool turned : {false, true}) {
+        move.turned = turned;
+        const std::uint32_t first = turned ? stretch.back() : stretch.front();
+        const std::uint32_t last = turned ? stretch.front() : stretch.back();
+        const double added = within + detour(move.to, into, steps, move.at, first, last);
+        if (cost_of_move(move, rest, added) == move.cost) return;
+      }
+  }
 
   // Or-opt: the best move of a few stops to another place, in their own tour or another one.
   bool move_stops() {
-    double best = cost() - kWorth;
-    Move move;
-    for (std::size_t a = 0; a < tours_.size(); ++a)
-      for (std::size_t begin = problem_.robots[a].fixed; begin < tours_[a].size(); ++begin)
-        for (std::size_t count = 1; count <= kMoved && begin + count <= tours_[a].size(); ++count) {
-          const std::span stretch = std::span(tours_[a]).subspan(begin, count);
-          const Rest rest = without(a, begin, begin + count, time_within(problem_.robots[a], stretch));
-          for (std::size_t b = 0; b < tours_.size(); ++b) {
-            const double within = time_within(problem_.robots[b], stretch);
-            if (within == TourProblem::kNever) continue;
-            const Tour& into = b == a ? rest.tour : tours_[b];
-            const Steps& steps = b == a ? rest.steps : steps_[b];
-            double least = TourProblem::kNever;  // added; what adds more costs no less
-            for (std::size_t at = std::min(problem_.robots[b].fixed, into.size()); at <= into.size(); ++at)
-              for (const bool turned : {false, true}) {
-                if (turned && count == 1) continue;
-                const std::uint32_t first = turned ? stretch.back() : stretch.front();
-                const std::uint32_t last = turned ? stretch.front() : stretch.back();
-                const double added = within + detour(b, into, steps, at, first, last);
-                if (!(added < least)) continue;
-                least = added;
-                const double cost = b == a ? cost_with(a, rest.length + added, a, rest.length + added)
-                                           : cost_with(a, rest.length, b, lengths_[b] + added);
-                if (!(cost < best)) continue;
-                best = cost;
-                move = {a, begin, count, b, at, turned};
-              }
-          }
-        }
-    if (move.count == 0) return false;
-    take(move);
+    std::vector<Move> moves;  // the best from each stop
+    for (std::size_t from = 0; from < tours_.size(); ++from)
+      for (std::size_t begin = problem_.robots[from].fixed; begin < tours_[from].size(); ++begin)
+        moves.push_back({.from = from, .begin = begin});
+    for_each_index(moves.size(),
+                   [&](std::size_t i) { moves[i] = best_move_from(moves[i].from, moves[i].begin); });
+    const auto best = std::ranges::min_element(moves, {}, &Move::cost);
+    if (best == moves.end() || !(best->cost < cost() - kWorth)) return false;
+    find_place(*best);
+    take(*best);
     return true;
   }
 
