@@ -2,6 +2,8 @@
 
 #include "mapping/sort_once.hpp"
 
+#include <frontlux/parallel.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,7 +51,7 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
         const Eigen::Vector3d at(middle.x() + radius * std::cos(azimuth),
                                  middle.y() + radius * std::sin(azimuth),
                                  std::clamp(middle.z() + above * query.view.max_range, lowest, highest));
-        if (const auto cell = query.lattice.key(at); cell && query.graph.node(*cell)) cells.push_back(*cell);
+        if (const auto cell = query.lattice.key(at); cell && query.graph.fits(*cell)) cells.push_back(*cell);
       }
   sort_once(cells);
   return cells;
@@ -58,31 +60,33 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
 // What each cell sees of some frontiers.
 std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<const VoxelKey> cells,
                                         std::span<const VoxelKey> targets) {
-  std::vector<KeySegment> segments;
-  std::vector<std::size_t> begin{0};
-  for (const VoxelKey& cell : cells) {
-    for (const VoxelKey& target : targets)
-      if (query.region.contains(cell, target)) segments.push_back({cell, target});
-    begin.push_back(segments.size());
-  }
-  std::vector<std::uint8_t> visible(segments.size());
-  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  constexpr std::size_t kAtOnce = 32;  // cells, whose segments stay in the cache
   const bool all_around = query.view.sees_all_around();
-  std::vector<ClusterViewpoint> viewpoints;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const Eigen::Vector3d from = query.lattice.exact_center(cells[c]);
-    const auto offset = [&](std::size_t s) -> Eigen::Vector3d {
-      return query.lattice.exact_center(segments[s].to) - from;
-    };
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    ClusterViewpoint viewpoint{.cell = cells[c]};
-    for (std::size_t s = begin[c]; s < begin[c + 1]; ++s)
-      if (visible[s] != 0) sum += offset(s);
-    viewpoint.yaw = std::atan2(sum.y(), sum.x());
-    for (std::size_t s = begin[c]; s < begin[c + 1]; ++s)
-      if (visible[s] != 0 && (all_around || query.view.contains(offset(s), viewpoint.yaw))) ++viewpoint.seen;
-    viewpoints.push_back(viewpoint);
-  }
+  std::vector<ClusterViewpoint> viewpoints(cells.size());
+  for_each_chunk(cells.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
+    std::vector<KeySegment> segments;
+    segments.reserve((last - first) * targets.size());
+    std::vector<std::size_t> begin{0};
+    for (std::size_t c = first; c < last; ++c) {
+      for (const VoxelKey& target : targets)
+        if (query.region.contains(cells[c], target)) segments.push_back({cells[c], target});
+      begin.push_back(segments.size());
+    }
+    std::vector<std::uint8_t> visible(segments.size());
+    query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+    std::vector<Eigen::Vector3d> offsets;  // to what a cell sees
+    for (std::size_t c = first; c < last; ++c) {
+      const Eigen::Vector3d from = query.lattice.exact_center(cells[c]);
+      offsets.clear();
+      for (std::size_t s = begin[c - first]; s < begin[c - first + 1]; ++s)
+        if (visible[s] != 0) offsets.push_back(query.lattice.exact_center(segments[s].to) - from);
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& offset : offsets) sum += offset;
+      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], std::atan2(sum.y(), sum.x()), 0};
+      for (const Eigen::Vector3d& offset : offsets)
+        if (all_around || query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
+    }
+  });
   return viewpoints;
 }
 
@@ -95,11 +99,12 @@ void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints) {
 std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
                                               std::span<const VoxelKey> cells, std::size_t sample) {
   std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, sample));
+  std::erase_if(all, [](const ClusterViewpoint& viewpoint) { return viewpoint.seen == 0; });
   sort_by_seen(all);
   std::vector<VoxelKey> kept;
   const int apart = static_cast<int>(kApart * query.view.max_range / query.lattice.resolution());
   for (const ClusterViewpoint& viewpoint : all) {
-    if (kept.size() == kKept || viewpoint.seen == 0 ||
+    if (kept.size() == kKept ||
         static_cast<double>(viewpoint.seen) < kAsGood * static_cast<double>(all.front().seen))
       break;
     const KeyBox near = grown({viewpoint.cell, viewpoint.cell}, apart);
@@ -164,7 +169,7 @@ std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const
   if (!found.empty()) return found;
   std::vector<VoxelKey> cells;
   for (const ClusterViewpoint& viewpoint : before)
-    if (query.graph.node(viewpoint.cell)) cells.push_back(viewpoint.cell);
+    if (query.graph.fits(viewpoint.cell)) cells.push_back(viewpoint.cell);
   return best_viewpoints(query, cluster, cells, kSample);
 }
 
