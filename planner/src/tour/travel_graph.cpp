@@ -32,6 +32,7 @@ TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge,
   count_ = {cubes(bounds.min.x, bounds.max.x), cubes(bounds.min.y, bounds.max.y),
             cubes(bounds.min.z, bounds.max.z)};
   cubes_.resize(count_[0] * count_[1] * count_[2]);
+  first_.resize(cubes_.size());
   for (std::size_t i = 0; i < cubes_.size(); ++i) {
     const auto at = [&](std::size_t place, int low) { return low + static_cast<int>(place) * edge_; };
     const VoxelKey corner =
@@ -177,23 +178,29 @@ void TravelGraph::connect(std::size_t index) {
 void TravelGraph::number_nodes() {
   names_.clear();
   extent_.reset();
+  std::vector<std::size_t> edges_before(cubes_.size());
+  std::size_t edges = 0;
   for (std::size_t i = 0; i < cubes_.size(); ++i) {
-    Cube& cube = cubes_[i];
-    cube.first = static_cast<std::uint32_t>(names_.size());
+    const Cube& cube = cubes_[i];
+    first_[i] = static_cast<std::uint32_t>(names_.size());
+    edges_before[i] = edges;
+    edges += cube.edges.size();
     for (std::uint32_t part = 0; part < cube.centers.size(); ++part) names_.push_back(name_of(i, part));
     if (!cube.centers.empty()) extent_ = extent_ ? hull(*extent_, cube.cells) : cube.cells;
   }
-  begin_.clear();
-  edges_.clear();
-  for (const Cube& cube : cubes_) {
-    auto edge = cube.edges.begin();
-    for (std::uint32_t part = 0; part < cube.centers.size(); ++part) {
-      begin_.push_back(edges_.size());
-      for (; edge != cube.edges.end() && edge->from == part; ++edge)
-        edges_.push_back({cubes_[cube_of(edge->to)].first + part_of(edge->to), edge->length});
+  begin_.assign(names_.size() + 1, edges);
+  edges_.resize(edges);
+  for_each_range(cubes_.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      std::size_t at = edges_before[i];
+      auto edge = cubes_[i].edges.begin();
+      for (std::uint32_t part = 0; part < cubes_[i].centers.size(); ++part) {
+        begin_[first_[i] + part] = at;
+        for (; edge != cubes_[i].edges.end() && edge->from == part; ++edge)
+          edges_[at++] = {first_[cube_of(edge->to)] + part_of(edge->to), edge->length};
+      }
     }
-  }
-  begin_.push_back(edges_.size());
+  });
 }
 
 void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
@@ -220,7 +227,7 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
 
 std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   if (!fits(cell)) return std::nullopt;
-  return cubes_[cube_of(cell)].first + part_[cell] - 1u;
+  return first_[cube_of(cell)] + part_[cell] - 1u;
 }
 
 // Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they

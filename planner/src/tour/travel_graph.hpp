@@ -80,7 +80,6 @@ class TravelGraph {
   struct Cube {
     KeyBox cells;
     std::vector<Eigen::Vector3d> centers;               // of its parts
-    std::uint32_t first = 0;                            // node of its first part
     std::vector<VoxelKey> spread;                       // some of its cells
     std::vector<std::pair<std::uint32_t, Name>> links;  // from a part to a part of a later cube
     struct Edge {
@@ -119,7 +118,8 @@ class TravelGraph {
   int edge_, spacing_;
   std::array<std::size_t, 3> count_{};  // of cubes
   std::vector<Cube> cubes_;
-  BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
+  std::vector<std::uint32_t> first_;  // node of the first part of each cube
+  BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
   std::vector<std::uint8_t> changed_;  // cubes whose edges the last update has found anew
   std::vector<Name> names_;            // of the nodes, in this order

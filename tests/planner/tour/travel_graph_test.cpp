@@ -2,6 +2,7 @@
 
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
+#include "tour/travel_distances.hpp"
 
 namespace frontlux::planner::detail {
 namespace {
@@ -191,6 +192,36 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
   }
   EXPECT_GT(same, 50U);
   EXPECT_GT(others, 50U);
+}
+
+TEST(TravelDistances, OfAllPairsAreThoseOfEachPair) {
+  Random random(57);
+  std::size_t near = 0, far = 0;
+  for (int round = 0; round < 10; ++round) {
+    const VoxelGrid grid = random_rooms(random);
+    TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
+    corridor.update({grid}, free_key(random, grid));
+    TravelDistances distances(grid.lattice(), TravelGraph(grid.lattice(), kBounds, 4, 2), 40);
+    distances.update(corridor, {{kBounds}});
+    Keys measured;
+    std::vector<std::optional<VoxelKey>> cells;
+    for (int i = 0; i < 25; ++i) {
+      cells.emplace_back();
+      if (random.one_in(8)) continue;
+      cells.back() = free_key(random, grid);
+      measured.push_back(*cells.back());
+    }
+    distances.measure_from(measured);
+    const NumberTable all = distances.between(cells);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const bool both = cells[i] && cells[j];
+        EXPECT_EQ(all(i, j), both ? distances.between(*cells[i], *cells[j]) : TravelGraph::kFar);
+        ++(all(i, j) == TravelGraph::kFar ? far : near);
+      }
+  }
+  EXPECT_GT(near, 100U);
+  EXPECT_GT(far, 100U);
 }
 
 TEST(TravelGraph, SpreadsCellsOverAllParts) {
