@@ -19,11 +19,6 @@ int least_edge(std::size_t least) {
   return static_cast<int>(std::ceil(std::sqrt(2.0 * static_cast<double>(least))));
 }
 
-KeyBox box_around(const KeyBox& a, const KeyBox& b) {
-  return {make_key(std::min(a.min.x, b.min.x), std::min(a.min.y, b.min.y), std::min(a.min.z, b.min.z)),
-          make_key(std::max(a.max.x, b.max.x), std::max(a.max.y, b.max.y), std::max(a.max.z, b.max.z))};
-}
-
 // Calls `visit(neighbor)` for the voxels around one that lie in a box.
 template <class Visit>
 void for_each_neighbor(const VoxelKey& key, const KeyBox& box, const Visit& visit) {
@@ -123,7 +118,7 @@ std::vector<Keys> FrontierClusters::joined_pieces() const {
     if (pieces_[piece].size() >= least_) continue;
     std::uint32_t a = first_of(piece), b = first_of(piece_for(piece));
     if (a == b) continue;
-    const KeyBox both = box_around(boxes[a], boxes[b]);
+    const KeyBox both = hull(boxes[a], boxes[b]);
     if (is_wide(both) && (sizes[a] >= least_ || is_wide(boxes[a]) || is_wide(boxes[b]))) continue;
     if (pieces_[b].front() < pieces_[a].front()) std::swap(a, b);
     joined_to[b] = a;
