@@ -13,7 +13,7 @@ constexpr std::array kLowBit = {0U, 3U, 6U};  // of each axis in an index
 
 // A number for each axis, and a fourth one that means nothing. Times are whole numbers, as in packets.
 using PerAxis [[gnu::vector_size(16)]] = std::int32_t;
-// The end of a ray's time. Four crossings behind it still fit into 31 bits.
+// The end of a ray's time. Four crossings behind it still fit into 31 bits, though their times mean nothing.
 constexpr std::int32_t kEndOfTime = (1 << 29) - 1;
 constexpr std::int32_t kNever = 0x7FFFFFFF;
 
@@ -101,7 +101,9 @@ std::uint32_t walk_alone(const OpenVoxels& table, const TableRay& ray, double le
       const auto next = static_cast<std::uint32_t>(all[0]);
       if (next == index) return walk_exactly(table, ray, length);  // none was surely first
       index = next;
-      if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
+      if (table.open(index ^ ray.flip)) continue;
+      const PerAxis entered = (t - d) & first;  // when, on the axis that it was
+      return (entered[0] | entered[1] | entered[2]) > kEndOfTime ? kWentThrough : index ^ ray.flip;
     }
     if (std::min(std::min(t[0], t[1]), t[2]) > kEndOfTime) return kWentThrough;
   }

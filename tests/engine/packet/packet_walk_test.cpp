@@ -329,6 +329,52 @@ TEST(PacketWalk, HoldsUpToItsLongestOffset) {
   }
 }
 
+// Rays nearly along an axis, through halls longer than a walk: the crossings across come at times far beyond
+// its end.
+TEST(TableQuery, RaysAloneAreThoseOfTheWalkAlongHalls) {
+  constexpr double kEdge = 0.1;
+  Random random(17);
+  std::size_t stopped = 0, left_over = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    VoxelGrid grid(kEdge);
+    std::array<int, 3> size{3, 3, 3};
+    size[static_cast<std::size_t>(axis)] = 520;
+    for_each_key({{32768, 32768, 32768}, make_key(32767 + size[0], 32767 + size[1], 32767 + size[2])},
+                 [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+    const OpenVoxels table(grid, UnknownPolicy::kBlock);
+    const TableQuery query(grid, table, UnknownPolicy::kBlock);
+    for (int i = 0; i < 20'000; ++i) {
+      // Just beyond a face across, or anywhere.
+      const auto across = [&] {
+        const double beyond =
+            random.one_in(2) ? std::pow(10.0, random.uniform(-6, -1)) : random.uniform(0, 1);
+        const double in_voxel = random.one_in(2) ? beyond : 1.0 - beyond;
+        return static_cast<float>((random.below(3) + in_voxel) * kEdge);
+      };
+      const auto slope = [&] {
+        const double steep = std::pow(10.0, random.uniform(-7, -2));
+        return static_cast<float>(random.one_in(4) ? 0.0 : random.one_in(2) ? steep : -steep);
+      };
+      Ray ray{{across(), across(), across()}, {slope(), slope(), slope()}, -1.0};
+      const bool back = random.one_in(2);
+      ray.direction[axis] = back ? -1.0F : 1.0F;
+      ray.origin[axis] =
+          static_cast<float>((back ? random.uniform(415, 520) : random.uniform(0, 105)) * kEdge);
+      Hit hit;
+      std::uint16_t left = 0;
+      if (query.cast({&ray, 1}, {&hit, 1}, {&left, 1}) != 0) {
+        ++left_over;
+        continue;
+      }
+      ++stopped;
+      ASSERT_TRUE(same(hit, detail::walk_ray(grid, ray, UnknownPolicy::kBlock)))
+          << ray.origin.transpose() << ", " << ray.direction.transpose();
+    }
+  }
+  EXPECT_GT(stopped, 10'000U);
+  EXPECT_GT(left_over, 10'000U);
+}
+
 TEST(TableQuery, LeavesEverythingToOthersIfThereIsNoTable) {
   const VoxelGrid grid(0.25);
   const OpenVoxels table(grid, UnknownPolicy::kBlock);
