@@ -204,7 +204,7 @@ TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
   expect_answer({path("room.ply"), "--start", at.str(), "--ground", "off", "--lockstep", "--max-steps", "1",
                  "-o", path("run")});
   ASSERT_EQ(world("2").code, 0);
-  expect_refused({"--resume", path("run"), "--max-steps", "2"},
+  expect_refused({"--resume", path("run"), "--max-steps", "2", "--quiet"},
                  {"--resume: ", "is not what room.ply is now"});
   ASSERT_EQ(world("1").code, 0);
   expect_resumed("run", {"--max-steps", "2"});
@@ -214,7 +214,7 @@ TEST_F(ExploreCommand, RefusesToGoOnInAnotherWorld) {
   RecordingWriter writer(path("run/run.frontlux"), recording.head);
   for (const RecordedStep& step : recording.steps) writer.write(step);
   writer.write_end("stopped");
-  expect_refused({"--resume", path("run"), "--max-steps", "2"},
+  expect_refused({"--resume", path("run"), "--max-steps", "2", "--quiet"},
                  {"--resume: in step 2 the robots see another world"});
 }
 
