@@ -57,18 +57,8 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    bool some_closed = false;
-    const auto reaches = [&](const VoxelKey& cell) {
-      const bool reached = query.reaches(cell);
-      some_closed = some_closed || !reached;
-      return reached;
-    };
-    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, reaches);
-    std::vector<ClusterViewpoint> found = sight->viewpoints;
-    // It may get later to where it sees the cluster from: now another robot may rest in its way.
-    if (found.empty() && some_closed)
-      found = viewpoints_anywhere(query.view, *cluster, [](const VoxelKey&) { return true; });
-    sight->found.insert(sight->found.end(), found.begin(), found.end());
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, query.reaches);
+    sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->stale = false;
     sight->in_vain = sight->viewpoints.empty() ? std::min(sight->in_vain + 1, 30) : 0;
     sight->pause = sight->in_vain == 0 ? 0 : std::min(1 << sight->in_vain, kLongestPause);

@@ -36,8 +36,7 @@ struct Scene {
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster;
   ClusterSights sights;
-  int asked = 0;        // whether the robot gets to a cell
-  bool closed = false;  // all cells in line with the tunnel
+  int asked = 0;  // whether the robot gets to a cell
 
   Scene() {
     test::fill(grid, {at(0, 0, 0), at(14, 14, 6)}, Occupancy::kFree);
@@ -51,7 +50,7 @@ struct Scene {
     const ViewpointQuery query{*caster, grid.lattice(), graph, view, region};
     const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
       ++asked;
-      return corridor.contains(cell) && !(closed && cell.y == at(0, 7, 0).y);
+      return corridor.contains(cell);
     };
     sights.update({query, clusters, changes, reaches});
   }
@@ -75,21 +74,6 @@ TEST(ClusterSights, FindsClustersThatNoUsualPlaceShows) {
   EXPECT_EQ(scene.sights.viewpoints(3).front().cell, before);
   scene.look({}, {});
   EXPECT_TRUE(scene.sights.viewpoints(3).empty());
-}
-
-// As long as another robot rests there, it sees the cluster from nowhere. When that has left, the map is as
-// it was.
-TEST(ClusterSights, FindsClustersAgainThatOnlyAnotherRobotKeptFromIt) {
-  Scene scene;
-  const FrontierCluster end = cluster_of(3, at(35, 7, 2));
-  scene.closed = true;
-  scene.look({end}, {{kBounds}});
-  EXPECT_TRUE(scene.sights.viewpoints(3).empty());
-  scene.look({end}, {});
-  EXPECT_TRUE(scene.sights.viewpoints(3).empty());
-  scene.closed = false;
-  scene.look({end}, {});
-  EXPECT_FALSE(scene.sights.viewpoints(3).empty());
 }
 
 // With something else to look at, it tries again and again, with pauses of 2, 4, 8, 8, ... plannings.
