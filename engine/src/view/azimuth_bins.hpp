@@ -20,11 +20,9 @@ class AzimuthBins {
   /// @param count  of bins; 0: no table
   AzimuthBins(const ViewRegion& region, int count);
 
-  /// How many there are.
-  [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::uint16_t operator[](std::int32_t entry) const { return bins_.data()[middle_ + entry]; }
 
-  /// The bins in which a voxel sees points of a box, at any height. @pre count() > 0
+  /// The bins in which a voxel sees points of a box, at any height. @pre there are bins
   [[nodiscard]] SectorSet sectors_of(const VoxelKey& from, const KeyBox& box) const;
 
  private:

@@ -274,7 +274,7 @@ class Search {
     return best;
   }
 
-  // The first place where the move has its cost: what adds more may cost the same, after rounding.
+  // The first place where the move costs least: what adds more may cost the same, after rounding.
   void find_place(Move& move) const {
     const Rest rest = rest_of(move);
     const std::span stretch = stretch_of(move);
@@ -290,14 +290,17 @@ class Search {
       take_out(steps);
       if (move.begin < into.size()) steps[move.begin] = rest.step;
     }
+    Move best;
     for (move.at = std::min(problem_.robots[move.to].fixed, into.size()); move.at <= into.size(); ++move.at)
       for (const bool turned : {false, true}) {
         move.turned = turned;
         const std::uint32_t first = turned ? stretch.back() : stretch.front();
         const std::uint32_t last = turned ? stretch.front() : stretch.back();
         const double added = within + detour(move.to, into, steps, move.at, first, last);
-        if (cost_of_move(move, rest, added) == move.cost) return;
+        move.cost = cost_of_move(move, rest, added);
+        if (move.cost < best.cost) best = move;
       }
+    move = best;
   }
 
   // Or-opt: the best move of a few stops to another place, in their own tour or another one.
