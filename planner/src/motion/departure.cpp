@@ -8,7 +8,8 @@ namespace frontlux::planner::detail {
 std::optional<Departure> best_departure(const Trajectory& old, double time, const PathFrom& path_from,
                                         const MotionLimits& limits, const SegmentTest& is_free) {
   constexpr double kRest = 1e-3;  // [m/s] slower, it stops within less than two places differ by
-  constexpr std::array kLeads = {0.1, 0.4, 1.01};  // of the distance in which the robot can stop
+  constexpr std::array kLeads = {0.1,  0.4, 0.7,
+                                 1.01, 1.4, 2.0};  // of the distance in which the robot can stop
   const MotionState start = old.at(time);
   const double speed = start.velocity.norm();
 

@@ -38,6 +38,10 @@ constexpr double kStraight = 1e-6;      // [rad] no corner
 constexpr double kLeastRadius = 0.005;  // [m] a robot that takes a tighter corner has all but stopped
 constexpr double kChordAngle = 0.1;     // [rad]
 
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {  // of length 1
+  return 2 * std::atan2((b - a).norm(), (b + a).norm());
+}
+
 struct Corner {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();      // [m]
   Eigen::Vector3d before = Eigen::Vector3d::Zero();  // direction to it
@@ -72,43 +76,84 @@ double useful_radius(const MotionLimits& limits) {
   return limits.speed * limits.speed / (kSideways * limits.acceleration);
 }
 
-void round_corner(Corner& corner, double room, const MotionLimits& limits, const SegmentTest& is_free) {
-  corner.radius = std::min(room / std::tan(corner.angle / 2), useful_radius(limits));
+// The widest arc before which a robot so far from the corner [m] and so fast can get slow enough; at most a
+// radius [m].
+double radius_after_braking(const Corner& corner, double distance, double speed, double radius,
+                            const MotionLimits& limits) {
+  constexpr double kReserve = 0.999;
+  // Of squared speeds: what braking up to the corner takes away in excess, what each metre of the radius
+  // takes from that since the arc begins before the corner, and what it allows on the arc.
+  const double braking = kReserve * 2 * limits.acceleration_along(corner.before);
+  const double excess = braking * distance - speed * speed;
+  const double earlier = braking * std::tan(corner.angle / 2), allowed = kSideways * limits.acceleration;
+  if (excess >= 0.0 && earlier > allowed) radius = std::min(radius, excess / (earlier - allowed));
+  const double most = excess + limits.speed * limits.speed;
+  return most >= 0.0 ? std::min(radius, most / earlier) : radius;
+}
+
+void round_corner(Corner& corner, double radius, const SegmentTest& is_free) {
+  corner.radius = radius;
   while (corner.radius >= kLeastRadius && !is_arc_free(corner.arc(), is_free)) corner.radius /= 2;
   if (corner.radius < kLeastRadius) corner.radius = 0.0;
 }
 
-// A path's distinct places.
-struct Places {
-  std::vector<Eigen::Vector3d> at;   // [m]
-  std::vector<double> lengths;       // [m] from each place to the next
-  std::vector<std::size_t> of_path;  // of each viewpoint
+// A path's ends and bends, and where on it its viewpoints are.
+struct Bends {
+  struct Place {
+    std::size_t segment;
+    double along;  // [m]
+  };
+  std::vector<Eigen::Vector3d> at;  // [m]
+  std::vector<double> lengths;      // [m] from each to the next
+  std::vector<Place> of_path;       // of each viewpoint
 
-  explicit Places(std::span<const Pose> viewpoints) {
-    for (const Pose& viewpoint : viewpoints) {
-      if (at.empty() || (viewpoint.position - at.back()).norm() > kSamePlace)
-        at.push_back(viewpoint.position);
-      of_path.push_back(at.size() - 1);
+  explicit Bends(std::span<const Pose> viewpoints) {
+    for (std::size_t i = 0; i < viewpoints.size(); ++i) {
+      const Eigen::Vector3d& place = viewpoints[i].position;
+      const auto next = std::ranges::find_if(viewpoints.subspan(i), [&](const Pose& viewpoint) {
+        return (viewpoint.position - place).norm() > kSamePlace;
+      });
+      add(place, next == viewpoints.end() ? nullptr : &next->position);
     }
-    for (std::size_t i = 1; i < at.size(); ++i) lengths.push_back((at[i] - at[i - 1]).norm());
+  }
+
+ private:
+  void add(const Eigen::Vector3d& place, const Eigen::Vector3d* next) {
+    if (at.empty()) {
+      at.push_back(place);
+      of_path.push_back({0, 0.0});
+      return;
+    }
+    const double along = (place - at.back()).norm();
+    if (along <= kSamePlace) {
+      of_path.push_back(of_path.back());
+      return;
+    }
+    of_path.push_back({at.size() - 1, along});
+    if (next != nullptr &&
+        angle_between((place - at.back()) / along, (*next - place).normalized()) < kStraight)
+      return;
+    lengths.push_back(along);
+    at.push_back(place);
   }
 };
 
-// One for each place; those at the ends are none.
-std::vector<Corner> corners_at(const Places& places, const MotionLimits& limits, const SegmentTest& is_free) {
-  const auto& [at, lengths, of_path] = places;
-  std::vector<Corner> corners(at.size());
-  for (std::size_t i = 1; i + 1 < at.size(); ++i) {
+// One for each bend; the path's ends are none.
+std::vector<Corner> corners_at(const Bends& bends, double speed, const MotionLimits& limits,
+                               const SegmentTest& is_free) {
+  const std::vector<double>& lengths = bends.lengths;
+  std::vector<Corner> corners(bends.at.size());
+  for (std::size_t i = 1; i < lengths.size(); ++i) {
     Corner& corner = corners[i];
-    corner.at = at[i];
-    corner.before = (at[i] - at[i - 1]) / lengths[i - 1];
-    corner.after = (at[i + 1] - at[i]) / lengths[i];
-    corner.angle =
-        2 * std::atan2((corner.after - corner.before).norm(), (corner.after + corner.before).norm());
-    if (corner.angle < kStraight) continue;
+    corner.at = bends.at[i];
+    corner.before = (bends.at[i] - bends.at[i - 1]) / lengths[i - 1];
+    corner.after = (bends.at[i + 1] - bends.at[i]) / lengths[i];
+    corner.angle = angle_between(corner.before, corner.after);
     const double before = i == 1 ? lengths[i - 1] : lengths[i - 1] / 2,
-                 after = i + 2 == at.size() ? lengths[i] : lengths[i] / 2;
-    round_corner(corner, std::min(before, after), limits, is_free);
+                 after = i + 1 == lengths.size() ? lengths[i] : lengths[i] / 2;
+    double radius = std::min(std::min(before, after) / std::tan(corner.angle / 2), useful_radius(limits));
+    if (i == 1) radius = radius_after_braking(corner, lengths[0], speed, radius, limits);
+    round_corner(corner, radius, is_free);
   }
   return corners;
 }
@@ -116,28 +161,50 @@ std::vector<Corner> corners_at(const Places& places, const MotionLimits& limits,
 // The stretches of a path, which grow along it.
 class Stretches {
  public:
-  Stretches(std::span<const Pose> viewpoints, const Places& places)
-      : viewpoints_(viewpoints), places_(places) {}
+  Stretches(std::span<const Pose> viewpoints, const Bends& bends) : viewpoints_(viewpoints), bends_(bends) {
+    if (bends.lengths.empty())
+      for (const Pose& viewpoint : viewpoints) stretches_.back().looks.push_back({0.0, viewpoint.yaw});
+  }
 
+  // A segment between two corners, and the arc in the place of the second.
+  void add(std::size_t segment, const Corner& from, const Corner& to) {
+    const Eigen::Vector3d& begin = bends_.at[segment];
+    const double length = bends_.lengths[segment];
+    const Eigen::Vector3d direction = (bends_.at[segment + 1] - begin) / length;
+    const double line = length - from.cut() - to.cut();
+    look_along(segment, from, line, to);
+    add({begin + from.cut() * direction, direction, Eigen::Vector3d::Zero(), 0.0, line});
+    if (to.radius > 0.0) {
+      add(to.arc());
+    } else if (segment + 1 < bends_.lengths.size()) {
+      stretches_.emplace_back();
+      along_ = 0.0;
+    }
+  }
+  std::vector<PathStretch> take() { return std::move(stretches_); }
+
+ private:
   void add(const PathPiece& piece) {
     if (piece.length <= kSamePlace) return;
     stretches_.back().pieces.push_back(piece);
     along_ += piece.length;
   }
-  // The yaws of the viewpoints up to a place, so far [m] beyond the end of what is added.
-  void look_up_to(std::size_t place, double ahead) {
-    for (; next_ < viewpoints_.size() && places_.of_path[next_] <= place; ++next_)
-      stretches_.back().looks.push_back({along_ + ahead, viewpoints_[next_].yaw});
+  // The yaws of a segment's viewpoints, which arcs at its ends may cut off.
+  void look_along(std::size_t segment, const Corner& from, double line, const Corner& to) {
+    const auto half_arc = [](const Corner& corner) { return corner.radius * corner.angle / 2; };
+    for (; next_ < viewpoints_.size() && bends_.of_path[next_].segment == segment; ++next_) {
+      const double along = bends_.of_path[next_].along, left = bends_.lengths[segment] - along;
+      double place = along_ + along - from.cut();
+      if (along < from.cut())
+        place = along_ - half_arc(from) * (1 - along / from.cut());
+      else if (left < to.cut())
+        place = along_ + line + half_arc(to) * (1 - left / to.cut());
+      stretches_.back().looks.push_back({place, viewpoints_[next_].yaw});
+    }
   }
-  void stop() {
-    stretches_.emplace_back();
-    along_ = 0.0;
-  }
-  std::vector<PathStretch> take() { return std::move(stretches_); }
 
- private:
   std::span<const Pose> viewpoints_;
-  const Places& places_;
+  const Bends& bends_;
   std::vector<PathStretch> stretches_ = std::vector<PathStretch>(1);
   double along_ = 0.0;    // [m] the last stretch
   std::size_t next_ = 0;  // viewpoint
@@ -145,27 +212,12 @@ class Stretches {
 
 }  // namespace
 
-std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, const MotionLimits& limits,
-                                      const SegmentTest& is_free) {
-  const Places places(viewpoints);
-  const std::vector<Corner> corners = corners_at(places, limits, is_free);
-  Stretches stretches(viewpoints, places);
-  stretches.look_up_to(0, 0.0);
-  for (std::size_t i = 0; i + 1 < places.at.size(); ++i) {
-    const Corner &from = corners[i], &to = corners[i + 1];
-    const double length = places.lengths[i];
-    const Eigen::Vector3d direction = (places.at[i + 1] - places.at[i]) / length;
-    stretches.add({places.at[i] + from.cut() * direction, direction, Eigen::Vector3d::Zero(), 0.0,
-                   length - from.cut() - to.cut()});
-    if (to.radius > 0.0) {
-      const PathPiece arc = to.arc();
-      stretches.look_up_to(i + 1, arc.length / 2);
-      stretches.add(arc);
-      continue;
-    }
-    stretches.look_up_to(i + 1, 0.0);
-    if (to.angle >= kStraight) stretches.stop();
-  }
+std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, double speed,
+                                      const MotionLimits& limits, const SegmentTest& is_free) {
+  const Bends bends(viewpoints);
+  const std::vector<Corner> corners = corners_at(bends, speed, limits, is_free);
+  Stretches stretches(viewpoints, bends);
+  for (std::size_t i = 0; i < bends.lengths.size(); ++i) stretches.add(i, corners[i], corners[i + 1]);
   return stretches.take();
 }
 

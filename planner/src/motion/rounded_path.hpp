@@ -20,8 +20,10 @@ struct PathStretch {
 };
 
 /// A path with its corners rounded by arcs: as wide as the limits can use, as the neighbouring corners leave
-/// room, and as the test allows. At a corner with no room for an arc a stretch ends.
-[[nodiscard]] std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints,
+/// room, and as the test allows; the first also leaves room to get slow enough for it. At a corner with no
+/// room for an arc a stretch ends.
+/// @param speed  [m/s] of the robot at the path's begin
+[[nodiscard]] std::vector<PathStretch> rounded_path(std::span<const Pose> viewpoints, double speed,
                                                     const MotionLimits& limits, const SegmentTest& is_free);
 
 }  // namespace frontlux::planner::detail

@@ -46,7 +46,7 @@ std::optional<Trajectory> Trajectory::through(const MotionState& start, double t
   Trajectory whole(start.pose, time);
   std::vector<Look> looks;
   double speed = start.velocity.norm();
-  for (const detail::PathStretch& stretch : detail::rounded_path(viewpoints, limits, is_free)) {
+  for (const detail::PathStretch& stretch : detail::rounded_path(viewpoints, speed, limits, is_free)) {
     const double begin = whole.length();
     if (!whole.extend(stretch.pieces, speed, limits)) return std::nullopt;
     for (const detail::PathLook& look : stretch.looks)

@@ -2,6 +2,7 @@
 
 #include "support/test.hpp"
 
+#include <numbers>
 #include <random>
 
 namespace frontlux::planner {
@@ -55,6 +56,36 @@ TEST(Departure, KeepsTheLimitsFromOneWayToAnother) {
   }
   EXPECT_GT(stopped, 10);
   EXPECT_GT(went_on, 10);
+}
+
+// A robot at its full speed turns to a way that leads elsewhere. In the open it need not stop: on an arc of
+// its widest useful radius it would lose no time at all.
+TEST(Departure, TurnsElsewhereWithoutAStop) {
+  const MotionLimits limits{1.5, 2.0, 1.0};
+  const SegmentTest all_free = [](const auto&, const auto&, const auto&) { return true; };
+  const std::vector<Pose> way = {Pose{}, Pose{{20.0, 0.0, 0.0}, 0.0}};
+  const auto old = Trajectory::through({way.front()}, 0.0, way, limits, all_free);
+  ASSERT_TRUE(old);
+  constexpr double kTime = 5.0, kAway = 3.0, kStopping = 1.5 * 1.5 / (2 * 2.0);  // [s], [m], [m]
+  for (const int degrees : {30, 45, 60, 75, 90}) {
+    SCOPED_TRACE(degrees);
+    const double angle = degrees * std::numbers::pi / 180;
+    const Eigen::Vector3d from = old->at(kTime).pose.position;
+    const Pose goal{from + kAway * Eigen::Vector3d{std::cos(angle), std::sin(angle), 0.0}, 0.0};
+    const auto path_from = [&](const Pose& start) { return std::vector<Pose>{start, goal}; };
+    const auto departure = detail::best_departure(*old, kTime, path_from, limits, all_free);
+    ASSERT_TRUE(departure);
+    EXPECT_FALSE(departure->stops);
+    const Trajectory trajectory = detail::depart(*old, kTime, *departure, limits, all_free);
+    double slowest = limits.speed;
+    for (double time = kTime; time < trajectory.end() - 1.0; time += 0.01)
+      slowest = std::min(slowest, trajectory.at(time).velocity.norm());
+    EXPECT_GT(slowest, degrees <= 60 ? 1.3 : 0.8);
+    // Braking, and then going from rest to rest.
+    const double rest = (goal.position - from - Eigen::Vector3d{kStopping, 0.0, 0.0}).norm();
+    const double with_stop = 2 * limits.speed / limits.acceleration + rest / limits.speed;
+    EXPECT_LT(trajectory.end() - kTime, with_stop - (degrees <= 60 ? 0.5 : 0.2));
+  }
 }
 
 TEST(Departure, IsNoneWithoutAPath) {

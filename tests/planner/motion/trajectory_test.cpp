@@ -133,6 +133,44 @@ TEST(Trajectory, RoundsCornersOnlyWhereTheTestAllows) {
   EXPECT_TRUE(Trajectory::through({way.front()}, 0.0, way, limits, seen));
 }
 
+// Viewpoints on the straight parts of a path are no corners: arcs are as wide as without them.
+TEST(Trajectory, TakesCornersAsFastWithViewpointsBetweenThem) {
+  const MotionLimits limits{1.5, 2.0, 3.0};
+  const std::vector<Pose> corners = {{{0, 0, 0}, 0}, {{3, 0, 0}, 0}, {{3, 3, 0}, 0}, {{6, 6, 0}, 0}};
+  std::vector<Pose> way = {corners.front()};
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    for (int part = 1; part <= 5; ++part) {
+      const Eigen::Vector3d from = corners[i - 1].position, to = corners[i].position;
+      way.push_back({from + part / 5.0 * (to - from), 0.0});
+    }
+  const auto few = Trajectory::through({corners.front()}, 0.0, corners, limits, kAllFree),
+             many = Trajectory::through({way.front()}, 0.0, way, limits, kAllFree);
+  ASSERT_TRUE(few && many);
+  EXPECT_NEAR(many->end(), few->end(), 1e-6);
+  EXPECT_NEAR(many->length(), few->length(), 1e-6);
+  expect_within(*many, limits);
+}
+
+// Also those that an arc cuts off: there it looks where their places on the corner's sides would have it.
+TEST(Trajectory, LooksWhereItsViewpointsLook) {
+  const MotionLimits limits{1.5, 2.0, 3.0};
+  std::vector<Pose> way;
+  for (int i = 0; i <= 12; ++i)  // a corner in the middle, with a yaw that follows the length
+    way.push_back({{std::min(i, 6) * 0.5, std::max(i - 6, 0) * 0.5, 0.0}, 0.1 * i});
+  const auto trajectory = Trajectory::through({way.front()}, 0.0, way, limits, kAllFree);
+  ASSERT_TRUE(trajectory);
+  EXPECT_LT(trajectory->length(), 5.9);
+  double before = 0.0;
+  for (double time = 0.0; time <= trajectory->end(); time += kStep) {
+    const Pose pose = trajectory->at(time).pose;
+    EXPECT_GE(pose.yaw, before - 1e-9);
+    before = pose.yaw;
+    // As by the nearer side of the corner: x up to the corner, then y.
+    const double along = pose.position.x() + pose.position.y();
+    EXPECT_NEAR(pose.yaw, 0.2 * along, 0.06) << time;
+  }
+}
+
 TEST(Trajectory, TurnsAtTheEndIfThereIsNoTimeOnTheWay) {
   const std::vector<Pose> way = {{{0, 0, 0}, 0.0}, {{1, 0, 0}, 3.0}};
   const MotionLimits limits{2.0, 4.0, 0.5};
