@@ -1,6 +1,7 @@
 #include "exploration/exploration_state.hpp"
 
 #include "casting/counting_ray_caster.hpp"
+#include "exploration/best_candidates.hpp"
 #include "exploration/execute_path.hpp"
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -32,25 +32,6 @@ std::vector<VoxelKey> find_still_unknown(const VoxelGrid& grid, const Informatio
       if (grid.at(targets[frontier]) == Occupancy::kUnknown) keys.push_back(targets[frontier]);
   sort_once(keys);
   return keys;
-}
-
-// The goal's cell and the best others by eq. 1, sorted by cell. There are thousands in space, and most are
-// worth next to nothing.
-std::vector<RenderedCell> best_candidates(std::vector<RenderedCell> cells, const Goal& goal) {
-  constexpr std::size_t kMost = 1000;
-  if (cells.size() <= kMost) return cells;
-  const auto by_cell = [](const RenderedCell& a, const RenderedCell& b) {
-    return std::tie(a.cell, a.yaw) < std::tie(b.cell, b.yaw);
-  };
-  const auto worth = [&](const RenderedCell& cell) {
-    return std::pair(cell.cell == goal.cell, cell.quality);
-  };
-  std::ranges::nth_element(cells, cells.begin() + kMost, [&](const RenderedCell& a, const RenderedCell& b) {
-    return worth(a) != worth(b) ? worth(a) > worth(b) : by_cell(a, b);
-  });
-  cells.resize(kMost);
-  std::ranges::sort(cells, by_cell);
-  return cells;
 }
 
 }  // namespace
@@ -184,95 +165,6 @@ void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, Corri
   const PhaseClock clock(step, Phase::kGoals);
   selection->keep_goal({travel_map(), changed}, robot, poses[robot], extent);
   step.frontiers = frontiers.size();
-}
-
-// What a robot needs to know of its corridor as long as it has somewhere to go: all distances where finding
-// them takes a few milliseconds, since they are exact.
-CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
-  constexpr std::uint64_t kFew = 1'000'000;  // cells
-  const TravelOptions& travel = options.team[robot].robot.travel;
-  const bool all =
-      travel.motion == Motion::kPlane || travel.node_edge > 0.0 || size_of(mapping.bounds()) <= kFew;
-  return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
-}
-
-// Of a long path only the first part is planned voxel by voxel: the robot plans again long before its end.
-bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
-  constexpr double kAhead = 80.0;  // [m]
-  const PhaseClock clock(step, Phase::kPaths);
-  const auto near_path = tours->around_path_to(robot, cell);
-  ahead[robot].reset();
-  if (const auto here = lattice().key(poses[robot].position))
-    ahead[robot] = tours->cell_on_path_to(robot, cell, *here, kAhead);
-  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_path)) return true;
-  ahead[robot].reset();
-  return selection->find_way(robot, cell, near_path);
-}
-
-void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
-  keep_goal(robot, step, extent_of_tours(robot));
-  const VoxelKey& cell = step.robots[robot].goal.cell;
-  if (find_path_to_stop(robot, cell, step)) return;
-  const PhaseClock clock(step, Phase::kPaths);
-  selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
-}
-
-// The goal at the first stop of a robot's tour, or why there is none.
-Goal ExplorationState::first_stop(std::size_t robot) const {
-  Goal goal;
-  const CorridorState corridor = path_corridor(robot).state();
-  const auto tour = tours->tour(robot);
-  if (corridor != CorridorState::kReady) {
-    goal.state = GoalState::kNoCorridor;
-    goal.reason = "no goal: the robot " + std::string(describe(corridor));
-    return goal;
-  }
-  if (tour.empty()) {
-    goal.state = GoalState::kNothingAssigned;
-    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
-    return goal;
-  }
-  const TourStop& first = tour.front();
-  goal.state = GoalState::kAssigned;
-  goal.pose = first.pose;
-  goal.cell = first.cell;
-  goal.distance = tours->first_distance(robot);
-  goal.gain = static_cast<double>(first.seen);
-  goal.assigned = tours->frontiers_of(robot).size();
-  goal.quality = options.team[robot].options.discount(goal.distance) * goal.gain;
-  goal.reason =
-      "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
-  return goal;
-}
-
-void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
-                                  ExplorationStep& step) {
-  const CountingRayCaster counting(*caster, lattice());
-  {
-    const PhaseClock clock(step, Phase::kGoals);
-    wanted = abandoned.without_abandoned(frontiers.keys());
-    step.abandoned = frontiers.size() - wanted.size();
-  }
-  const auto update = [&](CorridorExtent extent) {
-    keep_goal(robot, step, extent);
-    const PhaseClock clock(step, Phase::kGoals);
-    tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
-  };
-  const auto has_path = [&] {
-    const auto tour = tours->tour(robot);
-    return tour.empty() || find_path_to_stop(robot, tour.front().cell, step);
-  };
-  update(extent_of_tours(robot));
-  if (!has_path() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
-  step.rays += counting.rays();
-  const GoalOptions& rating = options.team[robot].options;
-  const PhaseClock clock(step, Phase::kGoals);
-  targets[robot].clear();
-  std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
-  const Goal& goal = step.robots[robot].goal = first_stop(robot);
-  std::vector<RenderedCell> candidates = tours->candidates(robot);
-  for (RenderedCell& cell : candidates) cell.quality = rating.discount(cell.distance) * cell.gain;
-  step.robots[robot].image = best_candidates(std::move(candidates), goal);
 }
 
 // What the other robots are going to see.

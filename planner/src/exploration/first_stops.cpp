@@ -1,0 +1,104 @@
+// Goals at the first stops of the robots' tours.
+
+#include "casting/counting_ray_caster.hpp"
+#include "exploration/best_candidates.hpp"
+#include "exploration/exploration_state.hpp"
+#include "exploration/phase_clock.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace frontlux::planner::detail {
+
+// What a robot needs to know of its corridor as long as it has somewhere to go: all distances where finding
+// them takes a few milliseconds, since they are exact.
+CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
+  constexpr std::uint64_t kFew = 1'000'000;  // cells
+  const TravelOptions& travel = options.team[robot].robot.travel;
+  const bool all =
+      travel.motion == Motion::kPlane || travel.node_edge > 0.0 || size_of(mapping.bounds()) <= kFew;
+  return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
+}
+
+// Of a long path only the first part is planned voxel by voxel: the robot plans again long before its end.
+bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
+  constexpr double kAhead = 80.0;  // [m]
+  const PhaseClock clock(step, Phase::kPaths);
+  const auto near_path = tours->around_path_to(robot, cell);
+  ahead[robot].reset();
+  if (const auto here = lattice().key(poses[robot].position))
+    ahead[robot] = tours->cell_on_path_to(robot, cell, *here, kAhead);
+  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_path)) return true;
+  ahead[robot].reset();
+  return selection->find_way(robot, cell, near_path);
+}
+
+void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
+  keep_goal(robot, step, extent_of_tours(robot));
+  const VoxelKey& cell = step.robots[robot].goal.cell;
+  if (find_path_to_stop(robot, cell, step)) return;
+  const PhaseClock clock(step, Phase::kPaths);
+  selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
+}
+
+// The goal at the first stop of a robot's tour, or why there is none.
+Goal ExplorationState::first_stop(std::size_t robot) const {
+  Goal goal;
+  const CorridorState corridor = path_corridor(robot).state();
+  const auto tour = tours->tour(robot);
+  if (corridor != CorridorState::kReady) {
+    goal.state = GoalState::kNoCorridor;
+    goal.reason = "no goal: the robot " + std::string(describe(corridor));
+    return goal;
+  }
+  if (tour.empty()) {
+    goal.state = GoalState::kNothingAssigned;
+    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
+    return goal;
+  }
+  const TourStop& first = tour.front();
+  goal.state = GoalState::kAssigned;
+  goal.pose = first.pose;
+  goal.cell = first.cell;
+  goal.distance = tours->first_distance(robot);
+  goal.gain = static_cast<double>(first.seen);
+  goal.assigned = tours->frontiers_of(robot).size();
+  goal.quality = options.team[robot].options.discount(goal.distance) * goal.gain;
+  goal.reason =
+      "stop 1 of " + std::to_string(tour.size()) + ", " + std::to_string(first.seen) + " frontiers in view";
+  return goal;
+}
+
+void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState> starts,
+                                  ExplorationStep& step) {
+  const CountingRayCaster counting(*caster, lattice());
+  {
+    const PhaseClock clock(step, Phase::kGoals);
+    wanted = abandoned.without_abandoned(frontiers.keys());
+    step.abandoned = frontiers.size() - wanted.size();
+  }
+  const auto update = [&](CorridorExtent extent) {
+    keep_goal(robot, step, extent);
+    const PhaseClock clock(step, Phase::kGoals);
+    tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
+  };
+  const auto has_path = [&] {
+    const auto tour = tours->tour(robot);
+    return tour.empty() || find_path_to_stop(robot, tour.front().cell, step);
+  };
+  update(extent_of_tours(robot));
+  if (!has_path() && extent_of_tours(robot) == CorridorExtent::kNearby) update(CorridorExtent::kAllCells);
+  step.rays += counting.rays();
+  const GoalOptions& rating = options.team[robot].options;
+  const PhaseClock clock(step, Phase::kGoals);
+  targets[robot].clear();
+  std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
+  const Goal& goal = step.robots[robot].goal = first_stop(robot);
+  std::vector<RenderedCell> candidates = tours->candidates(robot);
+  for (RenderedCell& cell : candidates) cell.quality = rating.discount(cell.distance) * cell.gain;
+  step.robots[robot].image = best_candidates(std::move(candidates), goal);
+}
+
+}  // namespace frontlux::planner::detail
