@@ -47,8 +47,8 @@ std::uint32_t FrontierClusters::new_piece() {
 void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   for (const std::uint32_t piece : cube.pieces) {
-    for (const VoxelKey& key : pieces_[piece]) piece_[key] = 0;
-    pieces_[piece].clear();
+    for (const VoxelKey& key : pieces_[piece].keys) piece_[key] = 0;
+    pieces_[piece].keys.clear();
     free_.push_back(piece);
   }
   cube.pieces.clear();
@@ -57,16 +57,18 @@ void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
     if (piece_[first] != kNone) continue;
     const std::uint32_t number = new_piece();
     cube.pieces.push_back(number);
-    Keys& piece = pieces_[number];
-    piece.assign(1, first);
+    Keys& keys = pieces_[number].keys;
+    keys.assign(1, first);
     piece_[first] = number;
-    for (std::size_t i = 0; i < piece.size(); ++i)
-      for_each_neighbor(VoxelKey(piece[i]), piece_.box(), [&](const VoxelKey& neighbor) {
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      for_each_neighbor(VoxelKey(keys[i]), piece_.box(), [&](const VoxelKey& neighbor) {
         if (piece_[neighbor] != kNone || cube_of(neighbor) != at) return;
         piece_[neighbor] = number;
-        piece.push_back(neighbor);
+        keys.push_back(neighbor);
       });
-    std::ranges::sort(piece);
+    std::ranges::sort(keys);
+    pieces_[number].box = bounds_of(keys);
+    pieces_[number].revision = next_piece_revision_++;
   }
 }
 
@@ -74,19 +76,19 @@ void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
 std::vector<std::uint32_t> FrontierClusters::pieces_in_order() const {
   std::vector<std::uint32_t> pieces;
   for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece)
-    if (!pieces_[piece].empty()) pieces.push_back(piece);
-  std::ranges::sort(pieces, {}, [this](std::uint32_t piece) { return pieces_[piece].front(); });
+    if (!pieces_[piece].keys.empty()) pieces.push_back(piece);
+  std::ranges::sort(pieces, {}, [this](std::uint32_t piece) { return pieces_[piece].keys.front(); });
   return pieces;
 }
 
 // The largest piece that touches a small one, of those of one size the first; itself if none does.
 std::uint32_t FrontierClusters::piece_for(std::uint32_t small) const {
   std::uint32_t best = small;
-  for (const VoxelKey& key : pieces_[small])
+  for (const VoxelKey& key : pieces_[small].keys)
     for_each_neighbor(key, piece_.box(), [&](const VoxelKey& neighbor) {
       const std::uint32_t other = piece_[neighbor];
       if (other == 0 || other == small || other == best) return;
-      const Keys &theirs = pieces_[other], &most = pieces_[best];
+      const Keys &theirs = pieces_[other].keys, &most = pieces_[best].keys;
       if (best == small || theirs.size() > most.size() ||
           (theirs.size() == most.size() && theirs.front() < most.front()))
         best = other;
@@ -94,9 +96,20 @@ std::uint32_t FrontierClusters::piece_for(std::uint32_t small) const {
   return best;
 }
 
-// The pieces in order, sorted; those that are too small together with the largest ones that they touch, up to
-// a width, and beyond it once where they would be left out. What is too small all the same is left out.
-std::vector<Keys> FrontierClusters::joined_pieces() const {
+// Of those in changed cubes and beside them.
+void FrontierClusters::find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed) {
+  std::set<VoxelKey> around;
+  for (const auto& [at, keys] : changed)
+    for_each_key(grown({at, at}, 1), [&](const VoxelKey& cube) { around.insert(cube); });
+  for (const VoxelKey& at : around)
+    if (const auto cube = cubes_.find(at); cube != cubes_.end())
+      for (const std::uint32_t piece : cube->second.pieces)
+        if (pieces_[piece].keys.size() < least_) pieces_[piece].joins = piece_for(piece);
+}
+
+// The pieces in order; those that are too small together with the largest ones that they touch, up to a
+// width, and beyond it once where they would be left out. What is too small all the same is left out.
+std::vector<FrontierClusters::Part> FrontierClusters::joined_pieces() const {
   std::vector<std::uint32_t> joined_to(pieces_.size());  // itself: the first piece of a cluster
   std::iota(joined_to.begin(), joined_to.end(), 0U);
   const auto first_of = [&](std::uint32_t piece) {
@@ -107,40 +120,43 @@ std::vector<Keys> FrontierClusters::joined_pieces() const {
   std::vector<std::size_t> sizes(pieces_.size());  // of the clusters, by their first pieces
   std::vector<KeyBox> boxes(pieces_.size());       // around them
   for (const std::uint32_t piece : order) {
-    sizes[piece] = pieces_[piece].size();
-    boxes[piece] = bounds_of(pieces_[piece]);
+    sizes[piece] = pieces_[piece].keys.size();
+    boxes[piece] = pieces_[piece].box;
   }
   const auto is_wide = [&](const KeyBox& box) {
     const int most = kWidest * edge_ - 1;
     return box.max.x - box.min.x > most || box.max.y - box.min.y > most || box.max.z - box.min.z > most;
   };
   for (const std::uint32_t piece : order) {
-    if (pieces_[piece].size() >= least_) continue;
-    std::uint32_t a = first_of(piece), b = first_of(piece_for(piece));
+    if (pieces_[piece].keys.size() >= least_) continue;
+    std::uint32_t a = first_of(piece), b = first_of(pieces_[piece].joins);
     if (a == b) continue;
     const KeyBox both = hull(boxes[a], boxes[b]);
     if (is_wide(both) && (sizes[a] >= least_ || is_wide(boxes[a]) || is_wide(boxes[b]))) continue;
-    if (pieces_[b].front() < pieces_[a].front()) std::swap(a, b);
+    if (pieces_[b].keys.front() < pieces_[a].keys.front()) std::swap(a, b);
     joined_to[b] = a;
     sizes[a] += sizes[b];
     boxes[a] = both;
   }
-  std::vector<Keys> all(pieces_.size());
-  for (const std::uint32_t piece : order) {
-    Keys& keys = all[first_of(piece)];
-    keys.insert(keys.end(), pieces_[piece].begin(), pieces_[piece].end());
-  }
-  std::vector<Keys> joined;
+  std::vector<std::vector<std::uint32_t>> all(pieces_.size());
+  for (const std::uint32_t piece : order) all[first_of(piece)].push_back(piece);
+  std::vector<Part> joined;
   for (const std::uint32_t piece : order)
-    if (all[piece].size() >= least_) joined.push_back(std::move(all[piece]));
-  for (Keys& keys : joined) std::ranges::sort(keys);
+    if (!all[piece].empty() && sizes[piece] >= least_)
+      joined.push_back({std::move(all[piece]), sizes[piece]});
   return joined;
 }
 
-// The id of the cluster in which most of its frontiers were before, unless a larger one has it.
-void FrontierClusters::name(FrontierCluster& cluster, std::set<std::uint32_t>& taken) {
+FrontierClusters::Revisions FrontierClusters::revisions_of(const Part& part) const {
+  Revisions revisions;
+  for (const std::uint32_t piece : part.pieces) revisions.push_back(pieces_[piece].revision);
+  return revisions;
+}
+
+// The id of the cluster in which most of the frontiers were before, unless a larger one has it.
+std::uint32_t FrontierClusters::name_for(const Keys& keys, const std::set<std::uint32_t>& taken) {
   std::vector<std::pair<std::uint32_t, std::size_t>> before;  // ids and how many were in them
-  for (const VoxelKey& key : cluster.keys) {
+  for (const VoxelKey& key : keys) {
     const std::uint32_t id = cluster_[key];
     if (id == 0) continue;
     const auto known = std::ranges::find(before, id, &std::pair<std::uint32_t, std::size_t>::first);
@@ -153,13 +169,64 @@ void FrontierClusters::name(FrontierCluster& cluster, std::set<std::uint32_t>& t
   std::pair<std::size_t, std::uint32_t> best{0, 0};
   for (const auto& [id, count] : before)
     if (count > best.first && !taken.contains(id)) best = {count, id};
-  cluster.id = best.second != 0 ? best.second : next_id_++;
-  taken.insert(cluster.id);
+  return best.second != 0 ? best.second : next_id_++;
 }
+
+// Of pieces that were not together before, or were others.
+FrontierCluster FrontierClusters::make_cluster(const Part& part, const std::set<std::uint32_t>& taken) {
+  FrontierCluster cluster;
+  cluster.box = pieces_[part.pieces.front()].box;
+  for (const std::uint32_t piece : part.pieces) {
+    const Keys& keys = pieces_[piece].keys;
+    cluster.keys.insert(cluster.keys.end(), keys.begin(), keys.end());
+    cluster.box = hull(cluster.box, pieces_[piece].box);
+  }
+  std::ranges::sort(cluster.keys);
+  cluster.id = name_for(cluster.keys, taken);
+  return cluster;
+}
+
+// Of all pieces, the largest first. One of the same pieces as before is what it was, and keeps its id if no
+// larger one has it: all of its frontiers were in it.
+void FrontierClusters::make_clusters() {
+  std::vector<Part> parts = joined_pieces();
+  std::ranges::stable_sort(parts, [](const Part& a, const Part& b) { return a.size > b.size; });
+  for (Piece& piece : pieces_) piece.cluster = 0;
+  std::vector<FrontierCluster> now;
+  std::map<Revisions, std::uint32_t> made_of;
+  std::set<std::uint32_t> taken;
+  std::vector<std::size_t> made;
+  for (const Part& part : parts) {
+    Revisions revisions = revisions_of(part);
+    const auto same = made_of_.find(revisions);
+    const bool stays = same != made_of_.end() && !taken.contains(same->second);
+    FrontierCluster& cluster =
+        now.emplace_back(stays ? std::move(clusters_[places_.at(same->second)]) : make_cluster(part, taken));
+    if (!stays) {
+      made.push_back(now.size() - 1);
+      const auto old = places_.find(cluster.id);
+      const bool equal = old != places_.end() && clusters_[old->second].keys == cluster.keys;
+      cluster.revision = equal ? clusters_[old->second].revision : next_revision_++;
+    }
+    taken.insert(cluster.id);
+    made_of.emplace(std::move(revisions), cluster.id);
+    for (const std::uint32_t piece : part.pieces) pieces_[piece].cluster = cluster.id;
+  }
+  for (const std::size_t i : made)
+    for (const VoxelKey& key : now[i].keys) cluster_[key] = now[i].id;
+  std::ranges::sort(now, {}, [](const FrontierCluster& cluster) { return cluster.keys.front(); });
+  clusters_ = std::move(now);
+  made_of_ = std::move(made_of);
+  places_.clear();
+  for (std::size_t i = 0; i < clusters_.size(); ++i) places_[clusters_[i].id] = i;
+}
+
+const FrontierCluster& FrontierClusters::cluster(std::uint32_t id) const { return clusters_[places_.at(id)]; }
 
 void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
   Keys changed;
   std::ranges::set_symmetric_difference(frontiers_, frontiers, std::back_inserter(changed));
+  if (changed.empty()) return;
   frontiers_.assign(frontiers.begin(), frontiers.end());
   std::map<VoxelKey, Keys> changed_in;  // each cube
   for (const VoxelKey& key : changed) changed_in[cube_of(key)].push_back(key);
@@ -171,26 +238,8 @@ void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
     cut(cube, at);
     if (cube.frontiers.empty()) cubes_.erase(at);
   }
-
-  std::vector<Keys> parts = joined_pieces();
-  std::ranges::stable_sort(parts, [](const Keys& a, const Keys& b) { return a.size() > b.size(); });
-  std::map<std::uint32_t, FrontierCluster> before;
-  for (FrontierCluster& cluster : clusters_) before[cluster.id] = std::move(cluster);
-  clusters_.clear();
-  std::set<std::uint32_t> taken;
-  for (Keys& keys : parts) {
-    FrontierCluster cluster;
-    cluster.keys = std::move(keys);
-    cluster.box = bounds_of(cluster.keys);
-    name(cluster, taken);
-    const auto old = before.find(cluster.id);
-    cluster.revision =
-        old != before.end() && old->second.keys == cluster.keys ? old->second.revision : next_revision_++;
-    clusters_.push_back(std::move(cluster));
-  }
-  for (const FrontierCluster& cluster : clusters_)
-    for (const VoxelKey& key : cluster.keys) cluster_[key] = cluster.id;
-  std::ranges::sort(clusters_, {}, [](const FrontierCluster& cluster) { return cluster.keys.front(); });
+  find_neighbors_of_small_pieces(changed_in);
+  make_clusters();
 }
 
 }  // namespace frontlux::planner::detail

@@ -25,8 +25,8 @@ struct FrontierCluster {
 
 /// The frontiers of a map in clusters. They connect by faces, edges and corners; clusters that reach from one
 /// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour, up to a
-/// bounded width of all together. Only cubes
-/// with other frontiers than before are looked at again.
+/// bounded width of all together. Only cubes with other frontiers than before, and clusters in them, are made
+/// again.
 class FrontierClusters {
  public:
   /// @param bounds  of all frontiers
@@ -40,6 +40,12 @@ class FrontierClusters {
 
   /// By their first key.
   [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
+  /// @pre there is a cluster with this id
+  [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
+  /// The id of the cluster that holds a frontier; 0 if it is left out.
+  [[nodiscard]] std::uint32_t cluster_of(const VoxelKey& frontier) const {
+    return pieces_[piece_[frontier]].cluster;
+  }
 
  private:
   using Keys = std::vector<VoxelKey>;
@@ -47,6 +53,18 @@ class FrontierClusters {
     Keys frontiers;                     // sorted
     std::vector<std::uint32_t> pieces;  // numbers
   };
+  struct Piece {
+    Keys keys;  // sorted; empty if its number is not in use
+    KeyBox box = {};
+    std::uint64_t revision = 0;  // another one whenever its keys may be others
+    std::uint32_t joins = 0;     // of a small one: `piece_for`
+    std::uint32_t cluster = 0;   // id; 0 if it is in none
+  };
+  struct Part {
+    std::vector<std::uint32_t> pieces;  // in their order
+    std::size_t size = 0;               // [frontiers]
+  };
+  using Revisions = std::vector<std::uint64_t>;  // of a cluster's pieces
 
   [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
     return make_key(key.x / edge_, key.y / edge_, key.z / edge_);
@@ -55,20 +73,27 @@ class FrontierClusters {
   [[nodiscard]] std::uint32_t new_piece();
   [[nodiscard]] std::vector<std::uint32_t> pieces_in_order() const;
   [[nodiscard]] std::uint32_t piece_for(std::uint32_t small) const;
-  [[nodiscard]] std::vector<Keys> joined_pieces() const;
-  void name(FrontierCluster& cluster, std::set<std::uint32_t>& taken);
+  void find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed);
+  [[nodiscard]] std::vector<Part> joined_pieces() const;
+  [[nodiscard]] Revisions revisions_of(const Part& part) const;
+  [[nodiscard]] FrontierCluster make_cluster(const Part& part, const std::set<std::uint32_t>& taken);
+  [[nodiscard]] std::uint32_t name_for(const Keys& keys, const std::set<std::uint32_t>& taken);
+  void make_clusters();
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
-  std::map<VoxelKey, Cube> cubes_;   // that hold frontiers
-  std::vector<Keys> pieces_ = {{}};  // sorted; empty those without a number in use, as 0
-  std::vector<std::uint32_t> free_;  // numbers
-  BoxArray<std::uint32_t> piece_;    // number of each frontier's; 0 elsewhere
-  BoxArray<std::uint32_t> cluster_;  // that each voxel was in last
+  std::map<std::uint32_t, std::size_t> places_;  // of the ids among the clusters
+  std::map<Revisions, std::uint32_t> made_of_;   // ids of the clusters
+  std::map<VoxelKey, Cube> cubes_;               // that hold frontiers
+  std::vector<Piece> pieces_ = {{}};             // 0 is never in use
+  std::vector<std::uint32_t> free_;              // numbers
+  BoxArray<std::uint32_t> piece_;                // number of each frontier's; 0 elsewhere
+  BoxArray<std::uint32_t> cluster_;              // that each voxel was in last
   std::uint32_t next_id_ = 1;
   std::uint64_t next_revision_ = 1;
+  std::uint64_t next_piece_revision_ = 1;
 };
 
 }  // namespace frontlux::planner::detail

@@ -33,7 +33,7 @@ TourPlanning::NextStops TourPlanning::next_stops(const Query& query) const {
   NextStops next;
   const std::size_t count = std::min(options_.joined, member.tour.size());
   for (std::size_t c = 0; c < count; ++c) {
-    next.clusters.push_back(&cluster(member.tour[c].clusters.front()));
+    next.clusters.push_back(&clusters_.cluster(member.tour[c].clusters.front()));
     next.views.sizes.push_back(static_cast<double>(next.clusters.back()->keys.size()));
     for (const ClusterViewpoint& viewpoint : member.sights.viewpoints(next.clusters.back()->id))
       if (const double distance = own_distance_to(query, viewpoint.cell); distance != TourProblem::kNever) {

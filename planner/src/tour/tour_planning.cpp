@@ -105,10 +105,6 @@ void TourPlanning::lose(std::size_t robot) {
   member.first_view.clear();
 }
 
-const FrontierCluster& TourPlanning::cluster(std::uint32_t id) const {
-  return *std::ranges::find(clusters_.clusters(), id, &FrontierCluster::id);
-}
-
 double TourPlanning::first_distance(std::size_t robot) const {
   const Member& member = members_[robot];
   const double distance = member.tour.empty() ? 0.0 : member.distances.from_start(member.tour.front().cell);
@@ -406,22 +402,25 @@ void TourPlanning::take(const Query& query, std::span<const Stop> stops, const T
 
 // Of all tours, and of the first stop of the robot that plans.
 void TourPlanning::note_frontiers(const Query& query) {
+  std::vector<Member*> whose;  // by the clusters' ids
   for (Member& member : members_) {
     member.frontiers.clear();
     for (const TourStop& stop : member.tour)
       for (const std::uint32_t id : stop.clusters) {
-        const Keys& keys = cluster(id).keys;
-        member.frontiers.insert(member.frontiers.end(), keys.begin(), keys.end());
+        whose.resize(std::max<std::size_t>(whose.size(), id + 1));
+        whose[id] = &member;
       }
-    std::ranges::sort(member.frontiers);
   }
+  for (const VoxelKey& key : query.frontiers)
+    if (const std::uint32_t id = clusters_.cluster_of(key); id < whose.size() && whose[id] != nullptr)
+      whose[id]->frontiers.push_back(key);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;
   const TourStop& first = member.tour.front();
   for (const std::uint32_t id : first.clusters) {
-    const Keys seen =
-        visible_from(sight_of(query.robot, query.caster), cluster(id).keys, first.cell, first.pose.yaw);
+    const Keys seen = visible_from(sight_of(query.robot, query.caster), clusters_.cluster(id).keys,
+                                   first.cell, first.pose.yaw);
     member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
   }
   std::ranges::sort(member.first_view);

@@ -131,7 +131,6 @@ class TourPlanning {
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
                                                 std::span<const Stop> stops);
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
-  [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
   // The stages of `update`.
   void follow_map(const Query& query);
   [[nodiscard]] Tours tours_before(const Query& query, std::span<const Stop> stops,

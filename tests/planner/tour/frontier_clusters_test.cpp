@@ -147,6 +147,43 @@ TEST(FrontierClusters, KeepTheirIdsAndRevisionsWhileTheyStay) {
   EXPECT_LE(changed, 2u);  // it may fall into two
 }
 
+// Also if few frontiers change at a time, so that most clusters and pieces are kept.
+TEST(FrontierClusters, AreTheSameAsNewOnesAfterFewChanges) {
+  Random random(44);
+  FrontierClusters kept(kBounds, 6, 4);
+  const Keys begin = random_frontiers(random, 9);
+  std::set<VoxelKey> frontiers(begin.begin(), begin.end());
+  std::size_t stayed = 0;
+  for (int round = 0; round < 150; ++round) {
+    const Keys some = random_frontiers(random, 1);
+    for (std::size_t i = 0; i < some.size(); ++i)
+      if (random.below(20) == 0 && !frontiers.erase(some[i])) frontiers.insert(some[i]);
+    const Keys now(frontiers.begin(), frontiers.end());
+    const std::vector<FrontierCluster> before(kept.clusters().begin(), kept.clusters().end());
+    kept.update(now);
+    FrontierClusters anew(kBounds, 6, 4);
+    anew.update(now);
+    ASSERT_EQ(kept.clusters().size(), anew.clusters().size());
+    std::map<VoxelKey, std::uint32_t> id_of;
+    std::set<std::uint32_t> ids;
+    for (std::size_t i = 0; i < anew.clusters().size(); ++i) {
+      const FrontierCluster& cluster = kept.clusters()[i];
+      EXPECT_EQ(cluster.keys, anew.clusters()[i].keys);
+      EXPECT_EQ(cluster.box, bounds_of(cluster.keys));
+      EXPECT_TRUE(ids.insert(cluster.id).second);
+      EXPECT_EQ(&kept.cluster(cluster.id), &cluster);
+      for (const VoxelKey& key : cluster.keys) id_of[key] = cluster.id;
+      // The same frontiers have the same revision, and others another one.
+      const auto old = std::ranges::find(before, cluster.id, &FrontierCluster::id);
+      if (old == before.end()) continue;
+      EXPECT_EQ(old->revision == cluster.revision, old->keys == cluster.keys);
+      stayed += old->keys == cluster.keys ? 1 : 0;
+    }
+    for (const VoxelKey& key : now) EXPECT_EQ(kept.cluster_of(key), id_of.contains(key) ? id_of[key] : 0);
+  }
+  EXPECT_GT(stayed, 500u);
+}
+
 TEST(FrontierClusters, AreTheSameAsNewOnes) {
   Random random(43);
   FrontierClusters kept(kBounds, 6, 4);
