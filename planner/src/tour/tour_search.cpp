@@ -3,6 +3,7 @@
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -15,7 +16,8 @@ constexpr double kWorth = 1e-6;       // [s] smaller gains are rounding
 constexpr double kOfAll = 0.1;        // of the sum of all tours, beside the longest
 constexpr std::size_t kMoved = 3;     // stops moved together, at most
 constexpr std::size_t kRounds = 200;  // of changes, at most
-constexpr double kSoon = 3.0;         // weight of the mean arrival, beside the length
+constexpr std::uint32_t kNone = ~std::uint32_t{0}, kEnd = kNone - 1;  // instead of a stop
+constexpr double kSoon = 3.0;  // weight of the mean arrival, beside the length
 
 double step(const TourProblem::Robot& robot, const Tour& tour, std::size_t to) {
   return to == 0 ? robot.first[tour[0]] : robot.between(tour[to - 1], tour[to]);
@@ -28,6 +30,10 @@ class Search {
     tours_.resize(problem.robots.size());
     steps_.resize(tours_.size());
     lengths_.resize(tours_.size());
+    turned_.resize(tours_.size());
+    after_.resize(tours_.size());
+    new_links_.resize(tours_.size());
+    detours_.assign(tours_.size(), std::vector<LeastDetour>(kMoved * problem.stops));
     for (std::size_t r = 0; r < tours_.size(); ++r) measure(r);
   }
 
@@ -146,15 +152,29 @@ class Search {
     return at;
   }
 
-  // 2-opt.
+  // For each place of a tour, and for its end, whether the step to it is not one of the same direction in the
+  // tour that was last found to have no stretch worth turning.
+  [[nodiscard]] std::vector<std::uint8_t> new_steps(std::size_t r) const {
+    const Tour& tour = tours_[r];
+    std::vector<std::uint8_t> is_new(tour.size() + 1);
+    for (std::size_t i = 0; i <= tour.size(); ++i)
+      is_new[i] = turned_[r].empty() ||
+                  turned_[r][i == 0 ? problem_.stops : tour[i - 1]] != (i == tour.size() ? kEnd : tour[i]);
+    return is_new;
+  }
+
+  // 2-opt. Turning a stretch changes two steps: of two that were there before it is known not to be worth it.
   bool turn_a_stretch() {
     bool any = false;
     for (std::size_t r = 0; r < tours_.size(); ++r) {
       Tour& tour = tours_[r];
       const TourProblem::Robot& robot = problem_.robots[r];
       const Steps& steps = steps_[r];
+      const std::vector<std::uint8_t> is_new = new_steps(r);
+      bool turned = false;
       for (std::size_t i = robot.fixed; i + 1 < tour.size(); ++i)
         for (std::size_t j = i + 1; j < tour.size(); ++j) {
+          if (!turned && is_new[i] == 0 && is_new[j + 1] == 0) continue;
           const double before = steps[i] + (j + 1 < tour.size() ? steps[j + 1] : 0.0);
           const double to = i == 0 ? robot.first[tour[j]] : robot.between(tour[i - 1], tour[j]);
           const double after = to + (j + 1 < tour.size() ? robot.between(tour[i], tour[j + 1]) : 0.0);
@@ -162,10 +182,21 @@ class Search {
           std::reverse(tour.begin() + static_cast<std::ptrdiff_t>(i),
                        tour.begin() + static_cast<std::ptrdiff_t>(j + 1));
           measure(r);
-          any = true;
+          any = turned = true;
         }
+      turned_[r].clear();
+      if (!turned) turned_[r] = stops_after(r);
     }
     return any;
+  }
+
+  // The stop that follows each one in a tour, and the start of the tour, which comes last.
+  [[nodiscard]] std::vector<std::uint32_t> stops_after(std::size_t r) const {
+    std::vector<std::uint32_t> after(problem_.stops + 1, kNone);
+    std::size_t before = problem_.stops;
+    for (const std::uint32_t stop : tours_[r]) before = after[before] = stop;
+    after[before] = kEnd;
+    return after;
   }
 
   struct Move {
@@ -204,25 +235,90 @@ class Search {
     return time;
   }
 
-  // What a robot needs more at least to take in a stretch, either way round, before one of the places `begin`
-  // to `end` - 1 of its tour, none of which is at its begin or end.
-  [[nodiscard]] double least_detour(std::size_t r, std::span<const std::uint32_t> stretch, std::size_t begin,
-                                    std::size_t end) const {
+  // A step between two stops of a tour, either of which may come first.
+  struct Link {
+    std::uint32_t a = kNone, b = kNone;
+  };
+  // What a robot needs more at least to take in a stretch between two stops of its tour that are not in the
+  // stretch. As long as that link is there, only new links may be better.
+  struct LeastDetour {
+    std::array<std::uint32_t, kMoved> stretch{};
+    double added = TourProblem::kNever;  // [s]
+    Link in = {};
+  };
+
+  [[nodiscard]] bool is_link(std::size_t r, const Link& link) const {
+    return link.a != kNone && (after_[r][link.a] == link.b || after_[r][link.b] == link.a);
+  }
+  // Those between stops of the tours, and which of them are new since the last time.
+  void note_links() {
+    for (std::size_t r = 0; r < tours_.size(); ++r) {
+      const std::vector<std::uint32_t> before = std::exchange(after_[r], stops_after(r));
+      const Tour& tour = tours_[r];
+      new_links_[r].clear();
+      for (std::size_t at = std::max<std::size_t>(first_free_place(r), 1); at < tour.size(); ++at)
+        if (before.empty() || (before[tour[at - 1]] != tour[at] && before[tour[at]] != tour[at - 1]))
+          new_links_[r].push_back({tour[at - 1], tour[at]});
+    }
+  }
+
+  // By the links before the places `begin` to `end` - 1.
+  void find_least_detour(std::size_t r, std::span<const std::uint32_t> stretch, std::size_t begin,
+                         std::size_t end, LeastDetour& least) const {
     const double* from_first = problem_.robots[r].between.row(stretch.front());
     const double* from_last = problem_.robots[r].between.row(stretch.back());
     const std::uint32_t* tour = tours_[r].data();
     const double* steps = steps_[r].data();
-    double least = TourProblem::kNever;
+    double best = least.added;
     for (std::size_t at = begin; at < end; ++at) {
       const std::uint32_t before = tour[at - 1], after = tour[at];
-      least = std::min(least, from_first[before] + from_last[after] - steps[at]);
-      least = std::min(least, from_last[before] + from_first[after] - steps[at]);
+      best = std::min(best, from_first[before] + from_last[after] - steps[at]);
+      best = std::min(best, from_last[before] + from_first[after] - steps[at]);
     }
-    return least;
+    if (best == least.added) return;
+    while (from_first[tour[begin - 1]] + from_last[tour[begin]] - steps[begin] != best &&
+           from_last[tour[begin - 1]] + from_first[tour[begin]] - steps[begin] != best)
+      ++begin;
+    least.added = best;
+    least.in = {tour[begin - 1], tour[begin]};
+  }
+
+  [[nodiscard]] double least_inner_detour(const Move& move) {
+    const std::span stretch = stretch_of(move);
+    const auto is_in_stretch = [&](std::uint32_t stop) {
+      return std::ranges::find(stretch, stop) != stretch.end();
+    };
+    LeastDetour& least = detours_[move.to][(move.count - 1) * problem_.stops + stretch.front()];
+    if (is_link(move.to, least.in) &&
+        std::ranges::equal(stretch, std::span(least.stretch).first(move.count))) {
+      const NumberTable& between = problem_.robots[move.to].between;
+      const double *from_first = between.row(stretch.front()), *from_last = between.row(stretch.back());
+      for (const Link& link : new_links_[move.to]) {
+        if (is_in_stretch(link.a) || is_in_stretch(link.b)) continue;
+        for (const auto& [one, other] : {std::pair(link.a, link.b), std::pair(link.b, link.a)})
+          if (const double added = from_first[one] + from_last[other] - between(link.a, link.b);
+              added < least.added) {
+            least.added = added;
+            least.in = link;
+          }
+      }
+      return least.added;
+    }
+    least = {};
+    std::ranges::copy(stretch, least.stretch.begin());
+    const std::size_t inner = std::max<std::size_t>(first_free_place(move.to), 1),
+                      size = tours_[move.to].size();
+    if (move.to != move.from) {
+      find_least_detour(move.to, stretch, inner, size, least);
+    } else {
+      find_least_detour(move.to, stretch, inner, move.begin, least);
+      find_least_detour(move.to, stretch, move.end() + 1, size, least);
+    }
+    return least.added;
   }
 
   // What a robot needs more at least, wherever in its tour it takes in the stretch of a move.
-  [[nodiscard]] double least_detour(const Move& move, double step_of_rest) const {
+  [[nodiscard]] double least_detour(const Move& move, double step_of_rest) {
     const std::span stretch = stretch_of(move);
     const Tour& tour = tours_[move.to];
     double least = TourProblem::kNever;
@@ -235,16 +331,15 @@ class Search {
         return detour(move.to, tour, steps_[move.to], at, first, last);
       });
     };
-    const std::size_t free = first_free_place(move.to), inner = std::max<std::size_t>(free, 1);
+    const bool from_start = first_free_place(move.to) == 0;
+    least = least_inner_detour(move);
     if (move.to != move.from) {
-      if (free == 0) take_place(0);
+      if (from_start) take_place(0);
       take_place(tour.size());
-      return std::min(least, least_detour(move.to, stretch, inner, tour.size()));
+      return least;
     }
-    if (free == 0 && move.begin > 0) take_place(0);
+    if (from_start && move.begin > 0) take_place(0);
     if (move.end() < tour.size()) take_place(tour.size());
-    least = std::min(least, least_detour(move.to, stretch, inner, move.begin));
-    least = std::min(least, least_detour(move.to, stretch, move.end() + 1, tour.size()));
     take_either_way([&](std::uint32_t first, std::uint32_t last) {  // where it was
       const TourProblem::Robot& robot = problem_.robots[move.to];
       const double to = move.begin == 0 ? robot.first[first] : robot.between(first, tour[move.begin - 1]);
@@ -259,7 +354,7 @@ class Search {
   }
 
   // The best move of a stretch that begins at a stop, but for the place in the tour where it leads.
-  [[nodiscard]] Move best_move_from(std::size_t from, std::size_t begin) const {
+  [[nodiscard]] Move best_move_from(std::size_t from, std::size_t begin) {
     Move best;
     for (std::size_t count = 1; count <= kMoved && begin + count <= tours_[from].size(); ++count) {
       Move move{.from = from, .begin = begin, .count = count};
@@ -305,6 +400,7 @@ class Search {
 
   // Or-opt: the best move of a few stops to another place, in their own tour or another one.
   bool move_stops() {
+    note_links();
     std::vector<Move> moves;  // the best from each stop
     for (std::size_t from = 0; from < tours_.size(); ++from)
       for (std::size_t begin = problem_.robots[from].fixed; begin < tours_[from].size(); ++begin)
@@ -333,6 +429,11 @@ class Search {
   Tours tours_;
   std::vector<Steps> steps_;
   std::vector<double> lengths_;
+  // `stops_after` of each tour: when no stretch was worth turning, and when stops were last to be moved;
+  // empty if that was never.
+  std::vector<std::vector<std::uint32_t>> turned_, after_;
+  std::vector<std::vector<Link>> new_links_;       // of each tour, since then
+  std::vector<std::vector<LeastDetour>> detours_;  // in each tour, by number of stops and the first of them
 };
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include "support/random.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 namespace frontlux::planner::detail {
 namespace {
 
@@ -89,6 +92,49 @@ TEST(TourSearch, NeverMakesToursLonger) {
     EXPECT_EQ(stops_in(tours), problem.stops);
     EXPECT_LE(cost_of(problem, tours), cost_of(problem, given) + 1e-9);
     EXPECT_EQ(shortened_tours(problem, tours), tours);  // nothing is left to shorten
+  }
+}
+
+// Tours that are found have no stretch worth turning, and no few stops worth moving, whatever the search has
+// kept of its steps before.
+TEST(TourSearch, FindsNothingMoreToImprove) {
+  constexpr double kRounding = 1e-5;
+  Random random(11);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    const auto robots = static_cast<std::size_t>(1 + random.below(3)),
+               stops = static_cast<std::size_t>(8 + random.below(25));
+    TourProblem problem = random_problem(random, robots, stops, robots > 1);
+    if (i % 3 == 0) problem.robots.front().fixed = 2;
+    const Tours tours = shortened_tours(problem, {{0, 1}});
+    const double cost = cost_of(problem, tours);
+    const auto expect_no_better = [&](const Tours& changed, auto... what) {
+      EXPECT_GE(cost_of(problem, changed), cost - kRounding) << ::testing::PrintToString(std::tuple(what...));
+    };
+    for (std::size_t r = 0; r < tours.size(); ++r)
+      for (std::size_t begin = problem.robots[r].fixed; begin < tours[r].size(); ++begin)
+        for (std::size_t end = begin + 1; end <= tours[r].size(); ++end) {
+          const auto at = [](auto& tour, std::size_t place) {
+            return tour.begin() + static_cast<std::ptrdiff_t>(place);
+          };
+          Tours turned = tours;
+          std::reverse(at(turned[r], begin), at(turned[r], end));
+          if (problem.length(r, turned[r]) < problem.length(r, tours[r]) - kRounding)
+            ADD_FAILURE() << "a stretch of robot " << r << " from " << begin << " to " << end;
+          if (end - begin > 3) continue;
+          for (const bool other_way : {false, true})
+            for (std::size_t to = 0; to < tours.size(); ++to) {
+              Tours without = tours;
+              std::vector<std::uint32_t> stretch(at(without[r], begin), at(without[r], end));
+              if (other_way) std::ranges::reverse(stretch);
+              without[r].erase(at(without[r], begin), at(without[r], end));
+              for (std::size_t place = problem.robots[to].fixed; place <= without[to].size(); ++place) {
+                Tours moved = without;
+                moved[to].insert(at(moved[to], place), stretch.begin(), stretch.end());
+                expect_no_better(moved, r, begin, end, other_way, to, place);
+              }
+            }
+        }
   }
 }
 
