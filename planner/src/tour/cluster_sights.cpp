@@ -13,25 +13,38 @@ constexpr int kLongestPause = 8;  // [plannings]
 
 }  // namespace
 
+// Whether other viewpoints may be the best now. Of a cluster that the robot does not see all that a robot
+// might see it from counts.
+bool ClusterSights::needs_a_look(const Query& query, const FrontierCluster& cluster,
+                                 const Sight& sight) const {
+  if (sight.revision != cluster.revision) return true;
+  const auto any_in = [](std::span<const KeyBox> boxes, const KeyBox& within) {
+    return std::ranges::any_of(boxes,
+                               [&](const KeyBox& box) { return intersection(box, within).has_value(); });
+  };
+  if (same_extent_ && sight.depend_on && !sight.viewpoints.empty())
+    return any_in(query.cells, *sight.depend_on);
+  return any_in(query.changes, grown(cluster.box, query.view.region.reach()));
+}
+
 // Returns the clusters that it sees from none, unless nothing has changed for them.
 std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Query& query) {
   std::map<std::uint32_t, Sight> sights;
   std::vector<std::pair<const FrontierCluster*, Sight*>> search;
-  const auto near = [&](const FrontierCluster& cluster) {
-    const KeyBox around = grown(cluster.box, query.view.region.reach());
-    return std::ranges::any_of(query.changes,
-                               [&](const KeyBox& box) { return intersection(box, around).has_value(); });
-  };
+  const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
+  same_extent_ = extent_ == extent;
   for (const FrontierCluster& cluster : query.clusters) {
     Sight& sight = sights[cluster.id];
     if (const auto before = sights_.find(cluster.id); before != sights_.end())
       sight = std::move(before->second);
-    if (sight.revision != cluster.revision || near(cluster)) search.emplace_back(&cluster, &sight);
+    if (needs_a_look(query, cluster, sight)) search.emplace_back(&cluster, &sight);
   }
   for_each_index(search.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = search[i];
     sight->revision = cluster->revision;
-    sight->found = find_viewpoints(query.view, *cluster, sight->found);
+    auto [found, depend_on] = find_viewpoints(query.view, *cluster, sight->found);
+    sight->found = std::move(found);
+    sight->depend_on = depend_on;
     sight->stale = true;
   });
   sights_ = std::move(sights);
@@ -59,6 +72,7 @@ void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidde
     const auto& [cluster, sight] = hidden[i];
     sight->viewpoints = viewpoints_anywhere(query.view, *cluster, query.reaches);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
+    sight->depend_on.reset();
     sight->stale = false;
     sight->in_vain = sight->viewpoints.empty() ? std::min(sight->in_vain + 1, 30) : 0;
     sight->pause = sight->in_vain == 0 ? 0 : std::min(1 << sight->in_vain, kLongestPause);

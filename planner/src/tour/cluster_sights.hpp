@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ class ClusterSights {
     const ViewpointQuery& view;
     std::span<const FrontierCluster> clusters;  ///< all that there are now
     std::span<const KeyBox> changes;            ///< boxes that hold all voxels changed since the last update
+    std::span<const KeyBox>
+        cells;  ///< the same, with all cells in which the robot fits only now, or not any more
     const std::function<bool(const VoxelKey&)>& reaches;  ///< whether the robot can get to a cell
     bool can_move = true;                                 ///< whether it can get anywhere
   };
@@ -39,6 +42,7 @@ class ClusterSights {
   struct Sight {
     std::uint64_t revision = 0;
     std::vector<ClusterViewpoint> found;       // wherever it fits
+    std::optional<KeyBox> depend_on;           // as `FoundViewpoints` has it
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
     int in_vain = 0;                           // that often, in a row
@@ -46,10 +50,14 @@ class ClusterSights {
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
+  [[nodiscard]] bool needs_a_look(const Query& query, const FrontierCluster& cluster,
+                                  const Sight& sight) const;
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
   std::map<std::uint32_t, Sight> sights_;  // by cluster
+  std::optional<KeyBox> extent_;           // of the graph
+  bool same_extent_ = false;               // as at the last update
 };
 
 }  // namespace frontlux::planner::detail

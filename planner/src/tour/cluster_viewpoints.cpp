@@ -51,7 +51,7 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
         const Eigen::Vector3d at(middle.x() + radius * std::cos(azimuth),
                                  middle.y() + radius * std::sin(azimuth),
                                  std::clamp(middle.z() + above * query.view.max_range, lowest, highest));
-        if (const auto cell = query.lattice.key(at); cell && query.graph.fits(*cell)) cells.push_back(*cell);
+        if (const auto cell = query.lattice.key(at)) cells.push_back(*cell);
       }
   sort_once(cells);
   return cells;
@@ -162,15 +162,18 @@ std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const 
   return seen;
 }
 
-std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
-                                              std::span<const ClusterViewpoint> before) {
-  std::vector<ClusterViewpoint> found =
-      best_viewpoints(query, cluster, cells_around(query, cluster), kSample);
-  if (!found.empty()) return found;
-  std::vector<VoxelKey> cells;
+FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                std::span<const ClusterViewpoint> before) {
+  std::vector<VoxelKey> cells = cells_around(query, cluster);
+  KeyBox box = cluster.box;
+  for (const VoxelKey& cell : cells) box = hull(box, {cell, cell});
+  std::erase_if(cells, [&](const VoxelKey& cell) { return !query.graph.fits(cell); });
+  std::vector<ClusterViewpoint> found = best_viewpoints(query, cluster, cells, kSample);
+  if (!found.empty()) return {std::move(found), box};
+  cells.clear();
   for (const ClusterViewpoint& viewpoint : before)
     if (query.graph.fits(viewpoint.cell)) cells.push_back(viewpoint.cell);
-  return best_viewpoints(query, cluster, cells, kSample);
+  return {best_viewpoints(query, cluster, cells, kSample)};
 }
 
 std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster,

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,12 +33,19 @@ struct ViewpointQuery {
   double least_gain = 1.0;   ///< [frontiers] places that see fewer of a cluster are no viewpoints
 };
 
+/// What `find_viewpoints` has found.
+struct FoundViewpoints {
+  std::vector<ClusterViewpoint> viewpoints;
+  /// If they lie on the circles: as long as the cluster, the graph's extent, the map in this box and where
+  /// the robot fits in it are the same, they are.
+  std::optional<KeyBox> depend_on = std::nullopt;
+};
+
 /// Some places from which a robot sees about as much of a cluster as from any, apart from each other; the
 /// best first. They lie on circles around the cluster's middle or, if it sees nothing from there, where they
 /// were before. None if it sees nothing from there either.
-[[nodiscard]] std::vector<ClusterViewpoint> find_viewpoints(const ViewpointQuery& query,
-                                                            const FrontierCluster& cluster,
-                                                            std::span<const ClusterViewpoint> before);
+[[nodiscard]] FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                              std::span<const ClusterViewpoint> before);
 
 /// The same of cells all over the graph that the robot can get to.
 [[nodiscard]] std::vector<ClusterViewpoint> viewpoints_anywhere(

@@ -144,7 +144,8 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
   return boxes;
 }
 
-void TourPlanning::update_distances(const Query& query, std::span<const KeyBox> changes) {
+// @return boxes that hold the changes and all cells in which the robot fits only now, or not any more
+std::vector<KeyBox> TourPlanning::update_distances(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
   const BodyStencil stencil(member.robot.travel, lattice_.resolution());
   std::vector<KeyBox> cells;  // whose stencils may hold a changed voxel
@@ -155,6 +156,7 @@ void TourPlanning::update_distances(const Query& query, std::span<const KeyBox> 
                           by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
   }
   member.distances.update(query.corridor, cells);
+  return cells;
 }
 
 // Of the robot that plans: exact near by.
@@ -336,7 +338,7 @@ void TourPlanning::follow_map(const Query& query) {
   std::vector<KeyBox> changes = take_changes(member);
   if (!std::exchange(member.planned, true))
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
-  update_distances(query, changes);
+  const std::vector<KeyBox> cells = update_distances(query, changes);
   for (std::size_t r = 0; r < members_.size(); ++r)
     members_[r].distances.start_from(lattice_.key(query.starts[r].pose.position));
   clusters_.update(query.frontiers);
@@ -345,7 +347,7 @@ void TourPlanning::follow_map(const Query& query) {
   };
   const ViewpointQuery view = sight_of(query.robot, query.caster);
   member.sights.update(
-      {view, clusters_.clusters(), changes, can_go, query.corridor.state() == CorridorState::kReady});
+      {view, clusters_.clusters(), changes, cells, can_go, query.corridor.state() == CorridorState::kReady});
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.

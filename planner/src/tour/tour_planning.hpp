@@ -121,7 +121,7 @@ class TourPlanning {
   [[nodiscard]] double own_distance_to(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
-  void update_distances(const Query& query, std::span<const KeyBox> changes);
+  std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster) const;
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;

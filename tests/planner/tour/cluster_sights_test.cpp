@@ -1,6 +1,7 @@
 // A room with a tunnel that is too narrow for the robot, and clusters of frontiers in and beyond it.
 #include "tour/cluster_sights.hpp"
 
+#include "support/random.hpp"
 #include "support/test.hpp"
 #include "support/voxel_keys.hpp"
 
@@ -52,7 +53,7 @@ struct Scene {
       ++asked;
       return corridor.contains(cell);
     };
-    sights.update({query, clusters, changes, reaches});
+    sights.update({query, clusters, changes, changes, reaches});
   }
 };
 
@@ -89,6 +90,47 @@ TEST(ClusterSights, TriesHiddenClustersEverLessOften) {
     if (scene.asked > 20) tries.push_back(planning);
   }
   EXPECT_EQ(tries, (std::vector{1, 3, 7, 15, 23, 31}));
+}
+
+// What has not been looked at again since nothing that it depends on has changed is what a new look finds.
+TEST(ClusterSights, AreThoseOfANewLook) {
+  test::Random random(5);
+  Scene scene;
+  std::vector<FrontierCluster> clusters;
+  for (std::uint32_t id = 1; id <= 6; ++id) {
+    FrontierCluster& cluster = clusters.emplace_back(cluster_of(id, at(15, 2 * static_cast<int>(id), 3)));
+    cluster.keys.push_back(at(15, 2 * static_cast<int>(id), 4));
+    cluster.box.max = cluster.keys.back();
+  }
+  std::vector<KeyBox> changes = {kBounds};
+  int compared = 0;
+  for (int round = 0; round < 60; ++round) {
+    scene.look(clusters, changes);
+    const ViewpointQuery query{*scene.caster, scene.grid.lattice(), scene.graph, scene.view, scene.region};
+    for (const FrontierCluster& cluster : clusters) {
+      std::vector<ClusterViewpoint> anew = find_viewpoints(query, cluster, {}).viewpoints;
+      std::erase_if(anew, [&](const ClusterViewpoint& seen) { return !scene.corridor.contains(seen.cell); });
+      if (anew.empty()) continue;  // it may know others
+      const auto kept = scene.sights.viewpoints(cluster.id);
+      ASSERT_EQ(kept.size(), anew.size()) << round << " " << cluster.id;
+      for (std::size_t i = 0; i < anew.size(); ++i) {
+        EXPECT_EQ(kept[i].cell, anew[i].cell);
+        EXPECT_EQ(kept[i].yaw, anew[i].yaw);
+        EXPECT_EQ(kept[i].seen, anew[i].seen);
+        ++compared;
+      }
+    }
+    const VoxelKey middle = random.key_in({at(0, 0, 0), at(14, 14, 6)});
+    const KeyBox box = grown({middle, middle}, random.below(2));
+    test::fill(scene.grid, box, random.one_in(2) ? Occupancy::kOccupied : Occupancy::kFree);
+    std::vector<VoxelKey> keys;
+    for_each_key(box, [&](const VoxelKey& key) { keys.push_back(key); });
+    scene.corridor.update({scene.grid, keys}, at(7, 7, 3));
+    changes = {grown(box, 3)};  // with the cells of the body of three voxels
+    scene.graph.update(scene.corridor, changes);
+    scene.caster->update(scene.grid);
+  }
+  EXPECT_GT(compared, 200);
 }
 
 TEST(ClusterSights, TriesAllBeforeItSeesNone) {

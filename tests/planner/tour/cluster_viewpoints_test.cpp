@@ -56,7 +56,7 @@ struct Look {
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster = make_grid_ray_caster(room.grid);
   ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
-  std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster, {});
+  std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster, {}).viewpoints;
 };
 
 TEST(ClusterViewpoints, SeeWhatTheyCount) {
@@ -122,8 +122,8 @@ TEST(ClusterViewpoints, AreNoneWhereNothingIsVisible) {
   wall.min.x = wall.max.x = 32785;
   test::fill(walled, wall, Occupancy::kOccupied);
   const auto caster = make_grid_ray_caster(walled);
-  EXPECT_TRUE(
-      find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster, {}).empty());
+  EXPECT_TRUE(find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster, {})
+                  .viewpoints.empty());
 }
 
 }  // namespace
