@@ -2,6 +2,7 @@
 
 #include "casting/counting_ray_caster.hpp"
 #include "exploration/frontiers_in_view.hpp"
+#include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
 #include "mapping/sort_once.hpp"
 #include "motion/departure.hpp"
@@ -153,7 +154,8 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
   if (now.planned.size() < 2) return;  // no scan since the last planning
   const Pose& pose = now.planned.back();
   const FieldOfView& view = team.options.team[robot].robot.view;
-  const std::span<const VoxelKey> frontiers = team.frontiers.keys();
+  const Keys frontiers =
+      detail::frontiers_near_path(team.lattice(), team.frontiers.keys(), {&pose, 1}, view.max_range);
   const detail::CountingRayCaster counting(*team.caster, team.lattice());
   const VisiblePairs seen = visible_pairs(counting, team.mapping.grid(), {&pose, 1}, frontiers, view);
   for (const std::uint32_t i : seen.frontiers_of(0)) {

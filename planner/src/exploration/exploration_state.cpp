@@ -4,6 +4,7 @@
 #include "exploration/best_candidates.hpp"
 #include "exploration/execute_path.hpp"
 #include "exploration/frontiers_in_view.hpp"
+#include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
 #include "mapping/sort_once.hpp"
@@ -221,8 +222,11 @@ InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& 
   const CountingRayCaster counting(*caster, lattice());
   RobotStep& robot = step.robots[r];
   const FieldOfView& view = options.team[r].robot.view;
-  const auto target_centers = centers(lattice(), targets[r]);
-  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, targets[r], view);
+  // Without tours what is in view is told by its place among all targets.
+  const Keys near =
+      tours ? frontiers_near_path(lattice(), targets[r], robot.planned, view.max_range) : targets[r];
+  const auto target_centers = centers(lattice(), near);
+  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, near, view);
   const OptimizedPath turned = planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
   for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
   robot.gain_tangent = turned.tangent.distinct;
