@@ -24,12 +24,13 @@ CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
 
 // Of a long path only the first part is planned voxel by voxel: the robot plans again long before its end.
 bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step) {
-  constexpr double kAhead = 80.0;  // [m]
+  constexpr double kAhead = 80.0, kVoxelsAhead = 267.0;  // [m], the search takes time with voxels
   const PhaseClock clock(step, Phase::kPaths);
   const auto near_path = tours->around_path_to(robot, cell);
   ahead[robot].reset();
   if (const auto here = lattice().key(poses[robot].position))
-    ahead[robot] = tours->cell_on_path_to(robot, cell, *here, kAhead);
+    ahead[robot] =
+        tours->cell_on_path_to(robot, cell, *here, std::min(kAhead, kVoxelsAhead * lattice().resolution()));
   if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_path)) return true;
   ahead[robot].reset();
   return selection->find_way(robot, cell, near_path);
