@@ -240,11 +240,12 @@ class Search {
     std::uint32_t a = kNone, b = kNone;
   };
   // What a robot needs more at least to take in a stretch between two stops of its tour that are not in the
-  // stretch. As long as that link is there, only new links may be better.
+  // stretch. As long as that link is there, only links that are new since then may be better.
   struct LeastDetour {
     std::array<std::uint32_t, kMoved> stretch{};
     double added = TourProblem::kNever;  // [s]
     Link in = {};
+    std::size_t found = 0;  // when, by the count of `note_links`
   };
 
   [[nodiscard]] bool is_link(std::size_t r, const Link& link) const {
@@ -252,6 +253,7 @@ class Search {
   }
   // Those between stops of the tours, and which of them are new since the last time.
   void note_links() {
+    ++links_noted_;
     for (std::size_t r = 0; r < tours_.size(); ++r) {
       const std::vector<std::uint32_t> before = std::exchange(after_[r], stops_after(r));
       const Tour& tour = tours_[r];
@@ -289,7 +291,8 @@ class Search {
       return std::ranges::find(stretch, stop) != stretch.end();
     };
     LeastDetour& least = detours_[move.to][(move.count - 1) * problem_.stops + stretch.front()];
-    if (is_link(move.to, least.in) &&
+    const std::size_t found = std::exchange(least.found, links_noted_);
+    if (found + 1 == links_noted_ && is_link(move.to, least.in) &&
         std::ranges::equal(stretch, std::span(least.stretch).first(move.count))) {
       const NumberTable& between = problem_.robots[move.to].between;
       const double *from_first = between.row(stretch.front()), *from_last = between.row(stretch.back());
@@ -304,7 +307,7 @@ class Search {
       }
       return least.added;
     }
-    least = {};
+    least = {.found = links_noted_};
     std::ranges::copy(stretch, least.stretch.begin());
     const std::size_t inner = std::max<std::size_t>(first_free_place(move.to), 1),
                       size = tours_[move.to].size();
@@ -433,6 +436,7 @@ class Search {
   // empty if that was never.
   std::vector<std::vector<std::uint32_t>> turned_, after_;
   std::vector<std::vector<Link>> new_links_;       // of each tour, since then
+  std::size_t links_noted_ = 0;                    // so often
   std::vector<std::vector<LeastDetour>> detours_;  // in each tour, by number of stops and the first of them
 };
 

@@ -100,7 +100,7 @@ TEST(TourSearch, NeverMakesToursLonger) {
 TEST(TourSearch, FindsNothingMoreToImprove) {
   constexpr double kRounding = 1e-5;
   Random random(11);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     SCOPED_TRACE(i);
     const auto robots = static_cast<std::size_t>(1 + random.below(3)),
                stops = static_cast<std::size_t>(8 + random.below(25));
