@@ -15,15 +15,13 @@ constexpr int kLongestPause = 8;  // [plannings]
 
 // Whether other viewpoints may be the best now. Of a cluster that the robot does not see all that a robot
 // might see it from counts.
-bool ClusterSights::needs_a_look(const Query& query, const FrontierCluster& cluster,
-                                 const Sight& sight) const {
+bool ClusterSights::needs_a_look(const Query& query, const FrontierCluster& cluster, const Sight& sight) {
   if (sight.revision != cluster.revision) return true;
   const auto any_in = [](std::span<const KeyBox> boxes, const KeyBox& within) {
     return std::ranges::any_of(boxes,
                                [&](const KeyBox& box) { return intersection(box, within).has_value(); });
   };
-  if (same_extent_ && sight.depend_on && !sight.viewpoints.empty())
-    return any_in(query.cells, *sight.depend_on);
+  if (sight.depend_on && !sight.viewpoints.empty()) return any_in(query.cells, *sight.depend_on);
   return any_in(query.changes, grown(cluster.box, query.view.region.reach()));
 }
 
@@ -32,11 +30,12 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
   std::map<std::uint32_t, Sight> sights;
   std::vector<std::pair<const FrontierCluster*, Sight*>> search;
   const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
-  same_extent_ = extent_ == extent;
+  const bool same_extent = extent_ == extent;
   for (const FrontierCluster& cluster : query.clusters) {
     Sight& sight = sights[cluster.id];
     if (const auto before = sights_.find(cluster.id); before != sights_.end())
       sight = std::move(before->second);
+    if (!same_extent) sight.depend_on.reset();
     if (needs_a_look(query, cluster, sight)) search.emplace_back(&cluster, &sight);
   }
   for_each_index(search.size(), [&](std::size_t i) {

@@ -50,14 +50,13 @@ class ClusterSights {
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
-  [[nodiscard]] bool needs_a_look(const Query& query, const FrontierCluster& cluster,
-                                  const Sight& sight) const;
+  [[nodiscard]] static bool needs_a_look(const Query& query, const FrontierCluster& cluster,
+                                         const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
   std::map<std::uint32_t, Sight> sights_;  // by cluster
   std::optional<KeyBox> extent_;           // of the graph
-  bool same_extent_ = false;               // as at the last update
 };
 
 }  // namespace frontlux::planner::detail
