@@ -233,17 +233,16 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
   constexpr double kStep = 0.05;  // [s]
   const TravelOptions& body = team.options.team[robot].robot.travel;
   const BodyStencil stencil(body, team.lattice().resolution());
-  // Between its cells' middles a round body touches voxels that are none of its own cell's.
-  const Eigen::Vector3d reach =
-      body.shape == BodyShape::kBox ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : stencil.reach();
   Keys cells;
   Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
   for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
-    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
-      if (cells.empty() || cells.back() != key) cells.push_back(key);
-      return true;
-    }));
+    // Between its cells' middles a body touches voxels that are none of its own cell's.
+    static_cast<void>(
+        SegmentVoxels(team.lattice(), from, to, stencil.reach()).all_of([&](const VoxelKey& key) {
+          if (cells.empty() || cells.back() != key) cells.push_back(key);
+          return true;
+        }));
     from = to;
   }
   sort_once(cells);

@@ -4,6 +4,7 @@
 #include "support/complaint.hpp"
 
 #include <frontlux/frontier_set.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/recorded_map.hpp>
 
 #include <tbb/task_arena.h>
@@ -228,6 +229,45 @@ TEST(ContinuousExploration, PlansAnewForARobotThatCouldNotGoOn) {
 }
 
 // A robot that touches something before it has left its cell must not go there again, or it would for ever.
+// Also where its body, between the middles of cells, is in voxels that are none of those around its cell.
+TEST(ContinuousExploration, PlansAnewIfSomethingTurnsUpWhereItsBodyWillBe) {
+  int turned_up = 0;
+  for (double time = 2.0; time < 14.0; time += 0.4) {
+    TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+    std::optional<Trajectory> last;
+    scene.explore(time, [&](const PlannedMotion& now) { last = now.trajectory; });
+    ContinuousExploration& exploration = scene.exploration();
+    if (exploration.end()) break;
+    const TravelOptions& travel = exploration.options().team[0].robot.travel;
+    const VoxelGrid grid = scene.grid();
+    const BodyStencil stencil(travel, grid.lattice().resolution());
+    std::set<VoxelKey> around_cells;
+    std::map<VoxelKey, Eigen::Vector3d> from;
+    for (double t = scene.time() + 0.3; t < last->end(); t += kSample) {
+      const Eigen::Vector3d position = last->at(t).pose.position;
+      for_each_key(stencil.box_around(*grid.lattice().key(position)),
+                   [&](const VoxelKey& key) { around_cells.insert(key); });
+      for_each_key(voxels_at(travel, grid.lattice(), position), [&](const VoxelKey& key) {
+        if (grid.at(key) == Occupancy::kFree) from.emplace(key, position);
+      });
+    }
+    const auto found =
+        std::ranges::find_if(from, [&](const auto& entry) { return !around_cells.contains(entry.first); });
+    if (found == from.end()) continue;
+    const auto& [voxel, position] = *found;
+    const Eigen::Vector3d way = grid.lattice().exact_center(voxel) - position;
+    const Scan scan{
+        position.cast<float>(), 10.0, {way.normalized().cast<float>()}, {static_cast<float>(way.norm())}};
+    for (int hit = 0; hit < 10; ++hit) exploration.insert(0, exploration.at(0, scene.time()).pose, scan);
+    ASSERT_EQ(scene.grid().at(voxel), Occupancy::kOccupied);
+    const auto planned = exploration.plan(scene.time() + 0.25);
+    ASSERT_TRUE(planned) << time;
+    EXPECT_EQ(planned->reason, PlanReason::kBlocked) << time;
+    ++turned_up;
+  }
+  EXPECT_GT(turned_up, 3);
+}
+
 TEST(ContinuousExploration, LeavesACellInWhichItWasStopped) {
   TeamInMotion scene("room", {small_uav()});
   ContinuousExploration& exploration = scene.exploration();
