@@ -1,6 +1,7 @@
 // The stops that come next in a robot's tour.
 
 #include "tour/shortest_choice.hpp"
+#include "tour/soonest_order.hpp"
 #include "tour/tour_planning.hpp"
 #include "tour/travel_seconds.hpp"
 

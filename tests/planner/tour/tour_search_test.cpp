@@ -1,6 +1,7 @@
 #include "tour/tour_search.hpp"
 
 #include "support/random.hpp"
+#include "tour/soonest_order.hpp"
 
 #include <algorithm>
 #include <tuple>
