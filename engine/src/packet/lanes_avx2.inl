@@ -69,5 +69,11 @@ struct Lanes {
     expand(bits, fill, from);
     v = _mm256_castsi256_ps(bits);
   }
+  // Writes the lanes of `keep` next to each other.
+  static void compress(std::uint32_t* to, unsigned keep, I v) {
+    alignas(32) std::uint32_t all[kWidth];
+    store(all, v);
+    for (; keep != 0; keep &= keep - 1) *to++ = all[__builtin_ctz(keep)];
+  }
   static void store(std::uint32_t* to, I v) { _mm256_store_si256(reinterpret_cast<__m256i*>(to), v); }
 };

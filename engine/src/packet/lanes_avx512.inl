@@ -60,5 +60,9 @@ struct Lanes {
   static void expand(F& v, unsigned fill, const void* from) {
     v = _mm512_mask_expandloadu_ps(v, static_cast<M>(fill), from);
   }
+  // Writes the lanes of `keep` next to each other, and anything behind them, a register in all.
+  static void compress(std::uint32_t* to, unsigned keep, I v) {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<M>(keep), v));
+  }
   static void store(std::uint32_t* to, I v) { _mm512_store_si512(to, v); }
 };

@@ -40,10 +40,14 @@ struct Lanes {
   static I select(M m, I yes, I no) { return (yes & m) | (no & ~m); }
   // Of the lanes of `where`; anything elsewhere.
   static I gather(const void* words, I at, M where) {
-    const auto* word = static_cast<const std::uint32_t*>(words);
+    const auto* bytes = static_cast<const char*>(words);
     const I safe = at & where;
     I values{};
-    for (int lane = 0; lane < kWidth; ++lane) values[lane] = word[safe[lane]];
+    for (int lane = 0; lane < kWidth; ++lane) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, bytes + sizeof word * safe[lane], sizeof word);
+      values[lane] = word;
+    }
     return values;
   }
   static M closed(const void* words, I at, M where) {
@@ -69,6 +73,11 @@ struct Lanes {
   static void expand(Vector& v, unsigned fill, const From* from) {
     for (int lane = 0; lane < kWidth; ++lane)
       if ((fill >> lane & 1U) != 0) v[lane] = *from++;
+  }
+  // Writes the lanes of `keep` next to each other.
+  static void compress(std::uint32_t* to, unsigned keep, I v) {
+    for (int lane = 0; lane < kWidth; ++lane)
+      if ((keep >> lane & 1U) != 0) *to++ = v[lane];
   }
   static void store(std::uint32_t* to, I v) {
     for (int lane = 0; lane < kWidth; ++lane) to[lane] = v[lane];

@@ -3,6 +3,7 @@
 #include "isa/instruction_set.hpp"
 #include "packet/open_voxels.hpp"
 
+#include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
 #include <frontlux/ray.hpp>
 
@@ -80,10 +81,13 @@ inline constexpr double kLongestWalk = 400.0;
 struct PacketWalk {
   InstructionSet needs;
 
-  /// `RayCaster::visible` between voxel centres. Ends lie in the table, at most `kMaxOffset` apart along each
-  /// axis and not in one voxel; at most `kMaxLines` of them.
-  void (*segments)(const OpenVoxels& table, const KeySegment* segments, std::size_t size,
-                   std::uint8_t* visible);
+  /// `RayCaster::visible` between voxel centres, of at most `kMaxLines` segments.
+  /// @param ends_in  where they may end; they begin where the table `contains` them
+  /// @param left     gets the numbers of those not answered, in order: they lie elsewhere, are longer than
+  ///                 `kMaxOffset` along an axis, or lie in one voxel
+  /// @return how many these are
+  std::size_t (*segments)(const OpenVoxels& table, const KeyBox& ends_in,
+                          std::span<const KeySegment> segments, std::uint8_t* visible, std::uint16_t* left);
   static constexpr int kMaxOffset = 1000;  // (2 n + 1) dy dz has to fit into 31 bits
 
   /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`.

@@ -1,14 +1,20 @@
 // The walk itself. Included by packet_walk.cpp once for each instruction set, inside a namespace that defines
 // its `Lanes`.
 
+// All lanes, and their numbers.
+constexpr unsigned kAllLanes = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
+constexpr auto kLaneNumbers = [] {
+  std::array<std::uint32_t, Lanes::kWidth> numbers{};
+  for (unsigned lane = 0; lane < Lanes::kWidth; ++lane) numbers[lane] = lane;
+  return numbers;
+}();
+
 #include "packet/ray_batch_body.inl"
+#include "packet/segment_batch_body.inl"
 
 // A step of all lanes needs no branch. Lanes whose line has ended run on for up to kSteps - 1 steps, which
 // the table's border allows, and then stand still until enough of them are to be filled again.
 constexpr int kSteps = 8;
-// To look how far it is open around all lanes costs as much as a step. Where this is in vain it is done less
-// often.
-constexpr int kMaxRoundsBetweenLooks = 3;
 
 struct Packet {
   using V = Lanes::V;
@@ -96,9 +102,11 @@ template <LineKind kKind, bool kJumps, class Finish>
   using V = Lanes::V;
   using I = Lanes::I;
   using M = Lanes::M;
-  constexpr unsigned kAll = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
   constexpr int kRefill = Lanes::kWidth > 4 ? Lanes::kWidth / 4 : 1;
-  constexpr int kWorthAJump = kRefill;
+  // To look how far it is open around all lanes costs as much as a step, and a jump as much as some. Where
+  // looking is in vain it is done less often; segments seldom come far.
+  constexpr int kWorthAJump = kKind == LineKind::kSegment ? 2 * kRefill : kRefill;  // lanes
+  constexpr int kMaxRoundsBetweenLooks = kKind == LineKind::kSegment ? 15 : 3;
   const OpenVoxels::Layout& layout = open.layout();
   const Table table{Lanes::whole(~layout.bits[0]),
                     Lanes::whole(~layout.bits[1]),
@@ -121,7 +129,7 @@ template <LineKind kKind, bool kJumps, class Finish>
   while (true) {
     const int room = Lanes::kWidth - __builtin_popcount(active);
     if (next < lines.size && room >= kRefill) {
-      unsigned fill = ~active & kAll;
+      unsigned fill = ~active & kAllLanes;
       const std::size_t left = lines.size - next;
       while (static_cast<std::size_t>(__builtin_popcount(fill)) > left) fill &= fill - 1;
       Lanes::expand(p.tx, fill, &lines.t_max[0][next]);
@@ -153,26 +161,32 @@ template <LineKind kKind, bool kJumps, class Finish>
     M blocked = Lanes::none();  // segments that a voxel has stopped
     unsigned ended_bits = 0;
     const auto step = [&]() __attribute__((always_inline)) {
-      // Ties go to z before y before x (rule 5).
-      const M x_before_y = Lanes::less(p.tx, p.ty);
-      const V first = Lanes::min(p.tx, p.ty);
-      const M not_z_next = Lanes::less(first, p.tz);
-      const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
       M goes_on;  // unless it is stopped here
+      I others;
       if constexpr (kKind == LineKind::kSegment) {
         p.steps = Lanes::subtract(p.steps, Lanes::time(1));
         goes_on = Lanes::less(Lanes::time(0), p.steps);
+        // Ties go to z before y before x (rule 5): on the way back to x before y before z.
+        const M y_before_x = Lanes::less(p.ty, p.tx), z_next = Lanes::less(p.tz, Lanes::min(p.tx, p.ty));
+        p.tx = Lanes::add_unless(p.tx, Lanes::any(y_before_x, z_next), p.dx);
+        p.ty = Lanes::add_if(p.ty, Lanes::but_not(y_before_x, z_next), p.dy);
+        p.tz = Lanes::add_if(p.tz, z_next, p.dz);
+        others = Lanes::select(z_next, table.not_z, Lanes::select(y_before_x, table.not_y, table.not_x));
       } else {
+        // Ties go to z before y before x (rule 5).
+        const M x_before_y = Lanes::less(p.tx, p.ty);
+        const V first = Lanes::min(p.tx, p.ty);
+        const M not_z_next = Lanes::less(first, p.tz);
+        const M x_next = Lanes::both(x_before_y, not_z_next), y_next = Lanes::but_not(not_z_next, x_before_y);
         const V now = Lanes::min(first, p.tz);
         goes_on = Lanes::but_not(going, Lanes::less(end_of_time, now));
         const V second = Lanes::max(first, Lanes::min(Lanes::max(p.tx, p.ty), p.tz));
         p.closest = Lanes::min(p.closest, Lanes::subtract(second, now));
+        p.tx = Lanes::add_if(p.tx, x_next, p.dx);
+        p.ty = Lanes::add_if(p.ty, y_next, p.dy);
+        p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
+        others = Lanes::select(not_z_next, Lanes::select(x_before_y, table.not_x, table.not_y), table.not_z);
       }
-      p.tx = Lanes::add_if(p.tx, x_next, p.dx);
-      p.ty = Lanes::add_if(p.ty, y_next, p.dy);
-      p.tz = Lanes::add_unless(p.tz, not_z_next, p.dz);
-      const I others =
-          Lanes::select(not_z_next, Lanes::select(x_before_y, table.not_x, table.not_y), table.not_z);
       p.index = Lanes::merge(others, p.index, Lanes::increment(Lanes::either(p.index, others)));
       const I at = Lanes::exclusive(p.index, p.flip);
       const M stopped = Lanes::both(goes_on, Lanes::closed(table.words, at, running));
@@ -211,80 +225,28 @@ template <LineKind kKind, bool kJumps, class Finish>
   }
 }
 
-// The lines of key segments, whose time is a whole number: Crossings<int64_t> in 32 bits.
-// @return how many steps they have in all
-[[gnu::always_inline]] inline std::int32_t segment_lines(const OpenVoxels::Layout& layout,
-                                                         const KeySegment* segments, std::size_t size,
-                                                         PacketLines& lines) {
-  alignas(64) std::int32_t from[3][kMaxLines], offset[3][kMaxLines];
-  for (std::size_t i = 0; i < size; ++i) {
-    const KeySegment& s = segments[i];
-    from[0][i] = s.from.x;
-    from[1][i] = s.from.y;
-    from[2][i] = s.from.z;
-    offset[0][i] = s.to.x - s.from.x;
-    offset[1][i] = s.to.y - s.from.y;
-    offset[2][i] = s.to.z - s.from.z;
-  }
-  const auto length = [](std::int32_t d) { return d < 0 ? -d : d; };
-  const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
-  // The axes written out and choices made by bits: with a loop over the axes, or with conditions, of which it
-  // makes branches, GCC 14 vectorises nothing of this.
-  const auto all_if_zero = [](std::int32_t distance) { return -static_cast<std::int32_t>(distance == 0); };
-  const auto time = [&](std::int32_t distance, std::int32_t product) {
-    return product | (all_if_zero(distance) & kNever);
-  };
-  const auto step = [&](std::int32_t distance, std::int32_t product) {
-    return 2 * product & ~all_if_zero(distance);
-  };
-  const auto down = [](std::int32_t d, std::uint32_t bits) {
-    return static_cast<std::uint32_t>(d >> 31) & bits;
-  };
-  std::int32_t steps = 0;
-  const std::uint32_t bits_x = layout.bits[0], bits_y = layout.bits[1], bits_z = layout.bits[2];
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::int32_t x = length(offset[0][i]), y = length(offset[1][i]), z = length(offset[2][i]);
-    const std::int32_t yz = at_least_one(y) * at_least_one(z), zx = at_least_one(z) * at_least_one(x),
-                       xy = at_least_one(x) * at_least_one(y);
-    lines.t_max[0][i] = time(x, yz);
-    lines.t_max[1][i] = time(y, zx);
-    lines.t_max[2][i] = time(z, xy);
-    lines.t_delta[0][i] = step(x, yz);
-    lines.t_delta[1][i] = step(y, zx);
-    lines.t_delta[2][i] = step(z, xy);
-    const std::uint32_t flip =
-        down(offset[0][i], bits_x) | down(offset[1][i], bits_y) | down(offset[2][i], bits_z);
-    const auto kx = static_cast<std::uint32_t>(from[0][i] - layout.corner[0]),
-               ky = static_cast<std::uint32_t>(from[1][i] - layout.corner[1]),
-               kz = static_cast<std::uint32_t>(from[2][i] - layout.corner[2]);
-    const std::uint32_t index = (kx & 7U) | (ky & 7U) << 3U | (kz & 7U) << 6U | (kx >> 3U) << 9U |
-                                (ky >> 3U) << layout.y_shift | (kz >> 3U) << layout.z_shift;
-    lines.steps[i] = x + y + z;
-    steps += lines.steps[i];
-    lines.index[i] = index ^ flip;
-    lines.flip[i] = flip;
-  }
-  return steps;
-}
-
-void segments(const OpenVoxels& table, const KeySegment* segments, std::size_t size, std::uint8_t* visible) {
+std::size_t segments(const OpenVoxels& table, const KeyBox& ends_in, std::span<const KeySegment> segments,
+                     std::uint8_t* visible, std::uint16_t* left) {
+  WaysBack ways;
+  const std::size_t left_size = ways_back(table, ends_in, segments, ways, left);
+  std::fill_n(visible, segments.size(), std::uint8_t{0});
   PacketLines lines;
-  lines.size = size;
-  const std::int32_t steps = segment_lines(table.layout(), segments, size, lines);
-  const auto finish = [visible](const Packet&, const std::uint32_t* line, unsigned ended, unsigned blocked) {
+  const std::int32_t steps = lines_of(table.layout(), ways, lines);
+  const auto finish = [&](const Packet&, const std::uint32_t* line, unsigned ended, unsigned blocked) {
     for (; ended != 0; ended &= ended - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-      visible[line[lane]] = static_cast<std::uint8_t>(~(blocked >> lane) & 1U);
+      visible[ways.number[line[lane]]] = static_cast<std::uint8_t>(~(blocked >> lane) & 1U);
     }
   };
   // Short segments end before a jump is worth its price.
   constexpr std::int32_t kWorthJumps = 32;
-  if (steps >= kWorthJumps * static_cast<std::int32_t>(size)) {
+  if (steps >= kWorthJumps * static_cast<std::int32_t>(ways.size)) {
     rate_steps(lines);
     walk_lines<LineKind::kSegment, true>(table, lines, finish);
   } else {
     walk_lines<LineKind::kSegment, false>(table, lines, finish);
   }
+  return left_size;
 }
 
 void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch) {

@@ -7,53 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 
 namespace frontlux::detail {
-namespace {
-
-constexpr int kLongSegment = 1000;  // voxels along the longest axis
-static_assert(kLongSegment <= PacketWalk::kMaxOffset);
-
-}  // namespace
-
-bool TableQuery::walks(const KeySegment& s) const {
-  const int x = std::abs(s.to.x - s.from.x), y = std::abs(s.to.y - s.from.y), z = std::abs(s.to.z - s.from.z);
-  return table_.contains(s.from) && ends_in_.contains(s.to) && std::max({x, y, z}) <= kLongSegment &&
-         x + y + z > 0;
-}
-
 std::size_t TableQuery::visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                                 std::span<std::uint16_t> left) const {
-  if (walk_ == nullptr) {
-    std::iota(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(segments.size()), std::uint16_t{0});
-    return segments.size();
-  }
-  std::size_t left_size = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    left[left_size] = static_cast<std::uint16_t>(i);
-    left_size += walks(segments[i]) ? 0 : 1;
-  }
-  if (left_size == 0) {
-    walk_->segments(table_, segments.data(), segments.size(), visible.data());
-    return 0;
-  }
-  std::array<KeySegment, kMaxBatch> ours;
-  std::array<std::uint16_t, kMaxBatch> index;
-  std::array<std::uint8_t, kMaxBatch> seen;
-  std::size_t size = 0;
-  for (std::size_t i = 0, next = 0; i < segments.size(); ++i) {
-    if (next < left_size && left[next] == i) {
-      ++next;
-      continue;
-    }
-    ours[size] = segments[i];
-    index[size++] = static_cast<std::uint16_t>(i);
-  }
-  walk_->segments(table_, ours.data(), size, seen.data());
-  for (std::size_t i = 0; i < size; ++i) visible[index[i]] = seen[i];
-  return left_size;
+  if (walk_ != nullptr) return walk_->segments(table_, ends_in_, segments, visible.data(), left.data());
+  std::iota(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(segments.size()), std::uint16_t{0});
+  return segments.size();
 }
 
 std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,

@@ -38,7 +38,6 @@ class TableQuery {
                       std::span<std::uint16_t> left) const;
 
  private:
-  [[nodiscard]] bool walks(const KeySegment& segment) const;
   [[nodiscard]] std::optional<Hit> cast_alone(const Ray& ray) const;
   [[nodiscard]] std::optional<Hit> finish(const Ray& ray, const VoxelKey& start,
                                           const Eigen::Vector3f& direction, std::uint32_t stopped_at) const;

@@ -18,7 +18,8 @@ namespace frontlux::detail {
 /// A line's path through a grid, voxel by voxel: the inner loop of every walk. The processor cannot predict
 /// which axis is next, so a step takes no branch on it: all three axes move, two of them by zero. The
 /// counters of the three axes are fields of one word.
-template <class Time>
+/// @tparam kBack  whether the path is that of the same line from its other end, taken back; exact times only
+template <class Time, bool kBack = false>
 class GridPath {
  public:
   /// @param steps_left  per axis, how many steps the path may take before `overstepped`; at most 2^17
@@ -41,10 +42,10 @@ class GridPath {
   /// One step. @return the time at which it is taken
   [[gnu::always_inline]] Time advance() {
     const Time tx = line_.t_max[0], ty = line_.t_max[1], tz = line_.t_max[2];
-    // Ties go to z before y before x (rule 5).
-    const bool x_before_y = tx < ty;
+    // Ties go to z before y before x (rule 5): on the way back to x before y before z.
+    const bool x_before_y = kBack ? tx <= ty : tx < ty;
     const Time first = x_before_y ? tx : ty;
-    const bool z_next = !(first < tz);
+    const bool z_next = kBack ? tz < first : tz <= first;
     const std::int64_t z = -static_cast<std::int64_t>(z_next), not_z = ~z;
     const std::int64_t x = -static_cast<std::int64_t>(x_before_y) & not_z, y = ~x & not_z;
     take(x, y, z);

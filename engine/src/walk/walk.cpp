@@ -85,12 +85,12 @@ std::optional<std::array<int, 3>> steps_to(const Crossings<Time>& line, const Vo
 }
 
 // Whether the path reaches `to` before it meets a blocker or misses `to`.
-template <class Time>
+template <bool kBack = false, class Time>
 bool reaches(const VoxelGrid& grid, UnknownPolicy unknown, const Crossings<Time>& line, const VoxelKey& from,
              const VoxelKey& to) {
   const auto steps = steps_to(line, from, to);
   if (!steps) return false;
-  GridPath<Time> path(grid, unknown, from, line, *steps);
+  GridPath<Time, kBack> path(grid, unknown, from, line, *steps);
   while (true) {
     path.advance();
     if (path.exhausted()) return true;
@@ -113,7 +113,8 @@ bool walk_visible(const VoxelGrid& grid, const Segment& segment, UnknownPolicy u
 
 bool walk_visible(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
   if (segment.from == segment.to) return true;
-  return reaches(grid, unknown, crossings_of(segment.from, segment.to), segment.from, segment.to);
+  // Back, since a blocker is mostly near what is to be seen.
+  return reaches<true>(grid, unknown, crossings_of(segment.to, segment.from), segment.to, segment.from);
 }
 
 }  // namespace frontlux::detail
