@@ -42,6 +42,16 @@ TEST_F(ExploreCommand, GivesTheSameResultHoweverItIsRun) {
   expect_same_runs("one", "other");
 }
 
+TEST_F(ExploreCommand, KeepsALargerLimitThanItsOwnThatARunWentOnWith) {
+  ASSERT_EQ(run({"room", "--lockstep", "--stop-time", "1", "--report", "off", "-o", path("long")}).code, 0);
+  const auto limit = [&] { return json_in("long").at("options").at("max_steps"); };
+  EXPECT_EQ(limit(), 1000);
+  expect_resumed("long", {"--max-steps", "1500"});
+  EXPECT_EQ(limit(), 1500);
+  expect_resumed("long");
+  EXPECT_EQ(limit(), 1500);
+}
+
 TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_explored("whole");
   const std::string bytes = content_of(path("whole/run.frontlux"));

@@ -344,8 +344,10 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     }
     if (run.max_steps)
       options.max_steps = *run.max_steps;
-    else if (options.max_steps)  // the run may have gone on with a larger limit than it began with
-      options.max_steps = std::max(*options.max_steps, last_limit(run.folder).value_or(0));
+    else if (options.max_steps ||
+             options.lockstep)  // it may have gone on with a larger one than it began with
+      options.max_steps = std::max(options.max_steps.value_or(planner::ExplorationOptions().max_steps),
+                                   last_limit(run.folder).value_or(0));
   }
   ExploreOptions here = options;
   if (recording) here.source.world = find_world(options, run);
@@ -418,8 +420,6 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       display.result(result, reason, json);
       if (!reason) stopped = "stopped" + what_is_kept(run, head, *recorded);
     } catch (const BadInput&) {
-      throw;
-    } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::runtime_error& error) {
       throw BadInput(error.what() + (recorded ? what_is_kept(run, head, *recorded) : ""));

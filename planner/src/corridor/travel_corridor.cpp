@@ -18,7 +18,7 @@
 namespace frontlux::planner {
 namespace {
 
-using detail::half_width, detail::kMaxWindow, detail::kSlack, detail::layers_below,
+using detail::ground_extents, detail::half_width, detail::kMaxWindow, detail::kSlack, detail::layers_below,
     detail::reached_from_below, detail::voxels_in;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -201,8 +201,7 @@ void TravelCorridor::State::lay_out(const VoxelKey& robot) {
 // Floors are numbered as voxels are: that of a cell lies some layers below it.
 void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
   const double resolution = lattice.resolution();
-  const Eigen::Vector2d extents =
-      options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
+  const Eigen::Vector2d extents = ground_extents(options);
   detail::Terrain::Options ground{.box = box,
                                   .half_x = half_width(extents.x(), resolution),
                                   .half_y = half_width(extents.y(), resolution),

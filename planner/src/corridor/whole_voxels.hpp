@@ -1,7 +1,12 @@
 #pragma once
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace frontlux::planner::detail {
@@ -35,6 +40,30 @@ inline constexpr int kMaxWindow = 1024;
 /// Layers above the floor that steps and slopes may reach into.
 [[nodiscard]] inline int reached_from_below(const TravelOptions& options, double resolution) {
   return voxels_over(options.clearance(), resolution);
+}
+
+/// [m] Along x and y: where a robot that drives needs ground.
+[[nodiscard]] inline Eigen::Vector2d ground_extents(const TravelOptions& options) {
+  return options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
+}
+
+/// How far from a cell, along each axis, lie the voxels that decide whether the robot fits there: those of
+/// its body, and those of the ground under it.
+[[nodiscard]] inline std::array<int, 3> deciding_reach(const TravelOptions& options, double resolution) {
+  const BodyStencil stencil(options, resolution);
+  std::array<int, 3> reach{};
+  for (std::size_t a = 0; a < 3; ++a) reach[a] = std::max(-stencil.low()[a], stencil.high()[a]);
+  if (!options.drives()) return reach;
+  const Eigen::Vector2d extents = ground_extents(options);
+  reach[0] = std::max({reach[0], half_width(extents.x(), resolution), options.ground_reach});
+  reach[1] = std::max({reach[1], half_width(extents.y(), resolution), options.ground_reach});
+  const int floor = layers_below(options, resolution) + 1;
+  const int deepest =
+      options.motion == Motion::kPlane
+          ? 0
+          : std::max(reached_from_below(options, resolution), voxels_in(options.step, resolution)) + 1;
+  reach[2] = std::max(reach[2], floor + deepest);
+  return reach;
 }
 
 }  // namespace frontlux::planner::detail

@@ -115,6 +115,8 @@ void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
 
 void GoalSelection::lose(std::size_t robot) {
   State::Member& member = state_->members[robot];
+  member.lost = true;
+  member.missed = member.changed = {};
   member.goal = {};
   member.assigned.clear();
   member.targets.clear();

@@ -46,6 +46,7 @@ std::string frontiers_text(std::size_t count) {
 void GoalSelection::State::note(const MapChange& change) {
   const Keys keys(change.keys.begin(), change.keys.end());
   for (Member& member : members) {
+    if (member.lost) continue;
     member.missed = united(member.missed, keys);
     if (member.image.size() > 0) member.changed = united(member.changed, keys);
   }

@@ -20,7 +20,8 @@ struct GoalSelection::State {
   struct Member {
     TravelCorridor corridor;
     ViewQualityImage image;
-    Keys changed = {};                                        // since the image was last rendered
+    Keys changed = {};  // since the image was last rendered
+    bool lost = false;
     Keys missed = {};                                         // changed since the corridor's last update
     Eigen::Vector3d position = Eigen::Vector3d::Zero();       // [m]
     VoxelKey cell = {};                                       // of the position

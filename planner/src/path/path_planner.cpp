@@ -165,7 +165,8 @@ detail::SamplingQuery sampling_query(const TravelCorridor& corridor, const Eigen
   return query;
 }
 
-// Straight if that is free, or by the search, or else through the corridor. Empty if there is none.
+// Straight if that is free, or by the search, if the corridor knows its cells, or else through the corridor.
+// Empty if there is none.
 // @param plan  learns how it was found
 Polyline find_path(const TravelCorridor& corridor, const Lattice& lattice, const detail::SamplingQuery& query,
                    const PathOptions& options, const detail::SegmentCheck& is_free, PathPlan& plan) {
@@ -174,9 +175,11 @@ Polyline find_path(const TravelCorridor& corridor, const Lattice& lattice, const
   if (is_free(query.start, query.goal)) {
     path = {query.start, query.goal};  // as shortening would make it of any path
   } else if (options.search != PathSearch::kCorridor) {
-    auto [found, iterations] = detail::sampling_search(lattice, query, options, is_free);
-    path = std::move(found);
-    plan.iterations = iterations;
+    if (!query.cells.empty()) {
+      auto [found, iterations] = detail::sampling_search(lattice, query, options, is_free);
+      path = std::move(found);
+      plan.iterations = iterations;
+    }
     if (path.empty()) plan.outcome = PathOutcome::kFellBack;
   }
   if (path.empty()) path = corridor_path(corridor, lattice, query.start, query.goal);

@@ -1,10 +1,10 @@
 #include "tour/tour_planning.hpp"
 
+#include "corridor/whole_voxels.hpp"
 #include "mapping/sort_once.hpp"
 #include "tour/travel_seconds.hpp"
 
 #include <frontlux/parallel.hpp>
-#include <frontlux/planner/body_stencil.hpp>
 
 #include <algorithm>
 #include <array>
@@ -93,12 +93,19 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
 }
 
 void TourPlanning::note(std::span<const VoxelKey> changed) {
-  for (Member& member : members_) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
+  for (std::size_t r = 0; r < members_.size(); ++r) note_blocked(r, changed);
+}
+
+void TourPlanning::note_blocked(std::size_t robot, std::span<const VoxelKey> cells) {
+  Member& member = members_[robot];
+  if (!member.lost) member.changed.insert(member.changed.end(), cells.begin(), cells.end());
 }
 
 // Only its own plannings give a robot viewpoints.
 void TourPlanning::lose(std::size_t robot) {
   Member& member = members_[robot];
+  member.lost = true;
+  member.changed = {};
   member.sights = {};
   member.tour.clear();
   member.frontiers.clear();
@@ -147,14 +154,9 @@ std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
 // @return boxes that hold the changes and all cells in which the robot fits only now, or not any more
 std::vector<KeyBox> TourPlanning::update_distances(const Query& query, std::span<const KeyBox> changes) {
   Member& member = members_[query.robot];
-  const BodyStencil stencil(member.robot.travel, lattice_.resolution());
-  std::vector<KeyBox> cells;  // whose stencils may hold a changed voxel
-  for (const KeyBox& box : changes) {
-    const KeyBox reach = stencil.box_around(box.min);
-    const auto by = [](int low, int at, int high) { return std::max(at - low, high - at) + 1; };
-    cells.push_back(grown(box, by(reach.min.x, box.min.x, reach.max.x),
-                          by(reach.min.y, box.min.y, reach.max.y), by(reach.min.z, box.min.z, reach.max.z)));
-  }
+  const auto [x, y, z] = deciding_reach(member.robot.travel, lattice_.resolution());
+  std::vector<KeyBox> cells;  // which a changed voxel may open or close
+  for (const KeyBox& box : changes) cells.push_back(grown(box, x + 1, y + 1, z + 1));
   member.distances.update(query.corridor, cells);
   return cells;
 }

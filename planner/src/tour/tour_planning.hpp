@@ -70,6 +70,8 @@ class TourPlanning {
 
   /// From the next planning on these voxels have changed.
   void note(std::span<const VoxelKey> changed);
+  /// From its next planning on the corridor of a robot has these cells closed.
+  void note_blocked(std::size_t robot, std::span<const VoxelKey> cells);
 
   /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little.
   [[nodiscard]] double least_gain(std::size_t robot) const;
@@ -109,8 +111,9 @@ class TourPlanning {
   struct Member {
     Robot robot;
     ViewRegion region;
-    TravelDistances distances;           // from where it is when its trajectory begins
-    bool planned = false;                // before
+    TravelDistances distances;  // from where it is when its trajectory begins
+    bool planned = false;       // before
+    bool lost = false;
     std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};

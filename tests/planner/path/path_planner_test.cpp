@@ -173,6 +173,24 @@ TEST(PathPlanner, FallsBackOnTheCorridorInANarrowPassage) {
   expect_free(scene, plan, {2, 2, 0});
 }
 
+TEST(PathPlanner, FallsBackOnACorridorThatDoesNotKnowItsCells) {
+  const Scene scene = two_rooms();
+  TravelCorridor corridor = scene.corridor(uav_travel(), key_at(4, 4, 5));
+  corridor.update({scene.grid}, key_at(4, 4, 5), CorridorExtent::kNearby);
+  ASSERT_TRUE(corridor.cells().empty());
+  const Pose start = pose(1.41, 1.37, 1.61), goal = pose(5.17, 1.5, 2.4);
+  ASSERT_TRUE(
+      corridor.find_way(*scene.grid.lattice().key(goal.position), [](const VoxelKey&) { return true; }));
+  for (const PathSearch search : {PathSearch::kRrt, PathSearch::kRrtConnect, PathSearch::kRrtStar}) {
+    PathOptions options;
+    options.search = search;
+    const PathPlan plan = plan_path(corridor, scene.grid.lattice(), start, goal, {}, options);
+    EXPECT_EQ(plan.outcome, PathOutcome::kFellBack) << name_of(search);
+    ASSERT_TRUE(plan.found());
+    expect_free(scene, plan, {1, 1, 1});
+  }
+}
+
 TEST(PathPlanner, SaysWhyThereIsNone) {
   Scene scene;
   scene.wall({11, 0, 0}, {12, 23, 10});  // from side to side

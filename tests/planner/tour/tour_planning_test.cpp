@@ -147,5 +147,60 @@ TEST(TourPlanning, GoesOnAfterTheRobotWasLost) {
   EXPECT_EQ(space.clusters(), before);
 }
 
+TEST(TourPlanning, LearnsOfCellsThatAreBlocked) {
+  OpenSpace space;
+  space.plan(space.corridor());
+  const VoxelKey beyond = make_key(32780, 32765, 32772);
+  ASSERT_TRUE(space.planning.gets_to(0, beyond));
+  Keys wall;  // across all that is known
+  for_each_key({make_key(32774, 32750, 32768), make_key(32774, 32800, 32779)},
+               [&](const VoxelKey& key) { wall.push_back(key); });
+  space.planning.note_blocked(0, wall);
+  space.plan(space.corridor(wall));
+  EXPECT_FALSE(space.planning.gets_to(0, beyond));
+  EXPECT_TRUE(space.planning.gets_to(0, make_key(32770, 32765, 32772)));
+}
+
+// The floor is seen after the air above it, in a map of which the robot knows cells already.
+TEST(TourPlanning, LearnsOfGroundThatIsSeenLate) {
+  constexpr int kFloor = 32767;
+  for (int deeper = 0; deeper < 8; ++deeper) {
+    SCOPED_TRACE(deeper);
+    const KeyBox bounds{make_key(32750, 32750, kFloor - deeper), make_key(32790, 32790, kFloor + 14)};
+    VoxelGrid grid(0.1);
+    Robot robot{"ugv", {}, test::camera(5.0), {}};
+    robot.travel.motion = Motion::kGround;
+    robot.travel.extents = {0.7, 0.5, 0.4};
+    robot.travel.sensor_height = 0.5;
+    robot.travel.step = 0.2;
+    const VoxelKey at = make_key(32770, 32770, kFloor + 6), late = make_key(32781, 32770, kFloor + 6);
+    test::fill(grid, {make_key(32750, 32750, kFloor + 1), make_key(32790, 32790, kFloor + 14)},
+               Occupancy::kFree);
+    test::fill(grid, {make_key(32750, 32750, kFloor), make_key(32776, 32790, kFloor)}, Occupancy::kOccupied);
+    const Pose pose{grid.lattice().exact_center(at), 0.0};
+    TourPlanning planning({robot}, {&pose, 1}, grid.lattice(), bounds, {});
+    TravelCorridor corridor(robot.travel, grid.lattice(), bounds);
+    Keys seen;
+    const auto plan = [&] {
+      corridor.update({grid, seen}, at);
+      const auto caster = make_grid_ray_caster(grid);
+      const FrontierSet frontiers(grid, bounds);
+      MotionState start;
+      start.pose = pose;
+      planning.update({0, *caster, grid, corridor, frontiers.keys(), {&start, 1}});
+    };
+    plan();
+    ASSERT_TRUE(corridor.contains(at));
+    ASSERT_FALSE(planning.gets_to(0, late));
+    for_each_key({make_key(32777, 32750, kFloor), make_key(32790, 32790, kFloor)},
+                 [&](const VoxelKey& key) { seen.push_back(key); });
+    for (const VoxelKey& key : seen) grid.set(key, Occupancy::kOccupied);
+    planning.note(seen);
+    plan();
+    ASSERT_TRUE(corridor.contains(late));
+    EXPECT_TRUE(planning.gets_to(0, late));
+  }
+}
+
 }  // namespace
 }  // namespace frontlux::planner::detail
