@@ -63,4 +63,7 @@ void read(std::string_view word, std::vector<Value>& values) {
 /// Finite numbers with commas between them; nothing if the word is anything else.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view word);
 
+/// @throws BadInput if a yaw [rad] of a word is more than a turn: then it is likely in degrees
+void check_yaw(std::string_view word, double yaw);
+
 }  // namespace frontlux::app

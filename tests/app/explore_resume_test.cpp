@@ -44,7 +44,7 @@ TEST_F(ExploreCommand, GivesTheSameResultHoweverItIsRun) {
 
 TEST_F(ExploreCommand, KeepsALargerLimitThanItsOwnThatARunWentOnWith) {
   ASSERT_EQ(run({"room", "--lockstep", "--stop-time", "1", "--report", "off", "-o", path("long")}).code, 0);
-  const auto limit = [&] { return json_in("long").at("options").at("max_steps"); };
+  const auto limit = [&] { return json_in("long").at("max_steps"); };
   EXPECT_EQ(limit(), 1000);
   expect_resumed("long", {"--max-steps", "1500"});
   EXPECT_EQ(limit(), 1500);

@@ -100,6 +100,21 @@ TEST_F(MapCommandTest, TellsOfCloudsAndPointsThatItLeavesOut) {
                                   "left out     1 of them, which are not finite\n"});
 }
 
+TEST_F(MapCommandTest, TellsOfPointsThatNoMapHolds) {
+  const std::string begin = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nDATA ascii\n";
+  std::filesystem::create_directory(path("far"));
+  write("far/poses.csv", "far.pcd,0,0,1,0\n");
+  write("far/far.pcd", begin + "1 0 0\n4000 0 0\n");
+  const std::vector<std::string> words{path("far"), "-o", path("far.bt")};
+  expect_refused(words, path("far/far.pcd") +
+                            ": a point is 4000 m from the sensor, more than 5000 voxels; check its unit");
+  const test::Answer answer = run(test::joined(words, {"--max-range", "5"}));
+  EXPECT_EQ(answer.code, 0);
+  test::expect_parts(answer.out, {"left out     1 of them, which lie beyond the map's key range\n"});
+  write("far/far.pcd", begin + "nan 0 0\nnan 0 0\n");
+  expect_refused(words, ": its 2 points make no voxel known; they have to be there, in metres");
+}
+
 TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");

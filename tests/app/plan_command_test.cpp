@@ -164,6 +164,7 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(with("--robot", "boat"), "--robot: 'boat' is none of ugv, uav");
   for (const std::string word : {"1,2,3", "1,nan,0.75,0", "1,2,0.75,1e999", "1,2,0.75,0,0"})
     expect_refused(with("--from", word), "--from: '" + word + "' is not four finite numbers");
+  expect_refused(with("--from", "1,2,0.75,90"), "--from: '1,2,0.75,90' has a yaw of more than a turn");
   expect_refused(with("--from", "1e9,2,0.75,0"), "--from: 1e9,2,0.75,0 lies outside");
   expect_refused(with("--from", "4.65,1.3,0.75,0"),
                  "--from: at 4.65,1.3,0.75,0 the ugv is in an occupied voxel");

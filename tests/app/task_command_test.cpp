@@ -277,7 +277,7 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
   const auto court_with = [&](const std::string& from, const std::string& to) {
     return test::replaced(content_of(court()), from, to);
   };
-  refuse("", {"this is not JSON"});
+  refuse("", {"is empty"});
   refuse(R"({"name": "n"})", {"world is missing"});
   refuse(R"({"world": "castle"})", {"world is 'castle'", "frontlux world"});
   refuse(R"({"world": "court.ply", "world_seed": 3})", {"world_seed is 3", "leave it out"});

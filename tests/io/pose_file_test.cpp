@@ -68,6 +68,7 @@ TEST_F(PoseFile, ReadsListsOfPoses) {
   expect_refused("poses.csv", "x,y,z,yaw\n", "holds no pose; write x,y,z,yaw");
   expect_refused("poses.csv", "1,2,3,4\n1,2,3\n", "line 2: has 3 fields instead of 4");
   expect_refused("poses.csv", "1,2,3,inf\n", "line 1: 'inf' is no finite number");
+  expect_refused("poses.csv", "1,2,3,90\n", "line 1: has a yaw of 90, more than a turn");
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with("\"rows\": 12", "\"rows\": 12, \"rows\": 12"), "the member 'rows' is there twice; keep one"},
       {with("\"kind\"", "\"kind\": \"cone\", \"x\": {\"y\": {}}, \"z\""), "'y' is nested too deeply"},
       {good.substr(0, 60), "this is not JSON (after "},
-      {"", "line 1, column 1: this is not JSON (after the file)"},
+      {"", "is empty"},
       {"\n\n  {\"name\" 3}", "line 3, column 11: this is not JSON"},
       {good + "x", "this is not JSON"},
       {"[]", "holds an array of 0 and no object; describe a robot"},

@@ -246,7 +246,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {with("[1, 0, 1, 45]", "[" + std::string(100'000, '1') + "]"), "is too large"},
       {with("7,", "7 " + std::string(1 << 20, ' ') + ","),
        "too many for a task; give a description of at most 1048576"},
-      {"", "line 1, column 1: this is not JSON"},
+      {"", "is empty"},
       {"[]", "holds an array of 0 and no object; describe a task between { and }, see docs/tasks.md"},
       {kGood + "x", "this is not JSON"},
       {kGood + std::string("\n\0, x", 5), "line 2, column 1: there is a NUL byte"},

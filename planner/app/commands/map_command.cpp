@@ -12,6 +12,7 @@
 #include <frontlux/planner/mapping.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -94,8 +95,22 @@ Recording open_graph(const std::filesystem::path& file, const std::string& pose_
 }
 
 struct Points {
-  std::uint64_t all = 0, not_finite = 0, beyond = 0;  // the range
+  std::uint64_t all = 0, not_finite = 0;
+  std::uint64_t outside = 0;  // the key range
+  std::uint64_t beyond = 0;   // the range
 };
+
+// What is known grows with the length of the rays: clouds in millimetres would fill all memory.
+void check_lengths(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& origin,
+                   const std::string& name, double resolution) {
+  constexpr double kLongest = 5000.0;  // [voxels]
+  for (const Eigen::Vector3f& point : points)
+    if (const double length = (point - origin).norm();
+        length > kLongest * resolution && std::isfinite(length))
+      throw BadInput(name + ": a point is " + to_text(std::round(length)) + " m from the sensor, more than " +
+                     to_text(kLongest) +
+                     " voxels; check its unit, or give --max-range, or a coarser --resolution");
+}
 
 Points map_scans(const Recording& recording, double max_range, Mapping& mapping) {
   const ProgressLine progress;
@@ -108,11 +123,15 @@ Points map_scans(const Recording& recording, double max_range, Mapping& mapping)
       throw BadInput(recording.name(i) +
                      ": its pose lies outside the map's key range; check it, or give a coarser --resolution");
     const std::vector<Eigen::Vector3f> in_world = io::points_in_world(scan);
+    if (std::isinf(max_range))
+      check_lengths(in_world, origin, recording.name(i), mapping.grid().resolution());
     mapping.insert(origin, in_world, max_range);
     points.all += in_world.size();
     for (const Eigen::Vector3f& point : in_world)
       if (!point.allFinite())
         ++points.not_finite;
+      else if (!mapping.grid().lattice().key(point))
+        ++points.outside;
       else if (static_cast<double>((point - origin).norm()) > max_range)
         ++points.beyond;
   }
@@ -140,14 +159,20 @@ void map(const Options& options) {
   const Points points = map_scans(recording, max_range, mapping);
   const auto voxels = mapping.grid().count();
   if (voxels[1] + voxels[2] == 0)
-    throw BadInput(options.scans + ": its " + std::to_string(points.all) +
-                   " points make no voxel within the bounds known; give other --bounds");
+    throw BadInput(options.scans + ": its " + std::to_string(points.all) + " points make no voxel " +
+                   (options.bounds ? "within the bounds known; give other --bounds"
+                                   : "known; they have to be there, in metres, and within " +
+                                         to_text(Lattice::kOrigin * options.resolution) +
+                                         " m of the origin along each axis"));
   mapping.write(options.output);
   if (!recording.warning.empty()) std::cerr << "frontlux: warning: " << recording.warning << '\n';
   std::string left_out;
   if (points.beyond > 0)
     left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " + to_text(max_range) +
                                   " m, which only free the space up to it");
+  if (points.outside > 0)
+    left_out +=
+        row("left out", std::to_string(points.outside) + " of them, which lie beyond the map's key range");
   if (points.not_finite > 0)
     left_out += row("left out", std::to_string(points.not_finite) + " of them, which are not finite");
   std::cout << row("map", options.output) << row("resolution", to_text(mapping.grid().resolution()) + " m")

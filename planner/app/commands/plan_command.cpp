@@ -51,7 +51,9 @@ void read_end(std::string_view word, End& end, bool needs_yaw) {
   end.word = word;
   end.pose.position = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
   end.has_yaw = numbers->size() == 4;
-  if (end.has_yaw) end.pose.yaw = (*numbers)[3];
+  if (!end.has_yaw) return;
+  check_yaw(word, (*numbers)[3]);
+  end.pose.yaw = (*numbers)[3];
 }
 struct From : End {};
 struct To : End {};

@@ -177,8 +177,7 @@ int cell_edge(const TeamMember& member, double resolution) {
 
 std::string place_of(const planner::Pose& pose) {
   return fixed(pose.position.x(), 2) + ", " + fixed(pose.position.y(), 2) + ", " +
-         fixed(pose.position.z(), 2) + " m, yaw " + fixed(pose.yaw * 180.0 / std::numbers::pi, 1) +
-         " degrees";
+         fixed(pose.position.z(), 2) + " m, yaw " + fixed(pose.yaw, 2) + " rad";
 }
 
 std::string gain_of(const Goal& goal) {

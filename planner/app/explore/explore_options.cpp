@@ -179,6 +179,7 @@ void read(std::string_view word, StartPose& start) {
     throw BadInput(quote(word) +
                    " is not a start; give NAME=x,y,z,yaw in metres and radians, as in ugv=1.5,-2,0.75,0");
   }
+  check_yaw(word, start.pose.yaw);
   start.word = word;
   start.robot = word.substr(0, equals);
 }

@@ -90,6 +90,7 @@ json parse_json(const std::filesystem::path& file, const std::string& text, cons
   try {
     return json::parse(text, look);
   } catch (const json::parse_error& error) {
+    if (text.empty()) fail(file, "is empty", "write a JSON object");
     fail(file, place_of(text, error.byte) + ": this is not JSON (after " + last + ")",
          "look for a missing comma, quote or bracket; NaN, infinity and comments are not JSON");
   } catch (const json::out_of_range&) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
 #include <string_view>
 
 namespace frontlux::io {
@@ -67,6 +69,14 @@ Eigen::Vector3d position_at(const Row& row, std::size_t i) {
   return {row.finite(i), row.finite(i + 1), row.finite(i + 2)};
 }
 
+// [rad] One of more than a turn is likely in degrees.
+double yaw_at(const Row& row, std::size_t i) {
+  const double yaw = row.finite(i);
+  if (std::fabs(yaw) > 2 * std::numbers::pi + 1e-6)
+    row.fail_here("has a yaw of " + std::string(row.fields[i]) + ", more than a turn: yaws are in radians");
+  return yaw;
+}
+
 RecordedPose recorded_pose(const Row& row) {
   const std::size_t fields = row.fields.size();
   if (fields != 5 && fields != 8)
@@ -74,7 +84,7 @@ RecordedPose recorded_pose(const Row& row) {
   if (row.fields[0].empty()) row.fail_here("names no file");
   const Eigen::Vector3d position = position_at(row, 1);
   const Eigen::Quaterniond orientation =
-      fields == 5 ? Eigen::Quaterniond(Eigen::AngleAxisd(row.finite(4), Eigen::Vector3d::UnitZ()))
+      fields == 5 ? Eigen::Quaterniond(Eigen::AngleAxisd(yaw_at(row, 4), Eigen::Vector3d::UnitZ()))
                   : Eigen::Quaterniond(row.finite(7), row.finite(4), row.finite(5), row.finite(6));
   const auto pose = rigid_pose(position, orientation);
   if (!pose) row.fail_here("the quaternion is not of length 1");
@@ -95,7 +105,7 @@ std::vector<ListedPose> read_pose_list(const std::filesystem::path& file) {
   for_each_row(file, "write x,y,z,yaw", "x", 0, [&](const Row& row) {
     if (row.fields.size() != 4)
       row.fail_here("has " + std::to_string(row.fields.size()) + " fields instead of 4");
-    poses.push_back({{position_at(row, 0), row.finite(3)}, row.line});
+    poses.push_back({{position_at(row, 0), yaw_at(row, 3)}, row.line});
   });
   return poses;
 }

@@ -57,7 +57,8 @@ Goal ExplorationState::first_stop(std::size_t robot) const {
   }
   if (tour.empty()) {
     goal.state = GoalState::kNothingAssigned;
-    goal.reason = "no goal: there is nothing to see for it that is not another robot's";
+    goal.reason = std::string("no goal: there is nothing to see for it") +
+                  (options.team.size() > 1 ? " that is not another robot's" : "");
     return goal;
   }
   const TourStop& first = tour.front();

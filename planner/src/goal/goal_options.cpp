@@ -1,7 +1,9 @@
 #include <frontlux/planner/goal_selection.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -40,10 +42,22 @@ void GoalOptions::check() const {
   rendering.check();
 }
 
+namespace {
+
+// As many bins of azimuth as let one fit into a view, 36 or more.
+int azimuth_bins(const FieldOfView& view) {
+  constexpr int kEnough = 36;
+  if (view.sees_all_around()) return kEnough;
+  const double least = std::ceil(2 * std::numbers::pi / view.horizontal - 1e-6);
+  return static_cast<int>(std::clamp(least, double{kEnough}, double{ViewQualityOptions::kMaxAzimuthBins}));
+}
+
+}  // namespace
+
 GoalOptions goal_options(const Robot& robot, Method method) {
   const bool drives = robot.travel.drives();
   GoalOptions options;
-  options.rendering.azimuth_bins = 36;
+  options.rendering.azimuth_bins = azimuth_bins(robot.view);
   if (method == Method::kPaper) {
     options.distance = TravelDistance::kStraight;
     options.rule = drives ? GoalRule::kViewQuality : GoalRule::kClusters;

@@ -228,6 +228,15 @@ TEST(GoalSelection, WrongCallsAreRefusedByName) {
   refuses(
       aerial_robot(), [](auto& m) { m.robot.view.max_range = -2; }, "max_range");
 
+  // A view has room for a bin of azimuth, however narrow it is.
+  for (const double degrees : {0.1, 1.0, 8.0, 10.0, 90.0}) {
+    TeamMember narrow = aerial_robot();
+    narrow.robot.view.horizontal = degrees * std::numbers::pi / 180;
+    narrow.options = goal_options(narrow.robot);
+    const GoalSelection accepts({narrow}, room.grid.lattice(), room.bounds());
+    EXPECT_EQ(narrow.options.rendering.azimuth_bins, degrees < 10 ? std::lround(360 / degrees) : 36);
+  }
+
   GoalSelection selection({ground_robot()}, room.grid.lattice(), room.bounds());
   const auto refuses_to_ask = [&](const VoxelGrid& grid, std::span<const Pose> poses,
                                   const std::string& part) {

@@ -31,7 +31,8 @@ Eigen::Vector3d free_start(const World& world, double resolution, bool faces_awa
     free.z() = lattice.center(static_cast<std::uint16_t>(*floor_layer + 1));
     const auto still = floor_below(world.mesh, free);
     if (!world.bounds.contains(free) || !still || *still > *floor + kOnFace)
-      refuse("has no room above the floor that it is on, at z = " + std::to_string(*floor));
+      refuse("has no room above the floor that it is on, at z = " + std::to_string(*floor) +
+             ", in voxels of " + std::to_string(resolution) + " m; start elsewhere, or use smaller ones");
   }
   if (!faces_away) return free;
   const Surface surface(world.mesh);

@@ -79,7 +79,8 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
   if (holds_surface(*first)) {
     const auto cell = (vector(*first) - vector(bounds_.min)).eval();
     refuse("the start (", start.transpose(), ") m lies in a wall: triangle ",
-           triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel");
+           triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel of ",
+           lattice_.resolution(), " m; start elsewhere, or use smaller voxels");
   }
   flood(index(*first));
 }
