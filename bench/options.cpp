@@ -93,13 +93,14 @@ RaysOptions read_rays_options(int argc, char** argv) {
 give the same answers. The casters:
   octomap  OctoMap's castRay, the baseline
   fast     make_ray_caster: packets of rays through a table of open voxels, Embree for long rays
-  embree   make_embree_ray_caster: Embree's BVH alone
+  embree   make_embree_ray_caster: Embree's BVH, without tables
   grid     make_grid_ray_caster: castRay's walk over the voxel grid, one ray at a time
 )",
       options);
   bool generated = false;
   line.add_maps(
-      "the generated building_0.3m and building_0.1m, and the maps in the folder FRONTLUX_EXTRA_MAPS");
+      "the generated building_0.3m, building_0.1m and site_0.05m, and the maps in the folder "
+      "FRONTLUX_EXTRA_MAPS");
   line.add_flag("--generated", generated, "also measure on the generated maps if --map is given");
   line.add_option("--rays", options.rays,
                   "rays per workload (default: as many as castRay casts in some tenths of a second)")
@@ -110,7 +111,7 @@ give the same answers. The casters:
   line.read(argc, argv);
   if (options.maps.empty() || generated) {
     options.generated = {"building_0.3m"};
-    if (!options.quick) options.generated.emplace_back("building_0.1m");
+    if (!options.quick) options.generated.insert(options.generated.end(), {"building_0.1m", "site_0.05m"});
   }
   const char* extra = std::getenv("FRONTLUX_EXTRA_MAPS");
   if (options.maps.empty() && extra != nullptr && *extra != '\0') options.maps = maps_in(extra);

@@ -24,7 +24,7 @@ WHAT_IT_ASKS = {
 }
 
 COLOURS = colours("casters")
-NAMES = {"fast": "fast (make_ray_caster)", "embree": "embree (BVH alone)", "grid": "grid (voxel by voxel)"}
+NAMES = {"fast": "fast (make_ray_caster)", "embree": "embree (BVH, no table)", "grid": "grid (voxel by voxel)"}
 OTHER = ("#56b4e9", "#0072b2")
 
 LABELS, VALUES = 330, 140

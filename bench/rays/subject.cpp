@@ -1,5 +1,7 @@
 #include "rays/subject.hpp"
 
+#include "maps/filled_maps.hpp"
+#include "maps/octree.hpp"
 #include "rays/castray_loop.hpp"
 #include "rays/free_voxels.hpp"
 #include "table.hpp"
@@ -164,6 +166,13 @@ std::string describe(const Subject& subject) {
 }
 
 std::filesystem::path generate_map(const std::string& name, const std::filesystem::path& cache) {
+  if (name == kSite) {
+    const auto file = cache / (name + ".bt");
+    if (std::filesystem::exists(file)) return file;
+    std::filesystem::create_directories(cache);
+    write_octree(*make_octree(make_site()), file);
+    return file;
+  }
   bool shown = false;
   const auto file = synthetic::ensure_map(name, cache, [&](std::string_view text) {
     std::cerr << '\r' << text << std::flush;

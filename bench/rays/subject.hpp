@@ -12,8 +12,11 @@
 
 namespace frontlux::bench {
 
-/// What is compared: castRay, the fast caster, Embree's BVH alone, and the walk over the grid.
+/// What is compared: castRay, the fast caster, Embree's BVH without tables, and the walk over the grid.
 inline constexpr const char *kOctomap = "octomap", *kFast = "fast", *kEmbree = "embree", *kGrid = "grid";
+
+/// The name of `make_site` among generated maps; the others are those of `synthetic::ensure_map`.
+inline constexpr const char* kSite = "site_0.05m";
 
 /// The name of a caster and what it costs.
 struct CasterCost {

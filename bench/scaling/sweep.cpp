@@ -1,8 +1,8 @@
 #include "scaling/sweep.hpp"
 
+#include "maps/filled_maps.hpp"
+#include "maps/octree.hpp"
 #include "rays/castray_loop.hpp"
-#include "scaling/maps.hpp"
-#include "scaling/octree.hpp"
 #include "scaling/rays.hpp"
 #include "table.hpp"
 

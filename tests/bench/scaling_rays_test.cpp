@@ -1,4 +1,4 @@
-#include "scaling/maps.hpp"
+#include "maps/filled_maps.hpp"
 #include "scaling/rays.hpp"
 #include "support/complaint.hpp"
 

@@ -117,7 +117,9 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(
     const VoxelGrid& grid, std::uint64_t expected_rays = kManyRays);
 
-/// Embree's BVH of boxes alone. Where its rounding could change an answer, the grid's walk decides.
+/// Embree's BVH of boxes, without tables. Where its rounding could change an answer, the grid's walk decides;
+/// of a segment between voxels the grid is asked for the voxel before its end first, which blocks most that
+/// are blocked.
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
 

@@ -198,6 +198,13 @@ SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
   return {{}, sight};
 }
 
+// Whether the voxel right before the end blocks: most key segments that are blocked are so there.
+bool SceneQuery::ends_blocked(const KeySegment& segment) const {
+  const VoxelKey last = voxel_before_end(segment.from, segment.to);
+  return blocks(grid_.at(last), unknown_) && last != segment.from && segment.from != segment.to;
+}
+bool SceneQuery::ends_blocked(const Segment&) const { return false; }
+
 template <class Segment>
 void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8_t> visible) const {
   std::array<std::size_t, BoxScene::kMaxBatch> index;
@@ -209,6 +216,8 @@ void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8
   };
   std::size_t size = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
+    visible[i] = 0;
+    if (ends_blocked(segments[i])) continue;
     const Prepared prepared = prepare(segments[i]);
     if (prepared.answer) {
       visible[i] = static_cast<std::uint8_t>(*prepared.answer);

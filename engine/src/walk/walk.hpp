@@ -96,6 +96,18 @@ inline Crossings<std::int64_t> crossings_of(const VoxelKey& from, const VoxelKey
   return line;
 }
 
+/// The last voxel that the path between two voxel centres visits before `to`, which is another one than
+/// `from`: that beside it along the longest axis, of two as long along x before y before z (rule 5, from the
+/// other end).
+inline VoxelKey voxel_before_end(const VoxelKey& from, const VoxelKey& to) {
+  const int x = from.x - to.x, y = from.y - to.y, z = from.z - to.z;
+  // Without branches, since nothing foretells them.
+  const int along_z = static_cast<int>(std::abs(z) > std::max(std::abs(x), std::abs(y))),
+            along_y = static_cast<int>(std::abs(y) > std::abs(x)) & ~along_z, along_x = 1 - along_z - along_y;
+  const auto towards = [](int way) { return way >> 31 | 1; };
+  return make_key(to.x + along_x * towards(x), to.y + along_y * towards(y), to.z + along_z * towards(z));
+}
+
 /// Rule 7: whether the centre of a voxel, `end`, lies beyond the range.
 inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& end, double max_range) {
   double distance_sq = 0.0;

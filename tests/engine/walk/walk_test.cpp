@@ -59,6 +59,15 @@ TEST(Walk, BetweenVoxelCentresFollowsTheExactLine) {
     }
 }
 
+TEST(Walk, KnowsTheVoxelBeforeTheEnd) {
+  const VoxelKey from{100, 100, 100};
+  for_each_key({{96, 96, 96}, {104, 104, 104}}, [&](const VoxelKey& to) {
+    if (to == from) return;
+    const auto path = path_by_fractions(from, to);
+    EXPECT_EQ(detail::voxel_before_end(from, to), path[path.size() - 2]);
+  });
+}
+
 // The longest paths there are: the scaled times must not overflow.
 TEST(Walk, HoldsAcrossTheWholeKeyRange) {
   VoxelGrid grid(0.1);

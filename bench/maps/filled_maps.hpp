@@ -18,6 +18,10 @@ inline constexpr double kBlocksResolution = 0.2;
 /// @throws std::invalid_argument unless the fraction is from 0 to 0.5
 [[nodiscard]] VoxelGrid make_blocks(double fraction);
 
+/// A large free space: 60 x 60 x 6 m of free voxels of 0.05 m, 1 % of them in occupied cubes of up to 0.8 m's
+/// edge at random places.
+[[nodiscard]] VoxelGrid make_site();
+
 /// Storeys of equal rooms, 6.4 x 6.4 x 3.2 m each, in voxels of 0.1 m: walls, floors and ceilings one voxel
 /// thick, doors in all inner walls, a hatch to the room below, and four solid boxes in every room, no two
 /// rooms alike. Everything is known except the inside of the boxes.

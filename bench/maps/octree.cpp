@@ -1,4 +1,4 @@
-#include "scaling/octree.hpp"
+#include "maps/octree.hpp"
 
 #include "octomap/quiet_octomap.hpp"
 

@@ -1,4 +1,4 @@
-#include "scaling/maps.hpp"
+#include "maps/filled_maps.hpp"
 
 #include "random.hpp"
 
@@ -8,7 +8,7 @@
 namespace frontlux::bench {
 namespace {
 
-enum Stream : std::uint64_t { kBlock = 101, kDoor, kFurniture, kStreet };
+enum Stream : std::uint64_t { kBlock = 101, kDoor, kFurniture, kStreet, kSite };
 
 /// A box by its lowest voxel and its edges, counted from the middle of the key range.
 KeyBox box_at(int x, int y, int z, int width, int depth, int height) {
@@ -95,21 +95,19 @@ class Builder {
 
 void fill_box(VoxelGrid& grid, const KeyBox& box, Occupancy state) { fill_part(grid, box, state, {{}, 16}); }
 
-VoxelGrid make_blocks(double fraction) {
-  if (!(fraction >= 0.0 && fraction <= 0.5))
-    throw std::invalid_argument("make_blocks: the occupied fraction is " + std::to_string(fraction) +
-                                ", must be from 0 to 0.5");
-  VoxelGrid grid(kBlocksResolution);
-  const KeyBox room = box_at(0, 0, 0, kBlocksEdge, kBlocksEdge, kBlocksHeight);
-  fill_box(grid, room, Occupancy::kFree);
-  const auto wanted = static_cast<std::uint64_t>(
-      std::ceil(fraction * static_cast<double>(kBlocksEdge * kBlocksEdge * kBlocksHeight)));
-  Draws draws(kBlock, 0);
+namespace {
+
+// A box of free voxels with occupied cubes of up to so many voxels' edge at random places in it.
+VoxelGrid make_scattered(double resolution, int edge, int height, int largest, double fraction, Draws draws) {
+  VoxelGrid grid(resolution);
+  fill_box(grid, box_at(0, 0, 0, edge, edge, height), Occupancy::kFree);
+  const double volume = static_cast<double>(edge) * edge * height;
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(fraction * volume));
   for (std::uint64_t occupied = 0; occupied < wanted;) {
-    const int edge = draws.whole(1, 4);
-    const int x = draws.whole(0, kBlocksEdge - edge), y = draws.whole(0, kBlocksEdge - edge),
-              z = draws.whole(0, kBlocksHeight - edge);
-    for_each_key(box_at(x, y, z, edge, edge, edge), [&](const VoxelKey& key) {
+    const int size = draws.whole(1, largest);
+    const int x = draws.whole(0, edge - size), y = draws.whole(0, edge - size),
+              z = draws.whole(0, height - size);
+    for_each_key(box_at(x, y, z, size, size, size), [&](const VoxelKey& key) {
       if (grid.at(key) == Occupancy::kOccupied) return;
       grid.set(key, Occupancy::kOccupied);
       ++occupied;
@@ -117,6 +115,17 @@ VoxelGrid make_blocks(double fraction) {
   }
   return grid;
 }
+
+}  // namespace
+
+VoxelGrid make_blocks(double fraction) {
+  if (!(fraction >= 0.0 && fraction <= 0.5))
+    throw std::invalid_argument("make_blocks: the occupied fraction is " + std::to_string(fraction) +
+                                ", must be from 0 to 0.5");
+  return make_scattered(kBlocksResolution, kBlocksEdge, kBlocksHeight, 4, fraction, Draws(kBlock, 0));
+}
+
+VoxelGrid make_site() { return make_scattered(0.05, 1200, 120, 16, 0.01, Draws(kSite, 0)); }
 
 VoxelGrid make_rooms(const Rooms& rooms) {
   constexpr int kKeys = Lattice::kKeysPerAxis - Lattice::kOrigin - 1;

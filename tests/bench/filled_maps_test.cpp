@@ -1,6 +1,7 @@
+#include "maps/filled_maps.hpp"
+
+#include "maps/octree.hpp"
 #include "octomap/quiet_octomap.hpp"
-#include "scaling/maps.hpp"
-#include "scaling/octree.hpp"
 #include "support/complaint.hpp"
 #include "support/random.hpp"
 #include "support/tree_state.hpp"
@@ -107,6 +108,15 @@ TEST(Blocks, FillTheShareOfTheBox) {
   }
   EXPECT_EQ(make_blocks(0.01).resolution(), kBlocksResolution);
   expect_same_map(make_blocks(1e-3));
+}
+
+TEST(Site, IsLargeFreeSpace) {
+  const VoxelGrid grid = make_site();
+  EXPECT_EQ(grid.resolution(), 0.05);
+  const auto count = grid.count();
+  EXPECT_EQ(count[1] + count[2], 1200U * 1200U * 120U);
+  EXPECT_GE(count[2], 1'728'000U);
+  EXPECT_LT(count[2], 1'728'000U + 16 * 16 * 16);
 }
 
 TEST(Blocks, NoShareThatIsNone) {
