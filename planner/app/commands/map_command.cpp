@@ -192,7 +192,9 @@ void add_map_command(CLI::App& app) {
   command.add("--poses", options->poses, "FILE", "Poses of a folder's clouds [poses.csv in the folder]");
   command.add("--resolution", options->resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
   command.add("--max-range", options->max_range, "METRES",
-              "Longest range of a hit; farther points only free the space up to it [no limit]", kAboveZero);
+              "Longest range of a hit; farther points only free the space up to it [no limit, and "
+              "clouds with points farther than 5,000 voxels are refused]",
+              kAboveZero);
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Box to map: lowest and highest corner [everything]");
   command.examples(R"(Examples:
