@@ -38,6 +38,8 @@ struct PacketLines {
   alignas(64) PerLine<std::uint32_t> index;
   /// The bits of all axes along which the line descends.
   alignas(64) PerLine<std::uint32_t> flip;
+  /// Lanes are filled from whole registers, which may reach beyond the last line.
+  std::array<std::uint32_t, 16> unused;
 };
 
 /// Where the walk of a ray ended: the table's index of the closed voxel that stopped it, or one of these.
