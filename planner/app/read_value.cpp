@@ -2,8 +2,9 @@
 
 #include "text.hpp"
 
+#include <frontlux/io/pose_file.hpp>
+
 #include <cmath>
-#include <numbers>
 
 namespace frontlux::app {
 namespace {
@@ -80,7 +81,7 @@ void read(std::string_view word, Eigen::AlignedBox3d& box) {
 std::optional<std::vector<double>> numbers_in(std::string_view word) { return list_in<double>(word); }
 
 void check_yaw(std::string_view word, double yaw) {
-  if (std::fabs(yaw) > 2 * std::numbers::pi + 1e-6)
+  if (!io::is_within_a_turn(yaw))
     throw BadInput(quote(word) + " has a yaw of more than a turn; give it in radians, from -3.142 to 3.142");
 }
 

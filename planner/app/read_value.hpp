@@ -63,7 +63,7 @@ void read(std::string_view word, std::vector<Value>& values) {
 /// Finite numbers with commas between them; nothing if the word is anything else.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view word);
 
-/// @throws BadInput if a yaw [rad] of a word is more than a turn: then it is likely in degrees
+/// @throws BadInput unless the yaw [rad] of a word `is_within_a_turn`
 void check_yaw(std::string_view word, double yaw);
 
 }  // namespace frontlux::app

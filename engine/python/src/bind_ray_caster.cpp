@@ -238,10 +238,10 @@ there are others; so does one range. Results have the shape (...) of the argumen
 Voxels of which nothing is known stop a ray with unknown='block' (castRay's ignoreUnknownCells=False) and let it pass
 with unknown='pass'. Rays that cannot be cast (not finite, outside the key range, without direction) are answered with
 RayStop.INVALID. Work is spread over all cores. Queries may run in several threads, also while another one updates.)")
-      .def(py::init(&make), py::arg("grid"), py::arg("kind") = "fast",
-           "A caster of the grid as it is now. kind: 'fast'; 'embree': the BVH, without tables; 'grid': "
-           "costs nothing "
-           "to build.")
+      .def(
+          py::init(&make), py::arg("grid"), py::arg("kind") = "fast",
+          "A caster of the grid as it is now. kind: 'fast'; 'embree': the BVH, without tables; 'grid': costs "
+          "nothing to build.")
       .def("cast", &cast, py::arg("origins"), py::arg("directions"), py::arg("max_range") = -1.0,
            py::arg("unknown") = "block", py::arg("out") = py::none(),
            R"(Where each ray ends.

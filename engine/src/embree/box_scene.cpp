@@ -202,9 +202,8 @@ void BoxScene::update(const Blockers& blockers) {
       origin_ = make_key(middle.x(), middle.y(), middle.z());
       reach_ = std::exp2(std::ceil(std::log2(keys.sizes().maxCoeff() * 0.5 + 2.0)));
       // A coordinate of at most `reach` voxels is off by reach * 2^-24. The dozen operations between a probe
-      // and its answer each add a few of those; 2^-19 leaves room for 32. The constant covers castRay's own
-      // rounding.
-      tolerance_ = std::max(1e-4, std::ldexp(reach_, -19));
+      // and its answer each add a few of those; 2^-19 leaves room for 32.
+      tolerance_ = std::max(kLeastTolerance, std::ldexp(reach_, -19));
     }
     bounds_ = in_frame();
   }

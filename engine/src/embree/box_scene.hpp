@@ -72,8 +72,9 @@ class BoxScene {
 
   VoxelKey origin_;
   Eigen::AlignedBox3d bounds_;
-  double reach_ = 0.0;  // largest coordinate that the tolerance allows for
-  double tolerance_ = 0.0;
+  static constexpr double kLeastTolerance = 1e-4;  // castRay's own rounding is below
+  double reach_ = 0.0;                             // largest coordinate that the tolerance allows for
+  double tolerance_ = kLeastTolerance;
   std::unique_ptr<Embree> embree_;
 };
 

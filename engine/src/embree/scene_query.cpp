@@ -136,6 +136,9 @@ void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
 // the target where the axis of the largest difference crosses into it.
 SceneQuery::Prepared SceneQuery::prepare(const KeySegment& segment) const {
   if (segment.from == segment.to) return {true, {}};
+  // Most that are blocked are so right before what is to be seen.
+  const VoxelKey last = voxel_before_end(segment.from, segment.to);
+  if (last != segment.from && blocks(grid_.at(last), unknown_)) return {false, {}};
   if (blocks(grid_.at(segment.from), unknown_)) return {};
   const VoxelKey& base = scene_.origin();
   const Eigen::Array3f origin(static_cast<float>(segment.from.x - base.x) + 0.5F,
@@ -198,13 +201,6 @@ SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
   return {{}, sight};
 }
 
-// Whether the voxel right before the end blocks: most key segments that are blocked are so there.
-bool SceneQuery::ends_blocked(const KeySegment& segment) const {
-  const VoxelKey last = voxel_before_end(segment.from, segment.to);
-  return blocks(grid_.at(last), unknown_) && last != segment.from && segment.from != segment.to;
-}
-bool SceneQuery::ends_blocked(const Segment&) const { return false; }
-
 template <class Segment>
 void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8_t> visible) const {
   std::array<std::size_t, BoxScene::kMaxBatch> index;
@@ -216,8 +212,6 @@ void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8
   };
   std::size_t size = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    visible[i] = 0;
-    if (ends_blocked(segments[i])) continue;
     const Prepared prepared = prepare(segments[i]);
     if (prepared.answer) {
       visible[i] = static_cast<std::uint8_t>(*prepared.answer);

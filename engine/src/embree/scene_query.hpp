@@ -59,8 +59,6 @@ class SceneQuery {
     std::optional<bool> answer;
     std::optional<SegmentProbe> segment;
   };
-  [[nodiscard]] bool ends_blocked(const KeySegment& segment) const;
-  [[nodiscard]] bool ends_blocked(const Segment& segment) const;
   [[nodiscard]] Prepared prepare(const KeySegment& segment) const;
   [[nodiscard]] Prepared prepare(const Segment& segment) const;
 

@@ -1,13 +1,7 @@
 // The walk itself. Included by packet_walk.cpp once for each instruction set, inside a namespace that defines
 // its `Lanes`.
 
-// All lanes, and their numbers.
 constexpr unsigned kAllLanes = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
-constexpr auto kLaneNumbers = [] {
-  std::array<std::uint32_t, Lanes::kWidth> numbers{};
-  for (unsigned lane = 0; lane < Lanes::kWidth; ++lane) numbers[lane] = lane;
-  return numbers;
-}();
 
 #include "packet/ray_batch_body.inl"
 #include "packet/segment_batch_body.inl"

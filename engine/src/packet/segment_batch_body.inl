@@ -16,11 +16,12 @@ static_assert(sizeof(KeySegment) == 12);
 constexpr std::uint32_t kFirstKey = std::endian::native == std::endian::little ? 0 : 16;
 constexpr std::uint32_t kSecondKey = 16 - kFirstKey;
 
-// Which lane reads which word of the segments.
-constexpr auto kEveryThird = [] {
-  std::array<std::uint32_t, Lanes::kWidth> words{};
-  for (unsigned lane = 0; lane < Lanes::kWidth; ++lane) words[lane] = 3 * lane;
-  return words;
+// A number for each lane: 0, step, 2 step, ...
+template <std::uint32_t kStep>
+constexpr auto kLaneNumbers = [] {
+  std::array<std::uint32_t, Lanes::kWidth> numbers{};
+  for (unsigned lane = 0; lane < Lanes::kWidth; ++lane) numbers[lane] = kStep * lane;
+  return numbers;
 }();
 
 // Of segments in lanes, along x, y and z.
@@ -77,6 +78,7 @@ struct KeysInLanes {
   return Lanes::either(Lanes::either(place(0), place(1)), place(2));
 }
 
+// Sorts segments into those that are blocked right at the end, those for `ways` and those that are `left`.
 // @param ends_in  where segments may end that begin in the table
 // @param left     gets the numbers of those that are too long, lie elsewhere or have no length
 // @return how many these are
@@ -90,8 +92,8 @@ struct KeysInLanes {
   std::size_t left_size = 0;
   bool looks = true;
   I word = Lanes::whole(0), lane_number = word;
-  Lanes::expand(word, kAllLanes, kEveryThird.data());
-  Lanes::expand(lane_number, kAllLanes, kLaneNumbers.data());
+  Lanes::expand(word, kAllLanes, kLaneNumbers<3>.data());
+  Lanes::expand(lane_number, kAllLanes, kLaneNumbers<1>.data());
   for (std::size_t i = 0; i < segments.size(); i += kWidth) {
     const std::size_t rest = segments.size() - i;
     const unsigned all = rest < kWidth ? (1U << rest) - 1U : kAllLanes;

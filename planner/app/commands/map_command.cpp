@@ -112,7 +112,8 @@ void check_lengths(const std::vector<Eigen::Vector3f>& points, const Eigen::Vect
                      " voxels; check its unit, or give --max-range, or a coarser --resolution");
 }
 
-Points map_scans(const Recording& recording, double max_range, Mapping& mapping) {
+Points map_scans(const Recording& recording, const Options& options, Mapping& mapping) {
+  const double max_range = options.max_range.value_or(std::numeric_limits<double>::infinity());
   const ProgressLine progress;
   Points points;
   for (std::size_t i = 0; i < recording.scans; ++i) {
@@ -123,8 +124,7 @@ Points map_scans(const Recording& recording, double max_range, Mapping& mapping)
       throw BadInput(recording.name(i) +
                      ": its pose lies outside the map's key range; check it, or give a coarser --resolution");
     const std::vector<Eigen::Vector3f> in_world = io::points_in_world(scan);
-    if (std::isinf(max_range))
-      check_lengths(in_world, origin, recording.name(i), mapping.grid().resolution());
+    if (!options.max_range) check_lengths(in_world, origin, recording.name(i), mapping.grid().resolution());
     mapping.insert(origin, in_world, max_range);
     points.all += in_world.size();
     for (const Eigen::Vector3f& point : in_world)
@@ -155,8 +155,7 @@ void map(const Options& options) {
   const Recording recording = std::filesystem::is_directory(options.scans)
                                   ? open_folder(options.scans, options.poses)
                                   : open_graph(options.scans, options.poses);
-  const double max_range = options.max_range.value_or(std::numeric_limits<double>::infinity());
-  const Points points = map_scans(recording, max_range, mapping);
+  const Points points = map_scans(recording, options, mapping);
   const auto voxels = mapping.grid().count();
   if (voxels[1] + voxels[2] == 0)
     throw BadInput(options.scans + ": its " + std::to_string(points.all) + " points make no voxel " +
@@ -168,8 +167,8 @@ void map(const Options& options) {
   if (!recording.warning.empty()) std::cerr << "frontlux: warning: " << recording.warning << '\n';
   std::string left_out;
   if (points.beyond > 0)
-    left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " + to_text(max_range) +
-                                  " m, which only free the space up to it");
+    left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " +
+                                  to_text(*options.max_range) + " m, which only free the space up to it");
   if (points.outside > 0)
     left_out +=
         row("left out", std::to_string(points.outside) + " of them, which lie beyond the map's key range");
@@ -192,8 +191,8 @@ void add_map_command(CLI::App& app) {
   command.add("--poses", options->poses, "FILE", "Poses of a folder's clouds [poses.csv in the folder]");
   command.add("--resolution", options->resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
   command.add("--max-range", options->max_range, "METRES",
-              "Longest range of a hit; farther points only free the space up to it [no limit, and "
-              "clouds with points farther than 5,000 voxels are refused]",
+              "Longest range of a hit; farther points only free the space up to it [no limit; "
+              "points farther than 5,000 voxels are refused then]",
               kAboveZero);
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Box to map: lowest and highest corner [everything]");

@@ -344,8 +344,8 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     }
     if (run.max_steps)
       options.max_steps = *run.max_steps;
-    else if (options.max_steps ||
-             options.lockstep)  // it may have gone on with a larger one than it began with
+    else if (options.max_steps || options.lockstep)
+      // The run may have gone on with a larger limit than it began with.
       options.max_steps = std::max(options.max_steps.value_or(planner::ExplorationOptions().max_steps),
                                    last_limit(run.folder).value_or(0));
   }

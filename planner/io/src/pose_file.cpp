@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -69,10 +68,9 @@ Eigen::Vector3d position_at(const Row& row, std::size_t i) {
   return {row.finite(i), row.finite(i + 1), row.finite(i + 2)};
 }
 
-// [rad] One of more than a turn is likely in degrees.
 double yaw_at(const Row& row, std::size_t i) {
   const double yaw = row.finite(i);
-  if (std::fabs(yaw) > 2 * std::numbers::pi + 1e-6)
+  if (!is_within_a_turn(yaw))
     row.fail_here("has a yaw of " + std::string(row.fields[i]) + ", more than a turn: yaws are in radians");
   return yaw;
 }

@@ -30,11 +30,10 @@ constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 29;
 
 void check_ground(const TravelOptions& options, double resolution) {
   if (!(options.step <= kMaxWindow * resolution && voxels_in(options.step, resolution) >= 1))
-    refuse(
-        "step is " + std::to_string(options.step) + " m, but has to be from a voxel, " +
-        std::to_string(resolution) + " m, to " + std::to_string(kMaxWindow) +
-        " of them: what is lower than a voxel cannot be told from flat floor; use smaller voxels, or let it "
-        "take higher steps");
+    refuse("step is " + std::to_string(options.step) + " m, but has to be from a voxel, " +
+           std::to_string(resolution) + " m, to " + std::to_string(kMaxWindow) +
+           " of them: what is lower than a voxel cannot be told from flat floor; use smaller voxels, or let "
+           "it take higher steps");
   if (!(options.slope >= 0.0 && options.slope <= kSteepest))
     refuse("slope is " + std::to_string(options.slope) + " rad, but has to be from 0 to " +
            std::to_string(kSteepest) + " rad");

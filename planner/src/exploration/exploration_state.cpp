@@ -285,7 +285,7 @@ std::uint64_t ExplorationState::mapped_frontiers(std::span<const VoxelChange> ch
 void ExplorationState::block(std::size_t robot, std::span<const VoxelKey> cells) {
   selection->block(robot, cells);
   if (voxel_corridors[robot]) voxel_corridors[robot]->block(cells);
-  if (tours) tours->note_blocked(robot, cells);
+  if (tours) tours->note(robot, cells);
 }
 
 // What a robot's part of a step leaves behind.

@@ -93,12 +93,12 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
 }
 
 void TourPlanning::note(std::span<const VoxelKey> changed) {
-  for (std::size_t r = 0; r < members_.size(); ++r) note_blocked(r, changed);
+  for (std::size_t r = 0; r < members_.size(); ++r) note(r, changed);
 }
 
-void TourPlanning::note_blocked(std::size_t robot, std::span<const VoxelKey> cells) {
+void TourPlanning::note(std::size_t robot, std::span<const VoxelKey> changed) {
   Member& member = members_[robot];
-  if (!member.lost) member.changed.insert(member.changed.end(), cells.begin(), cells.end());
+  if (!member.lost) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
 }
 
 // Only its own plannings give a robot viewpoints.

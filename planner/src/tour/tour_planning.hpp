@@ -70,8 +70,8 @@ class TourPlanning {
 
   /// From the next planning on these voxels have changed.
   void note(std::span<const VoxelKey> changed);
-  /// From its next planning on the corridor of a robot has these cells closed.
-  void note_blocked(std::size_t robot, std::span<const VoxelKey> cells);
+  /// The same for one robot: voxels, or cells that are closed to it from now on.
+  void note(std::size_t robot, std::span<const VoxelKey> changed);
 
   /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little.
   [[nodiscard]] double least_gain(std::size_t robot) const;

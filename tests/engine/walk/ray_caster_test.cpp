@@ -161,6 +161,24 @@ TEST(RayCaster, EmptyAndUniformMaps) {
   }
 }
 
+// Rounding leads such a path past the voxel of its end, whatever there is that blocks.
+TEST(RayCaster, MissesTheEndOfASegmentAsTheWalkDoesWithoutBlockers) {
+  VoxelGrid empty(0.1), free(0.1);
+  free.set(make_key(32768, 32768, 32768), Occupancy::kFree);
+  for (const VoxelGrid& grid : {empty, free}) {
+    auto segments = adversarial_segments(grid, 20'000, 5);
+    segments.push_back({{-0x1.99999ap-5F, -0x1.99999ap-4F, 0x1.99999ap-4F}, {0, 0, 0}});
+    for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass}) {
+      std::vector<std::uint8_t> walked(segments.size()), seen(segments.size());
+      make_grid_ray_caster(grid)->visible(segments, walked, unknown);
+      for (const auto& caster : casters_of(grid)) {
+        caster->visible(segments, seen, unknown);
+        EXPECT_EQ(seen, walked);
+      }
+    }
+  }
+}
+
 TEST(RayCaster, DistanceAndEntryAreThoseOfTheBlockersFace) {
   VoxelGrid grid(0.5);
   grid.fill({{32768, 32768, 32768}, 4}, Occupancy::kFree);

@@ -155,7 +155,7 @@ TEST(TourPlanning, LearnsOfCellsThatAreBlocked) {
   Keys wall;  // across all that is known
   for_each_key({make_key(32774, 32750, 32768), make_key(32774, 32800, 32779)},
                [&](const VoxelKey& key) { wall.push_back(key); });
-  space.planning.note_blocked(0, wall);
+  space.planning.note(0, wall);
   space.plan(space.corridor(wall));
   EXPECT_FALSE(space.planning.gets_to(0, beyond));
   EXPECT_TRUE(space.planning.gets_to(0, make_key(32770, 32765, 32772)));

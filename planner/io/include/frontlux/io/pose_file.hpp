@@ -5,8 +5,10 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ struct RecordedPose {
   /// Pose of the sensor in the world.
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
 };
+
+/// Whether a yaw [rad] is no more than a turn; a larger one is likely in degrees.
+[[nodiscard]] inline bool is_within_a_turn(double yaw) {
+  return std::fabs(yaw) <= 2 * std::numbers::pi + 1e-6;
+}
 
 /// Reads a line for each scan: `file,x,y,z,qx,qy,qz,qw` or `file,x,y,z,yaw` [m, rad].
 /// @throws std::runtime_error naming the file, the line, what is wrong and what to do
