@@ -192,6 +192,24 @@ TEST(GroundTruth, CountsOfARoom) {
   }
 }
 
+// As a mesh file gives it: the bounds end with the walls.
+TEST(GroundTruth, WallsOnTheOuterFacesOfTheBoundsAreObservable) {
+  for (const float shift : {0.0F, -0.0009F, 0.0009F}) {
+    World world = world_of({{Eigen::Vector3f::Constant(shift), Eigen::Vector3f::Constant(2.4F + shift)}}, {});
+    world.bounds = bounds_of(world.mesh);
+    const GroundTruth truth(world, 0.3, {1.2, 1.2, 1.2});
+    EXPECT_EQ(truth.bounds(), (KeyBox{key_at(-1, -1, -1), key_at(8, 8, 8)})) << shift;
+    EXPECT_EQ(truth.free_voxels(), 512U);
+    EXPECT_EQ(truth.surface_voxels(), 384U);
+    EXPECT_EQ(truth.at(key_at(-1, 5, 5)), Truth::kSurface);
+    EXPECT_EQ(truth.at(key_at(5, 5, 8)), Truth::kSurface);
+  }
+  World part = world_of({{Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(2.4F)}}, {});
+  part.bounds = {Eigen::Vector3d(0, 0.3, 0.3), Eigen::Vector3d(2.4, 2.1, 2.1)};
+  EXPECT_EQ(GroundTruth(part, 0.3, {1.2, 1.2, 1.2}).bounds(), (KeyBox{key_at(0, 1, 1), key_at(7, 6, 6)}))
+      << "a box that somebody chose stays as it is";
+}
+
 TEST(GroundTruth, SealedRoomsAreNotObservable) {
   const Eigen::AlignedBox3f room(Eigen::Vector3f(0.1F, 0.1F, 0.1F), Eigen::Vector3f(8.9F, 5.9F, 2.9F));
   const Eigen::AlignedBox3f vault(Eigen::Vector3f(5.0F, 1.0F, 0.4F), Eigen::Vector3f(7.9F, 4.0F, 2.6F));

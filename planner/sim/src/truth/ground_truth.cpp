@@ -24,13 +24,38 @@ template <class... Parts>
 
 Eigen::Vector3<std::int64_t> vector(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
+double margin_at(double resolution) { return std::min(GroundTruth::kMargin, resolution / 4); }
+
+bool equal(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, double tolerance) {
+  return (a.min() - b.min()).cwiseAbs().maxCoeff() <= tolerance &&
+         (a.max() - b.max()).cwiseAbs().maxCoeff() <= tolerance;
+}
+
 CellFrame make_frame(const KeyBox& bounds, const Lattice& lattice) {
   const double edge = lattice.resolution();
   return {{lower_face(lattice, bounds.min.x), lower_face(lattice, bounds.min.y),
            lower_face(lattice, bounds.min.z)},
           edge,
-          std::min(GroundTruth::kMargin, edge / 4),
+          margin_at(edge),
           vector(bounds.max) - vector(bounds.min) + Eigen::Vector3<std::int64_t>::Ones()};
+}
+
+// The voxels within the bounds. If the bounds are where the mesh ends, also those behind outer faces on which it
+// does: a wall on a face is mapped as the voxels behind it.
+KeyBox voxels_to_map(const World& world, const Lattice& lattice) {
+  KeyBox box = voxels_within(world.bounds, lattice);
+  const Eigen::AlignedBox3d mesh = bounds_of(world.mesh);
+  const double margin = margin_at(lattice.resolution());
+  if (mesh.isEmpty() || !equal(mesh, world.bounds, margin)) return box;
+  const auto on_face = [&](double wall, int key) { return std::abs(wall - lower_face(lattice, key)) <= margin; };
+  const auto take_in = [&](Eigen::Index axis, std::uint16_t& low, std::uint16_t& high) {
+    if (low > 0 && on_face(mesh.min()[axis], low)) --low;
+    if (high + 1 < Lattice::kKeysPerAxis && on_face(mesh.max()[axis], high + 1)) ++high;
+  };
+  take_in(0, box.min.x, box.max.x);
+  take_in(1, box.min.y, box.max.y);
+  take_in(2, box.min.z, box.max.z);
+  return box;
 }
 
 // The first triangle that passes through a voxel.
@@ -63,7 +88,7 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
 }
 
 GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start)
-    : lattice_(resolution), bounds_(voxels_within(world.bounds, lattice_)) {
+    : lattice_(resolution), bounds_(voxels_to_map(world, lattice_)) {
   check(world.mesh);
   if (bounding_voxels() > kMostVoxels)
     refuse("the world has ", bounding_voxels(), " voxels of ", resolution,

@@ -50,7 +50,8 @@ class GroundTruth {
   GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start);
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
-  /// The voxels within the world's bounds.
+  /// The voxels within the world's bounds. If those are where the mesh ends, also the voxels behind a face
+  /// on which it does: they show the wall.
   [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
 
   [[nodiscard]] Truth at(const VoxelKey& key) const;

@@ -40,7 +40,7 @@ void check(const TriangleMesh& mesh);
 struct World {
   std::string name;
   TriangleMesh mesh;
-  Eigen::AlignedBox3d bounds;  ///< [m] the map never goes beyond; around the mesh
+  Eigen::AlignedBox3d bounds;  ///< [m] the map never goes beyond the voxels in it (`GroundTruth::bounds`)
   std::optional<Eigen::Vector3d>
       start;  ///< [m] a place in free space, on or above the floor, if one is known
 };
