@@ -122,7 +122,7 @@ class Refusals(unittest.TestCase):
         self.refuses(TypeError, "directions: dtype int64, but has to be float32 or float64", cast, p, np.ones((4, 3), int))
         self.refuses(TypeError, "origins: dtype float16", cast, np.ones((4, 3), np.float16), p)
         self.refuses(TypeError, "origins: dtype >f8", cast, p.astype(">f8"), p)
-        self.refuses(ValueError, "origins: not contiguous.*ascontiguousarray", cast, np.ones((8, 3))[::2], p)
+        self.refuses(ValueError, "origins: not contiguous.*numpy.require", cast, np.ones((8, 3))[::2], p)
         self.refuses(ValueError, "directions: not contiguous", cast, p, np.asfortranarray(np.ones((4, 3))))
         self.refuses(ValueError, r"directions and origins: for shapes \(3,\) and \(4,\)", cast, p, np.ones((3, 3)))
         self.refuses(ValueError, "max_range and origins", cast, p, p, np.ones(3))
@@ -160,6 +160,10 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "at most 2\\^31", grid.states, (0, 0, 0), (65535, 65535, 65535))
         self.refuses(ValueError, "points: number 1", grid.keys_of, np.array([[0, 0, 0], [0, 0, 1e9]]))
         self.refuses(ValueError, "free or occupied", grid.keys, Occupancy.UNKNOWN)
+        for keys in ([-1, 0, 0], [[0, 0, 0], [0, 65536, 0]]):
+            self.refuses(ValueError, "0 to 65535", grid.at, keys)
+        self.refuses(TypeError, "integers", grid.at, [0.5, 1.0, 2.0])
+        self.assertEqual(grid.at([0, 0, 65535]), Occupancy.UNKNOWN)
         self.refuses(RuntimeError, "no_such_file.bt", frontlux.VoxelGrid.read, "no_such_file.bt")
         self.refuses(ValueError, "resolution", self.caster.update, frontlux.VoxelGrid(0.2))
 

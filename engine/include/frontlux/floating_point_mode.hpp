@@ -7,7 +7,7 @@
 namespace frontlux {
 
 /// How this thread computes with floating-point numbers, for as long as the object lives; then the caller's
-/// mode comes back, exception flags included.
+/// mode comes back. Exceptions are masked meanwhile.
 class FRONTLUX_EXPORT FloatingPointMode {
  public:
   /// How floating-point numbers are rounded.
@@ -24,6 +24,7 @@ class FRONTLUX_EXPORT FloatingPointMode {
 
  private:
   std::uint64_t saved_;  // the processor's control register
+  bool changed_ = false;
 };
 
 }  // namespace frontlux

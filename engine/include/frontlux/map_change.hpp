@@ -17,6 +17,7 @@ struct MapChange {
 
 /// Every voxel whose state differs between two maps, sorted: the keys of a `MapChange`. Between a grid and
 /// its edited copy this costs as much as the edit did.
+/// @throws std::invalid_argument if the resolutions differ
 /// @throws std::length_error if there are more than `kMostListedKeys`
 [[nodiscard]] FRONTLUX_EXPORT std::vector<VoxelKey> changed_keys(const VoxelGrid& before,
                                                                  const VoxelGrid& after);

@@ -35,7 +35,8 @@ namespace frontlux {
 /// to a cloud for each ray that it returns true for.
 [[nodiscard]] FRONTLUX_EXPORT octomap::Pointcloud to_pointcloud(std::span<const Hit> hits);
 
-/// A tree read from a file, of the kind the file holds.
+/// A tree read from a file, of the kind the file holds. Whatever takes one refuses a null pointer:
+/// std::invalid_argument.
 using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<octomap::ColorOcTree>>;
 
 /// Reads an OctoMap file, `.bt` or `.ot`, by its header and not by its name. The file is checked from end to
@@ -46,7 +47,8 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 
 /// Writes a tree in OctoMap's format: the log-odds of every node (and its colour) to a file named `.ot`, free
 /// and occupied only to one named `.bt`. The file appears complete or not at all.
-/// @throws std::invalid_argument if the name ends otherwise
+/// @throws std::invalid_argument if the name ends otherwise, or for what `read_octree` would refuse: voxels
+///         smaller than 1e-9 m or larger than 1e9 m, a `.bt` of a single leaf as large as the key range
 /// @throws std::runtime_error naming the file, if it cannot be written
 FRONTLUX_EXPORT void write_octree(const octomap::OcTree& tree, const std::filesystem::path& file);
 FRONTLUX_EXPORT void write_octree(const octomap::ColorOcTree& tree, const std::filesystem::path& file);
@@ -83,8 +85,9 @@ class FRONTLUX_EXPORT OctreeMirror {
   [[nodiscard]] const VoxelGrid& grid() const;
 
   /// Reads the keys that the tree reports as changed; call `tree.resetChangeDetection()` afterwards. Rebuilds
-  /// if those keys may be incomplete: change detection was off at the last update, or since then the tree has
-  /// been cleared or replaced, or its occupancy threshold has changed.
+  /// if those keys are seen to be incomplete: change detection was off at the last update, or since then the
+  /// tree has got another root or occupancy threshold. After `clear`, a tree that is filled again may have
+  /// its root in the same place: call `rebuild`.
   /// @return true if it was incremental, false if it rebuilt
   bool update();
 

@@ -20,6 +20,9 @@ namespace frontlux {
 /// else, not on the other inputs, not on the number of threads. Batches run on the threads of TBB's current
 /// arena: call inside a `tbb::task_arena` to choose how many.
 ///
+/// Whatever floating-point mode a thread is in (rounding, flushed denormals, traps), answers are those of
+/// castRay in the standard mode.
+///
 /// Rays that cannot be cast (not finite, outside the key range, without direction) are answered, not thrown:
 /// `RayStop::kInvalid`, or not visible.
 ///
@@ -32,7 +35,7 @@ class FRONTLUX_EXPORT RayCaster {
   RayCaster& operator=(const RayCaster&) = delete;
 
   /// The closest blocker along each ray, or where the ray ended without one.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const;
 
   /// One ray, on the calling thread.
@@ -40,30 +43,30 @@ class FRONTLUX_EXPORT RayCaster {
 
   /// For each segment 1 if castRay's path from `from` towards `to` reaches the voxel of `to` and no voxel
   /// strictly between the two blocks, else 0. The voxels that hold `from` and `to` never block.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                UnknownPolicy unknown) const;
 
   /// The same between voxel centres, in exact integer arithmetic: a path through an edge or corner steps
   /// along z before y before x. The answer depends only on the offset between the keys and on the voxels
   /// between them.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                UnknownPolicy unknown) const;
 
   /// How many unknown, free and occupied voxels each ray crosses before it stops where `cast` stops it. With
   /// `UnknownPolicy::kPass` and a range, `unknown` is the most that a sensor beam could uncover.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
   /// The same from the voxel of `from`, included, to that of `to`, excluded, on the path of `visible`:
   /// `kReached` where that answers 1. The voxel of `from` never blocks. If both are one voxel, nothing is
   /// counted.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void count(std::span<const Segment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
   /// The same between voxel centres, in exact integer arithmetic.
-  /// @throws std::invalid_argument if the spans differ in size
+  /// @throws std::invalid_argument if the spans differ in size, or for no `UnknownPolicy`
   void count(std::span<const KeySegment> segments, std::span<PathCount> counts, UnknownPolicy unknown) const;
 
   /// Answers from `grid` from now on. What changed is found by comparing `grid` with the snapshot held; parts
@@ -74,14 +77,15 @@ class FRONTLUX_EXPORT RayCaster {
   /// The map from which it answers at present; none for OctoMap's caster, which keeps no grid.
   [[nodiscard]] std::optional<VoxelGrid> grid() const { return do_grid(); }
 
+  /// The lattice of its map's voxels.
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+
   /// Bytes this caster holds beside the grid's own (acceleration structure; 0 for a caster without one).
   [[nodiscard]] std::size_t memory_bytes() const { return do_memory_bytes(); }
 
  protected:
   /// For casters of voxels on this lattice.
   explicit RayCaster(const Lattice& lattice) : lattice_(lattice) {}
-  /// The lattice of the voxels.
-  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
 
  private:
   // Spans are of equal size and not empty; rays and segments are unchecked.

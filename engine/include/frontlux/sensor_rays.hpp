@@ -28,7 +28,7 @@ namespace frontlux {
 /// Unit vectors through the pixels of a calibrated camera, in the camera's optical frame: x right, y down,
 /// z forward. There are `rows` x `columns` of them, row by row from the top; that of row r and column c is at
 /// r * columns + c and goes through the pixel's centre, (c + 0.5, r + 0.5).
-/// @param intrinsics  (fx 0 cx, 0 fy cy, 0 0 1) [pixels]; other entries are not read
+/// @param intrinsics  (fx 0 cx, 0 fy cy, 0 0 1) [pixels]; other entries only have to be finite
 /// @throws std::invalid_argument naming the value, if an entry is not finite, fx or fy is not positive, or
 ///         there are no rays or more than 2^26
 [[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> pinhole_directions(

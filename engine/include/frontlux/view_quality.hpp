@@ -106,9 +106,10 @@ struct AzimuthWindow {
 /// changes.
 ///
 /// A viewpoint's value depends only on the map, the field of view, the targets near it, the options and its
-/// own key: not on the other viewpoints, their order, the caster or the number of threads. The random numbers
-/// are keyed by seed and viewpoint alone, so that a viewpoint keeps its value as long as nothing changes
-/// around it. Its draws repeat, which does no harm: a change of the targets shuffles them.
+/// own key: not on the other viewpoints, their order, the caster (OctoMap's own aside) or the number of
+/// threads. The random numbers are keyed by seed and viewpoint alone, so that a viewpoint keeps its value as
+/// long as nothing changes around it. Its draws repeat, which does no harm: a change of the targets shuffles
+/// them.
 ///
 /// Thread safety: as a standard container.
 class FRONTLUX_EXPORT ViewQualityImage {
@@ -125,6 +126,7 @@ class FRONTLUX_EXPORT ViewQualityImage {
   /// viewpoint's
   /// @param viewpoints  sensor positions, in any order
   /// @param targets     voxels to be seen, in any order; repeated ones count once
+  /// @throws std::invalid_argument if the caster's map has another resolution, as `update` does
   void render(const RayCaster& caster, std::span<const VoxelKey> viewpoints,
               std::span<const VoxelKey> targets);
 
@@ -161,6 +163,7 @@ class FRONTLUX_EXPORT ViewQualityImage {
                      std::shared_ptr<const detail::TargetIndex> targets, std::span<const detail::Kept> kept);
   [[nodiscard]] std::size_t bins() const { return static_cast<std::size_t>(options_.azimuth_bins); }
 
+  double resolution_;  // [m]
   ViewQualityOptions options_;
   std::shared_ptr<const ViewRegion> region_;
   std::shared_ptr<const detail::AzimuthBins> azimuth_bins_;

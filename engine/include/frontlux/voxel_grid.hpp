@@ -61,7 +61,8 @@ class FRONTLUX_EXPORT VoxelGrid {
   void set(const VoxelKey& key, Occupancy state) { fill({key, 0}, state); }
 
   /// Changes all voxels of a block, in time that does not grow with its volume.
-  /// @throws std::invalid_argument if the block is not aligned or larger than the key range
+  /// @throws std::invalid_argument if the block is not aligned or larger than the key range, or for no
+  ///         `Occupancy`
   void fill(const Block& block, Occupancy state);
 
   /// Calls `visit` for every largest block of the storage that is not entirely unknown: with the brick if the
@@ -106,6 +107,7 @@ inline constexpr std::uint64_t kMostListedKeys = std::uint64_t{1} << 28;
 /// Calls `visit` for blocks that together hold every voxel whose state differs: bricks, or larger blocks that
 /// became or were uniform. Parts that both grids share are not read, so between a grid and its edited
 /// copy this costs as much as the edit did.
+/// @throws std::invalid_argument if the resolutions differ
 FRONTLUX_EXPORT void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
                                      const std::function<void(const Block&)>& visit);
 

@@ -6,13 +6,30 @@ namespace frontlux::python {
 namespace {
 
 // An ndarray as it is, anything else as numpy makes an array of it.
-py::array array_of(const char* name, const py::object& object, const py::dtype& dtype) {
+py::array array_of(const char* name, const py::object& object, const py::object& dtype) {
   if (py::isinstance<py::array>(object)) return py::reinterpret_borrow<py::array>(object);
   try {
     return py::module_::import("numpy").attr("asarray")(object, dtype);
   } catch (py::error_already_set& error) {
     throw py::type_error(std::string(name) + ": no array: " + error.what());
   }
+}
+
+// A list of integers as numpy makes an array of it, which would wrap what is no key.
+py::array keys_of(const char* name, const py::object& object) {
+  if (py::isinstance<py::array>(object)) return py::reinterpret_borrow<py::array>(object);
+  const py::array numbers = array_of(name, object, py::none());
+  const char kind = numbers.dtype().kind();
+  if (numbers.size() != 0) {
+    if (kind != 'i' && kind != 'u') throw py::type_error(std::string(name) + ": a voxel key holds integers");
+    const auto least = numbers.attr("min")().cast<double>(), greatest = numbers.attr("max")().cast<double>();
+    if (least < 0 || greatest > 65535)
+      throw py::value_error(std::string(name) +
+                            ": a voxel key is from 0 to 65535, but there are numbers from " +
+                            py::str(numbers.attr("min")()).cast<std::string>() + " to " +
+                            py::str(numbers.attr("max")()).cast<std::string>());
+  }
+  return numbers.attr("astype")(py::dtype::of<std::uint16_t>());
 }
 
 [[noreturn]] void wrong_type(const char* name, const py::array& array, const char* expected) {
@@ -56,8 +73,9 @@ void check_memory(const char* name, const py::array& array) {
   constexpr int kNeeded =
       py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
   if ((array.flags() & kNeeded) != kNeeded)
-    throw py::value_error(std::string(name) +
-                          ": not contiguous in memory; pass numpy.ascontiguousarray(...), which copies it");
+    throw py::value_error(
+        std::string(name) +
+        ": not contiguous or not aligned in memory; make it with numpy.require(..., requirements='CA')");
 }
 
 Numbers::Numbers(const char* name, const py::object& object, py::ssize_t width)
@@ -88,8 +106,7 @@ Shape common_shape(std::initializer_list<const Numbers*> arguments) {
 
 bool are_keys(const py::object& object) { return py::isinstance<py::array_t<std::uint16_t>>(object); }
 
-Keys::Keys(const char* name, const py::object& object)
-    : name_(name), array_(array_of(name, object, py::dtype::of<std::uint16_t>())) {
+Keys::Keys(const char* name, const py::object& object) : name_(name), array_(keys_of(name, object)) {
   static_assert(sizeof(VoxelKey) == 3 * sizeof(std::uint16_t));
   if (!py::isinstance<py::array_t<std::uint16_t>>(array_)) wrong_type(name, array_, "uint16: voxel keys");
   shape_ = without_rows(name, array_, 3);

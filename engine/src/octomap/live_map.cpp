@@ -12,7 +12,7 @@ namespace {
 const Octree& watched(const Octree& tree) {
   std::visit(
       [](const auto& t) {
-        t->enableChangeDetection(true);
+        detail::there(t)->enableChangeDetection(true);
         t->resetChangeDetection();
       },
       tree);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <memory>
+#include <stdexcept>
 #include <variant>
 
 namespace frontlux::detail {
@@ -38,8 +39,15 @@ std::shared_ptr<Tree> borrowed(Tree& tree) {
   return {std::shared_ptr<void>(), &tree};
 }
 
+/// @throws std::invalid_argument if there is none
+template <class Pointer>
+const Pointer& there(const Pointer& tree) {
+  if (tree == nullptr) throw std::invalid_argument("an Octree without a tree: read or make one first");
+  return tree;
+}
+
 inline OctreePointer to_read(const Octree& tree) {
-  return std::visit([](const auto& t) { return OctreePointer(t); }, tree);
+  return std::visit([](const auto& t) { return OctreePointer(there(t)); }, tree);
 }
 
 }  // namespace frontlux::detail

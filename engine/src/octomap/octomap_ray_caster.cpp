@@ -149,7 +149,7 @@ std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& t
   return std::make_unique<OctomapRayCaster<octomap::ColorOcTree>>(tree);
 }
 std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree) {
-  return std::visit([](const auto& t) { return make_octomap_ray_caster(*t); }, tree);
+  return std::visit([](const auto& t) { return make_octomap_ray_caster(*detail::there(t)); }, tree);
 }
 
 }  // namespace frontlux

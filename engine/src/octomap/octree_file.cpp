@@ -16,7 +16,6 @@ namespace {
 constexpr std::string_view kBinaryFirstLine = "# Octomap OcTree binary file";
 constexpr std::string_view kFullFirstLine = "# Octomap OcTree file";
 constexpr std::string_view kLegacyStart{"\x03\0\0\0", 4};
-constexpr double kMinResolution = 1e-9, kMaxResolution = 1e9;  // [m]
 constexpr std::size_t kTreeDepth = 16;
 constexpr const char* kAskForAnotherCopy = "the file is damaged or incomplete: get another copy of it";
 constexpr const char* kCheckHeader =

@@ -6,6 +6,9 @@
 
 namespace frontlux::detail {
 
+/// [m] Beyond these, float coordinates end.
+inline constexpr double kMinResolution = 1e-9, kMaxResolution = 1e9;
+
 /// How the nodes of an OctoMap file are written.
 enum class OctreeFormat {
   kBinary,  ///< `.bt`: two bits a child, free or occupied
@@ -31,7 +34,7 @@ struct OctreeFile {
 /// exactly where the file ends; log-odds of NaN in an `.ot`, which OctoMap holds for free.
 /// Refused, although OctoMap reads them: a node that claims children and has none, which becomes a free leaf
 /// of log-odds -3.4e38; a `.bt` of nothing but a root, which is read as occupied whatever was saved; a
-/// resolution outside 1e-9 to 1e9 m, where float coordinates end.
+/// resolution outside `kMinResolution` to `kMaxResolution`.
 /// @throws std::runtime_error naming the file, what is wrong, the byte where it was found, and what to do
 [[nodiscard]] OctreeFile read_checked_octree_file(const std::filesystem::path& file);
 

@@ -70,7 +70,7 @@ std::size_t mirror_bytes(const Tree& tree, const typename Tree::NodeType* node, 
 
 template <class... Trees>
 VoxelGrid mirror(const std::variant<Trees...>& tree) {
-  return std::visit([](const auto& t) { return mirror(*t); }, tree);
+  return std::visit([](const auto& t) { return mirror(*detail::there(t)); }, tree);
 }
 
 }  // namespace
@@ -82,8 +82,8 @@ VoxelGrid make_voxel_grid(const Octree& tree) { return mirror(tree); }
 std::size_t voxel_grid_bytes(const Octree& tree) {
   return std::visit(
       [](const auto& t) {
-        return t->getRoot() == nullptr ? node_bytes(detail::World::kLog2)
-                                       : mirror_bytes(*t, t->getRoot(), detail::World::kLog2);
+        return detail::there(t)->getRoot() == nullptr ? node_bytes(detail::World::kLog2)
+                                                      : mirror_bytes(*t, t->getRoot(), detail::World::kLog2);
       },
       tree);
 }

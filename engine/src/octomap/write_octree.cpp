@@ -1,4 +1,5 @@
 #include "octomap/octomap_adapter.hpp"
+#include "octomap/octree_file.hpp"
 
 #include <frontlux/file.hpp>
 
@@ -14,6 +15,10 @@ void write(const Tree& tree, const std::filesystem::path& file) {
   const bool binary = file.extension() == ".bt";
   if (!binary && file.extension() != ".ot")
     throw std::invalid_argument(file.string() + ": a map's file name ends in .bt or .ot");
+  const double resolution = tree.getResolution();
+  if (!(resolution >= detail::kMinResolution && resolution <= detail::kMaxResolution))
+    throw std::invalid_argument(file.string() + ": the resolution, " + decimals_of(resolution) +
+                                " m, is not from 1e-9 to 1e9 m");
   const auto write_tree = [&](const Tree& map) {
     write_file(file, [&](std::ostream& out) {
       out << (binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file") << "\nid "
@@ -28,6 +33,11 @@ void write(const Tree& tree, const std::filesystem::path& file) {
   Tree likely(tree);
   likely.toMaxLikelihood();
   likely.prune();
+  if (likely.size() == 1)
+    throw std::invalid_argument(
+        file.string() +
+        ": the map is a root without children, of which a .bt cannot say whether it is "
+        "free or occupied; write an .ot file");
   write_tree(likely);
 }
 
@@ -36,7 +46,7 @@ void write(const Tree& tree, const std::filesystem::path& file) {
 void write_octree(const octomap::OcTree& tree, const std::filesystem::path& file) { write(tree, file); }
 void write_octree(const octomap::ColorOcTree& tree, const std::filesystem::path& file) { write(tree, file); }
 void write_octree(const Octree& tree, const std::filesystem::path& file) {
-  std::visit([&](const auto& t) { write(*t, file); }, tree);
+  std::visit([&](const auto& t) { write(*detail::there(t), file); }, tree);
 }
 
 }  // namespace frontlux

@@ -107,7 +107,7 @@ double ViewQuality::standard_error_of(std::uint64_t some_hits,
 
 ViewQualityImage::ViewQualityImage(const Lattice& lattice, const FieldOfView& field_of_view,
                                    const ViewQualityOptions& options)
-    : options_(options) {
+    : resolution_(lattice.resolution()), options_(options) {
   options_.check();
   region_ = std::make_shared<const ViewRegion>(field_of_view, lattice.resolution());
   azimuth_bins_ = std::make_shared<const detail::AzimuthBins>(*region_, options.azimuth_bins);
@@ -151,6 +151,10 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
                                      std::shared_ptr<const std::vector<Viewpoint>> order,
                                      std::shared_ptr<const detail::TargetIndex> targets,
                                      std::span<const Kept> kept) {
+  if (caster.lattice().resolution() != resolution_)
+    throw std::invalid_argument("view quality on voxels of " + std::to_string(resolution_) +
+                                " m, but the caster's are of " +
+                                std::to_string(caster.lattice().resolution()) + " m");
   const std::size_t bins = this->bins();
   std::vector<VoxelKey> keys(viewpoints.begin(), viewpoints.end());
   std::vector<ViewQuality> values(keys.size());

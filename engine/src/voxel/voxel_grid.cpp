@@ -96,6 +96,8 @@ void VoxelGrid::fill(const Block& block, Occupancy state) {
     throw std::invalid_argument("no aligned block of edge 2^" + std::to_string(block.log2_edge) +
                                 " begins at key (" + std::to_string(block.corner.x) + ", " +
                                 std::to_string(block.corner.y) + ", " + std::to_string(block.corner.z) + ")");
+  if (state != Occupancy::kUnknown && state != Occupancy::kFree && state != Occupancy::kOccupied)
+    throw std::invalid_argument("there is no occupancy of number " + std::to_string(static_cast<int>(state)));
   const auto& all = uniform_node<detail::World>(state);
   if (world_ == all) return;
   if (world_.own().fill(block.corner, block.log2_edge, state)) world_ = all;
@@ -156,6 +158,9 @@ bool operator==(const VoxelGrid& a, const VoxelGrid& b) {
 
 void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
                      const std::function<void(const Block&)>& visit) {
+  if (before.resolution() != after.resolution())
+    throw std::invalid_argument("voxels of " + std::to_string(before.resolution()) + " and of " +
+                                std::to_string(after.resolution()) + " m cannot be compared");
   if (before.world_ == after.world_) return;
   visit_changes(*before.world_, *after.world_, {}, visit);
 }

@@ -1,3 +1,4 @@
+#include <frontlux/floating_point_mode.hpp>
 #include <frontlux/ray_caster.hpp>
 
 #include <stdexcept>
@@ -6,48 +7,63 @@
 namespace frontlux {
 namespace {
 
-// Whether there is anything to answer.
-bool any(std::size_t inputs, std::size_t results, const char* what) {
+void check(UnknownPolicy unknown) {
+  if (unknown != UnknownPolicy::kPass && unknown != UnknownPolicy::kBlock)
+    throw std::invalid_argument("there is no policy for unknown voxels of number " +
+                                std::to_string(static_cast<int>(unknown)));
+}
+
+// Calls `answer`, if there is anything to answer.
+template <class Answer>
+void answer_all(std::size_t inputs, std::size_t results, const char* what, UnknownPolicy unknown,
+                const Answer& answer) {
   if (inputs != results)
     throw std::invalid_argument(std::to_string(inputs) + " " + what + " but room for " +
                                 std::to_string(results) + " results: the two spans must be of one size");
-  return inputs != 0;
+  check(unknown);
+  if (inputs == 0) return;
+  const FloatingPointMode mode(FloatingPointMode::kToNearest);
+  answer();
 }
 
 }  // namespace
 
 void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const {
-  if (any(rays.size(), hits.size(), "rays")) do_cast(rays, hits, unknown);
+  answer_all(rays.size(), hits.size(), "rays", unknown, [&] { do_cast(rays, hits, unknown); });
 }
 
 Hit RayCaster::cast(const Ray& ray, UnknownPolicy unknown) const {
   Hit hit;
-  do_cast({&ray, 1}, {&hit, 1}, unknown);
+  cast({&ray, 1}, {&hit, 1}, unknown);
   return hit;
 }
 
 void RayCaster::visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                         UnknownPolicy unknown) const {
-  if (any(segments.size(), visible.size(), "segments")) do_visible(segments, visible, unknown);
+  answer_all(segments.size(), visible.size(), "segments", unknown,
+             [&] { do_visible(segments, visible, unknown); });
 }
 
 void RayCaster::visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                         UnknownPolicy unknown) const {
-  if (any(segments.size(), visible.size(), "segments")) do_visible(segments, visible, unknown);
+  answer_all(segments.size(), visible.size(), "segments", unknown,
+             [&] { do_visible(segments, visible, unknown); });
 }
 
 void RayCaster::count(std::span<const Ray> rays, std::span<PathCount> counts, UnknownPolicy unknown) const {
-  if (any(rays.size(), counts.size(), "rays")) do_count(rays, counts, unknown);
+  answer_all(rays.size(), counts.size(), "rays", unknown, [&] { do_count(rays, counts, unknown); });
 }
 
 void RayCaster::count(std::span<const Segment> segments, std::span<PathCount> counts,
                       UnknownPolicy unknown) const {
-  if (any(segments.size(), counts.size(), "segments")) do_count(segments, counts, unknown);
+  answer_all(segments.size(), counts.size(), "segments", unknown,
+             [&] { do_count(segments, counts, unknown); });
 }
 
 void RayCaster::count(std::span<const KeySegment> segments, std::span<PathCount> counts,
                       UnknownPolicy unknown) const {
-  if (any(segments.size(), counts.size(), "segments")) do_count(segments, counts, unknown);
+  answer_all(segments.size(), counts.size(), "segments", unknown,
+             [&] { do_count(segments, counts, unknown); });
 }
 
 void RayCaster::update(const VoxelGrid& grid) {
@@ -55,6 +71,7 @@ void RayCaster::update(const VoxelGrid& grid) {
     throw std::invalid_argument("a caster of resolution " + std::to_string(lattice_.resolution()) +
                                 " m cannot be updated to a grid of " + std::to_string(grid.resolution()) +
                                 " m");
+  const FloatingPointMode mode(FloatingPointMode::kToNearest);
   do_update(grid);
 }
 

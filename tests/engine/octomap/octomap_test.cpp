@@ -1,12 +1,17 @@
 // The mirror of a tree, kept in step or rebuilt; the drop-in; files.
 
+#include "support/complaint.hpp"
 #include "support/folder_test.hpp"
 #include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/tree_state.hpp"
 #include "support/voxel_keys.hpp"
 
+#include <frontlux/live_map.hpp>
 #include <frontlux/octomap.hpp>
+
+#include <algorithm>
+#include <filesystem>
 
 namespace frontlux::test {
 namespace {
@@ -47,16 +52,31 @@ TEST(VoxelGridOfATree, EqualsSearch) {
   EXPECT_TRUE(make_voxel_grid(octomap::OcTree(0.1)) == VoxelGrid(0.1));
 }
 
-TEST(VoxelGridOfATree, ARootWithoutChildrenFillsTheWorld) {
+octomap::OcTree root_alone() {
   octomap::OcTree tree(0.1);
   std::stringstream one_node;  // its log-odds, and no children
   const float log_odds = 1.0F;
   one_node.write(reinterpret_cast<const char*>(&log_odds), sizeof log_odds);
   one_node.put('\0');
   tree.readData(one_node);
+  return tree;
+}
+
+TEST(VoxelGridOfATree, ARootWithoutChildrenFillsTheWorld) {
   VoxelGrid world(0.1);
   world.fill({{}, 16}, Occupancy::kOccupied);
-  EXPECT_TRUE(make_voxel_grid(tree) == world);
+  EXPECT_TRUE(make_voxel_grid(root_alone()) == world);
+}
+
+TEST(Octree, WithoutATreeIsRefused) {
+  const Octree none;
+  EXPECT_REFUSED(make_voxel_grid(none));
+  EXPECT_REFUSED(voxel_grid_bytes(none));
+  EXPECT_REFUSED(OctreeMirror(none));
+  EXPECT_REFUSED(LiveMap(none));
+  EXPECT_REFUSED(OctreeRayCaster(none));
+  EXPECT_REFUSED(make_octomap_ray_caster(none));
+  EXPECT_REFUSED(write_octree(none, "none.ot"));
 }
 
 // Insertions, deletions of what was seen, with and without the change list reset in between: always equal to
@@ -176,6 +196,17 @@ TEST(OctreeRayCaster, ServesColorTrees) {
 }
 
 class ReadOctree : public FolderTest {};
+class WriteOctree : public FolderTest {};
+
+TEST_F(WriteOctree, RefusesWhatCouldNotBeReadAgain) {
+  expect_complaint([&] { write_octree(root_alone(), path("root.bt")); }, {"root.bt", ".ot"});
+  write_octree(root_alone(), path("root.ot"));
+  EXPECT_TRUE(make_voxel_grid(read_octree(path("root.ot"))) == make_voxel_grid(root_alone()));
+  for (const double resolution : {1e-10, 1e10})
+    expect_complaint([&] { write_octree(octomap::OcTree(resolution), path("far.ot")); },
+                     {"far.ot", "resolution"});
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 1);
+}
 
 TEST_F(ReadOctree, ReadsWhatOctomapWrote) {
   const auto tree = make_random_tree(4, 0.25);

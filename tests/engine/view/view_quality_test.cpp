@@ -303,6 +303,13 @@ TEST(ViewQuality, NamesTheValueThatIsWrong) {
   EXPECT_NO_THROW(ViewQualityImage(Lattice(0.3), lidar(), {}));
 }
 
+TEST(ViewQuality, RefusesACasterOfOtherVoxels) {
+  ViewQualityImage image(Lattice(0.3), lidar(), {});
+  const std::array keys{key_at(1, 1, 1)};
+  expect_complaint([&] { image.render(*make_grid_ray_caster(VoxelGrid(0.1)), keys, keys); }, {"0.3", "0.1"});
+  EXPECT_EQ(image.size(), 0U);
+}
+
 // Edits of all kinds, reported as the voxels that changed or also some that did not; each time the image has
 // to be what rendering makes.
 TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {

@@ -182,5 +182,16 @@ TEST(VoxelGrid, RejectsBlocksThatAreNotAligned) {
     EXPECT_REFUSED(grid.fill(bad, Occupancy::kFree));
 }
 
+TEST(VoxelGrid, RejectsStatesThatThereAreNot) {
+  VoxelGrid grid(0.1);
+  for (const int state : {3, 77, 255}) EXPECT_REFUSED(grid.set({1, 1, 1}, static_cast<Occupancy>(state)));
+  EXPECT_TRUE(grid == VoxelGrid(0.1));
+}
+
+TEST(VoxelGrid, OfAnotherResolutionIsNotCompared) {
+  EXPECT_FALSE(VoxelGrid(0.1) == VoxelGrid(0.2));
+  EXPECT_REFUSED(changed_keys(VoxelGrid(0.1), VoxelGrid(0.2)));
+}
+
 }  // namespace
 }  // namespace frontlux::test

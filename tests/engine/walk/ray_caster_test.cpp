@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <cfenv>
 #include <thread>
 
 namespace frontlux::test {
@@ -288,6 +289,44 @@ TEST(RayCaster, LeavesTheCallersFloatingPointModeAlone) {
   for (const auto& [name, caster] : casters.all) {
     (void)questions.ask(*caster, 1000);
     EXPECT_EQ(floating_point_control(), before);
+  }
+}
+
+// Rounding, flushed denormals and traps are the caller's own: castRay itself would answer otherwise, or
+// raise.
+TEST(RayCaster, AnswersAreThoseOfTheStandardFloatingPointModeInAnyOther) {
+  const auto tree = make_random_tree(1, 0.3);
+  const Casters casters(*tree);
+  const Questions questions(casters.grid, 1000);
+  std::fenv_t standard;
+  ASSERT_EQ(std::fegetenv(&standard), 0);
+  std::vector<std::fenv_t> others(3, standard);
+#ifdef __x86_64__
+  others[0].__mxcsr |= 0x4000;         // rounds upwards
+  others[1].__mxcsr |= 0x8000 | 0x40;  // flushes denormals
+  others[2].__mxcsr &= ~0x0E80U;       // traps invalid operations, divisions by zero, overflows
+#else
+  others[0].__fpcr |= 1U << 22;
+  others[1].__fpcr |= 1U << 24;
+  others[2].__fpcr |= 7U << 8;
+#endif
+  for (const auto& [name, caster] : casters.all)
+    for (const std::size_t batch : {std::size_t{1}, std::size_t{1000}}) {
+      const Answers expected = questions.ask(*caster, batch);
+      for (const std::fenv_t& other : others) {
+        ASSERT_EQ(std::fesetenv(&other), 0);
+        const Answers answers = questions.ask(*caster, batch);
+        ASSERT_EQ(std::fesetenv(&standard), 0);
+        expect_equal(expected, answers);
+      }
+    }
+}
+
+TEST(RayCaster, RefusesAPolicyThatThereIsNot) {
+  VoxelGrid grid(0.3);
+  for (const auto& caster : casters_of(grid)) {
+    EXPECT_REFUSED(caster->cast(Ray{}, static_cast<UnknownPolicy>(2)));
+    EXPECT_REFUSED(caster->visible(std::span<const KeySegment>(), {}, static_cast<UnknownPolicy>(7)));
   }
 }
 
