@@ -43,7 +43,8 @@ Option Command::add_words(const char* name, const char* type, const char* what,
           try {
             read_word(word);
           } catch (const BadInput& error) {
-            throw BadInput(label + ": " + error.what() + help);
+            const std::string_view said = error.what();  // of an option in a task: with the advice
+            throw BadInput(label + ": " + error.what() + (said.ends_with(help) ? "" : help));
           }
         }
         return true;

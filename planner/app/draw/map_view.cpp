@@ -180,7 +180,8 @@ Projection fit(const std::vector<Eigen::Vector3d>& points, const MapView::Size& 
   }
   constexpr double kMaxScale = 24.0;
   projection.scale = std::min({most.width / (max_x - min_x), most.height / (max_y - min_y), kMaxScale});
-  width = std::max(900, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
+  constexpr int kLeast = 1000;  // [px] for the keys beside each other
+  width = std::max(kLeast, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
   height = static_cast<int>(std::ceil(projection.scale * (max_y - min_y))) + 2 * kMargin + header + kFooter;
   width += width % 2;  // films have even edges
   height += height % 2;

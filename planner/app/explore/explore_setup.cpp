@@ -96,8 +96,12 @@ std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
                    " is not for --lockstep, in which robots stop and wait; leave one of the options out" +
                    or_in_task(options));
   std::vector<std::optional<double>> times(robots.size());
-  for (const auto& [name, time] : options.failures.each)
-    times[robot_named(name, "--fail: " + quote(options.failures.word), robots)] = time;
+  const std::string giver = "--fail: " + quote(options.failures.word);
+  for (const auto& [name, time] : options.failures.each) {
+    auto& of_robot = times[robot_named(name, giver, robots)];
+    if (of_robot) throw BadInput(giver + " names " + name + " twice");
+    of_robot = time;
+  }
   return times;
 }
 
@@ -112,10 +116,14 @@ GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDes
     given.poses.at(r) = robot.start;
     given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }
+  std::vector<bool> placed(robots.size());
   for (const StartPose& start : options.poses) {
-    const std::size_t r = robot_named(start.robot, "--pose: " + quote(start.word), robots);
+    const std::string giver = "--pose: " + quote(start.word);
+    const std::size_t r = robot_named(start.robot, giver, robots);
+    if (placed[r]) throw BadInput(giver + " places " + start.robot + ", which another --pose does already");
+    placed[r] = true;
     given.poses[r] = start.pose;
-    given.givers[r] = "--pose: " + quote(start.word);
+    given.givers[r] = giver;
   }
   return given;
 }
