@@ -115,6 +115,27 @@ TEST_F(MapCommandTest, TellsOfPointsThatNoMapHolds) {
   expect_refused(words, ": its 2 points make no voxel known; they have to be there, in metres");
 }
 
+// A file of 40 kB, in scans of 40 rays each, whose map would take gigabytes.
+TEST_F(MapCommandTest, RefusesRaysThatSpreadOutTooFarForTheirNumber) {
+  const std::string begin = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 40\nHEIGHT 1\nDATA ascii\n";
+  std::filesystem::create_directory(path("far"));
+  std::string poses;
+  test::Random random(1);
+  for (int scan = 0; scan < 30; ++scan) {
+    std::ostringstream cloud;
+    cloud << begin;
+    for (int i = 0; i < 40; ++i) cloud << (490 * random.point(-1, 1).normalized()).transpose() << '\n';
+    const std::string name = std::to_string(scan) + ".pcd";
+    write("far/" + name, cloud.str());
+    poses += name + ",0,0,0,0\n";
+  }
+  write("far/poses.csv", poses);
+  const std::vector<std::string> words{path("far"), "-o", path("far.bt")};
+  expect_refused(words, "rays spread out too far for their number");
+  EXPECT_EQ(run(test::joined(words, {"--max-range", "20"})).code, 0);
+  EXPECT_EQ(run(test::joined(words, {"--bounds", "-10,-10,-10,10,10,10"})).code, 0);
+}
+
 TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");

@@ -24,6 +24,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace frontlux::app {
@@ -112,10 +113,48 @@ void check_lengths(const std::vector<Eigen::Vector3f>& points, const Eigen::Vect
                      " voxels; check its unit, or give --max-range, or a coarser --resolution");
 }
 
+// How far the rays of all scans spread out. Isolated voxels take some 280 bytes, so that few rays that go far
+// apart take memory that does not follow from their number.
+class Spread {
+ public:
+  explicit Spread(const Mapping& mapping) : mapping_(mapping) {}
+
+  void check(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& origin,
+             const std::string& name) {
+    constexpr std::size_t kFew = 200'000, kForEachPoint = 20;  // cubes: 0.9 GB, 0.1 MB
+    points_ += points.size();
+    for (const Eigen::Vector3f& point : points) {
+      if (mapping_.grid().lattice().key(point)) add_ray(origin, point);
+      if (cubes_.size() > std::max(kFew, kForEachPoint * points_))
+        throw BadInput(name + ": up to here " + std::to_string(points_) +
+                       " rays spread out too far for their number, and the map would take much memory; give "
+                       "--max-range, --bounds, or a coarser --resolution");
+    }
+  }
+
+ private:
+  void add_ray(const Eigen::Vector3f& origin, const Eigen::Vector3f& point) {
+    constexpr int kEdge = 8;  // [voxels]
+    const Lattice& lattice = mapping_.grid().lattice();
+    const Eigen::Vector3f ray = point - origin;
+    const int steps = static_cast<int>(static_cast<double>(ray.norm()) / (kEdge / 2 * lattice.resolution()));
+    for (int i = 0; i <= steps; ++i) {
+      const Eigen::Vector3f at = origin + ray * (static_cast<float>(i) / static_cast<float>(steps + 1));
+      if (const auto key = lattice.key(at); key && mapping_.bounds().contains(*key))
+        cubes_.insert((key->x / kEdge * 0x1'0000ULL + key->y / kEdge) * 0x1'0000ULL + key->z / kEdge);
+    }
+  }
+
+  const Mapping& mapping_;
+  std::size_t points_ = 0;
+  std::unordered_set<std::uint64_t> cubes_;  // that rays go through
+};
+
 Points map_scans(const Recording& recording, const Options& options, Mapping& mapping) {
   const double max_range = options.max_range.value_or(std::numeric_limits<double>::infinity());
   const ProgressLine progress;
   Points points;
+  Spread spread(mapping);
   for (std::size_t i = 0; i < recording.scans; ++i) {
     progress.show("scan " + std::to_string(i + 1) + " of " + std::to_string(recording.scans));
     const RecordedScan scan = recording.scan(i);
@@ -124,7 +163,10 @@ Points map_scans(const Recording& recording, const Options& options, Mapping& ma
       throw BadInput(recording.name(i) +
                      ": its pose lies outside the map's key range; check it, or give a coarser --resolution");
     const std::vector<Eigen::Vector3f> in_world = io::points_in_world(scan);
-    if (!options.max_range) check_lengths(in_world, origin, recording.name(i), mapping.grid().resolution());
+    if (!options.max_range) {
+      check_lengths(in_world, origin, recording.name(i), mapping.grid().resolution());
+      spread.check(in_world, origin, recording.name(i));
+    }
     mapping.insert(origin, in_world, max_range);
     points.all += in_world.size();
     for (const Eigen::Vector3f& point : in_world)
