@@ -39,7 +39,8 @@ FRONTLUX_EXPORT void remove_unfinished(const std::filesystem::path& file);
 /// process at once: calls only what a handler may call. Threads that are writing never return.
 FRONTLUX_EXPORT void remove_own_unfinished() noexcept;
 
-/// Writes a file complete or not at all: one beside it takes its name. It replaces regular files only.
+/// Writes a file complete or not at all: one beside it takes its name. It replaces regular files only, and
+/// links to them, not what those lead to.
 /// @param write  writes the bytes
 /// @throws std::runtime_error naming the file and what to do, and what `write` throws
 FRONTLUX_EXPORT void write_file(const std::filesystem::path& file,

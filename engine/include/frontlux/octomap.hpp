@@ -46,7 +46,8 @@ using Octree = std::variant<std::shared_ptr<octomap::OcTree>, std::shared_ptr<oc
 [[nodiscard]] FRONTLUX_EXPORT Octree read_octree(const std::filesystem::path& file);
 
 /// Writes a tree in OctoMap's format: the log-odds of every node (and its colour) to a file named `.ot`, free
-/// and occupied only to one named `.bt`. The file appears complete or not at all.
+/// and occupied only to one named `.bt`. The file appears complete or not at all, in place of a link of its
+/// name, too.
 /// @throws std::invalid_argument if the name ends otherwise, or for what `read_octree` would refuse: voxels
 ///         smaller than 1e-9 m or larger than 1e9 m, a `.bt` of a single leaf as large as the key range
 /// @throws std::runtime_error naming the file, if it cannot be written

@@ -103,14 +103,11 @@ void remove_own_unfinished() noexcept {
     if (const char* const path = place.exchange(nullptr)) ::unlink(path);
 }
 
-void write_file(const std::filesystem::path& name, const std::function<void(std::ostream&)>& write) {
-  std::error_code error;
-  // The new file would take the place of a link, and leave alone what that leads to.
-  const bool is_link = std::filesystem::is_symlink(name, error);
-  const auto file = is_link ? std::filesystem::weakly_canonical(name, error) : name;
+void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write) {
   const auto cannot = [&file](const std::string& what, const std::string& advice) {
     fail(file, "cannot be written: " + what, advice);
   };
+  std::error_code error;
   if (std::filesystem::is_directory(file, error)) cannot("it is a folder", "name a file in it");
   // The new file would take the name of a device or a pipe.
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))

@@ -90,15 +90,6 @@ TEST_F(FileTest, RemovesWhatAHandlerFindsUnfinished) {
   EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 2);
 }
 
-TEST_F(FileTest, WritesWhereALinkLeadsTo) {
-  write_file(path("file"), "old");
-  std::filesystem::create_symlink("file", path("link"));
-  write_file(path("link"), "new");
-  EXPECT_TRUE(std::filesystem::is_symlink(path("link")));
-  EXPECT_FALSE(std::filesystem::is_symlink(path("file")));
-  EXPECT_EQ(test::content_of(path("file")), "new");
-}
-
 TEST_F(FileTest, LeavesWhatIsNoFileAsItIs) {
   const std::string pipe = path("pipe"), link = path("link");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
