@@ -204,6 +204,15 @@ TEST(GroundTruth, WallsOnTheOuterFacesOfTheBoundsAreObservable) {
     EXPECT_EQ(truth.at(key_at(-1, 5, 5)), Truth::kSurface);
     EXPECT_EQ(truth.at(key_at(5, 5, 8)), Truth::kSurface);
   }
+  World solid = world_of({{Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(2.4F)},
+                          {Eigen::Vector3f::Constant(0.35F), Eigen::Vector3f::Constant(2.05F)}},
+                         {});
+  solid.bounds = bounds_of(solid.mesh);
+  const GroundTruth within(solid, 0.3, {1.2, 1.2, 1.2});
+  EXPECT_EQ(within.bounds(), (KeyBox{key_at(0, 0, 0), key_at(7, 7, 7)})) << "outsides that nobody sees";
+  EXPECT_EQ(within.free_voxels(), 64U);
+  EXPECT_EQ(within.at(key_at(1, 3, 3)), Truth::kSurface);
+  EXPECT_EQ(within.at(key_at(2, 3, 3)), Truth::kFree);
   World part = world_of({{Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(2.4F)}}, {});
   part.bounds = {Eigen::Vector3d(0, 0.3, 0.3), Eigen::Vector3d(2.4, 2.1, 2.1)};
   EXPECT_EQ(GroundTruth(part, 0.3, {1.2, 1.2, 1.2}).bounds(), (KeyBox{key_at(0, 1, 1), key_at(7, 6, 6)}))

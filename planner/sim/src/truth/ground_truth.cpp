@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace frontlux::sim {
 namespace {
@@ -40,21 +41,24 @@ CellFrame make_frame(const KeyBox& bounds, const Lattice& lattice) {
           vector(bounds.max) - vector(bounds.min) + Eigen::Vector3<std::int64_t>::Ones()};
 }
 
-// The voxels within the bounds. If the bounds are where the mesh ends, also those behind outer faces on which it
-// does: a wall on a face is mapped as the voxels behind it.
+constexpr std::array kAxes = {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z};
+
+// The voxels within the bounds. If the bounds are where the mesh ends, also those behind outer faces on which
+// it does: a wall on a face is mapped as the voxels behind it.
 KeyBox voxels_to_map(const World& world, const Lattice& lattice) {
   KeyBox box = voxels_within(world.bounds, lattice);
   const Eigen::AlignedBox3d mesh = bounds_of(world.mesh);
   const double margin = margin_at(lattice.resolution());
   if (mesh.isEmpty() || !equal(mesh, world.bounds, margin)) return box;
-  const auto on_face = [&](double wall, int key) { return std::abs(wall - lower_face(lattice, key)) <= margin; };
-  const auto take_in = [&](Eigen::Index axis, std::uint16_t& low, std::uint16_t& high) {
+  const auto on_face = [&](double wall, int key) {
+    return std::abs(wall - lower_face(lattice, key)) <= margin;
+  };
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    std::uint16_t &low = box.min.*kAxes[i], &high = box.max.*kAxes[i];
     if (low > 0 && on_face(mesh.min()[axis], low)) --low;
     if (high + 1 < Lattice::kKeysPerAxis && on_face(mesh.max()[axis], high + 1)) ++high;
-  };
-  take_in(0, box.min.x, box.max.x);
-  take_in(1, box.min.y, box.max.y);
-  take_in(2, box.min.z, box.max.z);
+  }
   return box;
 }
 
@@ -108,6 +112,27 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
            lattice_.resolution(), " m; start elsewhere, or use smaller voxels");
   }
   flood(index(*first));
+  drop_layers_that_show_nothing(voxels_within(world.bounds, lattice_));
+}
+
+// Those that were taken in behind the outside of solids.
+void GroundTruth::drop_layers_that_show_nothing(const KeyBox& inside) {
+  KeyBox box = bounds_;
+  const auto shows_nothing = [this](const KeyBox& layer) {
+    return all_of(layer, [this](const VoxelKey& key) { return !contains(key); });
+  };
+  for (const auto axis : kAxes) {
+    KeyBox low = box, high = box;
+    low.max.*axis = low.min.*axis;
+    high.min.*axis = high.max.*axis;
+    if (box.min.*axis < inside.min.*axis && shows_nothing(low)) ++(box.min.*axis);
+    if (box.max.*axis > inside.max.*axis && shows_nothing(high)) --(box.max.*axis);
+  }
+  if (box == bounds_) return;
+  std::vector<std::uint8_t> cells(size_of(box));
+  for_each_key(box, [&](const VoxelKey& key) { cells[place_in(box, key)] = cells_[index(key)]; });
+  cells_ = std::move(cells);
+  bounds_ = box;
 }
 
 void GroundTruth::flood(std::size_t start) {

@@ -51,7 +51,7 @@ class GroundTruth {
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   /// The voxels within the world's bounds. If those are where the mesh ends, also the voxels behind a face
-  /// on which it does: they show the wall.
+  /// on which it does, if they show a wall.
   [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
 
   [[nodiscard]] Truth at(const VoxelKey& key) const;
@@ -71,6 +71,7 @@ class GroundTruth {
  private:
   [[nodiscard]] std::size_t index(const VoxelKey& key) const { return place_in(bounds_, key); }
   void flood(std::size_t start);
+  void drop_layers_that_show_nothing(const KeyBox& inside);
 
   Lattice lattice_;
   KeyBox bounds_;
