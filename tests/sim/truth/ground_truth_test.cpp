@@ -204,6 +204,15 @@ TEST(GroundTruth, WallsOnTheOuterFacesOfTheBoundsAreObservable) {
     EXPECT_EQ(truth.at(key_at(-1, 5, 5)), Truth::kSurface);
     EXPECT_EQ(truth.at(key_at(5, 5, 8)), Truth::kSurface);
   }
+  World room = world_of({{Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(2.4F)}}, {});
+  room.bounds = bounds_of(room.mesh);
+  frontlux::test::expect_complaint([&] { GroundTruth(room, 0.3, {2.5, 1.2, 1.2}); }, {"outside"});
+  room.mesh.triangles.back()[1] = 1'000'000'000;
+  frontlux::test::expect_complaint(
+      [&] {
+        GroundTruth(room, 0.3, {1.2, 1.2, 1.2});
+      },
+      {"names vertex 1000000000"});
   World solid = world_of({{Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(2.4F)},
                           {Eigen::Vector3f::Constant(0.35F), Eigen::Vector3f::Constant(2.05F)}},
                          {});

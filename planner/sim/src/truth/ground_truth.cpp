@@ -43,10 +43,9 @@ CellFrame make_frame(const KeyBox& bounds, const Lattice& lattice) {
 
 constexpr std::array kAxes = {&VoxelKey::x, &VoxelKey::y, &VoxelKey::z};
 
-// The voxels within the bounds. If the bounds are where the mesh ends, also those behind outer faces on which
+// If a world's bounds are where its mesh ends, the voxels within them and those behind outer faces on which
 // it does: a wall on a face is mapped as the voxels behind it.
-KeyBox voxels_to_map(const World& world, const Lattice& lattice) {
-  KeyBox box = voxels_within(world.bounds, lattice);
+KeyBox with_voxels_behind(KeyBox box, const World& world, const Lattice& lattice) {
   const Eigen::AlignedBox3d mesh = bounds_of(world.mesh);
   const double margin = margin_at(lattice.resolution());
   if (mesh.isEmpty() || !equal(mesh, world.bounds, margin)) return box;
@@ -92,7 +91,7 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
 }
 
 GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start)
-    : lattice_(resolution), bounds_(voxels_to_map(world, lattice_)) {
+    : lattice_(resolution), bounds_(voxels_within(world.bounds, lattice_)) {
   check(world.mesh);
   if (bounding_voxels() > kMostVoxels)
     refuse("the world has ", bounding_voxels(), " voxels of ", resolution,
@@ -102,6 +101,7 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
     refuse("the start (", start.transpose(), ") m lies outside of the world's bounds, (",
            world.bounds.min().transpose(), ") to (", world.bounds.max().transpose(), ") m");
 
+  const KeyBox inside = std::exchange(bounds_, with_voxels_behind(bounds_, world, lattice_));
   const CellFrame frame = make_frame(bounds_, lattice_);
   cells_.resize(bounding_voxels());
   paint(world.mesh, frame, cells_);
@@ -112,7 +112,7 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
            lattice_.resolution(), " m; start elsewhere, or use smaller voxels");
   }
   flood(index(*first));
-  drop_layers_that_show_nothing(voxels_within(world.bounds, lattice_));
+  drop_layers_that_show_nothing(inside);
 }
 
 // Those that were taken in behind the outside of solids.
