@@ -180,8 +180,7 @@ Projection fit(const std::vector<Eigen::Vector3d>& points, const MapView::Size& 
   }
   constexpr double kMaxScale = 24.0;
   projection.scale = std::min({most.width / (max_x - min_x), most.height / (max_y - min_y), kMaxScale});
-  constexpr int kLeast = 1000;  // [px] for the keys beside each other
-  width = std::max(kLeast, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
+  width = std::max(900, static_cast<int>(std::ceil(projection.scale * (max_x - min_x))) + 2 * kMargin);
   height = static_cast<int>(std::ceil(projection.scale * (max_y - min_y))) + 2 * kMargin + header + kFooter;
   width += width % 2;  // films have even edges
   height += height % 2;
@@ -261,7 +260,8 @@ void draw_scale(Picture& picture, const Projection& projection, double resolutio
     picture.text({line[1].x + 14 * x / size, line[1].y + 14 * y / size}, kAxes[axis],
                  {.size = 18.0, .color = kMuted, .align = Align::kMiddle});
   }
-  picture.text({corner.x - 60.0, corner.y - 8.0}, short_number(length) + " m along each axis",
+  // Above the line of the heights, which in a small picture reaches so far.
+  picture.text({corner.x - 60.0, corner.y - 8.0 - kLine}, short_number(length) + " m along each axis",
                {.size = kText.size, .color = kInk, .align = Align::kRight});
 }
 
