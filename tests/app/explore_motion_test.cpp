@@ -2,9 +2,11 @@
 
 #include "app/explore_motion.hpp"
 
+#include "sim/mesh/box_mesh.hpp"
 #include "support/plain_revisits.hpp"
 
 #include <frontlux/planner/recording.hpp>
+#include <frontlux/sim/mesh_file.hpp>
 
 namespace frontlux::planner {
 namespace {
@@ -335,6 +337,19 @@ TEST_F(ExploreMotion, RefusesWrongTimesAndParts) {
   refuses("--latency", {"0", "-0.1", "nan", "inf", "1s", ""});
   refuses("--stop-coverage", {"-0.1", "1.01", "nan", "50%", ""});
   refuses("--stop-time", {"-1", "nan", "inf", "1h", ""});
+}
+
+// Cameras see floor and ceiling askew only, and would leave holes of some square metres in them.
+TEST_F(ExploreMotion, LeavesNoHolesInAPlainRoom) {
+  sim::write_ply(path("plain.ply"), sim::test::box_mesh({Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(6, 4.5F, 3)}));
+  int rooms = 0;
+  for (const std::string start : {"3,2.25,1", "2,2,1.5"}) {
+    const std::string output = "run" + std::to_string(++rooms);
+    expect_answer(
+        {path("plain.ply"), "--team", "uav", "--start", start, "--report", "off", "-o", path(output)});
+    EXPECT_GT(json_in(output).at("coverage_observable"), 0.995) << start;
+    EXPECT_EQ(json_in(output).at("end"), "nothing_to_do");
+  }
 }
 
 }  // namespace

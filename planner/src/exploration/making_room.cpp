@@ -78,7 +78,7 @@ Keys ContinuousExploration::State::path_without_resting(std::size_t robot, Explo
   {
     const detail::PhaseClock clock(step, Phase::kGoals);
     const auto to = team.tours->place_to_see_from(
-        robot, counting, [&](const VoxelKey& cell) { return corridor.contains(cell); });
+        robot, counting, team.mapping.grid(), [&](const VoxelKey& cell) { return corridor.contains(cell); });
     if (to) path = corridor.path_to(*to);
   }
   step.rays += counting.rays();

@@ -38,7 +38,8 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
   elsewhere.update({travel_map()}, cell);
   if (tours)
     return tours
-        ->place_to_see_from(robot, *caster, [&](const VoxelKey& key) { return elsewhere.contains(key); })
+        ->place_to_see_from(robot, *caster, mapping.grid(),
+                            [&](const VoxelKey& key) { return elsewhere.contains(key); })
         .has_value();
   const FrontierAgent there{elsewhere.cells(), options.team[robot].robot.view};
   const Keys others = frontiers_of_others(robot);

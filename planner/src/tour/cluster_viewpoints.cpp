@@ -42,8 +42,9 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
   std::vector<VoxelKey> cells;
   const auto extent = query.graph.extent();
   if (!extent) return cells;
-  const Eigen::Vector3d middle = middle_of(query.lattice, cluster.keys);
-  const double lowest = query.lattice.center(extent->min.z), highest = query.lattice.center(extent->max.z);
+  const Eigen::Vector3d middle = middle_of(query.grid.lattice(), cluster.keys);
+  const double lowest = query.grid.lattice().center(extent->min.z),
+               highest = query.grid.lattice().center(extent->max.z);
   for (const double part : kRadii)
     for (int a = 0; a < kAzimuths; ++a)
       for (const double above : kHeights) {
@@ -51,15 +52,37 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
         const Eigen::Vector3d at(middle.x() + radius * std::cos(azimuth),
                                  middle.y() + radius * std::sin(azimuth),
                                  std::clamp(middle.z() + above * query.view.max_range, lowest, highest));
-        if (const auto cell = query.lattice.key(at)) cells.push_back(*cell);
+        if (const auto cell = query.grid.lattice().key(at)) cells.push_back(*cell);
       }
   sort_once(cells);
   return cells;
 }
 
+// Where a line from a cell that is to show a frontier ends; none if the frontier turns no face to it.
+std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey& cell,
+                                    const VoxelKey& frontier, Aim aim) {
+  constexpr double kSteepest = 0.2;  // cosine of the angle between the line and a face's normal, at least
+  if (aim == Aim::kMiddle) return frontier;
+  const std::array offset = {cell.x - frontier.x, cell.y - frontier.y, cell.z - frontier.z};
+  const double least = kSteepest * std::hypot(offset[0], offset[1], offset[2]);
+  std::optional<VoxelKey> before;
+  int most = 0;
+  for (std::size_t axis = 0; axis < offset.size(); ++axis) {
+    const int along = offset.at(axis);
+    if (std::abs(along) <= most || std::abs(along) < least) continue;
+    std::array<int, 3> at = {frontier.x, frontier.y, frontier.z};
+    at.at(axis) += along > 0 ? 1 : -1;
+    const VoxelKey key = make_key(at[0], at[1], at[2]);
+    if (query.grid.at(key) != Occupancy::kFree) continue;
+    before = key;
+    most = std::abs(along);
+  }
+  return before;
+}
+
 // What each cell sees of some frontiers.
 std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<const VoxelKey> cells,
-                                        std::span<const VoxelKey> targets) {
+                                        std::span<const VoxelKey> targets, Aim aim) {
   constexpr std::size_t kAtOnce = 32;  // cells, whose segments stay in the cache
   const bool all_around = query.view.sees_all_around();
   std::vector<ClusterViewpoint> viewpoints(cells.size());
@@ -69,20 +92,22 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
     std::vector<std::size_t> begin{0};
     for (std::size_t c = first; c < last; ++c) {
       for (const VoxelKey& target : targets)
-        if (query.region.contains(cells[c], target)) segments.push_back({cells[c], target});
+        if (query.region.contains(cells[c], target))
+          if (const auto end = end_of_line(query, cells[c], target, aim))
+            segments.push_back({cells[c], *end});
       begin.push_back(segments.size());
     }
     std::vector<std::uint8_t> visible(segments.size());
     query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
     std::vector<Eigen::Vector3d> offsets;  // to what a cell sees
     for (std::size_t c = first; c < last; ++c) {
-      const Eigen::Vector3d from = query.lattice.exact_center(cells[c]);
+      const Eigen::Vector3d from = query.grid.lattice().exact_center(cells[c]);
       offsets.clear();
       for (std::size_t s = begin[c - first]; s < begin[c - first + 1]; ++s)
-        if (visible[s] != 0) offsets.push_back(query.lattice.exact_center(segments[s].to) - from);
+        if (visible[s] != 0) offsets.push_back(query.grid.lattice().exact_center(segments[s].to) - from);
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
-      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], std::atan2(sum.y(), sum.x()), 0};
+      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], std::atan2(sum.y(), sum.x()), 0, aim};
       for (const Eigen::Vector3d& offset : offsets)
         if (all_around || query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
     }
@@ -94,15 +119,14 @@ void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints) {
   std::ranges::stable_sort(viewpoints, [](const auto& a, const auto& b) { return a.seen > b.seen; });
 }
 
-}  // namespace
-
+// Of some cells, compared by a sample of so many of the cluster's frontiers.
 std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
-                                              std::span<const VoxelKey> cells, std::size_t sample) {
-  std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, sample));
+                                              std::span<const VoxelKey> cells, std::size_t sample, Aim aim) {
+  std::vector<ClusterViewpoint> all = look_from(query, cells, some_of(cluster.keys, sample), aim);
   std::erase_if(all, [](const ClusterViewpoint& viewpoint) { return viewpoint.seen == 0; });
   sort_by_seen(all);
   std::vector<VoxelKey> kept;
-  const int apart = static_cast<int>(kApart * query.view.max_range / query.lattice.resolution());
+  const int apart = static_cast<int>(kApart * query.view.max_range / query.grid.lattice().resolution());
   for (const ClusterViewpoint& viewpoint : all) {
     if (kept.size() == kKept ||
         static_cast<double>(viewpoint.seen) < kAsGood * static_cast<double>(all.front().seen))
@@ -111,13 +135,15 @@ std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const
     if (std::ranges::none_of(kept, [&](const VoxelKey& cell) { return near.contains(cell); }))
       kept.push_back(viewpoint.cell);
   }
-  std::vector<ClusterViewpoint> best = look_from(query, kept, cluster.keys);
+  std::vector<ClusterViewpoint> best = look_from(query, kept, cluster.keys, aim);
   std::erase_if(best, [&](const ClusterViewpoint& viewpoint) {
     return static_cast<double>(viewpoint.seen) < query.least_gain;
   });
   sort_by_seen(best);
   return best;
 }
+
+}  // namespace
 
 NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewpoint> viewpoints,
                        std::span<const FrontierCluster* const> clusters) {
@@ -127,12 +153,12 @@ NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewp
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  // viewpoint and cluster of each segment
   for (std::size_t v = 0; v < viewpoints.size(); ++v) {
     const VoxelKey& cell = viewpoints[v].cell;
-    const Eigen::Vector3d from = query.lattice.exact_center(cell);
+    const Eigen::Vector3d from = query.grid.lattice().exact_center(cell);
     const KeyBox reach = grown({cell, cell}, query.region.reach());
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       if (!intersection(reach, clusters[c]->box)) continue;
       for (const VoxelKey& key : samples[c]) {
-        if (!query.view.contains(query.lattice.exact_center(key) - from, viewpoints[v].yaw)) continue;
+        if (!query.view.contains(query.grid.lattice().exact_center(key) - from, viewpoints[v].yaw)) continue;
         segments.push_back({cell, key});
         pairs.emplace_back(v, c);
       }
@@ -149,16 +175,21 @@ NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewp
 }
 
 std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const VoxelKey> frontiers,
-                                   const VoxelKey& cell, double yaw) {
-  const Eigen::Vector3d from = query.lattice.exact_center(cell);
+                                   const VoxelKey& cell, double yaw, Aim aim) {
+  const Eigen::Vector3d from = query.grid.lattice().exact_center(cell);
   std::vector<KeySegment> segments;
-  for (const VoxelKey& key : frontiers)
-    if (query.view.contains(query.lattice.exact_center(key) - from, yaw)) segments.push_back({cell, key});
+  std::vector<VoxelKey> shown;  // by each segment
+  for (const VoxelKey& key : frontiers) {
+    const auto end = end_of_line(query, cell, key, aim);
+    if (!end || !query.view.contains(query.grid.lattice().exact_center(*end) - from, yaw)) continue;
+    segments.push_back({cell, *end});
+    shown.push_back(key);
+  }
   std::vector<std::uint8_t> visible(segments.size());
   query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
   std::vector<VoxelKey> seen;
   for (std::size_t s = 0; s < segments.size(); ++s)
-    if (visible[s] != 0) seen.push_back(segments[s].to);
+    if (visible[s] != 0) seen.push_back(shown[s]);
   return seen;
 }
 
@@ -168,19 +199,23 @@ FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierClust
   KeyBox box = cluster.box;
   for (const VoxelKey& cell : cells) box = hull(box, {cell, cell});
   std::erase_if(cells, [&](const VoxelKey& cell) { return !query.graph.fits(cell); });
-  std::vector<ClusterViewpoint> found = best_viewpoints(query, cluster, cells, kSample);
+  std::vector<ClusterViewpoint> found = best_viewpoints(query, cluster, cells, kSample, Aim::kMiddle);
   if (!found.empty()) return {std::move(found), box};
   cells.clear();
   for (const ClusterViewpoint& viewpoint : before)
     if (query.graph.fits(viewpoint.cell)) cells.push_back(viewpoint.cell);
-  return {best_viewpoints(query, cluster, cells, kSample)};
+  found = best_viewpoints(query, cluster, cells, kSample, Aim::kMiddle);
+  if (found.empty() && !before.empty() && before.front().aim == Aim::kFace)
+    found = best_viewpoints(query, cluster, cells, kSample, Aim::kFace);
+  return {std::move(found)};
 }
 
 std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                                  Aim aim,
                                                   const std::function<bool(const VoxelKey&)>& reaches) {
   std::vector<VoxelKey> cells = query.graph.spread_cells(grown(cluster.box, query.region.reach()));
   std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(cell); });
-  return best_viewpoints(query, cluster, cells, kSmallSample);
+  return best_viewpoints(query, cluster, cells, kSmallSample, aim);
 }
 
 }  // namespace frontlux::planner::detail

@@ -7,8 +7,10 @@
 #include <frontlux/field_of_view.hpp>
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/view_region.hpp>
+#include <frontlux/voxel_grid.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -16,17 +18,25 @@
 
 namespace frontlux::planner::detail {
 
+/// What of a frontier a line through free space has to reach.
+enum class Aim : std::uint8_t {
+  kMiddle,  ///< its middle
+  kFace,  ///< the free voxel before a face that is turned towards the robot. Of a floor, wall or ceiling the
+          ///< voxels beside hide the middles from all who look at it askew; beams meet it all the same.
+};
+
 /// From where a robot sees a cluster, and how much of it.
 struct ClusterViewpoint {
   VoxelKey cell;         ///< of its sensor
   double yaw = 0.0;      ///< [rad] towards the middle of what it sees
   std::size_t seen = 0;  ///< frontiers of the cluster in view at this yaw, and visible through free space
+  Aim aim = Aim::kMiddle;
 };
 
 /// What a robot's viewpoints depend on.
 struct ViewpointQuery {
   const RayCaster& caster;
-  const Lattice& lattice;
+  const VoxelGrid& grid;
   const TravelGraph& graph;  ///< where the robot fits
   const FieldOfView& view;
   const ViewRegion& region;  ///< of the view
@@ -49,15 +59,8 @@ struct FoundViewpoints {
 
 /// The same of cells all over the graph that the robot can get to.
 [[nodiscard]] std::vector<ClusterViewpoint> viewpoints_anywhere(
-    const ViewpointQuery& query, const FrontierCluster& cluster,
+    const ViewpointQuery& query, const FrontierCluster& cluster, Aim aim,
     const std::function<bool(const VoxelKey&)>& reaches);
-
-/// The same of some cells.
-/// @param sample  of the cluster's frontiers, so many are what cells are compared by
-[[nodiscard]] std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query,
-                                                            const FrontierCluster& cluster,
-                                                            std::span<const VoxelKey> cells,
-                                                            std::size_t sample);
 
 /// The part of each cluster that a robot sees from each viewpoint, at its yaw; by a sample of the frontiers.
 /// Viewpoints are rows, clusters are columns.
@@ -68,6 +71,6 @@ struct FoundViewpoints {
 /// The frontiers that a robot in a cell has in view at a yaw [rad], and sees through free space.
 [[nodiscard]] std::vector<VoxelKey> visible_from(const ViewpointQuery& query,
                                                  std::span<const VoxelKey> frontiers, const VoxelKey& cell,
-                                                 double yaw);
+                                                 double yaw, Aim aim);
 
 }  // namespace frontlux::planner::detail

@@ -43,7 +43,8 @@ TourPlanning::NextStops TourPlanning::next_stops(const Query& query) const {
         next.views.found_for.push_back(c);
       }
   }
-  next.views.parts = parts_seen(sight_of(query.robot, query.caster), next.viewpoints, next.clusters);
+  next.views.parts =
+      parts_seen(sight_of(query.robot, query.caster, query.grid), next.viewpoints, next.clusters);
   next.stops = join_clusters(next.views);
   return next;
 }

@@ -122,7 +122,7 @@ std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
   const Member& member = members_[robot];
   std::vector<RenderedCell> cells;
   for (const FrontierCluster& cluster : clusters_.clusters())
-    for (const auto& [cell, yaw, seen] : member.sights.viewpoints(cluster.id))
+    for (const auto& [cell, yaw, seen, aim] : member.sights.viewpoints(cluster.id))
       if (const double distance = member.distances.from_start(cell); distance != TourProblem::kNever)
         cells.push_back({.cell = cell,
                          .distance = distance,
@@ -181,25 +181,27 @@ bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
 }
 
 std::optional<VoxelKey> TourPlanning::place_to_see_from(
-    std::size_t robot, const RayCaster& caster, const std::function<bool(const VoxelKey&)>& among) const {
+    std::size_t robot, const RayCaster& caster, const VoxelGrid& grid,
+    const std::function<bool(const VoxelKey&)>& among) const {
   const auto is_others = [&](const FrontierCluster& cluster) {
     for (std::size_t r = 0; r < members_.size(); ++r)
       for (const TourStop& stop : members_[r].tour)
         if (r != robot && std::ranges::find(stop.clusters, cluster.id) != stop.clusters.end()) return true;
     return false;
   };
-  const ViewpointQuery view = sight_of(robot, caster);
+  const ViewpointQuery view = sight_of(robot, caster, grid);
   for (const FrontierCluster& cluster : clusters_.clusters()) {
     if (is_others(cluster)) continue;
-    const auto viewpoints = viewpoints_anywhere(view, cluster, among);
+    const auto viewpoints = viewpoints_anywhere(view, cluster, Aim::kMiddle, among);
     if (!viewpoints.empty()) return viewpoints.front().cell;
   }
   return std::nullopt;
 }
 
-ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster) const {
+ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster,
+                                      const VoxelGrid& grid) const {
   const Member& member = members_[robot];
-  return {caster, lattice_, member.distances.graph(), member.robot.view, member.region, least_gain(robot)};
+  return {caster, grid, member.distances.graph(), member.robot.view, member.region, least_gain(robot)};
 }
 
 double TourPlanning::least_gain(std::size_t robot) const {
@@ -347,9 +349,12 @@ void TourPlanning::follow_map(const Query& query) {
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };
-  const ViewpointQuery view = sight_of(query.robot, query.caster);
-  member.sights.update(
-      {view, clusters_.clusters(), changes, cells, can_go, query.corridor.state() == CorridorState::kReady});
+  const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
+  const bool others_see_none = std::ranges::all_of(members_, [&](const Member& other) {
+    return &other == &member || other.lost || (other.planned && !other.sights.sees_any());
+  });
+  member.sights.update({view, clusters_.clusters(), changes, cells, can_go,
+                        query.corridor.state() == CorridorState::kReady, others_see_none});
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.
@@ -422,9 +427,10 @@ void TourPlanning::note_frontiers(const Query& query) {
   member.first_view.clear();
   if (member.tour.empty()) return;
   const TourStop& first = member.tour.front();
+  const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
   for (const std::uint32_t id : first.clusters) {
-    const Keys seen = visible_from(sight_of(query.robot, query.caster), clusters_.cluster(id).keys,
-                                   first.cell, first.pose.yaw);
+    const Keys seen = visible_from(view, clusters_.cluster(id).keys, first.cell, first.pose.yaw,
+                                   member.sights.viewpoints(id).front().aim);
     member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
   }
   std::ranges::sort(member.first_view);

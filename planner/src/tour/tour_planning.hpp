@@ -101,7 +101,8 @@ class TourPlanning {
   /// Where the robot would have a stop among some cells if it could get to them: it sees a cluster from there
   /// that is in no tour of another robot. Nothing if there is no such place.
   [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
-      std::size_t robot, const RayCaster& caster, const std::function<bool(const VoxelKey&)>& among) const;
+      std::size_t robot, const RayCaster& caster, const VoxelGrid& grid,
+      const std::function<bool(const VoxelKey&)>& among) const;
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] const std::vector<VoxelKey>& frontiers_of(std::size_t robot) const {
     return members_[robot].frontiers;
@@ -125,7 +126,8 @@ class TourPlanning {
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
-  [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster) const;
+  [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
+                                        const VoxelGrid& grid) const;
   // Clusters that are one stop of the tours.
   using Stop = std::vector<std::uint32_t>;
   [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;

@@ -38,6 +38,7 @@ struct Scene {
   std::unique_ptr<RayCaster> caster;
   ClusterSights sights;
   int asked = 0;  // whether the robot gets to a cell
+  bool others_see_none = true;
 
   Scene() {
     test::fill(grid, {at(0, 0, 0), at(14, 14, 6)}, Occupancy::kFree);
@@ -48,12 +49,12 @@ struct Scene {
   }
 
   void look(const std::vector<FrontierCluster>& clusters, std::span<const KeyBox> changes) {
-    const ViewpointQuery query{*caster, grid.lattice(), graph, view, region};
+    const ViewpointQuery query{*caster, grid, graph, view, region};
     const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
       ++asked;
       return corridor.contains(cell);
     };
-    sights.update({query, clusters, changes, changes, reaches});
+    sights.update({query, clusters, changes, changes, reaches, true, others_see_none});
   }
 };
 
@@ -106,7 +107,7 @@ TEST(ClusterSights, AreThoseOfANewLook) {
   int compared = 0;
   for (int round = 0; round < 60; ++round) {
     scene.look(clusters, changes);
-    const ViewpointQuery query{*scene.caster, scene.grid.lattice(), scene.graph, scene.view, scene.region};
+    const ViewpointQuery query{*scene.caster, scene.grid, scene.graph, scene.view, scene.region};
     for (const FrontierCluster& cluster : clusters) {
       std::vector<ClusterViewpoint> anew = find_viewpoints(query, cluster, {}).viewpoints;
       std::erase_if(anew, [&](const ClusterViewpoint& seen) { return !scene.corridor.contains(seen.cell); });
@@ -145,6 +146,34 @@ TEST(ClusterSights, TriesAllBeforeItSeesNone) {
   scene.asked = 0;
   scene.look({hidden}, {});
   EXPECT_EQ(scene.asked, 0);
+}
+
+// The layer under the room, of which the camera sees no middle.
+TEST(ClusterSights, LooksAtFacesLast) {
+  Scene scene;
+  FrontierCluster floor = cluster_of(1, at(5, 5, -1));
+  for_each_key({at(5, 5, -1), at(9, 9, -1)}, [&](const VoxelKey& key) { floor.keys.push_back(key); });
+  floor.keys.erase(floor.keys.begin());
+  floor.box = {at(5, 5, -1), at(9, 9, -1)};
+  const FrontierCluster open = cluster_of(2, at(15, 3, 3));
+  const auto sees_floor = [&](const std::vector<FrontierCluster>& clusters) {
+    scene.look(clusters, {{kBounds}});
+    return !scene.sights.viewpoints(1).empty();
+  };
+  EXPECT_FALSE(sees_floor({floor, open}));
+  scene.others_see_none = false;
+  EXPECT_FALSE(sees_floor({floor}));
+  EXPECT_FALSE(scene.sights.sees_any());
+  scene.others_see_none = true;
+  EXPECT_TRUE(sees_floor({floor}));
+  EXPECT_TRUE(scene.sights.sees_any());
+  EXPECT_EQ(scene.sights.viewpoints(1).front().aim, Aim::kFace);
+  // What it has found it keeps.
+  EXPECT_TRUE(sees_floor({floor, open}));
+  // Of a larger world it is next to nothing.
+  test::fill(scene.grid, {at(100, 0, 0), at(139, 39, 39)}, Occupancy::kFree);
+  scene.sights = {};
+  EXPECT_FALSE(sees_floor({floor}));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ struct Look {
   FieldOfView view;
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster = make_grid_ray_caster(room.grid);
-  ViewpointQuery query{*caster, room.grid.lattice(), room.graph, view, region};
+  ViewpointQuery query{*caster, room.grid, room.graph, view, region};
   std::vector<ClusterViewpoint> viewpoints = find_viewpoints(query, room.cluster, {}).viewpoints;
 };
 
@@ -78,7 +78,7 @@ TEST(ClusterViewpoints, SeeWhatTheyCount) {
             test::is_visible(*caster, KeySegment{viewpoint.cell, key}, UnknownPolicy::kBlock))
           by_hand.push_back(key);
       EXPECT_EQ(viewpoint.seen, by_hand.size());
-      EXPECT_EQ(visible_from(query, room.cluster.keys, viewpoint.cell, viewpoint.yaw), by_hand);
+      EXPECT_EQ(visible_from(query, room.cluster.keys, viewpoint.cell, viewpoint.yaw, Aim::kMiddle), by_hand);
     }
   }
   EXPECT_GT(found, 60u);
@@ -103,7 +103,8 @@ TEST(ClusterViewpoints, SeePartsOfOtherClusters) {
     const NumberTable parts = parts_seen(query, viewpoints, pointers);
     for (std::size_t v = 0; v < viewpoints.size(); ++v)
       for (std::size_t c = 0; c < clusters.size(); ++c) {
-        const Keys seen = visible_from(query, clusters[c].keys, viewpoints[v].cell, viewpoints[v].yaw);
+        const Keys seen =
+            visible_from(query, clusters[c].keys, viewpoints[v].cell, viewpoints[v].yaw, Aim::kMiddle);
         const double part = static_cast<double>(seen.size()) / static_cast<double>(clusters[c].keys.size());
         EXPECT_NEAR(parts(v, c), part, 1e-12);
         partly += part > 0.0 && part < 1.0 ? 1 : 0;
@@ -122,8 +123,59 @@ TEST(ClusterViewpoints, AreNoneWhereNothingIsVisible) {
   wall.min.x = wall.max.x = 32785;
   test::fill(walled, wall, Occupancy::kOccupied);
   const auto caster = make_grid_ray_caster(walled);
-  EXPECT_TRUE(find_viewpoints({*caster, walled.lattice(), room.graph, view, region}, room.cluster, {})
-                  .viewpoints.empty());
+  EXPECT_TRUE(
+      find_viewpoints({*caster, walled, room.graph, view, region}, room.cluster, {}).viewpoints.empty());
+}
+
+// From where a camera that looks straight ahead has a hole in the floor in view, floor hides the voxels of
+// the hole but the first ones. Beams meet them all the same.
+TEST(ClusterViewpoints, SeeAHoleInTheFloorAskew) {
+  VoxelGrid grid(kResolution);
+  const KeyBox floor = {{32750, 32750, 32768}, {32780, 32780, 32768}};
+  KeyBox room = floor;
+  room.min.z = 32769;
+  room.max.z = 32779;
+  const KeyBox hole = {{32762, 32762, 32768}, {32766, 32766, 32768}};
+  test::fill(grid, room, Occupancy::kFree);
+  test::fill(grid, floor, Occupancy::kOccupied);
+  test::fill(grid, hole, Occupancy::kUnknown);
+  FrontierCluster cluster;
+  for_each_key(hole, [&](const VoxelKey& key) { cluster.keys.push_back(key); });
+  test::sort(cluster.keys);
+  cluster.box = hole;
+  TravelCorridor corridor(Room::options(), grid.lattice(), room);
+  TravelGraph graph(grid.lattice(), room, 5, 2);
+  corridor.update({grid}, make_key(32760, 32760, 32774));
+  graph.update(corridor, {{room}});
+  FieldOfView view = test::camera(5.0);
+  view.vertical = 0.8;
+  const ViewRegion region(view, kResolution);
+  const auto caster = make_grid_ray_caster(grid);
+  const ViewpointQuery query{*caster, grid, graph, view, region, 10.0};
+  EXPECT_TRUE(find_viewpoints(query, cluster, {}).viewpoints.empty());
+  const auto reaches = [&](const VoxelKey& cell) { return corridor.contains(cell); };
+  const std::vector<ClusterViewpoint> viewpoints = viewpoints_anywhere(query, cluster, Aim::kFace, reaches);
+  ASSERT_FALSE(viewpoints.empty());
+  for (const ClusterViewpoint& viewpoint : viewpoints) {
+    EXPECT_EQ(viewpoint.aim, Aim::kFace);
+    EXPECT_GE(viewpoint.seen, 10u);
+    const auto seen_by = [&](Aim aim) {
+      return visible_from(query, cluster.keys, viewpoint.cell, viewpoint.yaw, aim);
+    };
+    EXPECT_LT(seen_by(Aim::kMiddle).size(), 10u);
+    Keys by_hand;  // nothing is in the way
+    for (const VoxelKey& key : cluster.keys) {
+      const VoxelKey above = make_key(key.x, key.y, key.z + 1);
+      const Eigen::Vector3d up = test::offset_between(key, viewpoint.cell, kResolution);
+      if (up.z() >= 0.2 * up.norm() &&
+          view.contains(test::offset_between(viewpoint.cell, above, kResolution), viewpoint.yaw))
+        by_hand.push_back(key);
+    }
+    EXPECT_EQ(seen_by(Aim::kFace), by_hand);
+    EXPECT_EQ(viewpoint.seen, by_hand.size());
+  }
+  // They stay viewpoints as long as they show it.
+  EXPECT_EQ(find_viewpoints(query, cluster, viewpoints).viewpoints.size(), viewpoints.size());
 }
 
 }  // namespace
