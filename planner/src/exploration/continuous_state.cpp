@@ -307,10 +307,12 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     const detail::PhaseClock clock(step, Phase::kPaths);
     Pose to = *now.goal.pose;
     if (team.ahead[robot]) to.position = team.lattice().exact_center(*team.ahead[robot]);
+    bool found = false;  // a path; that of the departure is one of those found
     const auto path_from = [&](const Pose& from) {
       PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, to,
                                 {team.options.seed, team.number, robot}, team.options.path);
-      now.path = plan.outcome;
+      if (!found || !plan.viewpoints.empty()) now.path = plan.outcome;
+      found = found || !plan.viewpoints.empty();
       return std::move(plan.viewpoints);
     };
     departure = detail::best_departure(old, start, path_from, limits, is_free);

@@ -68,8 +68,8 @@ std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& a
 
 }  // namespace
 
-void execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body, const Drive& drive,
-                  Mapping& mapping, std::span<const VoxelKey> known_free) {
+std::size_t execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body, const Drive& drive,
+                         Mapping& mapping, std::span<const VoxelKey> known_free) {
   const VoxelGrid before = mapping.grid();
   std::vector<VoxelKey> touched;
   const auto touch = [&touched](const MapChange& change) {
@@ -78,6 +78,7 @@ void execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body,
   touch(mapping.mark_free(known_free));
   const std::span<Pose> path = step.planned;
   step.blocked.clear();
+  bool looked = false;  // at an obstacle
   for (step.travelled = std::min<std::size_t>(path.size(), 1); step.travelled < path.size();
        ++step.travelled) {
     const Pose& from = path[step.travelled - 1];
@@ -94,11 +95,13 @@ void execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body,
     touch(mapping.insert(*scan));
     if (blocked) {
       ++step.travelled;
+      looked = true;
       break;
     }
   }
   step.length = path_length(path.first(step.travelled));
   step.changed = differences(before, mapping.grid(), std::move(touched));
+  return looked ? step.travelled - 1 : step.travelled;
 }
 
 }  // namespace frontlux::planner::detail

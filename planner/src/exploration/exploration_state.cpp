@@ -164,7 +164,7 @@ void ExplorationState::note_assignment(ExplorationStep& step) {
 
 void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent) {
   const PhaseClock clock(step, Phase::kGoals);
-  selection->keep_goal({travel_map(), changed}, robot, poses[robot], extent);
+  selection->keep_goal(change(), robot, poses[robot], extent);
   step.frontiers = frontiers.size();
 }
 
@@ -246,10 +246,8 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
     RobotStep& robot = step.robots[r];
     const TravelOptions body = travel_by_voxels(r);
     // A retreat need not be free: the robot came on it.
-    execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
+    const std::size_t reached = execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
     robot.gained = mapped_frontiers(robot.changed);
-    // The look at an obstacle is not from where the path would have led.
-    const std::size_t reached = robot.travelled - (robot.blocked.empty() ? 0 : 1);
     if (gains[r])
       robot.still_unknown =
           find_still_unknown(mapping.grid(), *gains[r], std::span(robot.planned).first(reached), targets[r]);
@@ -260,6 +258,14 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
 // Repeats recorded paths. False if the robots do not map what they mapped then.
 bool ExplorationState::execute_again(const ExplorationStep& recorded, const Drive& drive,
                                      ExplorationStep& step) {
+  // Where a retreat led cannot be told from its path: a look at an obstacle may have taken its end's place.
+  for (std::size_t r = 0; r < size(); ++r) {
+    const RobotStep& then = recorded.robots[r];
+    if (then.goal.pose)
+      retreated_to[r].clear();
+    else if (!then.planned.empty() && !note_retreat(r, then.goal))
+      return false;
+  }
   for (std::size_t r = 0; r < size(); ++r) {
     const RobotStep& then = recorded.robots[r];
     if (then.travelled > then.planned.size()) return false;
@@ -267,10 +273,6 @@ bool ExplorationState::execute_again(const ExplorationStep& recorded, const Driv
     now.planned.resize(then.travelled);
     execute_path(r, now, nullptr, drive, mapping);
     if (now.travelled != then.travelled || now.changed != then.changed) return false;
-    if (then.goal.pose)
-      retreated_to[r].clear();
-    else if (!then.planned.empty())
-      retreated_to[r].push_back(lattice().key(then.planned.back().position).value());
     remember(r, then);
   }
   return true;

@@ -97,7 +97,8 @@ struct ExplorationState {
   /// Whether a robot cannot get to where it came from, although there is something to see, and is in the
   /// smaller part of what it has been in.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;
-  [[nodiscard]] MapChange change() const { return {mapping.grid(), changed}; }
+  /// What robots find their paths in, and where the last step has changed it.
+  [[nodiscard]] MapChange change() const { return {travel_map(), changed}; }
 
  private:
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
@@ -108,6 +109,8 @@ struct ExplorationState {
   // The place of the robot's trail to which it retreats, but for cells that it has tried.
   [[nodiscard]] std::optional<std::size_t> place_to_retreat_to(std::size_t robot, const Goal& goal,
                                                                const Keys& tried) const;
+  // Takes note of the place that the robot retreats to now; nothing if there is none.
+  std::optional<std::size_t> note_retreat(std::size_t robot, const Goal& goal);
   [[nodiscard]] std::vector<Pose> retreat_to(std::size_t robot, std::size_t place);
   [[nodiscard]] bool gets_to_as_many_as(std::size_t robot, std::size_t count) const;
   [[nodiscard]] bool can_get_to(std::size_t robot, const VoxelKey& cell) const;

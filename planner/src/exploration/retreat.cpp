@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -107,11 +108,15 @@ std::vector<Pose> ExplorationState::retreat_to(std::size_t robot, std::size_t pl
 }
 
 // To each place once for each goal that the robot had, or it would go back and forth, or try for ever.
-std::vector<Pose> ExplorationState::plan_retreat(std::size_t robot, const Goal& goal) {
+std::optional<std::size_t> ExplorationState::note_retreat(std::size_t robot, const Goal& goal) {
   const auto place = place_to_retreat_to(robot, goal, retreated_to[robot]);
-  if (!place) return {};
-  retreated_to[robot].push_back(lattice().key(trails[robot][*place].position).value());
-  return retreat_to(robot, *place);
+  if (place) retreated_to[robot].push_back(lattice().key(trails[robot][*place].position).value());
+  return place;
+}
+
+std::vector<Pose> ExplorationState::plan_retreat(std::size_t robot, const Goal& goal) {
+  const auto place = note_retreat(robot, goal);
+  return place ? retreat_to(robot, *place) : std::vector<Pose>{};
 }
 
 bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
@@ -138,7 +143,8 @@ bool ExplorationState::gets_to_as_many_as(std::size_t robot, std::size_t count) 
     const VoxelKey at = rest.back();
     rest.pop_back();
     for_each_key(grown({at, at}, 1), [&](const VoxelKey& next) {
-      if (corridor.fits(next) && known.insert(next).second) rest.push_back(next);
+      const int apart = std::abs(next.x - at.x) + std::abs(next.y - at.y) + std::abs(next.z - at.z);
+      if (apart == 1 && corridor.fits(next) && known.insert(next).second) rest.push_back(next);
     });
   }
   return known.size() >= count;

@@ -17,8 +17,8 @@ struct Departure {
   std::vector<Pose> viewpoints;  ///< the first is where the robot is, or where it rests
 };
 
-/// Of the departures at a time the one that arrives first: straight on for a part of the distance in which
-/// the robot could stop, then to the goal, or after a stop. Nothing if there is no path.
+/// Of the departures at a time the one that arrives first: straight on, up to twice as far as the robot
+/// needs to stop, then to the goal, or after a stop. Nothing if there is no path.
 [[nodiscard]] std::optional<Departure> best_departure(const Trajectory& old, double time,
                                                       const PathFrom& path_from, const MotionLimits& limits,
                                                       const SegmentTest& is_free);

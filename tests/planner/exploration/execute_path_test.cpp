@@ -25,17 +25,18 @@ class ExecutePathTest : public testing::Test {
         voxels_of(mapping.grid().lattice(), {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 3, 3)})));
     return mapping;
   }
-  static RobotStep execute(std::vector<Pose> path, const TravelOptions* body, const Drive& drive,
-                           Mapping& mapping, std::size_t robot = 0) {
+  RobotStep execute(std::vector<Pose> path, const TravelOptions* body, const Drive& drive, Mapping& mapping,
+                    std::size_t robot = 0) {
     RobotStep step;
     step.planned = std::move(path);
-    detail::execute_path(robot, step, body, drive, mapping);
+    reached_ = detail::execute_path(robot, step, body, drive, mapping);
     return step;
   }
 
   Mapping mapping_ = hall();
   std::vector<Pose> path_;
   TravelOptions body_ = uav_travel();
+  std::size_t reached_ = 0;  // viewpoints, by what was executed last
 };
 
 // It stands off the middle of its voxel, so that its box of 0.8 m reaches into voxels that the box around the
@@ -118,6 +119,7 @@ TEST_F(ExecutePathTest, LooksAtWhatItCannotPass) {
     const RobotStep step = execute(planned, &body_, drive, mapping_);
     ASSERT_EQ(asked.size(), refused + 1);
     EXPECT_EQ(step.travelled, refused + 1);
+    EXPECT_EQ(reached_, refused) << "a look is none of its path";
     EXPECT_TRUE(step.changed.empty());
     const Pose &from = planned[refused - 1], &to = planned[refused];
     EXPECT_EQ(asked.back().position, from.position);
@@ -152,6 +154,7 @@ TEST_F(ExecutePathTest, EndsWithARobotThatNeitherGoesNorLooks) {
     const RobotStep step = execute(path_, &body_, drive, mapping_);
     EXPECT_EQ(calls, refused + 1);
     EXPECT_EQ(step.travelled, refused);
+    EXPECT_EQ(reached_, refused);
     EXPECT_NEAR(step.length, 0.9 * static_cast<double>(refused - 1), 1e-12);
     EXPECT_FALSE(step.blocked.empty());
   }

@@ -175,26 +175,47 @@ TEST(RetreatWithTours, IsNotWorthTakingForWhatIsNoStop) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
-// Steps that are taken again leave what was known of retreats then.
-TEST(RetreatRepeated, IsNotTriedOnceMore) {
+Scan without_rays(const Pose& from) {
+  Scan scan;
+  scan.origin = from.position.cast<float>();
+  scan.max_range = 1.0;
+  return scan;
+}
+
+// Steps that are taken again leave what was known of retreats then, also if the robot was held back on its
+// way: at its first viewpoint, or before its last one, whose place the look at the obstacle has taken.
+class RetreatRepeated : public testing::TestWithParam<bool> {};
+
+TEST_P(RetreatRepeated, IsNotTriedOnceMore) {
   TwoRooms then(false, 5), now(false, 5);
-  const Drive stays = [](std::size_t, const Pose&) { return std::optional<Scan>(); };
+  const Drive drive = [](std::size_t, const Pose& to) -> std::optional<Scan> {
+    if (!GetParam() || to.position == TwoRooms::at(26, 15).position) return std::nullopt;
+    return without_rays(to);
+  };
   for (TwoRooms* rooms : {&then, &now}) {
     rooms->close_door();
     ASSERT_FALSE(rooms->choose().pose);
   }
   then.state.plan_paths(then.step);
-  ASSERT_GE(then.step.robots[0].planned.size(), 2U);
-  then.state.execute_paths(ExplorationState::Gains(1), stays, then.step);
-  ASSERT_TRUE(now.state.execute_again(then.step, stays, now.step));
+  const std::size_t planned = then.step.robots[0].planned.size();
+  ASSERT_GE(planned, 2U);
+  then.state.execute_paths(ExplorationState::Gains(1), drive, then.step);
+  EXPECT_EQ(then.step.robots[0].travelled, GetParam() ? planned : 1U);
+  EXPECT_FALSE(then.step.robots[0].blocked.empty());
+  const Drive anything = [](std::size_t, const Pose& to) { return without_rays(to); };
+  ASSERT_TRUE(now.state.execute_again(then.step, anything, now.step));
   EXPECT_EQ(then.state.retreated_to, now.state.retreated_to);
   for (TwoRooms* rooms : {&then, &now}) {
     rooms->step = rooms->state.new_step();
     ASSERT_FALSE(rooms->choose().pose);
     rooms->state.plan_paths(rooms->step);
   }
+  ASSERT_FALSE(then.step.robots[0].planned.empty());
   EXPECT_EQ(then.step.robots[0].planned.back().position, now.step.robots[0].planned.back().position);
 }
+
+INSTANTIATE_TEST_SUITE_P(HeldBack, RetreatRepeated, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "BeforeItsEnd" : "AtOnce"; });
 
 INSTANTIATE_TEST_SUITE_P(Planners, Retreat, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Tours" : "Render"; });
