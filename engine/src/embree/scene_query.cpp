@@ -153,11 +153,12 @@ SceneQuery::Prepared SceneQuery::prepare(const KeySegment& segment) const {
   const float t_far = 1.0F - 0.5F * inverse - 3.0F * tolerance * inverse;
   SegmentProbe sight{
       {{origin[0], origin[1], origin[2]}, 0.0F, {difference[0], difference[1], difference[2]}, t_far}, false};
-  // At its entry the line is this far from the target's other faces; twice the axis itself makes zero.
+  // At its entry the line is this far from the target's other faces, along its longest axis by 0. By an edge
+  // it passes one voxel within the tolerance, which is the last one; by a corner there is another before it.
   int grazed = 0;
   for (int i = 0; i < 3; ++i)
     grazed += static_cast<int>(0.5F * (longest - length[i]) * inverse < 4.0F * tolerance);
-  sight.target_is_grazed = grazed > 1;
+  sight.target_is_grazed = grazed > 2;
   if (!reach_.contains(origin.matrix().cast<double>())) {
     const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, static_cast<double>(t_far));
     if (!probed) return sight.target_is_grazed ? Prepared{} : Prepared{true, {}};

@@ -52,7 +52,8 @@ class SceneQuery {
 
   struct SegmentProbe {
     Probe probe;
-    bool target_is_grazed = false;  // it enters the target's voxel so close to an edge that it may miss it
+    // It enters the target's voxel so close to an edge that it may pass another one, which was not looked at.
+    bool target_is_grazed = false;
   };
   // Either the answer, or the probe that gives it. Without both the walk must answer.
   struct Prepared {
