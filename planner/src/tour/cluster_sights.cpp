@@ -11,15 +11,6 @@ namespace {
 
 constexpr int kLongestPause = 8;  // [plannings]
 
-// [frontiers] Patches of floors, walls and ceilings whose faces only are seen. A hole in the floor of a room
-// is worth a stop; of a large world each is next to nothing, and to see to all of them took a third of the
-// time.
-double least_gain_of_faces(const ViewpointQuery& view) {
-  constexpr double kPart = 0.001;  // of what is known
-  const auto [unknown, free, occupied] = view.grid.count();
-  return std::max(view.least_gain, kPart * static_cast<double>(free + occupied));
-}
-
 }  // namespace
 
 // Whether other viewpoints may be the best now. Of a cluster that the robot does not see all that a robot
@@ -75,12 +66,10 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
   return hidden;
 }
 
-void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden, Aim aim) {
-  ViewpointQuery view = query.view;
-  if (aim == Aim::kFace) view.least_gain = least_gain_of_faces(view);
+void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    sight->viewpoints = viewpoints_anywhere(view, *cluster, aim, query.reaches);
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->depend_on.reset();
     sight->stale = false;
@@ -94,9 +83,23 @@ void ClusterSights::update(const Query& query) {
   if (!query.can_move) return;
   const auto later = std::stable_partition(hidden.begin(), hidden.end(),
                                            [](const Hidden& h) { return h.second->pause == 0; });
-  look_from_anywhere(query, {hidden.begin(), later}, Aim::kMiddle);
-  if (!sees_any()) look_from_anywhere(query, {later, hidden.end()}, Aim::kMiddle);
-  if (!sees_any() && query.others_see_none) look_from_anywhere(query, hidden, Aim::kFace);
+  look_from_anywhere(query, {hidden.begin(), later});
+  if (!sees_any()) look_from_anywhere(query, {later, hidden.end()});
+}
+
+void ClusterSights::look_at_faces(const Query& query) {
+  if (!query.can_move) return;
+  std::vector<std::vector<ClusterViewpoint>> found(query.clusters.size());
+  for_each_index(found.size(), [&](std::size_t i) {
+    if (viewpoints(query.clusters[i].id).empty())
+      found[i] = viewpoints_anywhere(query.view, query.clusters[i], Aim::kFace, query.reaches);
+  });
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].empty()) continue;
+    Sight& sight = sights_[query.clusters[i].id];
+    sight.found = sight.viewpoints = std::move(found[i]);
+    sight.depend_on.reset();
+  }
 }
 
 bool ClusterSights::sees_any() const {

@@ -26,13 +26,14 @@ class ClusterSights {
         cells;  ///< the same, with all cells in which the robot fits only now, or not any more
     const std::function<bool(const VoxelKey&)>& reaches;  ///< whether the robot can get to a cell
     bool can_move = true;                                 ///< whether it can get anywhere
-    bool others_see_none = true;                          ///< no other robot sees a cluster
   };
   /// Looks for the viewpoints of clusters that have changed, or near which something has. Where none of the
   /// usual places sees a cluster, cells all over the graph are tried, after each trial in vain with a pause
-  /// twice as long; all of them once more before the robot sees no cluster at all. When nobody sees any,
-  /// clusters whose faces are seen are viewed as well, if one is a thousandth of what is known.
+  /// twice as long; all of them once more before the robot sees no cluster at all.
   void update(const Query& query);
+
+  /// Looks all over the graph for places that show the faces of the clusters that it does not see.
+  void look_at_faces(const Query& query);
 
   /// From the next update on cells all over the graph are tried again for the clusters that it does not see.
   void look_again();
@@ -58,7 +59,7 @@ class ClusterSights {
   [[nodiscard]] static bool needs_a_look(const Query& query, const FrontierCluster& cluster,
                                          const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
-  static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden, Aim aim);
+  static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
   std::map<std::uint32_t, Sight> sights_;  // by cluster
   std::optional<KeyBox> extent_;           // of the graph

@@ -223,6 +223,15 @@ void FrontierClusters::make_clusters() {
 
 const FrontierCluster& FrontierClusters::cluster(std::uint32_t id) const { return clusters_[places_.at(id)]; }
 
+void FrontierClusters::set_least(std::size_t least) {
+  least = std::max<std::size_t>(least, 1);
+  if (std::exchange(least_, least) == least) return;
+  for (std::uint32_t piece = 1; piece < pieces_.size(); ++piece)
+    if (!pieces_[piece].keys.empty() && pieces_[piece].keys.size() < least_)
+      pieces_[piece].joins = piece_for(piece);
+  make_clusters();
+}
+
 void FrontierClusters::update(std::span<const VoxelKey> frontiers) {
   Keys changed;
   std::ranges::set_symmetric_difference(frontiers_, frontiers, std::back_inserter(changed));

@@ -35,6 +35,9 @@ class FrontierClusters {
   /// @param least   [frontiers] smaller clusters are left out
   FrontierClusters(const KeyBox& bounds, int edge, std::size_t least);
 
+  /// Another least size from now on. All clusters are made again.
+  void set_least(std::size_t least);
+
   /// @param frontiers  sorted
   void update(std::span<const VoxelKey> frontiers);
 

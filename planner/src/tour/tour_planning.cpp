@@ -62,6 +62,11 @@ void complete(NumberTable& distances, std::span<const double> from_robot) {
   mirror();
 }
 
+// [frontiers] Of a cluster of an area [m2].
+std::size_t least_of(double area, const Lattice& lattice) {
+  return static_cast<std::size_t>(std::ceil(area / (lattice.resolution() * lattice.resolution()) - 1e-6));
+}
+
 // [frontiers] A sensor of short range never has many in view: a fifth of those that cover its view at half of
 // the range.
 double most_to_ask(const FieldOfView& view, double resolution) {
@@ -80,8 +85,7 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
       options_(options),
       zone_edge_(voxels(options.zone_edge * greatest_range(robots), lattice)),
       clusters_(bounds, voxels(options.cluster_edge * greatest_range(robots), lattice),
-                static_cast<std::size_t>(
-                    std::ceil(options_.least_area / (lattice.resolution() * lattice.resolution()) - 1e-6))) {
+                least_of(options.least_area, lattice)) {
   const int graph_edge = voxels(options.graph_edge * greatest_range(robots), lattice);
   for (std::size_t r = 0; r < robots.size(); ++r) {
     Robot& robot = robots[r];
@@ -205,7 +209,23 @@ ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster
 }
 
 double TourPlanning::least_gain(std::size_t robot) const {
-  return std::min(options_.least_gain, most_to_ask(members_[robot].robot.view, lattice_.resolution()));
+  return std::min(
+      {options_.least_gain, worth_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
+}
+
+// As far as they have planned.
+bool TourPlanning::nobody_sees_any() const {
+  return std::ranges::all_of(members_, [](const Member& member) {
+    return member.lost || (member.planned && !member.sights.sees_any());
+  });
+}
+
+// A small world has nothing larger than what is left to those who come by in a large one.
+void TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
+  constexpr double kPart = 0.001;
+  const auto [unknown, free, occupied] = grid.count();
+  worth_ = std::max(1.0, kPart * static_cast<double>(free + occupied));
+  clusters_.set_least(std::min(least_of(options_.least_area, lattice_), static_cast<std::size_t>(worth_)));
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] on its path.
@@ -346,15 +366,30 @@ void TourPlanning::follow_map(const Query& query) {
   for (std::size_t r = 0; r < members_.size(); ++r)
     members_[r].distances.start_from(lattice_.key(query.starts[r].pose.position));
   clusters_.update(query.frontiers);
+  if (worth_ < std::numeric_limits<double>::infinity()) ask_for_part_of(query.grid);
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };
-  const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
-  const bool others_see_none = std::ranges::all_of(members_, [&](const Member& other) {
-    return &other == &member || other.lost || (other.planned && !other.sights.sees_any());
-  });
-  member.sights.update({view, clusters_.clusters(), changes, cells, can_go,
-                        query.corridor.state() == CorridorState::kReady, others_see_none});
+  const bool can_move = query.corridor.state() == CorridorState::kReady;
+  const auto sights = [&](const ViewpointQuery& view) {
+    return ClusterSights::Query{view, clusters_.clusters(), changes, cells, can_go, can_move};
+  };
+  member.sights.update(sights(sight_of(query.robot, query.caster, query.grid)));
+  if (can_move && nobody_sees_any()) look_closer(query, sights);
+}
+
+// At what is left when nobody sees a cluster of the usual size: at smaller ones and, if they are much of what
+// is known, at those of which only the faces are seen.
+void TourPlanning::look_closer(const Query& query,
+                               const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights) {
+  ask_for_part_of(query.grid);
+  for (Member& member : members_) member.sights.look_again();
+  ClusterSights& own = members_[query.robot].sights;
+  ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
+  own.update(sights(view));
+  if (!nobody_sees_any()) return;
+  view.least_gain = std::max(view.least_gain, worth_);
+  own.look_at_faces(sights(view));
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.

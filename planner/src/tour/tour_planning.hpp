@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -126,6 +127,8 @@ class TourPlanning {
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
+  [[nodiscard]] bool nobody_sees_any() const;
+  void ask_for_part_of(const VoxelGrid& grid);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
   // Clusters that are one stop of the tours.
@@ -138,6 +141,8 @@ class TourPlanning {
   [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
   // The stages of `update`.
   void follow_map(const Query& query);
+  void look_closer(const Query& query,
+                   const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights);
   [[nodiscard]] Tours tours_before(const Query& query, std::span<const Stop> stops,
                                    TourProblem& problem) const;
   [[nodiscard]] static Tours shared_out(const TourProblem& problem, const Tours& before);
@@ -169,6 +174,9 @@ class TourPlanning {
   Options options_;
   int zone_edge_;  // [voxels]
   FrontierClusters clusters_;
+  // [frontiers] What is worth a stop by what is known; it counts from when nobody sees a cluster of the usual
+  // size.
+  double worth_ = std::numeric_limits<double>::infinity();
   std::vector<Member> members_;
 };
 
