@@ -77,9 +77,11 @@ class BoxSceneDevice {
   BoxSceneDevice() : device_(rtcNewDevice(nullptr)) {
     if (device_ == nullptr && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (device_ == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
+    hand_over(&bytes_);
     rtcSetDeviceMemoryMonitorFunction(
         device_,
         [](void* counter, ssize_t more, bool) {
+          take_over(counter);
           static_cast<std::atomic<std::ptrdiff_t>*>(counter)->fetch_add(more, std::memory_order_relaxed);
           return true;
         },

@@ -23,10 +23,19 @@ std::string late_planning(double planning, double latency) {
          fixed(std::ceil(planning / kUnit) * kUnit, 2) + " or more";
 }
 
-std::string too_narrow(const sim::Unseen& unseen, const ExploreSetup& setup) {
-  return ": " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
-         " see them; with voxels finer than " + rounded(setup.head.resolution) +
-         " m (--resolution) robots fit through narrower doors";
+// Why the rest was not seen, by the true world, as far as it is much.
+std::string why_unseen(const sim::Unseen& unseen, const ExploreSetup& setup) {
+  std::string text;
+  if (unseen.in_view >= kWorthAHint)
+    text +=
+        "; " + percent(unseen.in_view) +
+        " could have been seen from places where they fit, but they did not get there through what they knew "
+        "to be free, or would have seen too few frontiers there (--epsilon)";
+  if (unseen.narrow >= kWorthAHint)
+    text += "; " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
+            " see them: if doors are too narrow, voxels finer than " + rounded(setup.head.resolution) +
+            " m (--resolution) help, but not against steps, slopes or a sensor that does not reach";
+  return text;
 }
 
 }  // namespace
@@ -52,8 +61,7 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
     warnings.push_back(end->text);
   else if (end && ends_badly(sums, *end))
     warnings.push_back("the run has ended with " + percent(sums.observable) +
-                       " of the observable space mapped; the robots found no way to see the rest" +
-                       (unseen && unseen->narrow >= kWorthAHint ? too_narrow(*unseen, setup) : ""));
+                       " of the observable space mapped" + (unseen ? why_unseen(*unseen, setup) : ""));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
     if (const auto& failed = numbers.robots[r].failed)
       warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +

@@ -16,6 +16,13 @@ namespace {
   throw std::invalid_argument("continuous exploration: " + what);
 }
 
+// Beyond it parts of a second get lost in a double, and time stands still.
+void check_time(double time) {
+  constexpr double kLatest = 1e10;  // [s]
+  if (!(std::abs(time) <= kLatest))
+    refuse("the time is " + std::to_string(time) + " s, but has to be finite and within 10^10 s (300 years)");
+}
+
 }  // namespace
 
 std::string_view name_of(PlanReason reason) {
@@ -38,7 +45,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (state.team.selection) refuse("it has begun already");
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
-  if (!std::isfinite(time)) refuse("the time is not finite");
+  check_time(time);
   state.team.solid = state.before;
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
@@ -71,6 +78,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
                                     std::span<const VoxelKey> blocked) {
   State& state = *state_;
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
+  check_time(time);
   State::Member& member = state.members[robot];
   member.motion = {Trajectory(pose, time)};
   member.stopped = true;
@@ -102,6 +110,7 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a planning before its beginning");
+  check_time(time);
   state.settle(time);
   for (std::size_t r = 0; r < state.members.size(); ++r)
     if (const auto reason = state.reason_to_plan(state.members[r], time)) return state.plan(r, *reason, time);
@@ -111,6 +120,7 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
 ExplorationStep ContinuousExploration::finish(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a finish before its beginning");
+  check_time(time);
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   step.frontiers = state.team.frontiers.size();

@@ -35,7 +35,12 @@ void ExplorationOptions::check() const {
   at_least("max_steps", max_steps, 0);
   at_least("max_visits", max_visits, 1);
   at_least("min_cluster_size", min_cluster_size, 1);
+  path.check();
   optimizer.check();
+  for (const TeamMember& member : team) {
+    member.robot.check();
+    member.options.check();
+  }
 }
 
 ExplorationOptions exploration_options(Method method) {

@@ -19,14 +19,14 @@ bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::Aligned
                  const Follower& other, const Eigen::AlignedBox3d& other_body, double gap) {
   constexpr double kStep = 0.01;      // [s] in which two robots hardly come nearer
   constexpr double kRounding = 1e-9;  // [m] places that are just not too near are far enough
-  const double end = std::max(trajectory.end(), other.last().end());
+  const double end = std::max(trajectory.end(), other.rests_from());
   const auto gap_at = [&](double time) {
     return gap_between(body.translated(trajectory.at(time).pose.position),
                        other_body.translated(other.at(time).pose.position));
   };
   const double least = std::min(gap, gap_at(from)) - kRounding;
-  const int steps = static_cast<int>(std::ceil((end - from) / kStep));
-  for (int i = 1; i <= steps; ++i)
+  const double steps = std::ceil((end - from) / kStep);
+  for (double i = 1.0; i <= steps; ++i)
     if (gap_at(std::min(from + i * kStep, end)) < least) return false;
   return true;
 }

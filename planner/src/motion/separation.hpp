@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <limits>
 #include <optional>
 
 namespace frontlux::planner::detail {
@@ -25,6 +26,12 @@ struct Follower {
     return next && time >= next->begin() ? next->at(time) : now.at(time);
   }
   [[nodiscard]] const Trajectory& last() const { return next ? *next : now; }
+  /// [s] from when on it does not move; before all times if it does not move at all
+  [[nodiscard]] double rests_from() const {
+    const auto moves = [](const Trajectory& trajectory) { return trajectory.end() > trajectory.begin(); };
+    if (moves(last())) return last().end();
+    return next && moves(now) ? next->begin() : -std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Whether a robot on its trajectory keeps a gap [m] to another, from a time [s] on and for all time to come.

@@ -35,23 +35,6 @@ void check(const char* name, const Pose& pose) {
   number("yaw", pose.yaw);
 }
 
-void check(const PathOptions& options) {
-  const auto at_least = [](const char* name, double value) {
-    if (!(value >= kShortest && std::isfinite(value)))
-      refuse(std::string(name) + " is " + std::to_string(value) + " m, but has to be at least " +
-             std::to_string(kShortest) + " m and finite");
-  };
-  at_least("range", options.range);
-  at_least("spacing", options.spacing);
-  if (options.iterations < 1 || options.iterations > kMaxIterations)
-    refuse("iterations is " + std::to_string(options.iterations) + ", but has to be 1 to " +
-           std::to_string(kMaxIterations));
-  if (!(options.goal_bias >= 0.0 && options.goal_bias <= 1.0))
-    refuse("goal_bias is " + std::to_string(options.goal_bias) + ", but has to be 0 to 1");
-  if (options.shortcut_rounds < 0)
-    refuse("shortcut_rounds is " + std::to_string(options.shortcut_rounds) + ", but has to be 0 or more");
-}
-
 // The finalizer of MurmurHash3.
 std::uint64_t mixed(std::uint64_t bits) {
   bits = (bits ^ (bits >> 33)) * 0xFF51AFD7ED558CCD;
@@ -192,6 +175,24 @@ Polyline find_path(const TravelCorridor& corridor, const Lattice& lattice, const
 
 }  // namespace
 
+void PathOptions::check() const {
+  const auto at_least = [](const char* name, double value) {
+    if (!(value >= kShortest && std::isfinite(value)))
+      refuse(std::string(name) + " is " + std::to_string(value) + " m, but has to be at least " +
+             std::to_string(kShortest) + " m and finite");
+  };
+  at_least("range", range);
+  at_least("spacing", spacing);
+  if (search > PathSearch::kCorridor) refuse("search is none of the values of PathSearch");
+  if (iterations < 1 || iterations > kMaxIterations)
+    refuse("iterations is " + std::to_string(iterations) + ", but has to be 1 to " +
+           std::to_string(kMaxIterations));
+  if (!(goal_bias >= 0.0 && goal_bias <= 1.0))
+    refuse("goal_bias is " + std::to_string(goal_bias) + ", but has to be 0 to 1");
+  if (shortcut_rounds < 0)
+    refuse("shortcut_rounds is " + std::to_string(shortcut_rounds) + ", but has to be 0 or more");
+}
+
 std::string_view name_of(PathSearch search) {
   constexpr std::array<std::string_view, 4> kNames = {"rrt", "rrt-connect", "rrt-star", "corridor"};
   return kNames.at(static_cast<std::size_t>(search));
@@ -233,7 +234,7 @@ PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const
                    const Pose& goal, const PathKey& key, const PathOptions& options) {
   check("start", start);
   check("goal", goal);
-  check(options);
+  options.check();
   if (corridor.cell_of({0, 0, 0}) != VoxelKey{0, 0, 0})
     refuse(
         "the corridor is made of nodes; plan in one of voxels, which has a cell at the centre of each node");

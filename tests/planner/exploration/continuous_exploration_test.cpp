@@ -441,6 +441,12 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   refuses([&] { static_cast<void>(exploration.at(1, 0.0)); }, "no robot 1");
   EXPECT_REFUSED(exploration.insert(0, lost.pose, scan));
   EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
+  for (const double time : {nan, 1.7e15, -1.7e15}) {  // microseconds since 1970
+    refuses([&] { static_cast<void>(exploration.plan(time)); }, "the time is ");
+    refuses([&] { static_cast<void>(exploration.finish(time)); }, "the time is ");
+    refuses([&] { exploration.stopped(0, pose, time, {}); }, "the time is ");
+    refuses([&] { exploration.lose(0, pose, time); }, "the time is ");
+  }
   ExplorationOptions options = TeamInMotion::options(team);
   for (double ExplorationOptions::*seconds :
        {&ExplorationOptions::latency, &ExplorationOptions::period, &ExplorationOptions::commitment})
@@ -449,6 +455,17 @@ TEST(ContinuousExploration, RefusesWrongUse) {
       wrong.*seconds = bad;
       EXPECT_REFUSED(ContinuousExploration(wrong, team.empty_map()));
     }
+  const auto wrong_if = [&](const auto& change) {
+    ExplorationOptions wrong = options;
+    change(wrong);
+    EXPECT_REFUSED(ContinuousExploration(wrong, team.empty_map()));
+  };
+  wrong_if([](ExplorationOptions& wrong) { wrong.path.iterations = 0; });
+  wrong_if([&](ExplorationOptions& wrong) { wrong.path.spacing = nan; });
+  wrong_if([](ExplorationOptions& wrong) { wrong.path.search = static_cast<PathSearch>(99); });
+  wrong_if([](ExplorationOptions& wrong) { wrong.team[0].robot.limits.speed = 1e-300; });
+  wrong_if([](ExplorationOptions& wrong) { wrong.team[0].robot.view.max_range = -1.0; });
+  wrong_if([&](ExplorationOptions& wrong) { wrong.team[0].options.lambda = nan; });
   EXPECT_EQ(name_of(PlanReason::kGoalSeen), "goal_seen");
 }
 

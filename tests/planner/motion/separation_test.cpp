@@ -129,6 +129,10 @@ TEST(Separation, LooksAsFarAheadAsTheOtherMoves) {
   };
   EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
   EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.5), cube(0.5), 0.1));
+  // One that rests does so for ever, whenever it was told: also where there are more steps than time.
+  const auto rests_at = [](double x) { return detail::Follower{Trajectory({{x, 0, 0}, 0.0}, 1e9)}; };
+  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.7), cube(0.5), 0.1));
+  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.5), cube(0.5), 0.1));
   // What was before does not matter.
   const Trajectory later = straight({1.0, 0, 0}, {0, 0, 0}, 60.0, limits);
   EXPECT_TRUE(detail::keeps_apart(later, later.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));

@@ -187,10 +187,13 @@ TEST(FrontierClusters, AreTheSameAsNewOnesAfterFewChanges) {
 TEST(FrontierClusters, AreTheSameAsNewOnes) {
   Random random(43);
   FrontierClusters kept(kBounds, 6, 4);
+  std::size_t least = 4;
   for (int round = 0; round < 40; ++round) {
     const Keys frontiers = random_frontiers(random, random.below(10));
+    if (random.one_in(2)) kept.set_least(least = static_cast<std::size_t>(1 + random.below(8)));
     kept.update(frontiers);
-    FrontierClusters anew(kBounds, 6, 4);
+    if (random.one_in(2)) kept.set_least(least = static_cast<std::size_t>(1 + random.below(8)));
+    FrontierClusters anew(kBounds, 6, least);
     anew.update(frontiers);
     ASSERT_EQ(kept.clusters().size(), anew.clusters().size());
     for (std::size_t i = 0; i < anew.clusters().size(); ++i)

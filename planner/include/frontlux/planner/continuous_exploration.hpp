@@ -66,19 +66,24 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ContinuousExploration& operator=(ContinuousExploration&&) noexcept;
 
   /// All robots rest at their starts. Returns step 0, with what is known to be free there.
-  /// @throws std::invalid_argument unless there is one finite start for each robot, or if it has begun
+  /// @param time  [s] on a clock of the user's choice, as all times here, within 10^10 s of its zero: seconds
+  ///              since 1970 will do, their millionths will not
+  /// @throws std::invalid_argument unless there is one finite start for each robot, for such a time, or if it
+  ///         has begun
   ExplorationStep begin(std::span<const ExplorationStart> starts, double time);
 
   /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map.
-  /// @throws std::invalid_argument before `begin`, if there is no such robot, or for what `Mapping::insert`
-  ///         refuses
+  /// @param pose  where the robot has been, as it is believed: it may go back over all of these places. New
+  ///              trajectories begin on the one that it has; a robot that has left it reports `stopped`.
+  /// @throws std::invalid_argument before `begin`, if there is no such robot, for a pose that is not finite,
+  ///         or for what `Mapping::insert` refuses
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
 
   /// A robot rests at a pose since it could not go on: something that no sensor saw blocks its path.
   /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
   ///                 them as it is, the cell that it is in will not be entered again
-  /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose that is not
-  ///         finite; so does `lose`
+  /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose or time out of
+  ///         bounds; so does `lose`
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
@@ -86,7 +91,7 @@ class FRONTLUX_EXPORT ContinuousExploration {
   void lose(std::size_t robot, const Pose& pose, double time);
 
   /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.
-  /// @throws std::invalid_argument before `begin`; so does `finish`
+  /// @throws std::invalid_argument before `begin`, or for a time out of bounds; so does `finish`
   [[nodiscard]] std::optional<PlannedMotion> plan(double time);
 
   /// What the robots have done since the last planning, when nobody will plan any more.

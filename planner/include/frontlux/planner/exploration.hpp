@@ -182,7 +182,9 @@ class FRONTLUX_EXPORT Exploration {
   ExplorationStep begin(std::span<const ExplorationStart> starts, const Drive& drive);
 
   /// Alg. 1, lines 4 to 11. It may be called after the end, too.
-  /// @throws std::invalid_argument before `begin`; so does `repeat`
+  /// @throws std::invalid_argument before `begin`, or for a scan that `Mapping::insert` refuses; so does
+  ///         `repeat`. After that, or if `drive` has thrown, here or in `begin`, the exploration must not be
+  ///         used any more.
   ExplorationStep step(const Drive& drive);
 
   /// Repeats a recorded step: afterwards the exploration is in the state in which it was after that step, and

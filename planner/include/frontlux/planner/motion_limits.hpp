@@ -25,7 +25,7 @@ struct FRONTLUX_EXPORT MotionLimits {
     return per_axis ? acceleration / direction.cwiseAbs().maxCoeff() : acceleration;
   }
 
-  /// @throws std::invalid_argument naming the value that is not finite and positive
+  /// @throws std::invalid_argument naming the value that is not finite, or less than a thousandth
   void check() const;
 
   friend bool operator==(const MotionLimits&, const MotionLimits&) = default;

@@ -26,7 +26,7 @@ enum class PathSearch : std::uint8_t {
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathSearch search);
 
 /// How paths are searched.
-struct PathOptions {
+struct FRONTLUX_EXPORT PathOptions {
   /// The method.
   PathSearch search = PathSearch::kRrt;
   /// Of the search, at most; 1 to a million. RRT* uses them all, which takes a hundred times as long as RRT;
@@ -36,6 +36,9 @@ struct PathOptions {
   double goal_bias = 0.1;   ///< fraction of the samples that are the goal itself, 0 to 1; not for RRT-Connect
   double spacing = 1.2;     ///< [m] greatest distance between successive viewpoints
   int shortcut_rounds = 6;  ///< of shortening, at most; 0: the path stays as it was found
+
+  /// @throws std::invalid_argument naming the value that is out of bounds
+  void check() const;
 };
 
 /// The key of a random search. The same key gives the same path; another key may give another path.
