@@ -58,10 +58,18 @@ void Terrain::decide() {
   for (VoxelColumns* done : {&free_, &occupied_, &closed_, &empty_, &filled_}) done->settle();
 }
 
+// Whether all that is near is a hole. Beams that graze the floor make single ones where there is none.
+bool Terrain::is_open_all_around(const VoxelKey& floor) const {
+  const int reach = options_.reach;
+  const auto near = intersection(grown({floor, floor}, reach, reach, 0), options_.box);
+  return all_of(*near, [this](const VoxelKey& key) { return !closed_.holds(key); });
+}
+
 bool Terrain::carries(const VoxelKey& floor) const {
   const auto holds_floor = [&](const KeyBox& box) { return box.contains(floor); };
   if (!holds_floor(options_.box)) return false;
-  if (std::ranges::any_of(options_.exempt, holds_floor)) return !options_.gap || firm_.whole(floor);
+  if (std::ranges::any_of(options_.exempt, holds_floor))
+    return options_.gap ? firm_.whole(floor) : !is_open_all_around(floor);
   return level_.whole(floor) && !bare_.whole(floor);
 }
 

@@ -25,7 +25,7 @@ class Terrain {
     /// [voxels] How far ground may be below the middle. If it is not given, ground is any occupied voxel at
     /// the height of the middle; else one on top of which none is occupied.
     std::optional<int> gap = {};
-    std::vector<KeyBox> exempt = {};  ///< where floor need not be known
+    std::vector<KeyBox> exempt = {};  ///< where floor need not be known, but holes all around count
   };
   explicit Terrain(Options options);
 
@@ -37,6 +37,7 @@ class Terrain {
 
  private:
   void decide();
+  [[nodiscard]] bool is_open_all_around(const VoxelKey& floor) const;
 
   Options options_;
   VoxelColumns free_, occupied_;

@@ -224,7 +224,7 @@ bool TourPlanning::nobody_sees_any() const {
 void TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
   constexpr double kPart = 0.001;
   const auto [unknown, free, occupied] = grid.count();
-  worth_ = std::max(1.0, kPart * static_cast<double>(free + occupied));
+  worth_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
   clusters_.set_least(std::min(least_of(options_.least_area, lattice_), static_cast<std::size_t>(worth_)));
 }
 

@@ -36,11 +36,21 @@ bool is_carried(const VoxelGrid& grid, const Terrain::Options& options, const Vo
     return true;
   };
   const auto hole = [&](int x, int y) { return is_hole(grid, options, x, y, floor.z); };
+  const auto holes_all_around = [&] {
+    for (int x = floor.x - options.reach; x <= floor.x + options.reach; ++x)
+      for (int y = floor.y - options.reach; y <= floor.y + options.reach; ++y) {
+        const bool inside = x >= options.box.min.x && x <= options.box.max.x && y >= options.box.min.y &&
+                            y <= options.box.max.y;
+        if (inside && !hole(x, y)) return false;
+      }
+    return true;
+  };
   for (const KeyBox& box : options.exempt)
     if (box.contains(floor))
-      return !options.gap || no_hole_under_it([&](int x, int y) {
+      return options.gap ? no_hole_under_it([&](int x, int y) {
         return hole(x, y) && is(grid, options.box, Occupancy::kFree, x, y, floor.z - 1);
-      });
+      })
+                         : !holes_all_around();
   bool near = false;
   for (int x = -options.reach; x <= options.reach; ++x)
     for (int y = -options.reach; y <= options.reach; ++y)

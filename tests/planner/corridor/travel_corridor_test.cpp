@@ -51,8 +51,6 @@ struct Rule {
       if (box_of_others.contains(cell)) return false;
     if (ground < 0) return true;
     if (climb > 0) return is_on_ground(grid, cell);
-    for (const KeyBox& exempt : without_ground)
-      if (exempt.contains({cell.x, cell.y, exempt.min.z})) return true;
     const VoxelKey below = moved(cell, 0, 0, low[2] - 1);
     const auto is = [&](Occupancy state) {
       return [&grid, state](const VoxelKey& v) { return grid.at(v) == state; };
@@ -60,6 +58,9 @@ struct Rule {
     const auto any = [](const KeyBox& floor, const auto& holds) {
       return !all_of(floor, [&](const VoxelKey& v) { return !holds(v); });
     };
+    for (const KeyBox& exempt : without_ground)
+      if (exempt.contains({cell.x, cell.y, exempt.min.z}))
+        return !all_of(grown({below, below}, 1, 1, 0), is(Occupancy::kFree));
     return any(grown({below, below}, 1, 1, 0), is(Occupancy::kOccupied)) &&
            !any(grown({below, below}, ground, ground, 0), is(Occupancy::kFree));
   }

@@ -81,9 +81,10 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// [m] Along x and y: the part of the floor that must not be known to be free, on the ground in which no
   /// hole may be known; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
-  int ground_reach = 1;                ///< [voxels] along x and y
-  std::vector<KeyBox> without_ground;  ///< cells that need no ground, as the start: no sensor sees its
-                                       ///< floor; on the ground holes of two voxels count there, too
+  int ground_reach = 1;  ///< [voxels] along x and y
+  /// Cells that need no ground, as the start: no sensor sees its floor. Holes count there, too: on a plane
+  /// if all floor within `ground_reach` is known to be free, on the ground holes of two voxels.
+  std::vector<KeyBox> without_ground;
 
   /// [m] On the ground: the highest step, at least a voxel, which is rounded down to whole ones. Floor is an
   /// occupied voxel with none on top of it, from the lower face of the box down to one voxel less than a
