@@ -175,7 +175,7 @@ TEST_F(ExploreMotion, WarnsWhenPlanningTakesLongerThanTheClockCharges) {
   };
   test::expect_parts(warned("1e-6"), {"99 % of the plannings took up to ",
                                       "the clock charges 1e-06 s for each", "explore with --latency "});
-  EXPECT_EQ(warned("100"), "");
+  EXPECT_EQ(warned("60"), "");
 }
 
 // All robots' goals are below such an epsilon, in three plannings each.

@@ -44,7 +44,7 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
     auto [found, depend_on] = find_viewpoints(query.view, *cluster, sight->found);
     sight->found = std::move(found);
     sight->depend_on = depend_on;
-    sight->stale = true;
+    sight->stale = sight->faces_stale = true;
   });
   sights_ = std::move(sights);
   // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
@@ -88,18 +88,18 @@ void ClusterSights::update(const Query& query) {
 }
 
 void ClusterSights::look_at_faces(const Query& query) {
-  if (!query.can_move) return;
-  std::vector<std::vector<ClusterViewpoint>> found(query.clusters.size());
-  for_each_index(found.size(), [&](std::size_t i) {
-    if (viewpoints(query.clusters[i].id).empty())
-      found[i] = viewpoints_anywhere(query.view, query.clusters[i], Aim::kFace, query.reaches);
+  std::vector<Hidden> hidden;
+  for (const FrontierCluster& cluster : query.clusters)
+    if (Sight& sight = sights_[cluster.id]; sight.viewpoints.empty() && sight.faces_stale)
+      hidden.emplace_back(&cluster, &sight);
+  for_each_index(hidden.size(), [&](std::size_t i) {
+    const auto& [cluster, sight] = hidden[i];
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
+    sight->faces_stale = false;
+    if (sight->viewpoints.empty()) return;
+    sight->found = sight->viewpoints;
+    sight->depend_on.reset();
   });
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].empty()) continue;
-    Sight& sight = sights_[query.clusters[i].id];
-    sight.found = sight.viewpoints = std::move(found[i]);
-    sight.depend_on.reset();
-  }
 }
 
 bool ClusterSights::sees_any() const {
@@ -109,7 +109,7 @@ bool ClusterSights::sees_any() const {
 void ClusterSights::look_again() {
   for (auto& [cluster, sight] : sights_) {
     if (!sight.viewpoints.empty()) continue;
-    sight.stale = true;
+    sight.stale = sight.faces_stale = true;
     sight.in_vain = sight.pause = 0;
   }
 }

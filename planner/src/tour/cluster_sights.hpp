@@ -32,7 +32,8 @@ class ClusterSights {
   /// twice as long; all of them once more before the robot sees no cluster at all.
   void update(const Query& query);
 
-  /// Looks all over the graph for places that show the faces of the clusters that it does not see.
+  /// Looks all over the graph for places that show the faces of the clusters that it does not see, once as
+  /// long as nothing changes for them.
   void look_at_faces(const Query& query);
 
   /// From the next update on cells all over the graph are tried again for the clusters that it does not see.
@@ -51,6 +52,7 @@ class ClusterSights {
     std::optional<KeyBox> depend_on;           // as `FoundViewpoints` has it
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
+    bool faces_stale = true;                   // since its faces were looked for
     int in_vain = 0;                           // that often, in a row
     int pause = 0;                             // plannings until the next time
   };

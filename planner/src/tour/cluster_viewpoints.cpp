@@ -61,19 +61,19 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
 // Where a line from a cell that is to show a frontier ends; none if the frontier turns no face to it.
 std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey& cell,
                                     const VoxelKey& frontier, Aim aim) {
-  constexpr double kSteepest = 0.2;  // cosine of the angle between the line and a face's normal, at least
+  constexpr double kLeastCosine = 0.2;  // of the angle between the line and a face's normal
   if (aim == Aim::kMiddle) return frontier;
   const std::array offset = {cell.x - frontier.x, cell.y - frontier.y, cell.z - frontier.z};
-  const double least = kSteepest * std::hypot(offset[0], offset[1], offset[2]);
+  const double least = kLeastCosine * std::hypot(offset[0], offset[1], offset[2]);
   std::optional<VoxelKey> before;
   int most = 0;
   for (std::size_t axis = 0; axis < offset.size(); ++axis) {
     const int along = offset.at(axis);
     if (std::abs(along) <= most || std::abs(along) < least) continue;
-    std::array<int, 3> at = {frontier.x, frontier.y, frontier.z};
-    at.at(axis) += along > 0 ? 1 : -1;
-    const VoxelKey key = make_key(at[0], at[1], at[2]);
-    if (query.grid.at(key) != Occupancy::kFree) continue;
+    std::array<int, 3> step{};
+    step.at(axis) = along > 0 ? 1 : -1;
+    const auto key = offset_key(frontier, step[0], step[1], step[2]);
+    if (!key || query.grid.at(*key) != Occupancy::kFree) continue;
     before = key;
     most = std::abs(along);
   }

@@ -62,21 +62,6 @@ void complete(NumberTable& distances, std::span<const double> from_robot) {
   mirror();
 }
 
-// [frontiers] Of a cluster of an area [m2].
-std::size_t least_of(double area, const Lattice& lattice) {
-  return static_cast<std::size_t>(std::ceil(area / (lattice.resolution() * lattice.resolution()) - 1e-6));
-}
-
-// [frontiers] A sensor of short range never has many in view: a fifth of those that cover its view at half of
-// the range.
-double most_to_ask(const FieldOfView& view, double resolution) {
-  const double away = view.max_range / 2;
-  const auto across = [&](double angle) { return 2 * away * std::tan(angle / 2); };
-  const double width = view.sees_all_around() ? 2 * std::numbers::pi * away : across(view.horizontal);
-  const double height = across(view.shape == FieldOfView::Shape::kCone ? view.horizontal : view.vertical);
-  return std::max(1.0, width * height / (resolution * resolution) / 5);
-}
-
 }  // namespace
 
 TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> starts, const Lattice& lattice,
@@ -85,7 +70,7 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
       options_(options),
       zone_edge_(voxels(options.zone_edge * greatest_range(robots), lattice)),
       clusters_(bounds, voxels(options.cluster_edge * greatest_range(robots), lattice),
-                least_of(options.least_area, lattice)) {
+                least_frontiers(options, lattice)) {
   const int graph_edge = voxels(options.graph_edge * greatest_range(robots), lattice);
   for (std::size_t r = 0; r < robots.size(); ++r) {
     Robot& robot = robots[r];
@@ -206,26 +191,6 @@ ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster
                                       const VoxelGrid& grid) const {
   const Member& member = members_[robot];
   return {caster, grid, member.distances.graph(), member.robot.view, member.region, least_gain(robot)};
-}
-
-double TourPlanning::least_gain(std::size_t robot) const {
-  return std::min(
-      {options_.least_gain, worth_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
-}
-
-// As far as they have planned.
-bool TourPlanning::nobody_sees_any() const {
-  return std::ranges::all_of(members_, [](const Member& member) {
-    return member.lost || (member.planned && !member.sights.sees_any());
-  });
-}
-
-// A small world has nothing larger than what is left to those who come by in a large one.
-void TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
-  constexpr double kPart = 0.001;
-  const auto [unknown, free, occupied] = grid.count();
-  worth_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
-  clusters_.set_least(std::min(least_of(options_.least_area, lattice_), static_cast<std::size_t>(worth_)));
 }
 
 // Of a robot in motion, to a viewpoint at a distance [m] on its path.
@@ -376,20 +341,6 @@ void TourPlanning::follow_map(const Query& query) {
   };
   member.sights.update(sights(sight_of(query.robot, query.caster, query.grid)));
   if (can_move && nobody_sees_any()) look_closer(query, sights);
-}
-
-// At what is left when nobody sees a cluster of the usual size: at smaller ones and, if they are much of what
-// is known, at those of which only the faces are seen.
-void TourPlanning::look_closer(const Query& query,
-                               const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights) {
-  ask_for_part_of(query.grid);
-  for (Member& member : members_) member.sights.look_again();
-  ClusterSights& own = members_[query.robot].sights;
-  ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
-  own.update(sights(view));
-  if (!nobody_sees_any()) return;
-  view.least_gain = std::max(view.least_gain, worth_);
-  own.look_at_faces(sights(view));
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.

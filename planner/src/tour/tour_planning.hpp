@@ -128,7 +128,8 @@ class TourPlanning {
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] bool nobody_sees_any() const;
-  void ask_for_part_of(const VoxelGrid& grid);
+  bool ask_for_part_of(const VoxelGrid& grid);
+  [[nodiscard]] static std::size_t least_frontiers(const Options& options, const Lattice& lattice);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
   // Clusters that are one stop of the tours.

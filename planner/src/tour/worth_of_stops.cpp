@@ -1,0 +1,69 @@
+// What is worth a stop, and a closer look at what is left when nothing is.
+
+#include "tour/tour_planning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace frontlux::planner::detail {
+namespace {
+
+// [frontiers] A sensor of short range never has many in view: a fifth of those that cover its view at half of
+// the range.
+double most_to_ask(const FieldOfView& view, double resolution) {
+  const double away = view.max_range / 2;
+  const auto across = [&](double angle) { return 2 * away * std::tan(angle / 2); };
+  const double width = view.sees_all_around() ? 2 * std::numbers::pi * away : across(view.horizontal);
+  const double height = across(view.shape == FieldOfView::Shape::kCone ? view.horizontal : view.vertical);
+  return std::max(1.0, width * height / (resolution * resolution) / 5);
+}
+
+}  // namespace
+
+// [frontiers] Of a cluster.
+std::size_t TourPlanning::least_frontiers(const Options& options, const Lattice& lattice) {
+  const double face = lattice.resolution() * lattice.resolution();
+  return static_cast<std::size_t>(std::ceil(options.least_area / face - 1e-6));
+}
+
+double TourPlanning::least_gain(std::size_t robot) const {
+  return std::min(
+      {options_.least_gain, worth_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
+}
+
+// As far as they have planned.
+bool TourPlanning::nobody_sees_any() const {
+  return std::ranges::all_of(members_, [](const Member& member) {
+    return member.lost || (member.planned && !member.sights.sees_any());
+  });
+}
+
+// A small world has nothing larger than what is left to those who come by in a large one.
+// @return whether less is asked for than before
+bool TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
+  constexpr double kPart = 0.001;
+  const auto [unknown, free, occupied] = grid.count();
+  const double before = worth_;
+  worth_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
+  const std::size_t least = least_frontiers(options_, lattice_);
+  clusters_.set_least(std::min(least, static_cast<std::size_t>(worth_)));
+  return worth_ < std::min(before, std::max(options_.least_gain, static_cast<double>(least)));
+}
+
+// At what is left when nobody sees a cluster of the usual size: at smaller ones and, if they are much of what
+// is known, at those of which only the faces are seen.
+void TourPlanning::look_closer(const Query& query,
+                               const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights) {
+  ClusterSights& own = members_[query.robot].sights;
+  if (ask_for_part_of(query.grid)) {
+    for (Member& member : members_) member.sights.look_again();
+    own.update(sights(sight_of(query.robot, query.caster, query.grid)));
+    if (!nobody_sees_any()) return;
+  }
+  ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
+  view.least_gain = std::max(view.least_gain, worth_);
+  own.look_at_faces(sights(view));
+}
+
+}  // namespace frontlux::planner::detail
