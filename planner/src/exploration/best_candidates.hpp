@@ -15,7 +15,10 @@ namespace frontlux::planner::detail {
 [[nodiscard]] inline std::vector<RenderedCell> best_candidates(std::vector<RenderedCell> cells,
                                                                const Goal& goal) {
   constexpr std::size_t kMost = 1000;
-  if (cells.size() <= kMost) return cells;
+  if (cells.size() <= kMost) {
+    std::ranges::stable_sort(cells, {}, &RenderedCell::cell);
+    return cells;
+  }
   const auto by_cell = [](const RenderedCell& a, const RenderedCell& b) {
     return std::tie(a.cell, a.yaw) < std::tie(b.cell, b.yaw);
   };

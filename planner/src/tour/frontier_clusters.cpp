@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -147,14 +148,14 @@ std::vector<FrontierClusters::Part> FrontierClusters::joined_pieces() const {
   return joined;
 }
 
-FrontierClusters::Revisions FrontierClusters::revisions_of(const Part& part) const {
-  Revisions revisions;
+std::vector<std::uint64_t> FrontierClusters::revisions_of(const Part& part) const {
+  std::vector<std::uint64_t> revisions;
   for (const std::uint32_t piece : part.pieces) revisions.push_back(pieces_[piece].revision);
   return revisions;
 }
 
 // The id of the cluster in which most of the frontiers were before, unless a larger one has it.
-std::uint32_t FrontierClusters::name_for(const Keys& keys, const std::set<std::uint32_t>& taken) {
+std::uint32_t FrontierClusters::name_for(const Keys& keys, const Ids& taken) {
   std::vector<std::pair<std::uint32_t, std::size_t>> before;  // ids and how many were in them
   for (const VoxelKey& key : keys) {
     const std::uint32_t id = cluster_[key];
@@ -173,7 +174,7 @@ std::uint32_t FrontierClusters::name_for(const Keys& keys, const std::set<std::u
 }
 
 // Of pieces that were not together before, or were others.
-FrontierCluster FrontierClusters::make_cluster(const Part& part, const std::set<std::uint32_t>& taken) {
+FrontierCluster FrontierClusters::make_cluster(const Part& part, const Ids& taken) {
   FrontierCluster cluster;
   cluster.box = pieces_[part.pieces.front()].box;
   for (const std::uint32_t piece : part.pieces) {
@@ -193,15 +194,16 @@ void FrontierClusters::make_clusters() {
   std::ranges::stable_sort(parts, [](const Part& a, const Part& b) { return a.size > b.size; });
   for (Piece& piece : pieces_) piece.cluster = 0;
   std::vector<FrontierCluster> now;
-  std::map<Revisions, std::uint32_t> made_of;
-  std::set<std::uint32_t> taken;
+  decltype(made_of_) made_of(parts.size());
+  Ids taken(parts.size());
   std::vector<std::size_t> made;
   for (const Part& part : parts) {
-    Revisions revisions = revisions_of(part);
-    const auto same = made_of_.find(revisions);
-    const bool stays = same != made_of_.end() && !taken.contains(same->second);
-    FrontierCluster& cluster =
-        now.emplace_back(stays ? std::move(clusters_[places_.at(same->second)]) : make_cluster(part, taken));
+    std::vector<std::uint64_t> revisions = revisions_of(part);
+    const auto same = made_of_.find(revisions.front());
+    const bool stays =
+        same != made_of_.end() && same->second.revisions == revisions && !taken.contains(same->second.id);
+    FrontierCluster& cluster = now.emplace_back(stays ? std::move(clusters_[places_.at(same->second.id)])
+                                                      : make_cluster(part, taken));
     if (!stays) {
       made.push_back(now.size() - 1);
       const auto old = places_.find(cluster.id);
@@ -209,7 +211,8 @@ void FrontierClusters::make_clusters() {
       cluster.revision = equal ? clusters_[old->second].revision : next_revision_++;
     }
     taken.insert(cluster.id);
-    made_of.emplace(std::move(revisions), cluster.id);
+    const std::uint64_t first = revisions.front();
+    made_of.emplace(first, Made{std::move(revisions), cluster.id});
     for (const std::uint32_t piece : part.pieces) pieces_[piece].cluster = cluster.id;
   }
   for (const std::size_t i : made)

@@ -9,8 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <span>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace frontlux::planner::detail {
@@ -67,7 +68,11 @@ class FrontierClusters {
     std::vector<std::uint32_t> pieces;  // in their order
     std::size_t size = 0;               // [frontiers]
   };
-  using Revisions = std::vector<std::uint64_t>;  // of a cluster's pieces
+  using Ids = std::unordered_set<std::uint32_t>;
+  struct Made {
+    std::vector<std::uint64_t> revisions;  // of a cluster's pieces
+    std::uint32_t id;                      // of the cluster
+  };
 
   [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
     return make_key(key.x / edge_, key.y / edge_, key.z / edge_);
@@ -78,22 +83,22 @@ class FrontierClusters {
   [[nodiscard]] std::uint32_t piece_for(std::uint32_t small) const;
   void find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed);
   [[nodiscard]] std::vector<Part> joined_pieces() const;
-  [[nodiscard]] Revisions revisions_of(const Part& part) const;
-  [[nodiscard]] FrontierCluster make_cluster(const Part& part, const std::set<std::uint32_t>& taken);
-  [[nodiscard]] std::uint32_t name_for(const Keys& keys, const std::set<std::uint32_t>& taken);
+  [[nodiscard]] std::vector<std::uint64_t> revisions_of(const Part& part) const;
+  [[nodiscard]] FrontierCluster make_cluster(const Part& part, const Ids& taken);
+  [[nodiscard]] std::uint32_t name_for(const Keys& keys, const Ids& taken);
   void make_clusters();
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
-  std::map<std::uint32_t, std::size_t> places_;  // of the ids among the clusters
-  std::map<Revisions, std::uint32_t> made_of_;   // ids of the clusters
-  std::map<VoxelKey, Cube> cubes_;               // that hold frontiers
-  std::vector<Piece> pieces_ = {{}};             // 0 is never in use
-  std::vector<std::uint32_t> free_;              // numbers
-  BoxArray<std::uint32_t> piece_;                // number of each frontier's; 0 elsewhere
-  BoxArray<std::uint32_t> cluster_;              // that each voxel was in last
+  std::unordered_map<std::uint32_t, std::size_t> places_;  // of the ids among the clusters
+  std::unordered_map<std::uint64_t, Made> made_of_;        // by the revisions of the clusters' first pieces
+  std::map<VoxelKey, Cube> cubes_;                         // that hold frontiers
+  std::vector<Piece> pieces_ = {{}};                       // 0 is never in use
+  std::vector<std::uint32_t> free_;                        // numbers
+  BoxArray<std::uint32_t> piece_;                          // number of each frontier's; 0 elsewhere
+  BoxArray<std::uint32_t> cluster_;                        // that each voxel was in last
   std::uint32_t next_id_ = 1;
   std::uint64_t next_revision_ = 1;
   std::uint64_t next_piece_revision_ = 1;

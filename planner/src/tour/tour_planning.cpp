@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -118,7 +119,6 @@ std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
                          .gain = static_cast<double>(seen),
                          .yaw = yaw,
                          .hits = static_cast<std::uint32_t>(seen)});
-  std::ranges::stable_sort(cells, {}, &RenderedCell::cell);
   return cells;
 }
 
@@ -210,57 +210,65 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 }
 
 // Clusters near a robot one by one; of the others those together that lie in one zone and that the same
-// robots can see. Beyond a distance zones are as much wider as they are farther away, so that there are not
-// many.
+// robots can see. Beyond a distance zones are as much wider as they are farther away. The more stops there
+// would be, the less that distance is: the time of a planning does not grow with the map.
 std::vector<TourPlanning::Stop> TourPlanning::stops(std::span<const MotionState> starts) const {
-  constexpr double kOneEdge = 4.0;  // of what is near: up to here zones are of one size
-  struct Zone {
-    int edge;  // [voxels]
-    VoxelKey at;
+  constexpr std::size_t kMany = 200;
+  constexpr double kOneEdge = 4.0;  // of what is near: at most up to here zones are of one size
+  struct Far {
+    std::uint32_t cluster;
+    VoxelKey middle;
     std::vector<bool> seen_by;
-    auto operator<=>(const Zone&) const = default;
+    double nearest;  // of what is near
   };
-  std::vector<Stop> stops;
-  std::map<Zone, Stop> zones;
+  std::vector<Stop> near;
+  std::vector<Far> far;
   const auto clusters = clusters_.clusters();
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     const KeyBox& box = clusters[i].box;
     const VoxelKey middle =
         make_key((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
     std::vector<bool> seen_by;
-    double nearest = TourProblem::kNever;  // of what is near
+    double nearest = TourProblem::kNever;
     for (std::size_t r = 0; r < members_.size(); ++r) {
       seen_by.push_back(best_viewpoint(members_[r], i) != nullptr);
       const double distance = (lattice_.exact_center(middle) - starts[r].pose.position).norm();
       if (seen_by[r])
         nearest = std::min(nearest, distance / (options_.near * members_[r].robot.view.max_range));
     }
-    if (nearest == TourProblem::kNever) continue;
-    if (nearest <= 1.0) {
-      stops.push_back({i});
-      continue;
-    }
-    int edge = zone_edge_;
-    while (nearest > kOneEdge) {
-      edge *= 2;
-      nearest /= 2.0;
-    }
-    zones[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), seen_by}].push_back(i);
+    if (nearest <= 1.0)
+      near.push_back({i});
+    else if (nearest != TourProblem::kNever)
+      far.push_back({i, middle, std::move(seen_by), nearest});
   }
-  for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
-  return stops;
+  const auto zones = [&](double one_edge) {
+    std::map<std::tuple<int, VoxelKey, std::vector<bool>>, Stop> stops;
+    for (const auto& [cluster, middle, seen_by, nearest] : far) {
+      int edge = zone_edge_;  // [voxels]
+      for (double rest = nearest; rest > one_edge; rest /= 2.0) edge *= 2;
+      stops[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), seen_by}].push_back(cluster);
+    }
+    return stops;
+  };
+  double one_edge = kOneEdge;
+  auto stops = zones(one_edge);
+  while (near.size() + stops.size() > kMany && one_edge > 1.0) stops = zones(one_edge /= std::sqrt(2.0));
+  for (auto& [zone, stop] : stops) near.push_back(std::move(stop));
+  return near;
 }
 
 // The clusters of a stop, each time the nearest one.
 TourPlanning::Stop TourPlanning::in_order(const Member& member, const Stop& stop,
                                           Eigen::Vector3d from) const {
-  Stop rest = stop, order;
+  std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> rest;
+  for (const std::uint32_t cluster : stop)
+    rest.emplace_back(cluster, lattice_.exact_center(best_viewpoint(member, cluster)->cell));
+  Stop order;
   while (!rest.empty()) {
-    const auto nearest = std::ranges::min_element(rest, {}, [&](std::uint32_t cluster) {
-      return (lattice_.exact_center(best_viewpoint(member, cluster)->cell) - from).norm();
-    });
-    from = lattice_.exact_center(best_viewpoint(member, *nearest)->cell);
-    order.push_back(*nearest);
+    const auto nearest = std::ranges::min_element(
+        rest, {}, [&](const auto& cluster) { return (cluster.second - from).norm(); });
+    from = nearest->second;
+    order.push_back(nearest->first);
     rest.erase(nearest);
   }
   return order;
@@ -406,9 +414,13 @@ void TourPlanning::note_frontiers(const Query& query) {
         whose[id] = &member;
       }
   }
-  for (const VoxelKey& key : query.frontiers)
-    if (const std::uint32_t id = clusters_.cluster_of(key); id < whose.size() && whose[id] != nullptr)
-      whose[id]->frontiers.push_back(key);
+  std::vector<Member*> owners(query.frontiers.size());
+  for_each_index(owners.size(), [&](std::size_t i) {
+    const std::uint32_t id = clusters_.cluster_of(query.frontiers[i]);
+    owners[i] = id < whose.size() ? whose[id] : nullptr;
+  });
+  for (std::size_t i = 0; i < owners.size(); ++i)
+    if (owners[i] != nullptr) owners[i]->frontiers.push_back(query.frontiers[i]);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;

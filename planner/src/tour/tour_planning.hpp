@@ -80,7 +80,7 @@ class TourPlanning {
   /// The robot's tour as of the last update.
   [[nodiscard]] std::span<const TourStop> tour(std::size_t robot) const { return members_[robot].tour; }
   /// The places from which the robot that planned last sees clusters, one by one, and can get to: its stops
-  /// are chosen among them. Sorted by cell; the gain is what it sees of the cluster, the quality is left out.
+  /// are chosen among them. The gain is what it sees of the cluster, the quality is left out.
   [[nodiscard]] std::vector<RenderedCell> candidates(std::size_t robot) const;
   /// Frontiers that the robot will see from the first stop of its tour; sorted.
   [[nodiscard]] const std::vector<VoxelKey>& first_view(std::size_t robot) const {

@@ -32,6 +32,14 @@ TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge,
   count_ = {cubes(bounds.min.x, bounds.max.x), cubes(bounds.min.y, bounds.max.y),
             cubes(bounds.min.z, bounds.max.z)};
   cubes_.resize(count_[0] * count_[1] * count_[2]);
+  const auto numbers = [this](int low, int high, std::size_t step) {
+    std::vector<std::uint32_t> of_keys;
+    for (int key = low; key <= high; ++key)
+      of_keys.push_back(static_cast<std::uint32_t>(static_cast<std::size_t>((key - low) / edge_) * step));
+    return of_keys;
+  };
+  number_of_ = {numbers(bounds.min.x, bounds.max.x, count_[1] * count_[2]),
+                numbers(bounds.min.y, bounds.max.y, count_[2]), numbers(bounds.min.z, bounds.max.z, 1)};
   first_.resize(cubes_.size());
   for (std::size_t i = 0; i < cubes_.size(); ++i) {
     const auto at = [&](std::size_t place, int low) { return low + static_cast<int>(place) * edge_; };
@@ -46,8 +54,10 @@ TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge,
 
 std::size_t TravelGraph::cube_of(const VoxelKey& cell) const {
   const VoxelKey& low = part_.box().min;
-  const auto place = [this](int key, int min) { return static_cast<std::size_t>((key - min) / edge_); };
-  return (place(cell.x, low.x) * count_[1] + place(cell.y, low.y)) * count_[2] + place(cell.z, low.z);
+  const auto number = [this](std::size_t axis, int key) {
+    return number_of_[axis][static_cast<std::size_t>(key)];
+  };
+  return number(0, cell.x - low.x) + number(1, cell.y - low.y) + number(2, cell.z - low.z);
 }
 
 // Calls `visit(number)` for the cubes that meet a box.

@@ -117,6 +117,8 @@ class TravelGraph {
   Lattice lattice_;
   int edge_, spacing_;
   std::array<std::size_t, 3> count_{};  // of cubes
+  // For each key along an axis what it adds to the number of its cube: a division would take longer.
+  std::array<std::vector<std::uint32_t>, 3> number_of_;
   std::vector<Cube> cubes_;
   std::vector<std::uint32_t> first_;  // node of the first part of each cube
   BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
