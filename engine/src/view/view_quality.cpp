@@ -156,14 +156,15 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
                                 " m, but the caster's are of " +
                                 std::to_string(caster.lattice().resolution()) + " m");
   const std::size_t bins = this->bins();
+  const bool same = order == order_;
   std::vector<VoxelKey> keys(viewpoints.begin(), viewpoints.end());
-  std::vector<ViewQuality> values(keys.size());
-  std::vector<std::uint32_t> bin_hits(keys.size() * bins);
+  std::vector<ViewQuality> values = same ? values_ : std::vector<ViewQuality>(keys.size());
+  std::vector<std::uint32_t> bin_hits = same ? bin_hits_ : std::vector<std::uint32_t>(keys.size() * bins);
   std::vector<StaleViewpoint> stale;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const Viewpoint& viewpoint = (*order)[i];
     if (kept[i].stale.any()) stale.push_back({viewpoint.code, viewpoint.index, kept[i].stale});
-    if (kept[i].index == Kept::kNothing) continue;
+    if (same || kept[i].index == Kept::kNothing) continue;
     values[viewpoint.index] = values_[kept[i].index];
     std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i].index * bins), bins,
                 bin_hits.begin() + static_cast<std::ptrdiff_t>(viewpoint.index * bins));

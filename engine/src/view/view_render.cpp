@@ -1,5 +1,6 @@
 #include "view/view_render.hpp"
 
+#include "parallel/object_pool.hpp"
 #include "parallel/parallel_sort.hpp"
 #include "view/rank_draw.hpp"
 
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -44,7 +44,7 @@ struct Surroundings {
   }
 };
 
-// What a task needs for its tiles. Not thread-local: a task that waits may start another one on its thread.
+// What a task needs for its tiles.
 class TileRenderer {
  public:
   void render(const ViewScene& scene, std::span<const StaleViewpoint> tile, std::span<ViewQuality> values,
@@ -184,26 +184,6 @@ class TileRenderer {
   std::vector<std::uint8_t> visible_;
 };
 
-// Renderers that no task uses at the moment, with the memory they have grown.
-class SpareRenderers {
- public:
-  [[nodiscard]] std::unique_ptr<TileRenderer> take() {
-    const std::lock_guard lock(mutex_);
-    if (spares_.empty()) return std::make_unique<TileRenderer>();
-    auto renderer = std::move(spares_.back());
-    spares_.pop_back();
-    return renderer;
-  }
-  void give_back(std::unique_ptr<TileRenderer> renderer) {
-    const std::lock_guard lock(mutex_);
-    spares_.push_back(std::move(renderer));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<TileRenderer>> spares_;
-};
-
 }  // namespace
 
 std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints) {
@@ -219,13 +199,13 @@ std::vector<Viewpoint> sort_viewpoints(std::span<const VoxelKey> viewpoints) {
 void render_views(const ViewScene& scene, std::span<const StaleViewpoint> viewpoints,
                   std::span<ViewQuality> values, std::span<std::uint32_t> bin_hits) {
   const std::vector<std::size_t> tiles = tiles_of(viewpoints);
-  SpareRenderers spares;
+  ObjectPool<TileRenderer> renderers;
   for_each_range(tiles.size() - 1, [&](std::size_t begin, std::size_t end) {
-    auto renderer = spares.take();
+    auto renderer = renderers.take([] { return std::make_unique<TileRenderer>(); });
     for (std::size_t t = begin; t < end; ++t)
       renderer->render(scene, viewpoints.subspan(tiles[t], tiles[t + 1] - tiles[t]), values, bin_hits);
     renderer->finish(scene, values, bin_hits);
-    spares.give_back(std::move(renderer));
+    renderers.give_back(std::move(renderer));
   });
 }
 

@@ -1,5 +1,6 @@
 #include "view/exact/exact_render.hpp"
 
+#include "parallel/object_pool.hpp"
 #include "parallel/parallel_sort.hpp"
 #include "view/exact/view_window.hpp"
 
@@ -7,8 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace frontlux::detail {
 namespace {
@@ -75,10 +78,27 @@ std::vector<std::size_t> runs(std::span<const Placed> placed, const Key& key) {
   return begins;
 }
 
-// What a task needs for its columns of tiles.
-class ColumnRenderer {
+// What lies around a column of tiles.
+struct ColumnWindows {
+  ViewWindow free, targets;
+  bool any = false;  // target; else `free` is not filled
+
+  void look(const ExactScene& scene, const Tiling& tiling, const WindowLayout& layout,
+            std::span<const Placed> column) {
+    const std::array<int, 3> first = tiling.first_place(column.front());
+    const int top = tiling.first_place(column.back())[2];
+    targets.aim(layout, first, top);
+    any = targets.fill_targets(scene.targets, scene.view, scene.walk);
+    if (!any) return;
+    free.aim(layout, first, top);
+    free.fill_free(scene.grid, scene.walk);
+  }
+};
+
+// What a task needs for its tiles.
+class TileWalker {
  public:
-  ColumnRenderer(const ExactScene& scene, const Tiling& tiling, const RayTrie& trie)
+  TileWalker(const ExactScene& scene, const Tiling& tiling, const RayTrie& trie)
       : scene_(scene),
         tiling_(tiling),
         trie_(trie),
@@ -88,33 +108,21 @@ class ColumnRenderer {
   }
 
   // To `left`, at `number`, go the sectors of each viewpoint in which rays take less time.
-  void render(std::span<const Placed> column, std::span<ViewQuality> values,
+  void render(const ColumnWindows& windows, std::span<const Placed> tile, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits, std::span<SectorSet> left) {
-    const std::array<int, 3> first = tiling_.first_place(column.front());
-    const int top = tiling_.first_place(column.back())[2];
-    targets_.aim(trie_.layout(), first, top);
-    const bool any = targets_.fill_targets(scene_.targets, scene_.view, scene_.walk);
-    if (any) {
-      free_.aim(trie_.layout(), first, top);
-      free_.fill_free(scene_.grid, scene_.walk);
+    in_view_.clear();
+    seen_.clear();
+    for (const Placed& placed : tile) {
+      placed.sectors.clear(bins_of(placed, bin_hits));
+      left[placed.number] = {};
     }
-    const std::vector<std::size_t> tiles = runs(column, [](const Placed& p) { return p.order; });
-    for (std::size_t t = 0; t + 1 < tiles.size(); ++t) {
-      const auto tile = column.subspan(tiles[t], tiles[t + 1] - tiles[t]);
-      in_view_.clear();
-      seen_.clear();
-      for (const Placed& placed : tile) {
-        placed.sectors.clear(bins_of(placed, bin_hits));
-        left[placed.number] = {};
-      }
-      if (any) walk(tile, bin_hits, left);
-      for (const Placed& placed : tile) {
-        const auto bins = bins_of(placed, bin_hits);
-        const std::uint32_t in_view = in_view_.at(placed.place);
-        const std::uint32_t seen =
-            bins.empty() ? seen_.at(placed.place) : std::reduce(bins.begin(), bins.end());
-        values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
-      }
+    if (windows.any) walk(windows, tile, bin_hits, left);
+    for (const Placed& placed : tile) {
+      const auto bins = bins_of(placed, bin_hits);
+      const std::uint32_t in_view = in_view_.at(placed.place);
+      const std::uint32_t seen =
+          bins.empty() ? seen_.at(placed.place) : std::reduce(bins.begin(), bins.end());
+      values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
     }
   }
 
@@ -124,17 +132,18 @@ class ColumnRenderer {
     const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
     return bin_hits.subspan(placed.index * bins, bins);
   }
-  void walk(std::span<const Placed> tile, std::span<std::uint32_t> bin_hits, std::span<SectorSet> left) {
+  void walk(const ColumnWindows& windows, std::span<const Placed> tile, std::span<std::uint32_t> bin_hits,
+            std::span<SectorSet> left) {
     TileBits viewpoints{};
     for (const Placed& placed : tile) viewpoints.set(placed.place);
     const int z = tiling_.first_place(tile.front())[2];
-    const std::byte* const targets = targets_.level(z);
+    const std::byte *const targets = windows.targets.level(z), *const free = windows.free.level(z);
     for (const RayTrie::Sector& sector : trie_.sectors()) {
       TileBits concerned{};
       scene_.walk.gather(trie_, sector, targets, viewpoints, in_view_, groups_, concerned);
       if (scene_.azimuth_bins != 0) concerned &= find_stale(tile, sector.bin, left);
       if (!concerned.any()) continue;
-      scene_.walk.count(trie_, sector, free_.level(z), targets, groups_, concerned, reached_, seen_);
+      scene_.walk.count(trie_, sector, free, targets, groups_, concerned, reached_, seen_);
       if (scene_.azimuth_bins == 0) continue;
       for (const Placed* placed : stale_)
         bins_of(*placed, bin_hits)[static_cast<std::size_t>(sector.bin)] = seen_.at(placed->place);
@@ -160,7 +169,6 @@ class ColumnRenderer {
   const ExactScene& scene_;
   const Tiling& tiling_;
   const RayTrie& trie_;
-  ViewWindow free_, targets_;
   TileCounts in_view_, seen_;
   std::vector<TileBits> reached_, groups_;
   std::vector<const Placed*> stale_;
@@ -208,11 +216,24 @@ std::vector<StaleViewpoint> render_exactly(const ExactScene& scene,
                                                     dense.size() >= scene.thresholds.trie);
   if (trie) {
     const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
+    ObjectPool<TileWalker> walkers;
     for_each_range(columns.size() - 1, [&](std::size_t begin, std::size_t end) {
-      ColumnRenderer renderer(scene, tiling, *trie);
-      for (std::size_t c = begin; c < end; ++c)
-        renderer.render(std::span(dense).subspan(columns[c], columns[c + 1] - columns[c]), values, bin_hits,
-                        sectors_left);
+      ColumnWindows windows;
+      for (std::size_t c = begin; c < end; ++c) {
+        const auto column = std::span<const Placed>(dense).subspan(columns[c], columns[c + 1] - columns[c]);
+        windows.look(scene, tiling, trie->layout(), column);
+        // Without isolation this thread would start further columns while it waits, each with windows of its
+        // own.
+        run_isolated([&] {
+          const std::vector<std::size_t> tiles_there = runs(column, [](const Placed& p) { return p.order; });
+          for_each_index(tiles_there.size() - 1, [&](std::size_t t) {
+            auto walker = walkers.take([&] { return std::make_unique<TileWalker>(scene, tiling, *trie); });
+            walker->render(windows, column.subspan(tiles_there[t], tiles_there[t + 1] - tiles_there[t]),
+                           values, bin_hits, sectors_left);
+            walkers.give_back(std::move(walker));
+          });
+        });
+      }
     });
   }
   for (std::size_t i = 0; i < viewpoints.size(); ++i)
