@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -25,6 +26,7 @@ struct RayEnd {
   VoxelKey key;           ///< of the voxel in which it ends
   bool has_key = false;   ///< false if the point lies outside the key range: such a ray passes nothing
   bool hit = false;       ///< whether it ends in a hit
+  double reach = std::numeric_limits<double>::infinity();  ///< [m] how far it is followed at most
 };
 
 /// Where a voxel lies in a container of voxels, as a number that is linear in the key.
@@ -44,12 +46,13 @@ struct PathStart {
 };
 
 /// @param offset  from the origin to the end, in float as OctoMap subtracts them
+/// @param reach   [m] how far it is followed at most
 [[nodiscard]] inline PathStart path_start(const Lattice& lattice, const Eigen::Vector3f& origin,
                                           const VoxelKey& start, const Eigen::Vector3f& offset, float length,
-                                          const LinearPlaces& places) {
+                                          double reach, const LinearPlaces& places) {
   const std::array<std::uint16_t, 3> keys = {start.x, start.y, start.z};
   PathStart path;
-  path.length = static_cast<double>(length);
+  path.length = std::min(static_cast<double>(length), reach);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const float direction = offset[axis] / length;
@@ -159,7 +162,11 @@ void for_each_passed(const Lattice& lattice, const Eigen::Vector3f& origin, cons
       const Eigen::Vector3f offset = ray.point - origin;
       const auto length = static_cast<float>(octomap_norm(offset));
       if (!(length > 1e-15F)) continue;
-      lanes.load(lane, path_start(lattice, origin, start, offset, length, places), first, places.at(ray.key));
+      // The end of a ray that is followed for a part of the way has no place in a container of what it
+      // passes.
+      const bool whole = ray.reach == std::numeric_limits<double>::infinity();
+      lanes.load(lane, path_start(lattice, origin, start, offset, length, ray.reach, places), first,
+                 whole ? places.at(ray.key) : std::numeric_limits<std::int64_t>::min());
       return true;
     }
     return false;

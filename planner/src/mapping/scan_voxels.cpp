@@ -5,11 +5,45 @@
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <mutex>
 
 namespace frontlux::planner::detail {
 namespace {
+
+constexpr int kBeyond = 2;  // [voxels] more than a path may be off by rounding
+
+// [m] How far a ray from inside the bounds has to be followed, so that it has left them for certain.
+double reach_to_leave(const Lattice& lattice, const KeyBox& bounds, const Eigen::Vector3f& origin,
+                      const Eigen::Vector3f& end) {
+  const Eigen::Vector3d from = origin.cast<double>(), along = (end.cast<double>() - from).normalized();
+  const Eigen::Array3d beyond = Eigen::Array3d::Constant((kBeyond + 0.5) * lattice.resolution());
+  const Eigen::Vector3d low = lattice.exact_center(bounds.min).array() - beyond,
+                        high = lattice.exact_center(bounds.max).array() + beyond;
+  double reach = std::numeric_limits<double>::infinity();
+  for (Eigen::Index a = 0; a < 3; ++a)
+    if (along[a] != 0.0) reach = std::min(reach, ((along[a] > 0.0 ? high : low)[a] - from[a]) / along[a]);
+  return reach;
+}
+
+// Shortens rays that leave the bounds. Returns a box around all that rays pass in the key range.
+KeyBox limit(const Lattice& lattice, const KeyBox& bounds, const Eigen::Vector3f& origin,
+             const VoxelKey& start, std::span<RayEnd> rays) {
+  KeyBox box{start, start};
+  const KeyBox around = grown(bounds, kBeyond + 2);
+  for (RayEnd& ray : rays) {
+    if (!ray.has_key) continue;
+    VoxelKey last = ray.key;
+    if (bounds.contains(start) && !bounds.contains(ray.key)) {
+      ray.reach = reach_to_leave(lattice, bounds, origin, ray.point);
+      last = {std::clamp(last.x, around.min.x, around.max.x), std::clamp(last.y, around.min.y, around.max.y),
+              std::clamp(last.z, around.min.z, around.max.z)};
+    }
+    box = hull(box, {last, last});
+  }
+  return box;
+}
 
 template <class Voxels>
 std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice, const KeyBox& bounds,
@@ -35,7 +69,7 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
   Voxels all = none, hits = none;
   for (const auto& voxels : passed) all.add(*voxels);
   for (const RayEnd& ray : rays)
-    if (ray.has_key && ray.hit) hits.add(places.at(ray.key));
+    if (ray.has_key && ray.hit && bounds.contains(ray.key)) hits.add(places.at(ray.key));
   all.add(hits);
 
   std::vector<BrickUpdate> updates;
@@ -58,11 +92,9 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
 }  // namespace
 
 std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
-                                        const Eigen::Vector3f& origin, std::span<const RayEnd> rays) {
+                                        const Eigen::Vector3f& origin, std::span<RayEnd> rays) {
   const VoxelKey start = lattice.key(origin).value();
-  KeyBox box{start, start};
-  for (const RayEnd& ray : rays)
-    if (ray.has_key) box = hull(box, {ray.key, ray.key});
+  const KeyBox box = limit(lattice, bounds, origin, start, rays);
   if (const auto dense = DenseVoxels::make(box))
     return update_with(*dense, lattice, bounds, origin, start, rays);
   return update_with(SparseVoxels{}, lattice, bounds, origin, start, rays);

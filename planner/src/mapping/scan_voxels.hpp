@@ -20,9 +20,10 @@ struct BrickUpdate {
 };
 
 /// The voxels that the rays of one scan pass and hit, each once, inside `bounds`; bricks in octree order.
+/// Rays from inside the bounds are followed no further than they reach.
 /// @param origin  of all rays [m]; inside the key range
+/// @param rays    their `reach` is written
 [[nodiscard]] std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
-                                                      const Eigen::Vector3f& origin,
-                                                      std::span<const RayEnd> rays);
+                                                      const Eigen::Vector3f& origin, std::span<RayEnd> rays);
 
 }  // namespace frontlux::planner::detail

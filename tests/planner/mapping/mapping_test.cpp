@@ -236,6 +236,25 @@ TEST(Mapping, ScansEqualTheirDefinitionAndTheMirrorFollows) {
   }
 }
 
+// Rays that go far beyond the bounds: from inside them they are not followed to their ends.
+TEST(Mapping, RaysBeyondTheBoundsEqualTheirDefinition) {
+  Random random(7);
+  for (int round = 0; round < 40; ++round) {
+    const MappingOptions options{.resolution = 0.3, .bounds = box(-12, random.below(12))};
+    Mapping mapping(options);
+    ScanOracle oracle(options);
+    for (int i = 0; i < 5; ++i) {
+      Scan scan = random_scan(random, 0.3, 1 + random.below(100));
+      scan.max_range = 900.0;
+      for (float& range : scan.ranges) range *= random.one_in(2) ? 150.F : 1.F;
+      mapping.insert(scan);
+      oracle.insert(scan);
+      expect_same_nodes(mapping.tree(), oracle.tree(), "round " + std::to_string(round));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
 // A wall that lies on a voxel face belongs to the voxels behind it.
 TEST(Mapping, SurfaceOnAVoxelFaceFallsBehindIt) {
   Mapping mapping({.resolution = 0.3});

@@ -27,7 +27,7 @@ namespace frontlux::planner {
 /// The map that scans go into.
 struct MappingOptions {
   double resolution = 0.3;       ///< [m] edge of a voxel
-  KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched
+  KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched; rays are followed no further than that
   double surface_depth = 0.001;  ///< [m] how far behind a measured surface a scan's end point is put, so that
                                  ///< a surface that lies on a voxel face falls into the voxel behind it
 };
