@@ -36,6 +36,13 @@ inline double share_mapped(const TeamInWorld& team, const VoxelGrid& grid) {
   return sim::measure(team.truth, grid).of_observable();
 }
 
+/// The voxels that a body at a position is in, but for those that it only touches.
+inline KeyBox voxels_at(const planner::TravelOptions& travel, const Lattice& lattice,
+                        const Eigen::Vector3d& position) {
+  const Eigen::Vector3d half = travel.box() / 2 - Eigen::Vector3d::Constant(1e-4 * lattice.resolution());
+  return planner::voxels_of(lattice, {position - half, position + half});
+}
+
 /// A team that explores a world in motion.
 class TeamInMotion {
  public:

@@ -1,0 +1,161 @@
+// Robots in motion that could not go on: they plan anew, around what stopped them, or they are cut off.
+
+#include "planner/exploration/team_in_motion.hpp"
+
+#include <frontlux/planner/body_stencil.hpp>
+
+namespace frontlux::planner {
+namespace {
+
+using test::GoalChoice;
+using test::small_uav;
+using test::TeamInMotion;
+
+constexpr double kSample = 0.01;  // [s]
+
+// Explores for a while, and plans all that there is to plan.
+void begin_to_fly(TeamInMotion& scene) {
+  scene.explore(2.0);
+  while (scene.exploration().plan(scene.time())) {
+  }
+}
+
+TEST(StoppedRobots, PlansAnewForARobotThatCouldNotGoOn) {
+  TeamInMotion scene("room", {small_uav(), small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  // It met something that no sensor sees, where it was going.
+  const double time = scene.time() + 0.05;
+  const Lattice lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const Eigen::Vector3d next = exploration.at(0, time + 0.5).pose.position;
+  const VoxelKey cell = lattice.key(next).value();
+  ASSERT_NE(cell, lattice.key(rests.position).value()) << "the robot moves";
+  exploration.stopped(0, rests, time, {&cell, 1});
+  EXPECT_TRUE(test::same(exploration.at(0, time + 1.0).pose, rests));
+  EXPECT_TRUE(exploration.at(0, time + 1.0).velocity.isZero());
+  const auto planned = exploration.plan(time);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->robot, 0U);
+  EXPECT_EQ(planned->reason, PlanReason::kStopped);
+  EXPECT_EQ(planned->step.robots[0].blocked, std::vector<VoxelKey>{cell});
+  EXPECT_TRUE(planned->step.robots[1].blocked.empty());
+  const Trajectory& trajectory = planned->trajectory;
+  EXPECT_TRUE(test::same(trajectory.at(trajectory.begin()).pose, rests));
+  EXPECT_GT(trajectory.length(), 0.1);
+  for (double t = trajectory.begin(); t < trajectory.end(); t += kSample)
+    EXPECT_NE(lattice.key(trajectory.at(t).pose.position), cell);
+  // Only once.
+  for (int i = 0; i < 2; ++i) {
+    const auto again = exploration.plan(time);
+    EXPECT_TRUE(!again || again->robot != 0);
+  }
+}
+
+// A robot that touches something before it has left its cell must not go there again, or it would for ever.
+// Also where its body, between the middles of cells, is in voxels that are none of those around its cell.
+TEST(StoppedRobots, PlansAnewIfSomethingTurnsUpWhereItsBodyWillBe) {
+  int turned_up = 0;
+  for (double time = 2.0; time < 14.0; time += 0.4) {
+    TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+    std::optional<Trajectory> last;
+    scene.explore(time, [&](const PlannedMotion& now) { last = now.trajectory; });
+    ContinuousExploration& exploration = scene.exploration();
+    if (exploration.end()) break;
+    const TravelOptions& travel = exploration.options().team[0].robot.travel;
+    const VoxelGrid grid = scene.grid();
+    const BodyStencil stencil(travel, grid.lattice().resolution());
+    std::set<VoxelKey> around_cells;
+    std::map<VoxelKey, Eigen::Vector3d> from;
+    for (double t = scene.time() + 0.3; t < last->end(); t += kSample) {
+      const Eigen::Vector3d position = last->at(t).pose.position;
+      for_each_key(stencil.box_around(*grid.lattice().key(position)),
+                   [&](const VoxelKey& key) { around_cells.insert(key); });
+      for_each_key(test::voxels_at(travel, grid.lattice(), position), [&](const VoxelKey& key) {
+        if (grid.at(key) == Occupancy::kFree) from.emplace(key, position);
+      });
+    }
+    const auto found =
+        std::ranges::find_if(from, [&](const auto& entry) { return !around_cells.contains(entry.first); });
+    if (found == from.end()) continue;
+    const auto& [voxel, position] = *found;
+    const Eigen::Vector3d way = grid.lattice().exact_center(voxel) - position;
+    const Scan scan{
+        position.cast<float>(), 10.0, {way.normalized().cast<float>()}, {static_cast<float>(way.norm())}};
+    for (int hit = 0; hit < 10; ++hit) exploration.insert(0, exploration.at(0, scene.time()).pose, scan);
+    ASSERT_EQ(scene.grid().at(voxel), Occupancy::kOccupied);
+    const auto planned = exploration.plan(scene.time() + 0.25);
+    ASSERT_TRUE(planned) << time;
+    EXPECT_EQ(planned->reason, PlanReason::kBlocked) << time;
+    ++turned_up;
+  }
+  EXPECT_GT(turned_up, 3);
+}
+
+TEST(StoppedRobots, LeavesACellInWhichItWasStopped) {
+  TeamInMotion scene("room", {small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  const double time = scene.time() + 0.05;
+  const Lattice lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const VoxelKey cell = lattice.key(rests.position).value();
+  exploration.stopped(0, rests, time, {});
+  const auto planned = exploration.plan(time);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->step.robots[0].blocked, std::vector<VoxelKey>{cell});
+  EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_GT(planned->trajectory.length(), 0.0) << "it goes back the way it came";
+  const auto again = exploration.plan(planned->trajectory.end());
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->step.robots[0].goal.pose);
+  EXPECT_GT(again->trajectory.length(), 0.1);
+  for (double t = again->trajectory.begin(); t < again->trajectory.end(); t += kSample)
+    EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
+}
+
+// What it is stopped from is beside its way: it touches something within its cell.
+TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
+  TeamInMotion scene("room", {small_uav()});
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  const double time = scene.time() + 0.05;
+  const Lattice lattice = scene.grid().lattice();
+  const Pose rests = exploration.at(0, time).pose;
+  const VoxelKey here = lattice.key(rests.position).value();
+  const VoxelKey cell = lattice.key(exploration.at(0, time + 0.5).pose.position).value();
+  ASSERT_NE(cell, here);
+  exploration.stopped(0, rests, time, {&cell, 1});
+  const auto first = exploration.plan(time);
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(first->step.robots[0].goal.pose);
+  const double later = first->trajectory.begin();
+  exploration.stopped(0, rests, later, {&cell, 1});
+  const auto second = exploration.plan(later);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->step.robots[0].blocked, (std::vector{std::min(cell, here), std::max(cell, here)}));
+  EXPECT_EQ(second->step.robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_GT(second->trajectory.length(), 0.0) << "it goes back the way it came";
+}
+
+// Whatever they try, they are stopped where they are.
+TEST(StoppedRobots, EndsWithRobotsThatAreCutOff) {
+  for (const std::size_t robots : {1U, 2U}) {
+    TeamInMotion scene("room", std::vector(robots, small_uav()));
+    ContinuousExploration& exploration = scene.exploration();
+    begin_to_fly(scene);
+    double time = scene.time() + 0.05;
+    std::vector<Pose> rests;
+    for (std::size_t r = 0; r < robots; ++r) rests.push_back(exploration.at(r, time).pose);
+    ASSERT_NE(rests[0].position, scene.team().starts[0].pose.position) << "it has come from elsewhere";
+    for (int i = 0; i < 200 && !exploration.end(); ++i, time += 0.5) {
+      for (std::size_t r = 0; r < robots; ++r) exploration.stopped(r, rests[r], time, {});
+      while (exploration.plan(time)) {
+      }
+    }
+    EXPECT_EQ(exploration.end(), ExplorationEnd::kCutOff) << robots;
+  }
+}
+
+}  // namespace
+}  // namespace frontlux::planner
