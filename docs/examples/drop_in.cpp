@@ -7,7 +7,11 @@
 #include <vector>
 
 int main(int, char** arguments) {
-  octomap::OcTree tree(arguments[1]);
+  octomap::OcTree tree(arguments[1]);  // nothing is in it if there is no such file
+  if (tree.size() == 0) {
+    std::cerr << arguments[1] << " is no .bt file with a map\n";
+    return 2;
+  }
   const octomap::point3d origin(2.0F, 2.0F, 1.0F), direction(1.0F, 0.7F, 0.1F), sensor(5.0F, 5.0F, 1.5F);
   octomap::point3d end, theirs;
   octomap::Pointcloud scan;

@@ -88,6 +88,7 @@ void open_standard_streams() {
 void prepare_process() {
   open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit fails, as on a full disk
+  std::signal(SIGPIPE, SIG_IGN);  // so does one to a pipe that nobody reads any more
 }
 
 // Before the libraries begin: Debian 13's Ipopt starts MPI when it is loaded, which opens files, and writes

@@ -29,6 +29,15 @@ bool is_open_to_write(int stream) {
   return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
 }
 
+void give_up_broken_output() {
+  if (std::cout.flush()) return;
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  if (nowhere < 0) return;
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::close(nowhere);
+  std::cout.clear();
+}
+
 void ProgressLine::show(std::string_view text) const {
   if (visible_) std::cerr << '\r' << text.substr(0, columns() - 1) << "\033[K" << std::flush;
 }

@@ -15,6 +15,9 @@ namespace frontlux::app {
 /// @param stream  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] bool is_open_to_write(int stream);
 
+/// What is printed from now on goes nowhere, if standard output cannot be written to any more.
+void give_up_broken_output();
+
 /// A line on standard error that replaces itself, if there is a terminal to see it; gone in the end.
 class ProgressLine {
  public:

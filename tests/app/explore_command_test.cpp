@@ -161,6 +161,14 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   expect_refused(with({"--mode", "fast"}), {"--mode", "'fast'"});
   expect_refused(with({"--planner", "prm"}), {"--planner", "'prm'"});
   expect_refused(with({"--assign", "yes"}), {"--assign: 'yes' is none of on, off"});
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--assign", "off"},
+                                                 {"--lambda", "0.1"},
+                                                 {"--advance", "2"},
+                                                 {"--min-distance", "1"},
+                                                 {"--samples", "32"},
+                                                 {"--renderer", "rays"}})
+    expect_refused(with(option), {option.front() + " is not for tours", "--goal render"});
+  expect_refused(with({"--fix-every", "3"}), {"--fix-every is for --drift"});
   expect_refused(with({"--optimize", "1"}), {"--optimize", "'1'"});
   expect_refused(with({"--report", "maybe"}), {"--report", "'maybe'"});
   for (const char* number : {"-1", "1.5", "1025", "two", "", "99999999999999999999"})

@@ -64,6 +64,20 @@ TEST_F(HelpCommand, FailsWhenStandardOutputIsClosed) {
   }
 }
 
+// As in `frontlux ... | true`. The result of an exploration is in its folder.
+TEST_F(HelpCommand, OutputThatNobodyReadsStopsNoExploration) {
+  const std::string run = path("run"), command = test::quoted(FRONTLUX_COMMAND);
+  const auto code_of = [&](const std::string& words) {
+    const std::string piped = "{ sleep 0.2; " + command + " " + words + " 2>/dev/null; echo $? > " +
+                              test::quoted(path("code")) + "; } | true";
+    EXPECT_EQ(std::system(piped.c_str()), 0);
+    return test::content_of(path("code"));
+  };
+  EXPECT_EQ(code_of("world maze"), "1\n");
+  EXPECT_EQ(code_of("explore room --lockstep --max-steps 1 --report off -o " + test::quoted(run)), "0\n");
+  EXPECT_TRUE(std::filesystem::exists(run + "/run.json"));
+}
+
 TEST_F(HelpCommand, HelpIsACommandToo) {
   EXPECT_EQ(expect_answer({"help"}), expect_answer({"--help"}, {"help COMMAND"}));
   EXPECT_EQ(expect_answer({"help", "cast"}), expect_answer({"cast", "--help"}));

@@ -79,6 +79,7 @@ TEST_F(WorldCommand, TakesMaps) {
 
 TEST_F(WorldCommand, RefusesBadInput) {
   box("box.ply");
+  expect_refused({"-o", path("of_none.ply")}, {"--output: give the WORLD"});
   expect_refused({""}, {"''", "maze, factory, station, storage, room"});
   expect_refused({"hangar"}, {"'hangar'", "maze, factory, station, storage, room"});
   expect_refused({path("none.ply")}, {path("none.ply"), "no such file"});

@@ -20,8 +20,7 @@ enum class CasterKind : std::uint8_t {
   kFast,     ///< `make_ray_caster`
   kEmbree,   ///< `make_embree_ray_caster`; the same answers
   kGrid,     ///< `make_grid_ray_caster`; the same answers
-  kOctomap,  ///< `make_octomap_ray_caster`, the baseline; between voxel centres its rounding may change an
-             ///< answer
+  kOctomap,  ///< `make_octomap_ray_caster`, the baseline; what is visible may differ
 };
 
 inline constexpr std::array<std::pair<std::string_view, CasterKind>, 4> kCasterNames = {

@@ -260,7 +260,7 @@ Returns a dict of arrays:
 out: a dict with some of these names and arrays to write to; nothing else is computed or allocated.)")
       .def(
           "visible", &visible, py::arg("from_points"), py::arg("to_points"), py::arg("unknown") = "block",
-          R"(bool (...): whether nothing between the voxels of two points blocks the line from one to the other.
+          R"(bool (...): whether the line from one point reaches the voxel of the other, and nothing between blocks it.
 
 from_points, to_points: (..., 3) or (3,) points [m]; or uint16 keys, whose centres are then joined in exact integers.)")
       .def("count", &count, py::arg("origins"), py::arg("directions"), py::arg("max_range") = -1.0,

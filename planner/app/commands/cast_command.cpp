@@ -95,6 +95,12 @@ std::string name_of(RayStop stop) {
   return kNames[static_cast<std::size_t>(stop)];
 }
 
+const char* until(RayStop stop) {
+  if (stop == RayStop::kReached) return "";
+  return stop == RayStop::kOutOfRange ? " (the path passes beside the voxel of --to)"
+                                      : " (up to the voxel that blocks the view)";
+}
+
 void print_text(const Answer& answer) {
   const Hit& hit = answer.hit;
   std::string out = row("result", explain(hit.stop)) +
@@ -107,10 +113,7 @@ void print_text(const Answer& answer) {
                               (hit.stop == RayStop::kLeftMap ? " (with this one)" : " (before this one)"));
   if (answer.visible)
     out += row("visible", *answer.visible ? "yes, the voxel of --to is" : "no, the voxel of --to is not");
-  if (answer.before_to)
-    out += row("before --to", list(*answer.before_to) + (answer.before_to->stop == RayStop::kReached
-                                                             ? ""
-                                                             : " (up to the voxel that blocks the view)"));
+  if (answer.before_to) out += row("before --to", list(*answer.before_to) + until(answer.before_to->stop));
   std::cout << out;
 }
 
@@ -155,7 +158,8 @@ void add_cast_command(CLI::App& app) {
               kAboveZero);
   command.add("--unknown", options->unknown, "Unknown voxels block the ray or let it pass");
   command.group("Method and output");
-  command.add("--caster", options->caster, "Ray caster; all give the same answer");
+  command.add("--caster", options->caster,
+              "Ray caster; the first three give the same answer, octomap may call other voxels\nvisible");
   command.add_flag("--count", options->count, "Count the voxels crossed: by the ray, and before --to");
   command.add_flag("--json", options->json, "Print one JSON object");
   command.examples(R"(Examples:

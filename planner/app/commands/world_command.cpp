@@ -100,8 +100,9 @@ void add_world_command(CLI::App& app) {
   frontlux world factory --seed 7 -o factory.ply
 prints the measures of the seventh factory and writes it as a mesh.)");
   command.run([options, world] {
-    if (!world.given()) return print_list();
     const bool writes = !options->output.empty();
+    if (!world.given() && writes) throw BadInput("--output: give the WORLD that is to be written");
+    if (!world.given()) return print_list();
     if (writes) check_output(options->output, {".ply"}, std::array{options->source.world});
     const SourcedWorld sourced = make_world(options->source);
     if (writes) {

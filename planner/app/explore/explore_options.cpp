@@ -220,6 +220,18 @@ std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {
   return names;
 }
 
+std::vector<std::string_view> ignored_on_tours(const ExploreOptions& options) {
+  std::vector<std::string_view> names;
+  for (const auto& [given, name] : {std::pair(!options.assign, "assign"),
+                                    {options.lambda.has_value(), "lambda"},
+                                    {options.advance.has_value(), "advance"},
+                                    {options.min_distance.has_value(), "min-distance"},
+                                    {options.samples.has_value(), "samples"},
+                                    {options.renderer.has_value(), "renderer"}})
+    if (given) names.emplace_back(name);
+  return names;
+}
+
 void note_paths(ExploreOptions& options) {
   const auto absolute = [](const std::string& file) {
     return AbsolutePath{std::filesystem::absolute(file).lexically_normal().string()};

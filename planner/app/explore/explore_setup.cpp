@@ -95,6 +95,10 @@ std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
     throw BadInput("--" + std::string(errors.front()) +
                    " is not for --lockstep, in which robots stop and wait; leave one of the options out" +
                    or_in_task(options));
+  if (options.pose_errors.fix_every > 0.0 && options.pose_errors.drift == 0.0)
+    throw BadInput(
+        "--fix-every is for --drift, without which poses have no error; give both, or leave it out" +
+        or_in_task(options));
   std::vector<std::optional<double>> times(robots.size());
   const std::string giver = "--fail: " + quote(options.failures.word);
   for (const auto& [name, time] : options.failures.each) {
@@ -226,6 +230,11 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
     throw BadInput(std::string("--goal tour is not for ") +
                    (options.lockstep ? "--lockstep" : "--mode paper") +
                    "; give another goal, or leave it out" + or_in_task(options));
+  if (const auto ignored = ignored_on_tours(options); makes_tours(options) && !ignored.empty())
+    throw BadInput("--" + std::string(ignored.front()) +
+                   " is not for tours, whose stops are chosen in another way; give --goal render, cluster or "
+                   "nearest with it, or leave it out" +
+                   or_in_task(options));
   planner::ExplorationOptions exploration = options.lockstep ? planner::exploration_options(options.mode)
                                             : makes_tours(options)
                                                 ? planner::tour_options(options.source.resolution)

@@ -98,6 +98,7 @@ void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& en
     std::cout << result_line(run_json, run_);
   else if (!quiet_)
     print_summary(result, end);
+  if (!run_.json) give_up_broken_output();  // the result is in the folder
   for (const std::string& warning : result.warnings)
     std::cerr << in_red("warning: " + warning, STDERR_FILENO) << '\n';
 }

@@ -50,7 +50,8 @@ struct Recording {
   /// What holds for all steps.
   RecordingHead head;
   std::vector<RecordedStep> steps;  ///< from step 0
-  std::optional<std::string> end;   ///< `name_of(ExplorationEnd)` or "stopped"; nothing if it was cut off
+  std::optional<std::string> end;   ///< `name_of(ExplorationEnd)`, or a word of who ran it, as "coverage",
+                                    ///< "time_limit" and "stopped"; nothing if it was cut off
   bool truncated = false;           ///< an unfinished step at the end of the file was left out
   int format = kRecordingFormat;    ///< of the file; steps of format 4 have no trajectories and no assigned
                                     ///< frontiers, of 3 no tours

@@ -17,7 +17,8 @@ Eigen::Vector3d free_start(const World& world, double resolution, bool faces_awa
     text << world.name << ": the start " << start.x() << ", " << start.y() << ", " << start.z() << " " << why;
     throw std::runtime_error(text.str());
   };
-  if (!start.allFinite() || !world.bounds.contains(start)) refuse("is outside of the world's bounds");
+  if (!start.allFinite() || !world.bounds.contains(start))
+    refuse("is outside of the world's bounds: give another one, or a box that holds it");
   const Lattice lattice(resolution);
   Eigen::Vector3d free = start;
   const auto floor = floor_below(world.mesh, start);

@@ -30,7 +30,7 @@ enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNeares
 struct TaskRobot {
   /// Its body, its sensor and its limits.
   planner::RobotDescription description;
-  std::optional<planner::Pose> start;  ///< of its sensor; if not given, near the others'
+  std::optional<planner::Pose> start;  ///< of its sensor; if not given, near the world's
 };
 
 /// An exploration as a file describes it. What is not given is left to who runs it.
