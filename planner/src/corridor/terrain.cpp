@@ -9,6 +9,8 @@ Terrain::Terrain(Options options)
     : options_(std::move(options)),
       free_(options_.box),
       occupied_(options_.box),
+      open_(options_.box),
+      grounded_(options_.box),
       closed_(options_.box, true),
       empty_(options_.box, true),
       filled_(options_.box, true),
@@ -44,18 +46,49 @@ void Terrain::decide() {
     for (std::size_t w = 0; w < words; ++w) {
       const std::uint64_t hole = free_.bits[first + w] & no_ground[w];
       const std::uint64_t below = free_.bits[first + w] << 1 | (w > 0 ? free_.bits[first + w - 1] >> 63 : 0);
-      closed_.bits[first + w] = ~hole;
+      open_.bits[first + w] = hole;
+      grounded_.bits[first + w] = ~no_ground[w];
       filled_.bits[first + w] = ~(hole & below);
       // What is occupied has no ground if the voxel above it is occupied as well.
       const std::uint64_t above = (~clear[w] >> 1) | (w + 1 < words ? ~clear[w + 1] << 63 : 0);
       empty_.bits[first + w] = options_.gap ? clear[w] | above : clear[w];
     }
-    closed_.stale[i] = empty_.stale[i] = filled_.stale[i] = 1;
+    open_.stale[i] = empty_.stale[i] = filled_.stale[i] = 1;
   }
+  close_gaps();
   level_.erode(closed_);
   bare_.erode(empty_);
   if (options_.gap && !options_.exempt.empty()) firm_.erode(filled_);
-  for (VoxelColumns* done : {&free_, &occupied_, &closed_, &empty_, &filled_}) done->settle();
+  for (VoxelColumns* done : {&free_, &occupied_, &open_, &closed_, &empty_, &filled_}) done->settle();
+}
+
+// Where columns are stale, or those beside them that decide.
+void Terrain::close_gaps() {
+  const int size_x = open_.size_x(), size_y = open_.size_y(), reach = options_.bridge;
+  const auto is_inside = [&](int x, int y) { return x >= 0 && x < size_x && y >= 0 && y < size_y; };
+  for (int x = 0; x < size_x; ++x)
+    for (int y = 0; y < size_y; ++y) {
+      if (open_.stale[open_.flag(x, y)] == 0) continue;
+      for (int by = -reach; by <= reach; ++by)
+        for (const auto& [nx, ny] : {std::pair(x + by, y), {x, y + by}})
+          if (is_inside(nx, ny)) closed_.stale[closed_.flag(nx, ny)] = 1;
+    }
+  const auto ground = [&](int x, int y, std::size_t word) {
+    return is_inside(x, y) ? grounded_.bits[grounded_.column(x, y) + word] : 0;
+  };
+  for (int x = 0; x < size_x; ++x)
+    for (int y = 0; y < size_y; ++y) {
+      if (closed_.stale[closed_.flag(x, y)] == 0) continue;
+      for (std::size_t w = 0; w < open_.words(); ++w) {
+        std::uint64_t bridged = 0;
+        for (int back = 1; back <= reach; ++back)
+          for (int on = 1; back + on <= reach + 1; ++on)
+            bridged |= (ground(x - back, y, w) & ground(x + on, y, w)) |
+                       (ground(x, y - back, w) & ground(x, y + on, w));
+        const std::size_t word = open_.column(x, y) + w;
+        closed_.bits[word] = ~(open_.bits[word] & ~bridged);
+      }
+    }
 }
 
 // Whether all that is near is a hole. Beams that graze the floor make single ones where there is none.

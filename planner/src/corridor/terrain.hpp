@@ -13,8 +13,9 @@ namespace frontlux::planner::detail {
 /// Where what is known of the floor carries a robot.
 ///
 /// A voxel of floor does if one near it is known to be the ground, and none under the robot is known to be a
-/// hole: free, with no ground a little above or below it. Where floor need not be known and ground has
-/// several heights, only a hole of two voxels counts.
+/// hole: free, with no ground a little above or below it, and none on both sides within the width of a gap
+/// that the robot gets over. Where floor need not be known and ground has several heights, only a hole of two
+/// voxels counts.
 class Terrain {
  public:
   struct Options {
@@ -25,6 +26,7 @@ class Terrain {
     /// [voxels] How far ground may be below the middle. If it is not given, ground is any occupied voxel at
     /// the height of the middle; else one on top of which none is occupied.
     std::optional<int> gap = {};
+    int bridge = 0;                   ///< [voxels] gaps along x or y that are no wider are no holes
     std::vector<KeyBox> exempt = {};  ///< where floor need not be known, but holes all around count
   };
   explicit Terrain(Options options);
@@ -37,13 +39,16 @@ class Terrain {
 
  private:
   void decide();
+  void close_gaps();
   [[nodiscard]] bool is_open_all_around(const VoxelKey& floor) const;
 
   Options options_;
   VoxelColumns free_, occupied_;
-  VoxelColumns closed_;  // no holes
-  VoxelColumns empty_;   // no ground
-  VoxelColumns filled_;  // no holes of two voxels
+  VoxelColumns open_;      // free without ground
+  VoxelColumns grounded_;  // ground a little above or below
+  VoxelColumns closed_;    // no holes
+  VoxelColumns empty_;     // no ground
+  VoxelColumns filled_;    // no holes of two voxels
   Erosion level_, bare_, firm_;
 };
 

@@ -18,8 +18,8 @@
 namespace frontlux::planner {
 namespace {
 
-using detail::ground_extents, detail::half_width, detail::kMaxWindow, detail::kSlack, detail::layers_below,
-    detail::reached_from_below, detail::voxels_in;
+using detail::gap_width, detail::ground_extents, detail::half_width, detail::kMaxWindow, detail::kSlack,
+    detail::layers_below, detail::reached_from_below, detail::voxels_in;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSteepest = 80.0 * kDegree;
@@ -214,6 +214,7 @@ void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
   } else {
     ground.above = ground.below = reached_from_below(options, resolution);
     ground.gap = voxels_in(options.step, resolution) - 1;
+    ground.bridge = gap_width(options, resolution);
   }
   for (KeyBox& exempt : ground.exempt) {
     const bool flat = options.motion == Motion::kPlane;

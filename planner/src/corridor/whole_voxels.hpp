@@ -42,6 +42,11 @@ inline constexpr int kMaxWindow = 1024;
   return voxels_over(options.clearance(), resolution);
 }
 
+/// [voxels] The widest gap in the ground that a robot gets over: as wide as its highest step.
+[[nodiscard]] inline int gap_width(const TravelOptions& options, double resolution) {
+  return options.motion == Motion::kGround ? voxels_in(options.step, resolution) : 0;
+}
+
 /// [m] Along x and y: where a robot that drives needs ground.
 [[nodiscard]] inline Eigen::Vector2d ground_extents(const TravelOptions& options) {
   return options.ground_extents.value_or(Eigen::Vector2d(options.extents.x(), options.extents.y()));
@@ -55,8 +60,9 @@ inline constexpr int kMaxWindow = 1024;
   for (std::size_t a = 0; a < 3; ++a) reach[a] = std::max(-stencil.low()[a], stencil.high()[a]);
   if (!options.drives()) return reach;
   const Eigen::Vector2d extents = ground_extents(options);
-  reach[0] = std::max({reach[0], half_width(extents.x(), resolution), options.ground_reach});
-  reach[1] = std::max({reach[1], half_width(extents.y(), resolution), options.ground_reach});
+  const int gap = gap_width(options, resolution);
+  reach[0] = std::max({reach[0], half_width(extents.x(), resolution) + gap, options.ground_reach});
+  reach[1] = std::max({reach[1], half_width(extents.y(), resolution) + gap, options.ground_reach});
   const int floor = layers_below(options, resolution) + 1;
   const int deepest =
       options.motion == Motion::kPlane

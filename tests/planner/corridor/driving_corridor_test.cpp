@@ -90,6 +90,39 @@ TEST(TravelCorridor, DrivesUpSlopesAndStepsThatAreNotTooHigh) {
   VoxelGrid edge = ramp(40, 0);
   test::fill(edge, {key_at(3, -10, -5), key_at(14, 12, 0)}, Occupancy::kFree);
   EXPECT_EQ(farthest(edge, small_ugv()).first, 0) << "half of its body before the edge";
+
+  // A gap across, as wide as a step may be and wider.
+  const auto gap = [](int width) {
+    VoxelGrid grid = ramp(40, 0);
+    test::fill(grid, {key_at(3, -10, -5), key_at(2 + width, 12, 0)}, Occupancy::kFree);
+    return grid;
+  };
+  options.step = 0.15;
+  EXPECT_EQ(farthest(gap(1), options), std::pair(12, 4));
+  EXPECT_EQ(farthest(gap(2), options), std::pair(0, 4)) << "half of its body before the gap";
+  options.step = 0.25;
+  EXPECT_EQ(farthest(gap(2), options), std::pair(12, 4));
+  EXPECT_EQ(farthest(gap(3), options), std::pair(0, 4));
+}
+
+// Where a gap ends is in another brick than the gap.
+TEST(TravelCorridor, FollowsGapsWhoseSidesChange) {
+  VoxelGrid grid = ramp(40, 0);
+  test::fill(grid, {key_at(7, -10, -5), key_at(8, 12, 0)}, Occupancy::kFree);
+  TravelCorridor corridor(small_ugv(), grid.lattice(), kBounds);
+  corridor.update({grid}, key_at(-6, 0, 4));
+  const KeyBox side{key_at(7, -10, -5), key_at(7, 12, 0)};
+  std::vector<VoxelKey> changed;
+  for_each_key(side, [&](const VoxelKey& key) { changed.push_back(key); });
+  for (const Occupancy state : {Occupancy::kOccupied, Occupancy::kFree}) {
+    test::fill(grid, side, state);
+    corridor.update({grid, changed}, key_at(-6, 0, 4));
+    TravelCorridor anew(small_ugv(), grid.lattice(), kBounds);
+    anew.update({grid}, key_at(-6, 0, 4));
+    EXPECT_TRUE(std::ranges::equal(corridor.cells(), anew.cells()));
+    const bool crosses = corridor.contains(key_at(11, 0, 4));
+    EXPECT_EQ(crosses, state == Occupancy::kOccupied);
+  }
 }
 
 }  // namespace

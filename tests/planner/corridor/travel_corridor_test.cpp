@@ -74,11 +74,15 @@ bool Rule::is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const {
   };
   const VoxelKey floor = moved(cell, 0, 0, -down);
   if (!kBounds.contains(floor)) return false;
-  const auto is_hole = [&](const VoxelKey& v) {
-    bool has_ground = false;
-    for (int z = -climb; z <= climb; ++z)
-      has_ground = has_ground || is(moved(v, 0, 0, z), Occupancy::kOccupied);
-    return is(v, Occupancy::kFree) && !has_ground;
+  const auto has_ground = [&](const VoxelKey& v) {
+    bool has = false;
+    for (int z = -climb; z <= climb; ++z) has = has || is(moved(v, 0, 0, z), Occupancy::kOccupied);
+    return has && kBounds.contains(v);
+  };
+  const auto is_open = [&](const VoxelKey& v) { return is(v, Occupancy::kFree) && !has_ground(v); };
+  const auto is_hole = [&](const VoxelKey& v) {  // its steps are one voxel
+    return is_open(v) && !(has_ground(moved(v, -1, 0, 0)) && has_ground(moved(v, 1, 0, 0))) &&
+           !(has_ground(moved(v, 0, -1, 0)) && has_ground(moved(v, 0, 1, 0)));
   };
   const auto is_ground = [&](const VoxelKey& v) {
     return is(v, Occupancy::kOccupied) && !is(moved(v, 0, 0, 1), Occupancy::kOccupied);
@@ -86,7 +90,7 @@ bool Rule::is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const {
   for (const KeyBox& exempt : without_ground)
     if (exempt.contains(cell))
       return all_of(grown({floor, floor}, ground, ground, 0), [&](const VoxelKey& v) {
-        return !is_hole(v) || !is(moved(v, 0, 0, -1), Occupancy::kFree);
+        return !is_open(v) || !is(moved(v, 0, 0, -1), Occupancy::kFree);
       });
   return all_of(grown({floor, floor}, ground, ground, 0), [&](const VoxelKey& v) { return !is_hole(v); }) &&
          !all_of(grown({floor, floor}, 1, 1, 0), [&](const VoxelKey& v) { return !is_ground(v); });

@@ -90,7 +90,7 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// occupied voxel with none on top of it, from the lower face of the box down to one voxel less than a
   /// step. There is a hole where a floor voxel is known to be free, and none above or below it within a step
   /// and the rise of the steepest slope under half of the body, rounded up to whole voxels, is known to be
-  /// occupied.
+  /// occupied. A gap no wider than a step along x or y is no hole: such voxels are occupied on both sides.
   double step = 0.15;
   double slope = 20.0 * std::numbers::pi / 180.0;  ///< [rad] on the ground: the steepest, up to 80 degrees
 
