@@ -80,12 +80,16 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
   check_time(time);
   State::Member& member = state.members[robot];
-  member.motion = {Trajectory(pose, time)};
+  Pose rests = pose;
+  // It stays on its plane, whatever its localization says: a millimetre may be another layer of the map.
+  if (state.team.options.team[robot].robot.travel.motion == Motion::kPlane)
+    rests.position.z() = member.motion.at(time).pose.position.z();
+  member.motion = {Trajectory(rests, time)};
   member.stopped = true;
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
   const bool learns = !cells.empty() && (!member.planned || std::ranges::any_of(cells, is_new));
-  if (const auto here = state.team.lattice().key(pose.position); here && !learns) cells.push_back(*here);
+  if (const auto here = state.team.lattice().key(rests.position); here && !learns) cells.push_back(*here);
   member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
   state.team.block(robot, cells);
   state.tell_of_stop(robot, time);

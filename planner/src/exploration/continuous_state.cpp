@@ -138,8 +138,12 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     robot.gained = team.mapped_frontiers(robot.changed);
     members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
-    team.trails[r].insert(team.trails[r].end(), robot.planned.begin() + (team.number == 0 ? 0 : 1),
-                          robot.planned.end());
+    // Not where it cannot have been: it may go back over its trail.
+    std::copy_if(robot.planned.begin() + (team.number == 0 ? 0 : 1), robot.planned.end(),
+                 std::back_inserter(team.trails[r]), [&](const Pose& pose) {
+                   const auto key = team.lattice().key(pose.position);
+                   return key && team.mapping.bounds().contains(*key);
+                 });
   }
   clock.reset();
   return step;

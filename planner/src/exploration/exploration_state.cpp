@@ -57,8 +57,11 @@ ExplorationStep ExplorationState::new_step() const {
   return step;
 }
 
+// If it throws, it may be called again.
 void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   std::vector<TeamMember> team = options.team;
+  voxel_corridors.clear();
+  poses.clear();
   for (std::size_t r = 0; r < size(); ++r) {
     TravelOptions& travel = team[r].robot.travel;
     // No sensor sees the floor on which its robot stands.
@@ -74,13 +77,13 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
     voxel_corridors.back().emplace(by_voxels, lattice(), mapping.bounds());
   }
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
-  if (options.tours) {
-    std::vector<Robot> robots;
-    for (const TeamMember& member : team) robots.push_back(member.robot);
+  std::vector<Robot> robots;
+  for (const TeamMember& member : team) robots.push_back(member.robot);
+  GoalSelection checked(std::move(team), lattice(), mapping.bounds(), options.assign);
+  if (options.tours)
     tours.emplace(std::move(robots), poses, lattice(), mapping.bounds(),
                   TourPlanning::Options{.least_gain = options.epsilon});
-  }
-  selection.emplace(std::move(team), lattice(), mapping.bounds(), options.assign);
+  selection.emplace(std::move(checked));
   targets.resize(size());
   assigned.resize(size());
   trails.resize(size());

@@ -18,7 +18,7 @@ namespace frontlux::planner::detail {
 
 /// Frontiers that touch each other, in a box of bounded size: what a robot looks at from one place.
 struct FrontierCluster {
-  std::uint32_t id = 0;        ///< stays the same while most of its frontiers do; never used again
+  std::uint32_t id = 0;        ///< stays the same while most of its frontiers do
   std::uint64_t revision = 0;  ///< another one whenever its frontiers are others
   std::vector<VoxelKey> keys;  ///< sorted
   KeyBox box;                  ///< around them

@@ -9,6 +9,7 @@
 #include <bit>
 #include <iterator>
 #include <limits>
+#include <unordered_set>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -107,18 +108,15 @@ bool TravelGraph::read(Cube& cube, const TravelCorridor& corridor) {
 
 void TravelGraph::spread(Cube& cube) const {
   cube.spread.clear();
-  std::vector<std::pair<std::uint32_t, std::uint16_t>> taken;  // smaller cube and part
+  std::unordered_set<std::uint64_t> taken;  // smaller cubes and parts
   for_each_key(cube.cells, [&](const VoxelKey& key) {
     if (part_[key] == 0) return;
     const VoxelKey& low = cube.cells.min;
     const auto place = [this](int at, int from) {
       return static_cast<std::uint32_t>((at - from) / spacing_);
     };
-    const std::pair here{(place(key.x, low.x) * 64 + place(key.y, low.y)) * 64 + place(key.z, low.z),
-                         part_[key]};
-    if (std::ranges::find(taken, here) != taken.end()) return;
-    taken.push_back(here);
-    cube.spread.push_back(key);
+    const std::uint64_t smaller = (place(key.x, low.x) * 64 + place(key.y, low.y)) * 64 + place(key.z, low.z);
+    if (taken.insert(smaller << 16U | part_[key]).second) cube.spread.push_back(key);
   });
 }
 

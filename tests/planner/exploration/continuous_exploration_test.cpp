@@ -316,6 +316,11 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   wrong_if([](ExplorationOptions& wrong) { wrong.team[0].robot.view.max_range = -1.0; });
   wrong_if([&](ExplorationOptions& wrong) { wrong.team[0].options.lambda = nan; });
   EXPECT_EQ(name_of(PlanReason::kGoalSeen), "goal_seen");
+  // Too large a map is found out at the beginning, with tours as without, as often as it begins.
+  options.tours = true;
+  ContinuousExploration anywhere(options, Mapping({.resolution = 0.3}));
+  for (int i = 0; i < 2; ++i)
+    test::expect_complaint([&] { anywhere.begin(team.starts, 0.0); }, {"give smaller bounds"});
 }
 
 TEST(TourOptions, AskAStopForTenFrontiersButNotForMoreOrLessThanAnArea) {

@@ -114,6 +114,23 @@ TEST(StoppedRobots, LeavesACellInWhichItWasStopped) {
     EXPECT_NE(lattice.key(again->trajectory.at(t).pose.position), cell);
 }
 
+// Its localization says that it stands somewhat lower, in the layer below that of its sensor.
+TEST(StoppedRobots, StayOnTheirPlane) {
+  TeamInMotion scene("room", {ugv_description()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+  ContinuousExploration& exploration = scene.exploration();
+  begin_to_fly(scene);
+  const double time = scene.time() + 0.05;
+  const Pose here = exploration.at(0, time).pose;
+  Pose lower = here;
+  lower.position.z() -= 0.3;
+  exploration.stopped(0, lower, time, {});
+  EXPECT_EQ(exploration.at(0, time).pose.position, here.position);
+  const auto planned = exploration.plan(time);
+  ASSERT_TRUE(planned);
+  EXPECT_GT(planned->trajectory.length(), 0.0) << "it goes back the way it came";
+  EXPECT_FALSE(exploration.end());
+}
+
 // What it is stopped from is beside its way: it touches something within its cell.
 TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
   TeamInMotion scene("room", {small_uav()});
