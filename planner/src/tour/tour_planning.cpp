@@ -211,7 +211,7 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 
 // Clusters near a robot one by one; of the others those together that lie in one zone and that the same
 // robots can see. Beyond a distance zones are as much wider as they are farther away. The more stops there
-// would be, the less that distance is: the time of a planning does not grow with the map.
+// would be, the less that distance is, so that what is far does not make plannings longer and longer.
 std::vector<TourPlanning::Stop> TourPlanning::stops(std::span<const MotionState> starts) const {
   constexpr std::size_t kMany = 200;
   constexpr double kOneEdge = 4.0;  // of what is near: at most up to here zones are of one size
