@@ -87,9 +87,7 @@ std::string or_in_task(const ExploreOptions& options) {
   return options.task.empty() ? "" : " (some options are those of the task " + options.task + ")";
 }
 
-// When each robot fails [s].
-std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
-                                               std::span<const RobotDescription> robots) {
+void check_errors_in_motion(const ExploreOptions& options) {
   const std::vector<std::string_view> errors = errors_in_motion(options);
   if (options.lockstep && !errors.empty())
     throw BadInput("--" + std::string(errors.front()) +
@@ -99,6 +97,11 @@ std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
     throw BadInput(
         "--fix-every is for --drift, without which poses have no error; give both, or leave it out" +
         or_in_task(options));
+}
+
+// When each robot fails [s].
+std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
+                                               std::span<const RobotDescription> robots) {
   std::vector<std::optional<double>> times(robots.size());
   const std::string giver = "--fail: " + quote(options.failures.word);
   for (const auto& [name, time] : options.failures.each) {
@@ -329,6 +332,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
   work_on(options.task.empty() ? options.source.world : options.task, "give a coarser --resolution", [&] {
     setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
     setup.exploration = exploration_options(options, setup.head.robots);
+    check_errors_in_motion(options);
     setup.failures = failures_of(options, setup.head.robots);
     const GivenStarts given = given_starts(options, setup.head.robots);
     const WorldSource source = source_of(options, given);

@@ -1,5 +1,6 @@
 // Corridors against definitions applied cell by cell, and Dijkstra's algorithm.
 
+#include "corridor/whole_voxels.hpp"
 #include "planner/corridor/dijkstra.hpp"
 #include "support/complaint.hpp"
 #include "support/random.hpp"
@@ -243,6 +244,36 @@ TEST(TravelCorridor, EqualsANewCorridorAfterEveryChange) {
 }
 
 // Near by the same as with all cells, as far as the paths do not lead away and back; far away by a search.
+// Who follows the map looks at so many cells around what has changed.
+TEST(TravelCorridor, NoVoxelDecidesBeyondItsReach) {
+  for (const Robot& robot : robots()) {
+    Random random(8);
+    VoxelGrid grid = random_map(5, robot.resolution, 60);
+    TravelCorridor corridor(robot.options, grid.lattice(), kBounds);
+    const auto [x, y, z] = detail::deciding_reach(robot.options, robot.resolution);
+    const auto fitting = [&] {
+      std::set<VoxelKey> cells;
+      for_each_key(kBounds, [&](const VoxelKey& key) {
+        if (corridor.fits(key)) cells.insert(key);
+      });
+      return cells;
+    };
+    corridor.update({grid}, robot.at);
+    std::set<VoxelKey> before = fitting();
+    for (int step = 0; step < 60; ++step) {
+      const VoxelKey changed = random.key_in(kBounds);
+      grid.set(changed, random.state());
+      corridor.update({grid, {&changed, 1}}, robot.at);
+      const std::set<VoxelKey> now = fitting();
+      std::vector<VoxelKey> different;
+      std::ranges::set_symmetric_difference(before, now, std::back_inserter(different));
+      const KeyBox around = grown({changed, changed}, x, y, z);
+      for (const VoxelKey& cell : different) ASSERT_TRUE(around.contains(cell));
+      before = now;
+    }
+  }
+}
+
 TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
   std::size_t near = 0, none = 0;
   for (const Robot& robot : robots()) {

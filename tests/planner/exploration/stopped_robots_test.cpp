@@ -13,21 +13,27 @@ using test::TeamInMotion;
 
 constexpr double kSample = 0.01;  // [s]
 
-// Explores for a while, and plans all that there is to plan.
-void begin_to_fly(TeamInMotion& scene) {
-  scene.explore(2.0);
-  while (scene.exploration().plan(scene.time())) {
+// A team that has explored the room for a while and planned all that there is to plan, and what its first
+// robot does a moment later.
+struct UnderWay {
+  TeamInMotion scene;
+  ContinuousExploration& exploration = scene.exploration();
+  double time = begin();  // [s]
+  Lattice lattice = scene.grid().lattice();
+  Pose rests = exploration.at(0, time).pose;
+
+  double begin() {
+    scene.explore(2.0);
+    while (exploration.plan(scene.time())) {
+    }
+    return scene.time() + 0.05;
   }
-}
+};
 
 TEST(StoppedRobots, PlansAnewForARobotThatCouldNotGoOn) {
-  TeamInMotion scene("room", {small_uav(), small_uav()});
-  ContinuousExploration& exploration = scene.exploration();
-  begin_to_fly(scene);
+  UnderWay team{TeamInMotion("room", {small_uav(), small_uav()})};
+  auto& [scene, exploration, time, lattice, rests] = team;
   // It met something that no sensor sees, where it was going.
-  const double time = scene.time() + 0.05;
-  const Lattice lattice = scene.grid().lattice();
-  const Pose rests = exploration.at(0, time).pose;
   const Eigen::Vector3d next = exploration.at(0, time + 0.5).pose.position;
   const VoxelKey cell = lattice.key(next).value();
   ASSERT_NE(cell, lattice.key(rests.position).value()) << "the robot moves";
@@ -93,12 +99,8 @@ TEST(StoppedRobots, PlansAnewIfSomethingTurnsUpWhereItsBodyWillBe) {
 }
 
 TEST(StoppedRobots, LeavesACellInWhichItWasStopped) {
-  TeamInMotion scene("room", {small_uav()});
-  ContinuousExploration& exploration = scene.exploration();
-  begin_to_fly(scene);
-  const double time = scene.time() + 0.05;
-  const Lattice lattice = scene.grid().lattice();
-  const Pose rests = exploration.at(0, time).pose;
+  UnderWay team{TeamInMotion("room", {small_uav()})};
+  auto& [scene, exploration, time, lattice, rests] = team;
   const VoxelKey cell = lattice.key(rests.position).value();
   exploration.stopped(0, rests, time, {});
   const auto planned = exploration.plan(time);
@@ -116,11 +118,8 @@ TEST(StoppedRobots, LeavesACellInWhichItWasStopped) {
 
 // Its localization says that it stands somewhat lower, in the layer below that of its sensor.
 TEST(StoppedRobots, StayOnTheirPlane) {
-  TeamInMotion scene("room", {ugv_description()}, sim::AtContact::kGoOn, GoalChoice::kTours);
-  ContinuousExploration& exploration = scene.exploration();
-  begin_to_fly(scene);
-  const double time = scene.time() + 0.05;
-  const Pose here = exploration.at(0, time).pose;
+  UnderWay team{TeamInMotion("room", {ugv_description()}, sim::AtContact::kGoOn, GoalChoice::kTours)};
+  auto& [scene, exploration, time, lattice, here] = team;
   Pose lower = here;
   lower.position.z() -= 0.3;
   exploration.stopped(0, lower, time, {});
@@ -133,12 +132,8 @@ TEST(StoppedRobots, StayOnTheirPlane) {
 
 // What it is stopped from is beside its way: it touches something within its cell.
 TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
-  TeamInMotion scene("room", {small_uav()});
-  ContinuousExploration& exploration = scene.exploration();
-  begin_to_fly(scene);
-  const double time = scene.time() + 0.05;
-  const Lattice lattice = scene.grid().lattice();
-  const Pose rests = exploration.at(0, time).pose;
+  UnderWay team{TeamInMotion("room", {small_uav()})};
+  auto& [scene, exploration, time, lattice, rests] = team;
   const VoxelKey here = lattice.key(rests.position).value();
   const VoxelKey cell = lattice.key(exploration.at(0, time + 0.5).pose.position).value();
   ASSERT_NE(cell, here);
@@ -158,10 +153,8 @@ TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
 // Whatever they try, they are stopped where they are.
 TEST(StoppedRobots, EndsWithRobotsThatAreCutOff) {
   for (const std::size_t robots : {1U, 2U}) {
-    TeamInMotion scene("room", std::vector(robots, small_uav()));
-    ContinuousExploration& exploration = scene.exploration();
-    begin_to_fly(scene);
-    double time = scene.time() + 0.05;
+    UnderWay team{TeamInMotion("room", std::vector(robots, small_uav()))};
+    auto& [scene, exploration, time, lattice, first_rests] = team;
     std::vector<Pose> rests;
     for (std::size_t r = 0; r < robots; ++r) rests.push_back(exploration.at(r, time).pose);
     ASSERT_NE(rests[0].position, scene.team().starts[0].pose.position) << "it has come from elsewhere";
