@@ -1,5 +1,6 @@
 // Corridors of robots that drive: where floor, slopes and steps let them go.
 
+#include "corridor/whole_voxels.hpp"
 #include "support/voxel_keys.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
@@ -123,6 +124,21 @@ TEST(TravelCorridor, FollowsGapsWhoseSidesChange) {
     const bool crosses = corridor.contains(key_at(11, 0, 4));
     EXPECT_EQ(crosses, state == Occupancy::kOccupied);
   }
+}
+
+// A voxel beside a gap decides about cells from which the gap is under the robot's edge.
+TEST(TravelCorridor, SidesOfGapsDecideWithinTheirReach) {
+  VoxelGrid grid = ramp(40, 0);
+  test::fill(grid, {key_at(8, -10, -5), key_at(8, 12, 0)}, Occupancy::kFree);
+  TravelCorridor corridor(small_ugv(), grid.lattice(), kBounds);
+  corridor.update({grid}, key_at(-6, 0, 4));
+  const VoxelKey side = key_at(9, 0, 0), cell = key_at(6, 0, 4);
+  ASSERT_TRUE(corridor.fits(cell));
+  grid.set(side, Occupancy::kFree);
+  corridor.update({grid, {&side, 1}}, key_at(-6, 0, 4));
+  EXPECT_FALSE(corridor.fits(cell));
+  const auto [x, y, z] = detail::deciding_reach(small_ugv(), grid.resolution());
+  EXPECT_TRUE(grown({side, side}, x, y, z).contains(cell));
 }
 
 }  // namespace
