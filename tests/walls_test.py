@@ -23,7 +23,7 @@ TARGETS = {
 # Folders in the order of the flow of data: each includes itself and those before it.
 FLOW = {
     "engine": ["file", "isa", "voxel", "parallel", "walk", "packet", "embree", "fast", "octomap", "frontier", "view"],
-    "planner": ["casting", "mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "tour",
+    "planner": ["casting", "mapping", "frontier", "corridor", "path", "motion", "assignment", "goal", "routing", "tour",
                 "view_path", "exploration", "recording"],
 }
 

@@ -150,7 +150,7 @@ std::vector<YawMethod> yaw_methods() {
   auto fine = with(YawStart::kGreedy, false, GainMode::kOr);
   fine.yaw_bins = 60;
   return {{"tangent", std::nullopt},
-          {"tangent, Ipopt, SUM (paper)", planner::paper_path_options()},
+          {"tangent, Ipopt, SUM (paper)", planner::paper_optimizer_options()},
           {"tangent, Ipopt, OR", with(YawStart::kTangent, true, GainMode::kOr)},
           {"best of 24 bins", with(YawStart::kBestBins, false, GainMode::kSum)},
           {"best of 24 bins, Ipopt, SUM", with(YawStart::kBestBins, true, GainMode::kSum)},

@@ -44,8 +44,8 @@ std::vector<VoxelKey> seen_from(const VoxelKey& place, const VoxelGrid& grid, co
   const double range = look_range(grid);
   std::vector<KeySegment> segments;
   for_each_key(grown({place, place}, static_cast<int>(range)), [&](const VoxelKey& key) {
-    const Eigen::Vector3d way(key.x - place.x, key.y - place.y, key.z - place.z);
-    if (way.norm() <= range && grid.at(key) != Occupancy::kUnknown) segments.push_back({place, key});
+    const Eigen::Vector3d offset(key.x - place.x, key.y - place.y, key.z - place.z);
+    if (offset.norm() <= range && grid.at(key) != Occupancy::kUnknown) segments.push_back({place, key});
   });
   std::vector<std::uint8_t> visible(segments.size());
   caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);

@@ -1,6 +1,7 @@
 #include "tours/hindsight_tour.hpp"
 
-#include "tour/tour_search.hpp"
+#include "routing/measured_tours.hpp"
+#include "routing/tour_search.hpp"
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
@@ -20,9 +21,8 @@ namespace frontlux::bench {
 namespace {
 
 using planner::TravelCorridor, planner::TravelOptions;
-using planner::detail::NumberTable, planner::detail::shortened_tours, planner::detail::TourProblem;
-
-using Tour = std::vector<std::uint32_t>;
+using planner::detail::MeasuredTours, planner::detail::NumberTable, planner::detail::shortened_tours,
+    planner::detail::Tour, planner::detail::TourProblem;
 
 void check(const Lattice& lattice, const KeyBox& bounds, std::span<const Eigen::Vector3d> places) {
   for (const Eigen::Vector3d& place : places)
@@ -78,10 +78,14 @@ Tour nearest_neighbours(const TourProblem& problem, std::uint32_t first) {
   return tour;
 }
 
+double length(const TourProblem& problem, const Tour& tour) {
+  return MeasuredTours(problem, {tour}).lengths.front();
+}
+
 // One search makes only so many changes.
 Tour shortest_from(const TourProblem& problem, Tour tour) {
-  for (double before = TourProblem::kNever; problem.length(0, tour) < before;) {
-    before = problem.length(0, tour);
+  for (double before = TourProblem::kNever; length(problem, tour) < before;) {
+    before = length(problem, tour);
     tour = shortened_tours(problem, {std::move(tour)}).front();
   }
   return tour;
@@ -92,7 +96,7 @@ Tour shortest_tour(const TourProblem& problem) {
   for (std::uint32_t first = 0; first < problem.stops; ++first)
     tours.push_back(nearest_neighbours(problem, first));
   for (Tour& tour : tours) tour = shortest_from(problem, std::move(tour));
-  return *std::ranges::min_element(tours, {}, [&](const Tour& tour) { return problem.length(0, tour); });
+  return *std::ranges::min_element(tours, {}, [&](const Tour& tour) { return length(problem, tour); });
 }
 
 }  // namespace

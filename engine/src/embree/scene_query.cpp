@@ -1,6 +1,6 @@
 #include "embree/scene_query.hpp"
 
-#include "walk/ray_end.hpp"
+#include "walk/end_ray.hpp"
 #include "walk/walk.hpp"
 
 #include <algorithm>

@@ -17,16 +17,16 @@ constexpr std::size_t kMostBytes = std::size_t{2} << 30U;
 
 }  // namespace
 
-TableOfMoment::TableOfMoment(const VoxelGrid& grid, std::shared_ptr<Spare<MapTable>> spare,
+TableSnapshot::TableSnapshot(const VoxelGrid& grid, std::shared_ptr<Spare<MapTable>> spare,
                              const std::function<OpenVoxels()>& make)
-    : spare_(std::move(spare)), of_(spare_->take()) {
-  if (of_ && of_->table.update(of_->grid, grid))
-    of_->grid = grid;
+    : spare_(std::move(spare)), map_table_(spare_->take()) {
+  if (map_table_ && map_table_->table.update(map_table_->grid, grid))
+    map_table_->grid = grid;
   else
-    of_ = std::make_unique<MapTable>(MapTable{make(), grid});
+    map_table_ = std::make_unique<MapTable>(MapTable{make(), grid});
 }
 
-std::size_t TableOfMoment::memory_bytes() const {
+std::size_t TableSnapshot::memory_bytes() const {
   return table().memory_bytes() +
          spare_->measured([](const MapTable& spare) { return spare.table.memory_bytes(); });
 }
@@ -75,7 +75,7 @@ MapTables::MapTables(const VoxelGrid& grid, const MapTables& before)
 // One table; or sectors, if that is too large and they are not.
 void MapTables::use_whole(std::shared_ptr<Spare<MapTable>> spare) {
   std::optional<KeyBox> known;
-  whole_ = std::make_unique<TableOfMoment>(grid_, std::move(spare), [&] {
+  whole_ = std::make_unique<TableSnapshot>(grid_, std::move(spare), [&] {
     known = grid_.known_bounds();
     return OpenVoxels(grid_, unknown_, known, kAllVoxels);
   });
@@ -100,7 +100,7 @@ const OpenVoxels* MapTables::sector(std::uint32_t number) const {
     if (bytes_ > kMostBytes) return nullptr;
     // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
     run_isolated([&] {
-      sector.table = std::make_unique<TableOfMoment>(grid_, sector.history->spare, [&] {
+      sector.table = std::make_unique<TableSnapshot>(grid_, sector.history->spare, [&] {
         return OpenVoxels(grid_, unknown_, known_, plan_->window(number));
       });
     });

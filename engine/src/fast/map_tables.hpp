@@ -27,23 +27,23 @@ struct MapTable {
 
 /// A table of a map as it is at one moment. It is the table of an earlier moment, brought up to date, if
 /// there is a spare one.
-class TableOfMoment {
+class TableSnapshot {
  public:
   /// @param make  makes the table anew
-  TableOfMoment(const VoxelGrid& grid, std::shared_ptr<Spare<MapTable>> spare,
+  TableSnapshot(const VoxelGrid& grid, std::shared_ptr<Spare<MapTable>> spare,
                 const std::function<OpenVoxels()>& make);
-  ~TableOfMoment() { spare_->give_back(std::move(of_)); }
-  TableOfMoment(const TableOfMoment&) = delete;
-  TableOfMoment& operator=(const TableOfMoment&) = delete;
+  ~TableSnapshot() { spare_->give_back(std::move(map_table_)); }
+  TableSnapshot(const TableSnapshot&) = delete;
+  TableSnapshot& operator=(const TableSnapshot&) = delete;
 
-  [[nodiscard]] const OpenVoxels& table() const { return of_->table; }
+  [[nodiscard]] const OpenVoxels& table() const { return map_table_->table; }
   [[nodiscard]] const std::shared_ptr<Spare<MapTable>>& spare() const { return spare_; }
   /// With the spare one.
   [[nodiscard]] std::size_t memory_bytes() const;
 
  private:
   std::shared_ptr<Spare<MapTable>> spare_;
-  std::unique_ptr<MapTable> of_;
+  std::unique_ptr<MapTable> map_table_;
 };
 
 /// How a map that is too wide for one table is divided: into square sectors of all heights. The table of a
@@ -92,14 +92,14 @@ class MapTables {
   };
   struct Sector {
     std::shared_ptr<SectorHistory> history;
-    std::unique_ptr<const TableOfMoment> table;
+    std::unique_ptr<const TableSnapshot> table;
   };
 
   void use_whole(std::shared_ptr<Spare<MapTable>> spare);
 
   VoxelGrid grid_;
   UnknownPolicy unknown_;
-  std::unique_ptr<const TableOfMoment> whole_;
+  std::unique_ptr<const TableSnapshot> whole_;
   std::optional<SectorPlan> plan_;  // if it is divided
   KeyBox known_;                    // likewise: around all that is known
   mutable std::mutex mutex_;

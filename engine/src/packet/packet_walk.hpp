@@ -43,11 +43,11 @@ struct PacketLines {
 };
 
 /// Where the walk of a ray ended: the table's index of the closed voxel that stopped it, or one of these.
-enum RayEnd : std::uint32_t {
+enum WalkEnd : std::uint32_t {
   kWentThrough = ~0U,     ///< nothing stopped it within `walked_length`
   kTooCloseToTell = ~1U,  ///< it passed an edge closer than the rounding of times
   kNeverStarted = ~2U,    ///< it does not start in an open voxel of the table, or has no unit direction
-  kFirstRayEnd = kNeverStarted
+  kFirstWalkEnd = kNeverStarted
 };
 
 /// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped.
@@ -57,7 +57,7 @@ struct RayBatch {
   alignas(64) PerAxisAndLine<float> direction;  ///< as `normalized_as_octomap` returns it
   alignas(64) PerLine<double> max_range;        ///< [m]
 
-  alignas(64) PerLine<std::uint32_t> stopped_at;  ///< an index or a `RayEnd`
+  alignas(64) PerLine<std::uint32_t> stopped_at;  ///< an index or a `WalkEnd`
   alignas(64) PerAxisAndLine<std::int32_t> cell;  ///< of the voxel, from key 0; may lie outside the key range
   alignas(64) PerAxisAndLine<float> end;          ///< [m] its centre
   alignas(64) PerAxisAndLine<float> entry;        ///< [m] where the ray enters it

@@ -160,7 +160,7 @@ template <LineKind kKind, bool kJumps, class Finish>
       if constexpr (kKind == LineKind::kSegment) {
         p.steps = Lanes::subtract(p.steps, Lanes::time(1));
         goes_on = Lanes::less(Lanes::time(0), p.steps);
-        // Ties go to z before y before x (rule 5): on the way back to x before y before z.
+        // Ties go to z before y before x (rule 5): walked backward to x before y before z.
         const M y_before_x = Lanes::less(p.ty, p.tx), z_next = Lanes::less(p.tz, Lanes::min(p.tx, p.ty));
         p.tx = Lanes::add_unless(p.tx, Lanes::any(y_before_x, z_next), p.dx);
         p.ty = Lanes::add_if(p.ty, Lanes::but_not(y_before_x, z_next), p.dy);
@@ -221,20 +221,20 @@ template <LineKind kKind, bool kJumps, class Finish>
 
 std::size_t segments(const OpenVoxels& table, const KeyBox& ends_in, std::span<const KeySegment> segments,
                      std::uint8_t* visible, std::uint16_t* left) {
-  WaysBack ways;
-  const std::size_t left_size = ways_back(table, ends_in, segments, ways, left);
+  BackwardSegments backward;
+  const std::size_t left_size = select_backward(table, ends_in, segments, backward, left);
   std::fill_n(visible, segments.size(), std::uint8_t{0});
   PacketLines lines;
-  const std::int32_t steps = lines_of(table.layout(), ways, lines);
+  const std::int32_t steps = lines_of(table.layout(), backward, lines);
   const auto finish = [&](const Packet&, const std::uint32_t* line, unsigned ended, unsigned blocked) {
     for (; ended != 0; ended &= ended - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(ended));
-      visible[ways.number[line[lane]]] = static_cast<std::uint8_t>(~(blocked >> lane) & 1U);
+      visible[backward.number[line[lane]]] = static_cast<std::uint8_t>(~(blocked >> lane) & 1U);
     }
   };
   // Short segments end before a jump is worth its price.
   constexpr std::int32_t kWorthJumps = 32;
-  if (steps >= kWorthJumps * static_cast<std::int32_t>(ways.size)) {
+  if (steps >= kWorthJumps * static_cast<std::int32_t>(backward.size)) {
     rate_steps(lines);
     walk_lines<LineKind::kSegment, true>(table, lines, finish);
   } else {

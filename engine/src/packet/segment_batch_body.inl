@@ -5,7 +5,7 @@
 // so right before a voxel that is a frontier: it has a free neighbour, but on any side.
 
 // Segments that a walk has to decide.
-struct WaysBack {
+struct BackwardSegments {
   std::size_t size = 0;
   alignas(64) std::array<PerLine<std::uint32_t>, 3> keys;  // of each segment, two to a word
   alignas(64) PerLine<std::uint32_t> number;               // of the segment
@@ -27,7 +27,7 @@ constexpr auto kLaneNumbers = [] {
 // Of segments in lanes, along x, y and z.
 struct KeysInLanes {
   Lanes::V from[3], to[3];
-  Lanes::V length[3];  // of the way
+  Lanes::V length[3];  // of the offset
 };
 
 [[gnu::always_inline]] inline void unpack(const Lanes::I words[3], KeysInLanes& keys) {
@@ -41,8 +41,8 @@ struct KeysInLanes {
   keys.to[1] = key(2, kFirstKey);
   keys.to[2] = key(2, kSecondKey);
   for (int a = 0; a < 3; ++a) {
-    const Lanes::V way = Lanes::subtract(keys.from[a], keys.to[a]);
-    keys.length[a] = Lanes::max(way, Lanes::subtract(Lanes::time(0), way));
+    const Lanes::V offset = Lanes::subtract(keys.from[a], keys.to[a]);
+    keys.length[a] = Lanes::max(offset, Lanes::subtract(Lanes::time(0), offset));
   }
 }
 
@@ -55,8 +55,8 @@ struct KeysInLanes {
   }
 }
 
-// The index of the first voxel on the way back, that next to its start along the longest axis; of a tie along
-// x before y before z, as in a step.
+// The index of the first voxel when walked backward, that next to its start along the longest axis; of a tie
+// along x before y before z, as in a step.
 [[gnu::always_inline]] inline Lanes::I first_voxel(const OpenVoxels::Layout& layout,
                                                    const KeysInLanes& keys) {
   using V = Lanes::V;
@@ -78,13 +78,14 @@ struct KeysInLanes {
   return Lanes::either(Lanes::either(place(0), place(1)), place(2));
 }
 
-// Sorts segments into those that are blocked right at the end, those for `ways` and those that are `left`.
+// Sorts segments into those that are blocked right at the end, those for `backward` and those that are
+// `left`.
 // @param ends_in  where segments may end that begin in the table
 // @param left     gets the numbers of those that are too long, lie elsewhere or have no length
 // @return how many these are
-[[gnu::always_inline]] inline std::size_t ways_back(const OpenVoxels& table, const KeyBox& ends_in,
-                                                    std::span<const KeySegment> segments, WaysBack& ways,
-                                                    std::uint16_t* left) {
+[[gnu::always_inline]] inline std::size_t select_backward(const OpenVoxels& table, const KeyBox& ends_in,
+                                                          std::span<const KeySegment> segments,
+                                                          BackwardSegments& backward, std::uint16_t* left) {
   using I = Lanes::I;
   using V = Lanes::V;
   constexpr auto kWidth = static_cast<std::size_t>(Lanes::kWidth);
@@ -117,28 +118,28 @@ struct KeysInLanes {
       const auto closed = Lanes::closed(table.words(), first, Lanes::mask(fits));
       walks &= ~Lanes::bits(Lanes::both(closed, Lanes::less(Lanes::time(1), steps)));
     }
-    for (std::size_t k = 0; k < 3; ++k) Lanes::compress(&ways.keys[k][ways.size], walks, packed[k]);
-    Lanes::compress(&ways.number[ways.size], walks,
+    for (std::size_t k = 0; k < 3; ++k) Lanes::compress(&backward.keys[k][backward.size], walks, packed[k]);
+    Lanes::compress(&backward.number[backward.size], walks,
                     Lanes::sum(lane_number, Lanes::whole(static_cast<std::uint32_t>(i))));
-    ways.size += static_cast<std::size_t>(__builtin_popcount(walks));
+    backward.size += static_cast<std::size_t>(__builtin_popcount(walks));
     for (unsigned f = all & ~fits; f != 0; f &= f - 1)
       left[left_size++] = static_cast<std::uint16_t>(i + static_cast<std::size_t>(__builtin_ctz(f)));
-    if (i + kWidth == kTrial) looks = ways.size + left_size < kTrial - kTrial / 8;
+    if (i + kWidth == kTrial) looks = backward.size + left_size < kTrial - kTrial / 8;
   }
   return left_size;
 }
 
-// The lines of ways back, whose time is a whole number: Crossings<int64_t> in 32 bits.
+// The lines of segments walked backward, whose time is a whole number: Crossings<int64_t> in 32 bits.
 // @return how many steps they have in all
-[[gnu::always_inline]] inline std::int32_t lines_of(const OpenVoxels::Layout& layout, const WaysBack& ways,
-                                                    PacketLines& lines) {
+[[gnu::always_inline]] inline std::int32_t lines_of(const OpenVoxels::Layout& layout,
+                                                    const BackwardSegments& backward, PacketLines& lines) {
   const auto key = [](std::uint32_t word, std::uint32_t shift) {
     return static_cast<std::int32_t>(word >> shift & 0xFFFFU);
   };
   const auto length = [](std::int32_t d) { return d < 0 ? -d : d; };
   const auto at_least_one = [](std::int32_t d) { return d > 1 ? d : 1; };
-  // The axes written out and choices made by bits: with a loop over the axes, or with conditions, of which it
-  // makes branches, GCC 14 vectorises nothing of this.
+  // The axes are written out, and bits make the choices: with a loop over the axes, or with conditions, from
+  // which it makes branches, GCC 14 does not vectorise this.
   const auto all_if_zero = [](std::int32_t distance) { return -static_cast<std::int32_t>(distance == 0); };
   const auto time = [&](std::int32_t distance, std::int32_t product) {
     return product | (all_if_zero(distance) & kNever);
@@ -149,17 +150,17 @@ struct KeysInLanes {
   const auto down = [](std::int32_t d, std::uint32_t bits) {
     return static_cast<std::uint32_t>(d >> 31) & bits;
   };
-  lines.size = ways.size;
+  lines.size = backward.size;
   std::int32_t steps = 0;
   const std::int32_t corner_x = layout.corner[0], corner_y = layout.corner[1], corner_z = layout.corner[2];
   const std::uint32_t bits_x = layout.bits[0], bits_y = layout.bits[1], bits_z = layout.bits[2];
   const std::uint32_t y_shift = layout.y_shift, z_shift = layout.z_shift;
-  for (std::size_t i = 0; i < ways.size; ++i) {
-    const std::uint32_t xy = ways.keys[0][i], zx = ways.keys[1][i], yz = ways.keys[2][i];
+  for (std::size_t i = 0; i < backward.size; ++i) {
+    const std::uint32_t xy = backward.keys[0][i], zx = backward.keys[1][i], yz = backward.keys[2][i];
     const std::int32_t to_x = key(zx, kSecondKey), to_y = key(yz, kFirstKey), to_z = key(yz, kSecondKey);
-    const std::int32_t way_x = key(xy, kFirstKey) - to_x, way_y = key(xy, kSecondKey) - to_y,
-                       way_z = key(zx, kFirstKey) - to_z;
-    const std::int32_t x = length(way_x), y = length(way_y), z = length(way_z);
+    const std::int32_t offset_x = key(xy, kFirstKey) - to_x, offset_y = key(xy, kSecondKey) - to_y,
+                       offset_z = key(zx, kFirstKey) - to_z;
+    const std::int32_t x = length(offset_x), y = length(offset_y), z = length(offset_z);
     const std::int32_t across_x = at_least_one(y) * at_least_one(z),
                        across_y = at_least_one(z) * at_least_one(x),
                        across_z = at_least_one(x) * at_least_one(y);
@@ -171,7 +172,7 @@ struct KeysInLanes {
     lines.t_delta[2][i] = step(z, across_z);
     lines.steps[i] = x + y + z;
     steps += lines.steps[i];
-    const std::uint32_t flip = down(way_x, bits_x) | down(way_y, bits_y) | down(way_z, bits_z);
+    const std::uint32_t flip = down(offset_x, bits_x) | down(offset_y, bits_y) | down(offset_z, bits_z);
     const auto kx = static_cast<std::uint32_t>(to_x - corner_x),
                ky = static_cast<std::uint32_t>(to_y - corner_y),
                kz = static_cast<std::uint32_t>(to_z - corner_z);

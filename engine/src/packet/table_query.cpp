@@ -1,7 +1,7 @@
 #include "packet/table_query.hpp"
 
 #include "packet/single_walk.hpp"
-#include "walk/ray_end.hpp"
+#include "walk/end_ray.hpp"
 #include "walk/walk.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
       return std::array{values[0][i], values[1][i], values[2][i]};
     };
     const std::array<int, 3> cell = per_axis(batch.cell);
-    if (stopped_at < kFirstRayEnd && batch.in_range[i] != 0 && is_inside(cell)) {
+    if (stopped_at < kFirstWalkEnd && batch.in_range[i] != 0 && is_inside(cell)) {
       const VoxelKey key = as_key(cell);
       const Occupancy state = unknown_ == UnknownPolicy::kPass ? Occupancy::kOccupied : grid_.at(key);
       const auto end = per_axis(batch.end), entry = per_axis(batch.entry);

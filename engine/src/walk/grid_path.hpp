@@ -42,7 +42,7 @@ class GridPath {
   /// One step. @return the time at which it is taken
   [[gnu::always_inline]] Time advance() {
     const Time tx = line_.t_max[0], ty = line_.t_max[1], tz = line_.t_max[2];
-    // Ties go to z before y before x (rule 5): on the way back to x before y before z.
+    // Ties go to z before y before x (rule 5): walked backward to x before y before z.
     const bool x_before_y = kBack ? tx <= ty : tx < ty;
     const Time first = x_before_y ? tx : ty;
     const bool z_next = kBack ? tz < first : tz <= first;

@@ -104,8 +104,8 @@ inline VoxelKey voxel_before_end(const VoxelKey& from, const VoxelKey& to) {
   // Without branches, since nothing foretells them.
   const int along_z = static_cast<int>(std::abs(z) > std::max(std::abs(x), std::abs(y))),
             along_y = static_cast<int>(std::abs(y) > std::abs(x)) & ~along_z, along_x = 1 - along_z - along_y;
-  const auto towards = [](int way) { return way >> 31 | 1; };
-  return make_key(to.x + along_x * towards(x), to.y + along_y * towards(y), to.z + along_z * towards(z));
+  const auto sign_of = [](int offset) { return offset >> 31 | 1; };
+  return make_key(to.x + along_x * sign_of(x), to.y + along_y * sign_of(y), to.z + along_z * sign_of(z));
 }
 
 /// Rule 7: whether the centre of a voxel, `end`, lies beyond the range.

@@ -140,7 +140,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--drift", options.pose_errors.drift, "PART",
-              "By which part of its way a robot is elsewhere than it believes, 0 to 1", kProbability);
+              "Error of where a robot believes to be, as a part of its path since it last knew, 0 to 1",
+              kProbability);
   command.add("--fix-every", options.pose_errors.fix_every, "SECONDS",
               "After how long it learns where it is; 0: never", kFromZero);
   command.add("--scan-delay", options.message_errors.delay, "SECONDS",

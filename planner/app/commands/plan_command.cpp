@@ -172,7 +172,7 @@ struct Optimized {
 Optimized optimize(const Options& options, const planner::Robot& robot, const VoxelGrid& grid,
                    const TravelCorridor& corridor, PathPlan& path) {
   planner::PositionOptions position;
-  if (options.mode == planner::Method::kPaper) position.optimizer = planner::paper_path_options();
+  if (options.mode == planner::Method::kPaper) position.optimizer = planner::paper_optimizer_options();
   position.spacing = path_options(options).spacing;
   std::vector<Pose>& viewpoints = path.viewpoints;
   const double first_yaw = viewpoints.front().yaw, last_yaw = viewpoints.back().yaw;

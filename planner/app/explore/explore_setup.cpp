@@ -235,7 +235,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
                    "; give another goal, or leave it out" + or_in_task(options));
   if (const auto ignored = ignored_on_tours(options); makes_tours(options) && !ignored.empty())
     throw BadInput("--" + std::string(ignored.front()) +
-                   " is not for tours, whose stops are chosen in another way; give --goal render, cluster or "
+                   " is not for tours, which choose their stops otherwise; give --goal render, cluster or "
                    "nearest with it, or leave it out" +
                    or_in_task(options));
   planner::ExplorationOptions exploration = options.lockstep ? planner::exploration_options(options.mode)

@@ -226,7 +226,7 @@ were not measured.)")
            "until it returns None, after all scans of that moment.")
       .def("stopped", &stopped, py::arg("robot"), py::arg("pose"), py::arg("time"),
            py::arg("blocked") = py::none(),
-           R"(A robot rests at a pose since it could not go on: something that no sensor saw is in its way.
+           R"(A robot rests at a pose since it could not go on: something that no sensor saw blocks its path.
 
 blocked: uint16 (..., 3), cells that it could not enter; None: the one that it is in will not be entered again.)")
       .def("lose", &lose, py::arg("robot"), py::arg("pose"), py::arg("time"),

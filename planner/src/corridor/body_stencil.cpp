@@ -114,7 +114,7 @@ void BodyStencil::round_off(const RoundBody& body, double resolution) {
   // Along each axis a voxel is nearest from one of the two middles around a point. So each voxel that a body
   // at the point touches is in the stencil of a cell within half a voxel of it. Voxels are nearer to a middle
   // than the radius, or at least `beyond` far: axes off by less than this room in all need their own cell
-  // only. What rounds nothing off has the reach of its box as well.
+  // only. A shape that rounds off no corner reaches as far as its box.
   const double room = std::max(0.0, beyond - body.radius) / std::sqrt(body.sphere ? 3.0 : 2.0);
   double reach = std::min(0.5 - room, 0.5 - kIgnored) * resolution;
   if (reach < kIgnored * resolution) reach = 0.0;

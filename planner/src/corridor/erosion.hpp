@@ -46,7 +46,7 @@ class Erosion {
 
   void erode_along_z(const VoxelColumns& from, int low, int high, VoxelColumns& to) const;
   template <int kAxis>
-  void erode_across(const VoxelColumns& from, VoxelColumns& to) const;
+  void erode_across(const VoxelColumns& from, VoxelColumns& to);
   void erode_parts();
 
   VoxelWindow window_;
@@ -54,6 +54,7 @@ class Erosion {
   std::vector<VoxelColumns> along_;  // z, and y and z; of a window
   std::vector<Part> parts_;          // of a stencil that is none
   VoxelColumns whole_;
+  ColumnSet hit_;  // columns to renew; empty between calls
 };
 
 }  // namespace frontlux::planner::detail

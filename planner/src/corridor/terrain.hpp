@@ -25,8 +25,8 @@ class Terrain {
     int above = 0, below = 0;    ///< [voxels] along z: where there is ground, there is no hole
     /// [voxels] How far ground may be below the middle. If it is not given, ground is any occupied voxel at
     /// the height of the middle; else one on top of which none is occupied.
-    std::optional<int> gap = {};
-    int bridge = 0;                   ///< [voxels] gaps along x or y that are no wider are no holes
+    std::optional<int> depth = {};
+    int gap_width = 0;                ///< [voxels] gaps along x or y that are no wider are no holes
     std::vector<KeyBox> exempt = {};  ///< where floor need not be known, but holes all around count
   };
   explicit Terrain(Options options);
@@ -38,18 +38,27 @@ class Terrain {
   [[nodiscard]] bool carries(const VoxelKey& floor) const;
 
  private:
+  // Holes and ground before gaps are closed.
+  struct Gaps {
+    VoxelColumns holes;     // free without ground
+    VoxelColumns grounded;  // ground a little above or below
+  };
+  // Of a robot on ground of several heights, where floor need not be known.
+  struct StartArea {
+    VoxelColumns filled;  // no holes of two voxels
+    Erosion level;
+  };
+
   void decide();
   void close_gaps();
   [[nodiscard]] bool is_open_all_around(const VoxelKey& floor) const;
 
   Options options_;
   VoxelColumns free_, occupied_;
-  VoxelColumns open_;      // free without ground
-  VoxelColumns grounded_;  // ground a little above or below
-  VoxelColumns closed_;    // no holes
-  VoxelColumns empty_;     // no ground
-  VoxelColumns filled_;    // no holes of two voxels
-  Erosion level_, bare_, firm_;
+  std::optional<Gaps> gaps_;  // if some are bridged
+  VoxelColumns no_hole_, no_ground_;
+  Erosion level_, without_ground_;
+  std::optional<StartArea> start_area_;
 };
 
 }  // namespace frontlux::planner::detail

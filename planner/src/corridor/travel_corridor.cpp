@@ -37,8 +37,8 @@ void check_ground(const TravelOptions& options, double resolution) {
   if (!(options.slope >= 0.0 && options.slope <= kSteepest))
     refuse("slope is " + std::to_string(options.slope) + " rad, but has to be from 0 to " +
            std::to_string(kSteepest) + " rad");
-  if (options.clearance() > std::min(options.sensor_height, options.extents.z()))
-    refuse("steps and slopes would reach " + std::to_string(options.clearance()) +
+  if (options.ground_intrusion() > std::min(options.sensor_height, options.extents.z()))
+    refuse("steps and slopes would reach " + std::to_string(options.ground_intrusion()) +
            " m up, above the sensor or all of the body");
 }
 
@@ -137,7 +137,7 @@ struct TravelCorridor::State {
   std::optional<detail::Terrain> terrain;
   std::optional<detail::PathDistances> distances;  // of all cells, or of those near by
   std::optional<VoxelKey> start;                   // the robot's cell
-  std::vector<VoxelKey> found;                     // the path that `find_way` searched last
+  std::vector<VoxelKey> found;                     // the path that `find_path` searched last
   CorridorExtent extent = CorridorExtent::kAllCells;
   std::vector<VoxelKey> cells;
   std::vector<VoxelKey> blocked;  // sorted
@@ -213,8 +213,8 @@ void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
     ground.box.min.z = ground.box.max.z = clamped(robot.z - down);
   } else {
     ground.above = ground.below = reached_from_below(options, resolution);
-    ground.gap = voxels_in(options.step, resolution) - 1;
-    ground.bridge = gap_width(options, resolution);
+    ground.depth = voxels_in(options.step, resolution) - 1;
+    ground.gap_width = gap_width(options, resolution);
   }
   for (KeyBox& exempt : ground.exempt) {
     const bool flat = options.motion == Motion::kPlane;
@@ -235,7 +235,7 @@ void TravelCorridor::State::read(const MapChange& change, const VoxelKey& robot)
     if (terrain) terrain->read(grid, changed);
   }
   erosion->erode(*free);
-  free->settle();
+  free->clear_stale();
 }
 
 CorridorState TravelCorridor::State::find_state(const VoxelGrid& grid, const VoxelKey& robot) const {
@@ -311,7 +311,7 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, Corr
   if (all) state_->distances->reached(state_->cells);
 }
 
-bool TravelCorridor::find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through) {
+bool TravelCorridor::find_path(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through) {
   State& state = *state_;
   state.found.clear();
   if (state.state != CorridorState::kReady) return false;

@@ -56,7 +56,7 @@ Eigen::AlignedBox3d body_of(const TravelOptions& travel) {
   const Eigen::Vector3d half = travel.extents / 2;
   if (travel.motion == Motion::kSpace) return {-half, half};
   const double bottom = -travel.sensor_height;
-  return {Eigen::Vector3d(-half.x(), -half.y(), bottom + travel.clearance()),
+  return {Eigen::Vector3d(-half.x(), -half.y(), bottom + travel.ground_intrusion()),
           Eigen::Vector3d(half.x(), half.y(), bottom + travel.extents.z())};
 }
 

@@ -23,13 +23,14 @@ std::uint64_t transposed(std::uint64_t bits) {
 }  // namespace
 
 VoxelColumns::VoxelColumns(const KeyBox& box, bool set)
-    : box_(box),
+    : stale(static_cast<std::size_t>(box.max.x - box.min.x + 1) *
+            static_cast<std::size_t>(box.max.y - box.min.y + 1)),
+      box_(box),
       base_z_(box.min.z & ~7),
       size_x_(box.max.x - box.min.x + 1),
       size_y_(box.max.y - box.min.y + 1),
       words_(static_cast<std::size_t>((box.max.z - base_z_) / 64 + 1)) {
-  stale.resize(static_cast<std::size_t>(size_x_) * static_cast<std::size_t>(size_y_));
-  bits.resize(stale.size() * words_, set ? ~std::uint64_t{0} : 0);
+  bits.resize(column(size_x_, 0), set ? ~std::uint64_t{0} : 0);
 }
 
 void VoxelColumns::read_brick(const VoxelGrid& grid, Occupancy state, const VoxelKey& corner) {
@@ -51,7 +52,7 @@ void VoxelColumns::read_brick(const VoxelGrid& grid, Occupancy state, const Voxe
       const std::uint64_t renewed = (word & ~mask) | (byte << (z & 63));
       if (renewed == word) continue;
       word = renewed;
-      stale[first / words_] = 1;
+      stale.add(first / words_);
     }
   }
 }

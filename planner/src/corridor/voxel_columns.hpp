@@ -5,15 +5,37 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace frontlux::planner::detail {
 
-/// Some voxels of a box, as a column of bits along z for each x and y.
+/// Some of the columns of a box, by their numbers.
+class ColumnSet {
+ public:
+  /// @param columns  of the box
+  explicit ColumnSet(std::size_t columns) : contained_(columns, 0) {}
+
+  void add(std::size_t column) {
+    if (std::exchange(contained_[column], std::uint8_t{1}) == 0)
+      numbers_.push_back(static_cast<std::uint32_t>(column));
+  }
+  /// In the order in which they were added.
+  [[nodiscard]] std::span<const std::uint32_t> numbers() const { return numbers_; }
+  /// Takes as long as there are columns in the set, and gives their memory back.
+  void clear() {
+    for (const std::uint32_t column : std::exchange(numbers_, {})) contained_[column] = 0;
+  }
+
+ private:
+  std::vector<std::uint8_t> contained_;
+  std::vector<std::uint32_t> numbers_;
+};
+
+/// Some voxels of a box, as a column of bits along z for each x and y. Columns are numbered by x, then y.
 class VoxelColumns {
  public:
   using Bits = std::vector<std::uint64_t>;
-  using Flags = std::vector<std::uint8_t>;  ///< one for each column
 
   /// @param set  whether voxels are set at first, and those beyond the box for ever
   explicit VoxelColumns(const KeyBox& box, bool set = false);
@@ -24,18 +46,26 @@ class VoxelColumns {
   void read(const VoxelGrid& grid, Occupancy state, std::span<const VoxelKey> changed);
 
   /// No column is stale any more.
-  void settle() { stale.assign(stale.size(), 0); }
+  void clear_stale() { stale.clear(); }
 
   [[nodiscard]] const KeyBox& box() const { return box_; }
   [[nodiscard]] int size_x() const { return size_x_; }
   [[nodiscard]] int size_y() const { return size_y_; }
   /// Of a column.
   [[nodiscard]] std::size_t words() const { return words_; }
-  /// Where a column begins, counted from the box's corner.
-  [[nodiscard]] std::size_t column(int x, int y) const { return flag(x, y) * words_; }
-  [[nodiscard]] std::size_t flag(int x, int y) const {
+  [[nodiscard]] std::size_t column_count() const { return bits.size() / words_; }
+  /// The number of a column, counted from the box's corner; the column has to be in the box.
+  [[nodiscard]] std::size_t number(int x, int y) const {
     return static_cast<std::size_t>(x) * static_cast<std::size_t>(size_y_) + static_cast<std::size_t>(y);
   }
+  /// Its x and y.
+  [[nodiscard]] std::pair<int, int> place(std::size_t number) const {
+    const auto size_y = static_cast<std::size_t>(size_y_);
+    return {static_cast<int>(number / size_y), static_cast<int>(number % size_y)};
+  }
+  [[nodiscard]] bool has_column(int x, int y) const { return x >= 0 && x < size_x_ && y >= 0 && y < size_y_; }
+  /// Its first word in `bits`.
+  [[nodiscard]] std::size_t column(int x, int y) const { return number(x, y) * words_; }
   [[nodiscard]] bool holds(const VoxelKey& key) const {
     if (!box_.contains(key)) return false;
     const int z = key.z - base_z_;
@@ -44,7 +74,7 @@ class VoxelColumns {
   }
 
   Bits bits;
-  Flags stale;  ///< columns that have changed
+  ColumnSet stale;  ///< columns that have changed
 
  private:
   void read_brick(const VoxelGrid& grid, Occupancy state, const VoxelKey& corner);

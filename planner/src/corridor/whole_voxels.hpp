@@ -39,7 +39,7 @@ inline constexpr int kMaxWindow = 1024;
 
 /// Layers above the floor that steps and slopes may reach into.
 [[nodiscard]] inline int reached_from_below(const TravelOptions& options, double resolution) {
-  return voxels_over(options.clearance(), resolution);
+  return voxels_over(options.ground_intrusion(), resolution);
 }
 
 /// [voxels] The widest gap in the ground that a robot gets over: as wide as its highest step.

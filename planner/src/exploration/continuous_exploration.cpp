@@ -46,7 +46,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
   check_time(time);
-  state.team.solid = state.before;
+  state.team.conservative_map = state.before;
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
@@ -56,8 +56,12 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
     member.sensed.push_back(starts[r].pose);
     state.members.push_back(std::move(member));
   }
-  for (std::size_t r = 0; r < starts.size(); ++r)
-    state.take(r, state.team.mapping.mark_free(starts[r].known_free));
+  for (std::size_t r = 0; r < starts.size(); ++r) {
+    state.note_scan(r, state.team.mapping.mark_free(starts[r].known_free));
+    for (const VoxelKey& key : starts[r].known_free)
+      if (state.team.mapping.grid().at(key) == Occupancy::kFree)
+        state.team.conservative_map->set(key, Occupancy::kFree);
+  }
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   state.team.number = 1;
@@ -69,8 +73,10 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
   check_finite({&pose, 1});
   const MapChange change = state.team.mapping.insert(scan);
-  state.take(robot, change);
-  state.members[robot].sensed.push_back(pose);
+  state.note_scan(robot, change);
+  State::Member& member = state.members[robot];
+  member.sensed.push_back(pose);
+  if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) member.looked = pose;
   return change;
 }
 
@@ -81,9 +87,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   check_time(time);
   State::Member& member = state.members[robot];
   Pose rests = pose;
-  // It stays on its plane, whatever its localization says: a millimetre may be another layer of the map.
-  if (state.team.options.team[robot].robot.travel.motion == Motion::kPlane)
-    rests.position.z() = member.motion.at(time).pose.position.z();
+  state.stay_on_plane(robot, rests, time);
   member.motion = {Trajectory(rests, time)};
   member.stopped = true;
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
@@ -98,8 +102,8 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
 void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double time) {
   stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
   State::Member& member = state_->members[robot];
-  member.lost = true;
-  member.going = member.retreats = member.makes_room = member.blocked = member.meets_other = false;
+  member.activity = State::Activity::kLost;
+  member.blocked = member.meets_other = false;
   member.request.reset();
   state_->withdraw_requests(robot);
   state_->tell_of_loss(robot);
@@ -115,7 +119,7 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a planning before its beginning");
   check_time(time);
-  state.settle(time);
+  state.start_next_trajectories(time);
   for (std::size_t r = 0; r < state.members.size(); ++r)
     if (const auto reason = state.reason_to_plan(state.members[r], time)) return state.plan(r, *reason, time);
   return std::nullopt;
@@ -128,6 +132,8 @@ ExplorationStep ContinuousExploration::finish(double time) {
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   step.frontiers = state.team.frontiers.size();
+  state.team.also_changed =
+      state.team.changed;  // a planning that comes all the same brings corridors up to date
   ++state.team.number;
   return step;
 }
@@ -141,12 +147,12 @@ std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const State& state = *state_;
   if (state.members.empty()) return std::nullopt;
   const auto low = [&](const auto& member) {
-    return member.lost || (member.low_gains >= state.team.options.low_gain_steps && !member.others_rest);
+    return member.is_lost() || (member.low_gains >= state.team.options.low_gain_steps && !member.others_rest);
   };
   const bool nothing_to_do = std::ranges::all_of(state.members, State::has_nothing_to_do);
   if (nothing_to_do || std::ranges::all_of(state.members, low)) {
     for (std::size_t r = 0; r < state.members.size(); ++r)
-      if (!state.members[r].lost && state.team.is_cut_off(r, state.members[r].goal))
+      if (!state.members[r].is_lost() && state.team.is_cut_off(r, state.members[r].goal))
         return ExplorationEnd::kCutOff;
     return nothing_to_do ? ExplorationEnd::kNothingToDo : ExplorationEnd::kLowGain;
   }

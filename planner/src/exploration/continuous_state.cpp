@@ -62,7 +62,7 @@ std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
 }  // namespace
 
 // The trajectories whose time has come take the place of those before.
-void ContinuousExploration::State::settle(double time) {
+void ContinuousExploration::State::start_next_trajectories(double time) {
   for (Member& member : members)
     if (member.motion.next && time >= member.motion.next->begin())
       member.motion = {*std::move(member.motion.next)};
@@ -70,7 +70,7 @@ void ContinuousExploration::State::settle(double time) {
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
                                                                        double time) const {
-  if (member.lost) return std::nullopt;
+  if (member.is_lost()) return std::nullopt;
   if (!member.planned) return PlanReason::kStart;
   if (member.motion.next) return std::nullopt;  // its next trajectory has not begun yet
   const double age = time - *member.planned;
@@ -79,28 +79,35 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (age < team.options.latency) return std::nullopt;
   if (member.meets_other) return PlanReason::kBlocked;
   const bool arrives = time + team.options.latency >= member.motion.last().end();
-  if (member.retreats && !arrives) return std::nullopt;  // its path need not be free: it came on it
   if (member.blocked) return PlanReason::kBlocked;
-  if (member.makes_room && !arrives) return std::nullopt;
-  if (member.going &&
+  const bool leaves = member.activity == Activity::kRetreats || member.activity == Activity::kMakesRoom;
+  if (leaves && !arrives) return std::nullopt;
+  if (member.is_going() &&
       (member.goal_frontiers.empty() ? arrives
                                      : has_looked(member.motion.last(), member.sensed.back(), time)))
     return PlanReason::kArrival;
-  if (member.going && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
+  if (member.is_going() && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
       return team.mapping.grid().at(key) == Occupancy::kUnknown;
     });
     if (static_cast<double>(unknown) <= kUnseen * static_cast<double>(member.goal_frontiers.size()))
       return PlanReason::kGoalSeen;
   }
-  const auto is_going = [](const Member& other) { return other.going; };
+  const auto is_going = [](const Member& other) { return other.is_going(); };
   const bool would_end = member.others_rest && std::ranges::none_of(members, is_going);
   if (age >= team.options.period || would_end) return PlanReason::kPeriod;
   return std::nullopt;
 }
 
+// A robot on a plane stays on it, whatever its localization says: a millimetre may be another layer of the
+// map.
+void ContinuousExploration::State::stay_on_plane(std::size_t robot, Pose& pose, double time) const {
+  if (team.options.team[robot].robot.travel.motion == Motion::kPlane)
+    pose.position.z() = members[robot].motion.at(time).pose.position.z();
+}
+
 // Takes note of what a scan has changed.
-void ContinuousExploration::State::take(std::size_t robot, const MapChange& change) {
+void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange& change) {
   for (const VoxelKey& key : change.keys) {
     touched.emplace_back(key, robot);
     if (change.grid.at(key) == Occupancy::kFree) continue;
@@ -123,7 +130,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     if (was == is) continue;
     step.robots[robot].changed.push_back({key, was, is});
     before.set(key, is);
-    if (team.solid->at(key) != Occupancy::kOccupied) team.solid->set(key, is);
+    if (team.conservative_map->at(key) != Occupancy::kOccupied) team.conservative_map->set(key, is);
   }
   touched.clear();
   for (std::size_t r = 0; r < members.size(); ++r) {
@@ -139,11 +146,12 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
     // Not where it cannot have been: it may go back over its trail.
-    std::copy_if(robot.planned.begin() + (team.number == 0 ? 0 : 1), robot.planned.end(),
-                 std::back_inserter(team.trails[r]), [&](const Pose& pose) {
-                   const auto key = team.lattice().key(pose.position);
-                   return key && team.mapping.bounds().contains(*key);
-                 });
+    for (std::size_t i = team.number == 0 ? 0 : 1; i < robot.planned.size(); ++i) {
+      Pose place = robot.planned[i];
+      stay_on_plane(r, place, time);
+      const auto key = team.lattice().key(place.position);
+      if (key && team.mapping.bounds().contains(*key)) team.trails[r].push_back(place);
+    }
   }
   clock.reset();
   return step;
@@ -155,8 +163,9 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
 void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
   RobotStep& now = step.robots[robot];
-  if (now.planned.size() < 2) return;  // no scan since the last planning
-  const Pose& pose = now.planned.back();
+  const std::optional<Pose> looked = std::exchange(members[robot].looked, std::nullopt);
+  if (!looked) return;
+  const Pose& pose = *looked;
   const FieldOfView& view = team.options.team[robot].robot.view;
   const Keys frontiers =
       detail::frontiers_near_path(team.lattice(), team.frontiers.keys(), {&pose, 1}, view.max_range);
@@ -167,8 +176,10 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
     if (view.contains(offset, pose.yaw)) now.still_unknown.push_back(frontiers[i]);
   }
   const Member& member = members[robot];
+  const Trajectory& last = member.motion.last();
   if (reason == PlanReason::kArrival && member.goal.pose &&
-      team.lattice().key(member.goal.pose->position) == team.lattice().key(pose.position)) {
+      team.lattice().key(member.goal.pose->position) ==
+          team.lattice().key(last.at(last.end()).pose.position)) {
     for (const VoxelKey& key : member.goal_frontiers)
       if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
     sort_once(now.still_unknown);
@@ -232,24 +243,27 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
   };
 }
 
-// What has to stay free for the rest of a trajectory.
+// What has to stay free for the rest of a trajectory. The path of a retreat need not be free for the body,
+// since the robot came on it, but may not be shut.
 Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
   constexpr double kStep = 0.05;  // [s]
   const TravelOptions& body = team.options.team[robot].robot.travel;
   const BodyStencil stencil(body, team.lattice().resolution());
+  const bool retreats = members[robot].activity == Activity::kRetreats;
+  const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
   Keys cells;
   Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
   for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
     // Between its cells' middles a body touches voxels that are none of its own cell's.
-    static_cast<void>(
-        SegmentVoxels(team.lattice(), from, to, stencil.reach()).all_of([&](const VoxelKey& key) {
-          if (cells.empty() || cells.back() != key) cells.push_back(key);
-          return true;
-        }));
+    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
+      if (cells.empty() || cells.back() != key) cells.push_back(key);
+      return true;
+    }));
     from = to;
   }
   sort_once(cells);
+  if (retreats) return cells;
   Keys voxels;
   for (const VoxelKey& cell : cells) {
     static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
@@ -268,21 +282,20 @@ Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double 
   RobotStep& now = step.robots[robot];
   const Trajectory& old = member.motion.last();
   const MotionState then = old.at(start);
-  member.going = true;  // when it has come to rest, it plans again
+  member.activity = Activity::kMoves;
   std::vector<Pose> path;
   if (then.velocity.isZero()) {
     ask_for_room(robot, step);
     const detail::PhaseClock clock(step, Phase::kPaths);
     path = path_aside(robot);
-    member.makes_room = !path.empty();
-    if (!member.makes_room) {
+    member.activity = Activity::kMakesRoom;
+    if (path.empty()) {
       end_request(robot);
       if (!waits_for_room(robot)) path = team.plan_retreat(robot, now.goal);
-      member.retreats = !path.empty();
+      member.activity = path.empty() ? Activity::kRests : Activity::kRetreats;
     }
-    member.going = !path.empty();
   }
-  if (member.makes_room) now.goal.reason = "no goal: it makes room for another robot";
+  if (member.activity == Activity::kMakesRoom) now.goal.reason = "no goal: it makes room for another robot";
   if (waits_for_room(robot)) now.goal.reason = "no goal: it waits for another robot to make room";
   if (!path.empty()) {
     path.insert(path.begin(), then.pose);
@@ -300,7 +313,6 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   const Trajectory& old = member.motion.last();
   const MotionLimits& limits = team.options.team[robot].robot.limits;
   member.goal_frontiers.clear();
-  member.retreats = member.makes_room = false;
   if (!now.goal.pose) return without_goal(robot, start, step);
   member.request.reset();
   withdraw_requests(robot);
@@ -322,7 +334,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     departure = detail::best_departure(old, start, path_from, limits, is_free);
   }
   // Without a path it brakes; when it has come to rest, it plans again.
-  member.going = departure || !old.at(start).velocity.isZero();
+  member.activity = departure || !old.at(start).velocity.isZero() ? Activity::kMoves : Activity::kRests;
   if (!departure) return old.after_stop(start, {}, limits, is_free);
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
@@ -355,7 +367,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   // Along a tour a robot that has learnt next to nothing has no reason to change its mind: it would turn back
   // and forth between stops that are about as good.
   const bool as_before = !team.tours || static_cast<double>(member.gained) < team.tours->least_gain(robot);
-  const bool keeps = as_before && reason == PlanReason::kPeriod && member.going && member.goal.pose &&
+  const bool keeps = as_before && reason == PlanReason::kPeriod && member.is_going() && member.goal.pose &&
                      !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   member.gained = 0;
   if (keeps && team.tours)
@@ -376,7 +388,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   const bool took_it = take_up(robot, start, trajectory, step);
   member.planned = time;
   if (rests(member) && !rested) tell_others(robot);
-  member.blocked = member.blocked && !took_it && member.going;  // it tries again to brake
+  member.blocked = member.blocked && !took_it && member.is_going();  // it tries again to brake
   member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
@@ -400,14 +412,14 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
     return true;
   }
   trajectory = member.motion.last();  // which keeps apart
-  member.going = trajectory.end() > start;
-  member.makes_room = false;
-  const bool retreated = std::exchange(member.retreats, false);
+  const bool goes_on = trajectory.end() > start;
+  const bool retreated =
+      std::exchange(member.activity, goes_on ? Activity::kMoves : Activity::kRests) == Activity::kRetreats;
   const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-  if (member.going || !retreated || std::ranges::none_of(members, moves)) return false;
+  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return false;
   // Another one may make room: it tries the retreat again.
   team.retreated_to[robot].pop_back();
-  member.going = true;
+  member.activity = Activity::kMoves;
   return false;
 }
 
@@ -420,7 +432,7 @@ bool ContinuousExploration::State::brakes_instead(std::size_t robot, double star
   Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
   if (!member.meets_other && !keeps_apart(robot, braking)) return false;
   trajectory = std::move(braking);
-  member.going = true;  // when it has come to rest, it plans again
+  member.activity = Activity::kMoves;
   return true;
 }
 
@@ -434,16 +446,16 @@ void ContinuousExploration::State::count_low_gain(std::size_t robot, const Robot
     gain = std::max(gain, seen);
     least = team.tours->least_gain(robot);
   }
-  const bool waits = !member.going && (step.goal.pose || member.request || waits_for_room(robot));
-  const bool low = step.goal.pose ? gain < least : !member.going && !waits;
+  const bool waits = !member.is_going() && (step.goal.pose || member.request || waits_for_room(robot));
+  const bool low = step.goal.pose ? gain < least : !member.is_going() && !waits;
   if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = waits ? member.waits + 1 : 0;
   if (member.waits > kPatience && member.request) end_request(robot);
 }
 
 bool ContinuousExploration::State::has_nothing_to_do(const Member& member) {
-  if (member.lost) return true;
-  return member.planned && !member.going && !member.others_rest &&
+  if (member.is_lost()) return true;
+  return member.planned && !member.is_going() && !member.others_rest &&
          (member.waits == 0 || member.waits > kPatience);
 }
 

@@ -6,6 +6,7 @@
 #include <frontlux/planner/continuous_exploration.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,24 +17,30 @@ namespace frontlux::planner {
 struct ContinuousExploration::State {
   using Keys = std::vector<VoxelKey>;
 
-  /// To make room for a robot, which has nothing to do on this side of the one that rests on its path.
+  /// To make room for robot `by`, which has nothing to do unless it gets past this one.
   struct Request {
     std::size_t by = 0;
     Keys path;  // cells
   };
 
+  enum class Activity : std::uint8_t {
+    kRests,      ///< until something happens
+    kMoves,      ///< or plans again when it has come to rest: nothing ends before
+    kRetreats,   ///< on the path on which it came
+    kMakesRoom,  ///< by leaving the path of another one
+    kLost,       ///< takes no more part
+  };
+
   /// One robot in motion.
   struct Member {
-    detail::Follower motion;
+    detail::RobotMotion motion;
     std::optional<double> planned = {};  // [s] when it planned last
     double chosen = 0.0;                 // [s] when it chose its goal
     std::uint64_t gained = 0;            // frontiers that it has mapped since it planned last
-    bool stopped = false, blocked = false;
+    Activity activity = Activity::kRests;
+    bool stopped = false;           // by a bumper, or whatever it met
+    bool blocked = false;           // its trajectory, by a voxel that has turned out not to be free
     bool meets_other = false;       // its trajectory leads too near to another one that has stopped
-    bool lost = false;              // takes no more part
-    bool retreats = false;          // on the path on which it came
-    bool makes_room = false;        // by leaving the path of another one
-    bool going = false;             // it moves, or plans again when it has come to rest: nothing ends before
     int low_gains = 0;              // plannings in a row that expect to see next to nothing
     int waits = 0;                  // plannings in a row after which it could not set out, or waited for room
     Goal goal = {};                 // the last one
@@ -41,10 +48,14 @@ struct ContinuousExploration::State {
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
+    std::optional<Pose> looked = {};  // where it took its last scan that shows something, since it planned
     std::optional<Request> request = {};   // by another one, while it has no goal
     bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
     bool asks = true;                      // when it plans next without a goal: others to make room
     std::vector<Keys> others_rested = {};  // where, each time that it has asked since it had a goal
+
+    [[nodiscard]] bool is_lost() const { return activity == Activity::kLost; }
+    [[nodiscard]] bool is_going() const { return activity != Activity::kRests && !is_lost(); }
   };
 
   detail::ExplorationState team;
@@ -52,14 +63,16 @@ struct ContinuousExploration::State {
   VoxelGrid before;                                            // the map at the last planning
   std::vector<std::pair<VoxelKey, std::size_t>> touched = {};  // since then, and by whom
 
-  void settle(double time);
+  void start_next_trajectories(double time);
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
-  void take(std::size_t robot, const MapChange& change);
+  void note_scan(std::size_t robot, const MapChange& change);
+  void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
   [[nodiscard]] ExplorationStep collect(double time);
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
-  /// A robot has come to rest: the others may ask it, or have a path that it has kept closed.
+  /// A robot has come to rest. The others that rest plan again: they may ask it for room, or get to what it
+  /// kept closed.
   void tell_others(std::size_t robot);
   /// A robot is lost: each of the others decides anew what there is for it to do.
   void tell_of_loss(std::size_t robot);

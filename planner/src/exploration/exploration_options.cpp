@@ -46,7 +46,7 @@ void ExplorationOptions::check() const {
 ExplorationOptions exploration_options(Method method) {
   ExplorationOptions options;
   if (method == Method::kPaper) {
-    options.optimizer = paper_path_options();
+    options.optimizer = paper_optimizer_options();
     options.epsilon = 1.0;  // the paper gives none: the method ends when it expects to see nothing
   } else {
     options.path.search = PathSearch::kCorridor;

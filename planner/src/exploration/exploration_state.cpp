@@ -290,7 +290,7 @@ std::uint64_t ExplorationState::mapped_frontiers(std::span<const VoxelChange> ch
 void ExplorationState::block(std::size_t robot, std::span<const VoxelKey> cells) {
   selection->block(robot, cells);
   if (voxel_corridors[robot]) voxel_corridors[robot]->block(cells);
-  if (tours) tours->note(robot, cells);
+  if (tours) tours->note_changed_voxels(robot, cells);
 }
 
 // What a robot's part of a step leaves behind.
@@ -326,8 +326,10 @@ void ExplorationState::update_frontiers(ExplorationStep& step) {
     // A robot may undo what another has changed.
     if (std::prev(next)->after != first->before) changed.push_back(first->key);
   }
-  frontiers.update({solid ? *solid : mapping.grid(), changed});
-  if (tours) tours->note(changed);
+  changed.insert(changed.end(), also_changed.begin(), also_changed.end());
+  if (!std::exchange(also_changed, {}).empty()) sort_once(changed);
+  frontiers.update({conservative_map ? *conservative_map : mapping.grid(), changed});
+  if (tours) tours->note_changed_voxels(changed);
 }
 
 // What a path is expected to see, as `epsilon` measures it.

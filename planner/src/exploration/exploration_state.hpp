@@ -23,9 +23,11 @@ struct ExplorationState {
 
   ExplorationOptions options;
   Mapping mapping;
-  /// If given: the map, but for voxels that were occupied once, which stay so. It has the frontiers. Beams
-  /// that graze a surface free some of its voxels, until they are hit again; what is behind is no frontier.
-  std::optional<VoxelGrid> solid = {};  // in motion
+  /// If given: the map in motion, in which voxels that were occupied once stay so. Frontiers come from it:
+  /// beams that graze a surface free some of its voxels, until they are hit again, and what is behind them is
+  /// no frontier.
+  std::optional<VoxelGrid> conservative_map = {};
+  Keys also_changed = {};  // voxels that count as changed when the frontiers are updated next
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
   AbandonedFrontiers abandoned;
@@ -51,9 +53,10 @@ struct ExplorationState {
 
   /// How a robot travels between the nodes of its corridor, if it has such.
   [[nodiscard]] TravelOptions travel_by_voxels(std::size_t robot) const;
-  /// What robots find their paths in. On tours it is `solid`: a robot that does not move measures the same
-  /// again and again, and if beams that graze the floor had freed it before the robot, it would never go on.
-  [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *solid : mapping.grid(); }
+  /// What robots find their paths in. On tours it is `conservative_map`: a robot that does not move measures
+  /// the same again and again, and if beams that graze the floor had freed it before the robot, it would
+  /// never go on.
+  [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *conservative_map : mapping.grid(); }
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
   [[nodiscard]] ExplorationStep new_step() const;
@@ -112,10 +115,10 @@ struct ExplorationState {
   // Takes note of the place that the robot retreats to now; nothing if there is none.
   std::optional<std::size_t> note_retreat(std::size_t robot, const Goal& goal);
   [[nodiscard]] std::vector<Pose> retreat_to(std::size_t robot, std::size_t place);
-  [[nodiscard]] bool gets_to_as_many_as(std::size_t robot, std::size_t count) const;
-  [[nodiscard]] bool can_get_to(std::size_t robot, const VoxelKey& cell) const;
-  [[nodiscard]] bool worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
-                                    double length) const;
+  [[nodiscard]] bool can_reach_as_many_as(std::size_t robot, std::size_t count) const;
+  [[nodiscard]] bool can_reach(std::size_t robot, const VoxelKey& cell) const;
+  [[nodiscard]] bool would_have_goal_at(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
+                                        double length) const;
   void remember(std::size_t robot, const RobotStep& step);
 };
 

@@ -32,9 +32,9 @@ bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell
   if (const auto here = lattice().key(poses[robot].position))
     ahead[robot] =
         tours->cell_on_path_to(robot, cell, *here, std::min(kAhead, kVoxelsAhead * lattice().resolution()));
-  if (ahead[robot] && selection->find_way(robot, *ahead[robot], near_path)) return true;
+  if (ahead[robot] && selection->find_path(robot, *ahead[robot], near_path)) return true;
   ahead[robot].reset();
-  return selection->find_way(robot, cell, near_path);
+  return selection->find_path(robot, cell, near_path);
 }
 
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
@@ -42,7 +42,7 @@ void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   const VoxelKey& cell = step.robots[robot].goal.cell;
   if (find_path_to_stop(robot, cell, step)) return;
   const PhaseClock clock(step, Phase::kPaths);
-  selection->find_way(robot, cell, [](const VoxelKey&) { return true; });
+  selection->find_path(robot, cell, [](const VoxelKey&) { return true; });
 }
 
 // The goal at the first stop of a robot's tour, or why there is none.

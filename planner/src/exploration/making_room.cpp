@@ -15,7 +15,7 @@ using Keys = std::vector<VoxelKey>;
 
 // Whether a robot has no goal and stays where it is, unless it is asked to make room.
 bool ContinuousExploration::State::rests(const Member& member) const {
-  return member.planned && !member.lost && !member.going && !member.goal.pose;
+  return member.planned && !member.is_lost() && !member.is_going() && !member.goal.pose;
 }
 
 bool ContinuousExploration::State::waits_for_room(std::size_t robot) const {
@@ -34,7 +34,7 @@ void ContinuousExploration::State::tell_others(std::size_t robot) {
   if (!team.tours) return;
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];
-    if (other == robot || member.lost || member.going) continue;
+    if (other == robot || member.is_lost() || member.is_going()) continue;
     member.others_rest = member.asks = true;
     member.waits = 0;
   }
@@ -43,7 +43,7 @@ void ContinuousExploration::State::tell_others(std::size_t robot) {
 void ContinuousExploration::State::tell_of_loss(std::size_t robot) {
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];
-    if (other == robot || member.lost) continue;
+    if (other == robot || member.is_lost()) continue;
     member.others_rest = member.asks = true;
     member.waits = member.low_gains = 0;
   }
@@ -52,7 +52,7 @@ void ContinuousExploration::State::tell_of_loss(std::size_t robot) {
 void ContinuousExploration::State::tell_of_stop(std::size_t robot, double time) {
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];
-    if (other != robot && !member.lost && member.motion.last().end() > time)
+    if (other != robot && !member.is_lost() && member.motion.last().end() > time)
       member.meets_other = member.meets_other || !keeps_apart(other, member.motion.last(), time, robot);
   }
 }
@@ -98,9 +98,9 @@ void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationSt
   Keys places;
   for (std::size_t other = 0; other < members.size(); ++other) {
     const auto place = team.lattice().key(team.poses[other].position);
-    if (other == robot || !place || !(rests(members[other]) || members[other].lost)) continue;
+    if (other == robot || !place || !(rests(members[other]) || members[other].is_lost())) continue;
     places.push_back(*place);
-    if (!members[other].lost) resting.push_back(other);
+    if (!members[other].is_lost()) resting.push_back(other);
   }
   if (resting.empty() || std::ranges::count(member.others_rested, places) >= kTimes) return;
   member.others_rested.push_back(std::move(places));

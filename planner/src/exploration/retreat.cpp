@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/path_planner.hpp>
+#include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -14,6 +15,13 @@
 
 namespace frontlux::planner::detail {
 namespace {
+
+// Whether the sensor of a robot would go through a voxel that is known to be occupied.
+bool leads_through_occupied(const VoxelGrid& map, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return !SegmentVoxels(map.lattice(), from, to).all_of([&](const VoxelKey& key) {
+    return map.at(key) != Occupancy::kOccupied;
+  });
+}
 
 // A path that comes to no voxel twice.
 std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> path) {
@@ -34,8 +42,8 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> pa
 
 // Whether a robot would have a goal if it were in a cell, to which its path has this length [m]. Without
 // tours what other robots see anyhow is worth less from afar, as eq. 1 has it.
-bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
-                                      double length) const {
+bool ExplorationState::would_have_goal_at(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
+                                          double length) const {
   elsewhere.update({travel_map()}, cell);
   if (tours)
     return tours
@@ -51,31 +59,38 @@ bool ExplorationState::worth_going_to(TravelCorridor& elsewhere, std::size_t rob
   return gain > 0.0 && gain >= options.epsilon;
 }
 
-bool ExplorationState::can_get_to(std::size_t robot, const VoxelKey& cell) const {
+bool ExplorationState::can_reach(std::size_t robot, const VoxelKey& cell) const {
   const TravelCorridor& corridor = path_corridor(robot);
   return corridor.extent() == CorridorExtent::kAllCells ? corridor.contains(cell)
-                                                        : tours->gets_to(robot, cell);
+                                                        : tours->can_reach(robot, cell);
 }
 
 // A robot beside which a closer look has found something is in no corridor; it retreats to the last place
 // that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it
-// retreats through the passage, if there is something to see from beyond.
+// retreats through the passage, if there is something to see from beyond. But where its sensor has been may
+// be occupied by now: a door has been shut behind it.
 std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t robot, const Goal& goal,
                                                                  const Keys& tried) const {
   const std::vector<Pose>& trail = trails[robot];
-  const bool lost = goal.state == GoalState::kNoCorridor;
+  const bool has_no_corridor = goal.state == GoalState::kNoCorridor;
   std::optional<TravelCorridor> elsewhere;
-  double length = 0.0;  // [m] of the trail from the place on
+  double length = 0.0;   // [m] of the trail from the place on
+  bool is_shut = false;  // the trail, between the place and what the robot can reach
   for (std::size_t place = trail.size(); place-- > 0;) {
-    if (place + 1 < trail.size()) length += (trail[place + 1].position - trail[place].position).norm();
     const auto cell = lattice().key(trail[place].position);
-    if (!cell || !path_corridor(robot).passable(*cell) || can_get_to(robot, *cell)) continue;
-    if (lost && trail[place].position == poses[robot].position) return std::nullopt;
+    const bool reached = cell && can_reach(robot, *cell);
+    if (place + 1 < trail.size()) {
+      const Eigen::Vector3d &here = trail[place].position, &next = trail[place + 1].position;
+      length += (next - here).norm();
+      is_shut = !reached && (is_shut || leads_through_occupied(travel_map(), here, next));
+    }
+    if (!cell || is_shut || reached || !path_corridor(robot).passable(*cell)) continue;
+    if (has_no_corridor && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
-    if (lost) return place;
+    if (has_no_corridor) return place;
     if (elsewhere && elsewhere->contains(*cell)) continue;
     if (!elsewhere) elsewhere.emplace(travel_by_voxels(robot), lattice(), mapping.bounds());
-    if (worth_going_to(*elsewhere, robot, *cell, length)) return place;
+    if (would_have_goal_at(*elsewhere, robot, *cell, length)) return place;
   }
   return std::nullopt;
 }
@@ -92,9 +107,9 @@ std::vector<Pose> ExplorationState::retreat_to(std::size_t robot, std::size_t pl
   };
   for (std::size_t i = place; i < trail.size(); ++i) {
     const auto cell = lattice().key(trail[i].position);
-    if (!cell || !can_get_to(robot, *cell)) continue;
+    if (!cell || !can_reach(robot, *cell)) continue;
     if (path_corridor(robot).extent() == CorridorExtent::kNearby &&
-        !selection->find_way(robot, *cell, tours->around_path_to(robot, *cell)))
+        !selection->find_path(robot, *cell, tours->around_path_to(robot, *cell)))
       break;
     std::vector<Pose> path = plan_path(path_corridor(robot), lattice(), poses[robot], trail[i],
                                        {options.seed, number, robot}, options.path)
@@ -129,11 +144,11 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   // What has closed off a part that is smaller than that where it is has not locked it in.
   TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());
   elsewhere.update({travel_map()}, lattice().key(trails[robot][*place].position).value());
-  return !gets_to_as_many_as(robot, elsewhere.cells().size());
+  return !can_reach_as_many_as(robot, elsewhere.cells().size());
 }
 
 // Whether a robot can get to so many cells, wherever other robots are.
-bool ExplorationState::gets_to_as_many_as(std::size_t robot, std::size_t count) const {
+bool ExplorationState::can_reach_as_many_as(std::size_t robot, std::size_t count) const {
   const TravelCorridor& corridor = path_corridor(robot);
   const auto here = lattice().key(poses[robot].position);
   if (!here) return false;

@@ -24,9 +24,9 @@ void GoalOptions::check() const {
   if (rule > GoalRule::kNearest)
     throw std::invalid_argument("goal selection: rule is " + std::to_string(static_cast<int>(rule)) +
                                 ", which is none of the values of GoalRule");
-  if (distance > TravelDistance::kStraight)
+  if (distance > DistanceMeasure::kStraight)
     throw std::invalid_argument("goal selection: distance is " + std::to_string(static_cast<int>(distance)) +
-                                ", which is none of the values of TravelDistance");
+                                ", which is none of the values of DistanceMeasure");
   check_number("lambda", lambda, 0.0, "per metre");
   check_number("min_distance", min_distance, 0.0, "m");
   check_number("advance", advance, 0.0, "m");
@@ -59,7 +59,7 @@ GoalOptions goal_options(const Robot& robot, Method method) {
   GoalOptions options;
   options.rendering.azimuth_bins = azimuth_bins(robot.view);
   if (method == Method::kPaper) {
-    options.distance = TravelDistance::kStraight;
+    options.distance = DistanceMeasure::kStraight;
     options.rule = drives ? GoalRule::kViewQuality : GoalRule::kClusters;
     options.rendering.estimator = ViewQualityOptions::Estimator::kPaper;
     options.refined = drives ? 0 : 4096;  // all cells that see a frontier

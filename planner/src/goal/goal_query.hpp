@@ -27,8 +27,8 @@ struct GoalQuery {
 
   /// [m] from the robot to a cell of the corridor, as eq. 1 takes it.
   [[nodiscard]] double distance(const VoxelKey& cell) const {
-    return options.distance == TravelDistance::kPath ? corridor.distance(cell).value()
-                                                     : (lattice.exact_center(cell) - position).norm();
+    return options.distance == DistanceMeasure::kPath ? corridor.distance(cell).value()
+                                                      : (lattice.exact_center(cell) - position).norm();
   }
 
   /// Whether a distance [m] is far enough for a goal.

@@ -77,7 +77,7 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
   TeamGoals result;
   result.frontiers = sorted.size();
   result.goals.resize(poses.size());
-  state.note(change);
+  state.note_change(change);
   state.begin_step(choosing);
   for (std::size_t r = 0; r < poses.size(); ++r) state.update_corridor(r, change.grid, poses[r]);
   for (std::size_t r = 0; r < poses.size(); ++r)
@@ -98,13 +98,13 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
 
 void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
                               CorridorExtent extent) {
-  state_->note(change);
+  state_->note_change(change);
   state_->update_corridor(robot, change.grid, pose, extent);
 }
 
-bool GoalSelection::find_way(std::size_t robot, const VoxelKey& cell,
-                             const std::function<bool(const VoxelKey&)>& through) {
-  return state_->members[robot].corridor.find_way(cell, through);
+bool GoalSelection::find_path(std::size_t robot, const VoxelKey& cell,
+                              const std::function<bool(const VoxelKey&)>& through) {
+  return state_->members[robot].corridor.find_path(cell, through);
 }
 
 void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
@@ -113,15 +113,7 @@ void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
   member.corridor.block(cells);
 }
 
-void GoalSelection::lose(std::size_t robot) {
-  State::Member& member = state_->members[robot];
-  member.lost = true;
-  member.missed = member.changed = {};
-  member.goal = {};
-  member.assigned.clear();
-  member.targets.clear();
-  member.previous_viewpoints.clear();
-}
+void GoalSelection::lose(std::size_t robot) { state_->lose(robot); }
 
 void GoalSelection::keep_out_of(std::size_t robot, std::vector<KeyBox> boxes) {
   state_->members[robot].corridor.keep_out_of(std::move(boxes));

@@ -43,7 +43,7 @@ std::string frontiers_text(std::size_t count) {
 
 }  // namespace
 
-void GoalSelection::State::note(const MapChange& change) {
+void GoalSelection::State::note_change(const MapChange& change) {
   const Keys keys(change.keys.begin(), change.keys.end());
   for (Member& member : members) {
     if (member.lost) continue;
@@ -55,6 +55,7 @@ void GoalSelection::State::note(const MapChange& change) {
 void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose,
                                            CorridorExtent extent) {
   Member& member = members[robot];
+  if (member.lost) return;
   member.position = pose.position;
   const Keys missed = std::exchange(member.missed, {});
   const auto cell = lattice.key(member.position);
@@ -85,6 +86,18 @@ void GoalSelection::State::renew_corridor(std::size_t robot) {
   members[robot].corridor = TravelCorridor(team[robot].robot.travel, lattice, bounds);
   members[robot].corridor.block(members[robot].blocked);
   members[robot].unseen.forget();
+}
+
+// From now on it has no cells: what it saw is for the others.
+void GoalSelection::State::lose(std::size_t robot) {
+  Member& member = members[robot];
+  member.lost = true;
+  member.missed = member.changed = {};
+  member.goal = {};
+  member.assigned.clear();
+  member.targets.clear();
+  member.previous_viewpoints.clear();
+  renew_corridor(robot);
 }
 
 // Alg. 1, line 4.

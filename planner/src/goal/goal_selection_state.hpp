@@ -52,9 +52,10 @@ struct GoalSelection::State {
   bool exclusive;  // a frontier is one robot's; else every robot goes for all that it sees
   std::vector<Member> members = {};
 
-  void note(const MapChange& change);
+  void note_change(const MapChange& change);
   void update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose,
                        CorridorExtent extent = CorridorExtent::kAllCells);
+  void lose(std::size_t robot);
   void begin_step(std::optional<std::size_t> choosing);
   void assign(Step& step, const Keys& frontiers);
   void decide(Step& step);

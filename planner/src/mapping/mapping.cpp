@@ -54,7 +54,7 @@ struct Mapping::State {
   KeyBox bounds;
   double surface_depth;
   InsertionTime time{};
-  std::vector<detail::RayEnd> rays{};  // kept for their memory
+  std::vector<detail::ScanRay> rays{};  // kept for their memory
   std::vector<detail::StateChange> changes{};
   std::vector<VoxelKey> keys{};  // of the last change
 

@@ -21,7 +21,7 @@ namespace frontlux::planner::detail {
 }
 
 /// A ray of an insertion.
-struct RayEnd {
+struct ScanRay {
   Eigen::Vector3f point;  ///< [m]
   VoxelKey key;           ///< of the voxel in which it ends
   bool has_key = false;   ///< false if the point lies outside the key range: such a ray passes nothing
@@ -150,19 +150,19 @@ class PathLanes {
 /// voxel only. Otherwise rounding can carry a path past the voxel of its end by one voxel an axis at most.
 template <class Mark>
 void for_each_passed(const Lattice& lattice, const Eigen::Vector3f& origin, const VoxelKey& start,
-                     std::span<const RayEnd> rays, const LinearPlaces& places, const Mark& mark) {
+                     std::span<const ScanRay> rays, const LinearPlaces& places, const Mark& mark) {
   const std::int64_t first = places.at(start);
   PathLanes lanes(first);
   std::size_t next = 0;
   const auto take_ray = [&](unsigned lane) {
     while (next < rays.size()) {
-      const RayEnd& ray = rays[next++];
+      const ScanRay& ray = rays[next++];
       if (!ray.has_key || ray.key == start) continue;
       mark(lane, first);
       const Eigen::Vector3f offset = ray.point - origin;
       const auto length = static_cast<float>(octomap_norm(offset));
       if (!(length > 1e-15F)) continue;
-      // The end of a ray that is followed for a part of the way has no place in a container of what it
+      // The end of a ray that is cut off at `reach` has no place in a container of what it
       // passes.
       const bool whole = ray.reach == std::numeric_limits<double>::infinity();
       lanes.load(lane, path_start(lattice, origin, start, offset, length, ray.reach, places), first,

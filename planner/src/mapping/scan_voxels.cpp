@@ -29,10 +29,10 @@ double reach_to_leave(const Lattice& lattice, const KeyBox& bounds, const Eigen:
 
 // Shortens rays that leave the bounds. Returns a box around all that rays pass in the key range.
 KeyBox limit(const Lattice& lattice, const KeyBox& bounds, const Eigen::Vector3f& origin,
-             const VoxelKey& start, std::span<RayEnd> rays) {
+             const VoxelKey& start, std::span<ScanRay> rays) {
   KeyBox box{start, start};
   const KeyBox around = grown(bounds, kBeyond + 2);
-  for (RayEnd& ray : rays) {
+  for (ScanRay& ray : rays) {
     if (!ray.has_key) continue;
     VoxelKey last = ray.key;
     if (bounds.contains(start) && !bounds.contains(ray.key)) {
@@ -48,7 +48,7 @@ KeyBox limit(const Lattice& lattice, const KeyBox& bounds, const Eigen::Vector3f
 template <class Voxels>
 std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice, const KeyBox& bounds,
                                      const Eigen::Vector3f& origin, const VoxelKey& start,
-                                     std::span<const RayEnd> rays) {
+                                     std::span<const ScanRay> rays) {
   constexpr std::size_t kGrain = 1024;
   const LinearPlaces places = none.places();
   // Sets that no thread is filling; there are never more than threads.
@@ -68,7 +68,7 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
   });
   Voxels all = none, hits = none;
   for (const auto& voxels : passed) all.add(*voxels);
-  for (const RayEnd& ray : rays)
+  for (const ScanRay& ray : rays)
     if (ray.has_key && ray.hit && bounds.contains(ray.key)) hits.add(places.at(ray.key));
   all.add(hits);
 
@@ -92,7 +92,7 @@ std::vector<BrickUpdate> update_with(const Voxels& none, const Lattice& lattice,
 }  // namespace
 
 std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
-                                        const Eigen::Vector3f& origin, std::span<RayEnd> rays) {
+                                        const Eigen::Vector3f& origin, std::span<ScanRay> rays) {
   const VoxelKey start = lattice.key(origin).value();
   const KeyBox box = limit(lattice, bounds, origin, start, rays);
   if (const auto dense = DenseVoxels::make(box))

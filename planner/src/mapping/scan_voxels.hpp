@@ -24,6 +24,6 @@ struct BrickUpdate {
 /// @param origin  of all rays [m]; inside the key range
 /// @param rays    their `reach` is written
 [[nodiscard]] std::vector<BrickUpdate> voxels_of_scan(const Lattice& lattice, const KeyBox& bounds,
-                                                      const Eigen::Vector3f& origin, std::span<RayEnd> rays);
+                                                      const Eigen::Vector3f& origin, std::span<ScanRay> rays);
 
 }  // namespace frontlux::planner::detail

@@ -16,7 +16,7 @@ Eigen::AlignedBox3d positions_too_near(const Eigen::AlignedBox3d& body, const Ei
 }
 
 bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::AlignedBox3d& body,
-                 const Follower& other, const Eigen::AlignedBox3d& other_body, double gap) {
+                 const RobotMotion& other, const Eigen::AlignedBox3d& other_body, double gap) {
   constexpr double kStep = 0.01;      // [s] in which two robots hardly come nearer
   constexpr double kRounding = 1e-9;  // [m] places that are just not too near are far enough
   const double end = std::max(trajectory.end(), other.rests_from());

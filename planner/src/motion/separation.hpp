@@ -18,7 +18,7 @@ namespace frontlux::planner::detail {
                                                      const Eigen::Vector3d& other_at, double gap);
 
 /// Where a robot is at a time [s]: its trajectory, and the one that takes its place later.
-struct Follower {
+struct RobotMotion {
   Trajectory now;
   std::optional<Trajectory> next = std::nullopt;
 
@@ -37,6 +37,6 @@ struct Follower {
 /// Whether a robot on its trajectory keeps a gap [m] to another, from a time [s] on and for all time to come.
 /// Robots that are nearer to each other already may not come nearer yet.
 [[nodiscard]] bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::AlignedBox3d& body,
-                               const Follower& other, const Eigen::AlignedBox3d& other_body, double gap);
+                               const RobotMotion& other, const Eigen::AlignedBox3d& other_body, double gap);
 
 }  // namespace frontlux::planner::detail

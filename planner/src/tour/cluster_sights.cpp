@@ -13,16 +13,34 @@ constexpr int kLongestPause = 8;  // [plannings]
 
 }  // namespace
 
+// The boxes of a query. Most clusters are far from all of them, which the box around tells at once.
+struct ClusterSights::Changes {
+  struct Boxes {
+    std::span<const KeyBox> boxes;
+    std::optional<KeyBox> around = {};
+
+    explicit Boxes(std::span<const KeyBox> given) : boxes(given) {
+      for (const KeyBox& box : boxes) around = around ? hull(*around, box) : box;
+    }
+    [[nodiscard]] bool meet(const KeyBox& within) const {
+      return around && intersection(*around, within) && std::ranges::any_of(boxes, [&](const KeyBox& box) {
+               return intersection(box, within).has_value();
+             });
+    }
+  };
+  Boxes voxels, cells;
+  int reach;  // [voxels] of the robot's view
+
+  explicit Changes(const Query& query)
+      : voxels(query.changes), cells(query.cells), reach(query.view.region.reach()) {}
+};
+
 // Whether other viewpoints may be the best now. Of a cluster that the robot does not see all that a robot
 // might see it from counts.
-bool ClusterSights::needs_a_look(const Query& query, const FrontierCluster& cluster, const Sight& sight) {
+bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& cluster, const Sight& sight) {
   if (sight.revision != cluster.revision) return true;
-  const auto any_in = [](std::span<const KeyBox> boxes, const KeyBox& within) {
-    return std::ranges::any_of(boxes,
-                               [&](const KeyBox& box) { return intersection(box, within).has_value(); });
-  };
-  if (sight.depend_on && !sight.viewpoints.empty()) return any_in(query.cells, *sight.depend_on);
-  return any_in(query.changes, grown(cluster.box, query.view.region.reach()));
+  if (sight.depend_on && !sight.viewpoints.empty()) return changes.cells.meet(*sight.depend_on);
+  return changes.voxels.meet(grown(cluster.box, changes.reach));
 }
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
@@ -31,12 +49,13 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
   std::vector<std::pair<const FrontierCluster*, Sight*>> search;
   const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
   const bool same_extent = extent_ == extent;
+  const Changes changes(query);
   for (const FrontierCluster& cluster : query.clusters) {
     Sight& sight = sights[cluster.id];
     if (const auto before = sights_.find(cluster.id); before != sights_.end())
       sight = std::move(before->second);
     if (!same_extent) sight.depend_on.reset();
-    if (needs_a_look(query, cluster, sight)) search.emplace_back(&cluster, &sight);
+    if (needs_a_look(changes, cluster, sight)) search.emplace_back(&cluster, &sight);
   }
   for_each_index(search.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = search[i];

@@ -58,7 +58,8 @@ class ClusterSights {
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
-  [[nodiscard]] static bool needs_a_look(const Query& query, const FrontierCluster& cluster,
+  struct Changes;
+  [[nodiscard]] static bool needs_a_look(const Changes& changes, const FrontierCluster& cluster,
                                          const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "routing/number_table.hpp"
 #include "tour/frontier_clusters.hpp"
-#include "tour/number_table.hpp"
 #include "tour/travel_graph.hpp"
 
 #include <frontlux/field_of_view.hpp>
@@ -21,8 +21,9 @@ namespace frontlux::planner::detail {
 /// What of a frontier a line through free space has to reach.
 enum class Aim : std::uint8_t {
   kMiddle,  ///< its middle
-  kFace,  ///< the free voxel before a face that is turned towards the robot. Of a floor, wall or ceiling the
-          ///< voxels beside hide the middles from all who look at it askew; beams meet it all the same.
+  kFace,  ///< the free voxel in front of a face that is turned towards the robot. At a low angle to a floor,
+          ///< wall or ceiling neighbouring voxels block the segment to the middle, though beams meet the
+          ///< frontier.
 };
 
 /// From where a robot sees a cluster, and how much of it.

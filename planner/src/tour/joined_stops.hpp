@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tour/number_table.hpp"
+#include "routing/number_table.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -1,7 +1,7 @@
 // The stops that come next in a robot's tour.
 
-#include "tour/shortest_choice.hpp"
-#include "tour/soonest_order.hpp"
+#include "routing/order_by_arrival.hpp"
+#include "routing/shortest_choice.hpp"
 #include "tour/tour_planning.hpp"
 #include "tour/travel_seconds.hpp"
 
@@ -84,7 +84,7 @@ void TourPlanning::put_in_order(const Query& query, NextStops& next) {
     for (std::size_t j = i + 1; j < count; ++j)
       robot.between(i, j) = robot.between(j, i) = seconds_between(query, next, first_of(i), first_of(j));
   std::vector<JoinedStop> ordered;
-  for (const std::uint32_t s : soonest_order(robot, weights, std::move(order)))
+  for (const std::uint32_t s : order_by_arrival(robot, weights, std::move(order)))
     ordered.push_back(std::move(next.stops[s]));
   next.stops = std::move(ordered);
 }

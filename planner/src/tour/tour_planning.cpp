@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -82,11 +83,11 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
   }
 }
 
-void TourPlanning::note(std::span<const VoxelKey> changed) {
-  for (std::size_t r = 0; r < members_.size(); ++r) note(r, changed);
+void TourPlanning::note_changed_voxels(std::span<const VoxelKey> changed) {
+  for (std::size_t r = 0; r < members_.size(); ++r) note_changed_voxels(r, changed);
 }
 
-void TourPlanning::note(std::size_t robot, std::span<const VoxelKey> changed) {
+void TourPlanning::note_changed_voxels(std::size_t robot, std::span<const VoxelKey> changed) {
   Member& member = members_[robot];
   if (!member.lost) member.changed.insert(member.changed.end(), changed.begin(), changed.end());
 }
@@ -162,10 +163,10 @@ double TourPlanning::own_distance_to(const Query& query, const VoxelKey& cell) c
 bool TourPlanning::reaches(const Query& query, const VoxelKey& cell) const {
   return query.corridor.extent() == CorridorExtent::kAllCells
              ? query.corridor.contains(cell)
-             : query.corridor.passable(cell) && gets_to(query.robot, cell);
+             : query.corridor.passable(cell) && can_reach(query.robot, cell);
 }
 
-bool TourPlanning::gets_to(std::size_t robot, const VoxelKey& cell) const {
+bool TourPlanning::can_reach(std::size_t robot, const VoxelKey& cell) const {
   return members_[robot].distances.reaches(cell);
 }
 
@@ -211,59 +212,66 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 
 // Clusters near a robot one by one; of the others those together that lie in one zone and that the same
 // robots can see. Beyond a distance zones are as much wider as they are farther away. The more stops there
-// would be, the less that distance is, so that what is far does not make plannings longer and longer.
-std::vector<TourPlanning::Stop> TourPlanning::stops(std::span<const MotionState> starts) const {
-  constexpr std::size_t kMany = 200;
+// would be, the less that distance is, and of very many also what counts as near, so that neither what is far
+// nor many robots make plannings longer and longer.
+std::vector<TourPlanning::StopClusters> TourPlanning::stops(std::span<const MotionState> starts) const {
+  constexpr std::size_t kMany = 200, kVeryMany = 500;
   constexpr double kOneEdge = 4.0;  // of what is near: at most up to here zones are of one size
-  struct Far {
+  constexpr double kNearest = 0.1;  // of what is near: up to here clusters are stops of their own in any case
+  struct Seen {
     std::uint32_t cluster;
     VoxelKey middle;
-    std::vector<bool> seen_by;
+    std::vector<bool> by;
     double nearest;  // of what is near
   };
-  std::vector<Stop> near;
-  std::vector<Far> far;
+  std::vector<Seen> seen;
+  std::set<std::uint32_t> first;  // clusters to which a robot is going
+  for (const Member& member : members_)
+    if (!member.tour.empty())
+      first.insert(member.tour.front().clusters.begin(), member.tour.front().clusters.end());
   const auto clusters = clusters_.clusters();
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     const KeyBox& box = clusters[i].box;
     const VoxelKey middle =
         make_key((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2);
-    std::vector<bool> seen_by;
+    std::vector<bool> by;
     double nearest = TourProblem::kNever;
     for (std::size_t r = 0; r < members_.size(); ++r) {
-      seen_by.push_back(best_viewpoint(members_[r], i) != nullptr);
+      by.push_back(best_viewpoint(members_[r], i) != nullptr);
       const double distance = (lattice_.exact_center(middle) - starts[r].pose.position).norm();
-      if (seen_by[r])
-        nearest = std::min(nearest, distance / (options_.near * members_[r].robot.view.max_range));
+      if (by[r]) nearest = std::min(nearest, distance / (options_.near * members_[r].robot.view.max_range));
     }
-    if (nearest <= 1.0)
-      near.push_back({i});
-    else if (nearest != TourProblem::kNever)
-      far.push_back({i, middle, std::move(seen_by), nearest});
+    if (nearest != TourProblem::kNever) seen.push_back({i, middle, std::move(by), nearest});
   }
-  const auto zones = [&](double one_edge) {
-    std::map<std::tuple<int, VoxelKey, std::vector<bool>>, Stop> stops;
-    for (const auto& [cluster, middle, seen_by, nearest] : far) {
+  const auto stops_if = [&](double near, double one_edge) {
+    std::vector<StopClusters> stops;
+    std::map<std::tuple<int, VoxelKey, std::vector<bool>>, StopClusters> zones;
+    for (const auto& [cluster, middle, by, nearest] : seen) {
+      if (nearest <= near || (nearest <= 1.0 && first.contains(clusters[cluster].id))) {
+        stops.push_back({cluster});
+        continue;
+      }
       int edge = zone_edge_;  // [voxels]
       for (double rest = nearest; rest > one_edge; rest /= 2.0) edge *= 2;
-      stops[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), seen_by}].push_back(cluster);
+      zones[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), by}].push_back(cluster);
     }
+    for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
     return stops;
   };
-  double one_edge = kOneEdge;
-  auto stops = zones(one_edge);
-  while (near.size() + stops.size() > kMany && one_edge > 1.0) stops = zones(one_edge /= std::sqrt(2.0));
-  for (auto& [zone, stop] : stops) near.push_back(std::move(stop));
-  return near;
+  double near = 1.0, one_edge = kOneEdge;
+  std::vector<StopClusters> stops = stops_if(near, one_edge);
+  while (stops.size() > kMany && one_edge > 1.0) stops = stops_if(near, one_edge /= std::sqrt(2.0));
+  while (stops.size() > kVeryMany && near > kNearest) stops = stops_if(near /= std::sqrt(2.0), one_edge);
+  return stops;
 }
 
 // The clusters of a stop, each time the nearest one.
-TourPlanning::Stop TourPlanning::in_order(const Member& member, const Stop& stop,
-                                          Eigen::Vector3d from) const {
+TourPlanning::StopClusters TourPlanning::in_order(const Member& member, const StopClusters& stop,
+                                                  Eigen::Vector3d from) const {
   std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> rest;
   for (const std::uint32_t cluster : stop)
     rest.emplace_back(cluster, lattice_.exact_center(best_viewpoint(member, cluster)->cell));
-  Stop order;
+  StopClusters order;
   while (!rest.empty()) {
     const auto nearest = std::ranges::min_element(
         rest, {}, [&](const auto& cluster) { return (cluster.second - from).norm(); });
@@ -275,7 +283,7 @@ TourPlanning::Stop TourPlanning::in_order(const Member& member, const Stop& stop
 }
 
 TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
-                                              std::span<const Stop> stops) {
+                                              std::span<const StopClusters> stops) {
   Member& member = members_[r];
   const MotionState& start = query.starts[r];
   const std::size_t count = stops.size();
@@ -322,7 +330,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   return robot;
 }
 
-TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stops) {
+TourProblem TourPlanning::problem(const Query& query, std::span<const StopClusters> stops) {
   TourProblem problem;
   problem.stops = stops.size();
   for (std::size_t r = 0; r < members_.size(); ++r) problem.robots.push_back(travel_times(query, r, stops));
@@ -330,16 +338,19 @@ TourProblem TourPlanning::problem(const Query& query, std::span<const Stop> stop
 }
 
 // The distances, the clusters, and from where the robot sees them.
-void TourPlanning::follow_map(const Query& query) {
+void TourPlanning::update_map(const Query& query) {
   Member& member = members_[query.robot];
   std::vector<KeyBox> changes = take_changes(member);
   if (!std::exchange(member.planned, true))
     if (const auto known = query.grid.known_bounds()) changes.assign(1, *known);
   const std::vector<KeyBox> cells = update_distances(query, changes);
-  for (std::size_t r = 0; r < members_.size(); ++r)
-    members_[r].distances.start_from(lattice_.key(query.starts[r].pose.position));
-  clusters_.update(query.frontiers);
-  if (worth_ < std::numeric_limits<double>::infinity()) ask_for_part_of(query.grid);
+  for_each_index(members_.size() + 1, [&](std::size_t r) {
+    if (r < members_.size())
+      members_[r].distances.start_from(lattice_.key(query.starts[r].pose.position));
+    else
+      clusters_.update(query.frontiers);  // at the same time
+  });
+  if (least_left_ < std::numeric_limits<double>::infinity()) lower_least_sizes(query.grid);
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };
@@ -352,7 +363,7 @@ void TourPlanning::follow_map(const Query& query) {
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.
-Tours TourPlanning::tours_before(const Query& query, std::span<const Stop> stops,
+Tours TourPlanning::tours_before(const Query& query, std::span<const StopClusters> stops,
                                  TourProblem& problem) const {
   std::map<std::uint32_t, std::uint32_t> stop_of;  // cluster
   for (std::uint32_t i = 0; i < stops.size(); ++i)
@@ -376,18 +387,18 @@ Tours TourPlanning::tours_before(const Query& query, std::span<const Stop> stops
 // The tours before, shortened, unless tours from nothing are better by a margin: else robots would change
 // their minds all the time.
 Tours TourPlanning::shared_out(const TourProblem& problem, const Tours& before) {
-  constexpr double kWorth = 0.95;
+  constexpr double kReplaceBelow = 0.95;  // of the cost before
   std::array<Tours, 2> tours{before, Tours(before.size())};
   for (std::size_t r = 0; r < before.size(); ++r)
     tours[1][r].assign(before[r].begin(),
                        before[r].begin() + static_cast<std::ptrdiff_t>(problem.robots[r].fixed));
   for_each_index(2, [&](std::size_t i) { tours[i] = shortened_tours(problem, std::move(tours[i])); });
-  const bool anew = cost_of(problem, tours[1]) < kWorth * cost_of(problem, tours[0]);
+  const bool anew = cost_of(problem, tours[1]) < kReplaceBelow * cost_of(problem, tours[0]);
   return tours[anew ? 1 : 0];
 }
 
 // A stop for each cluster, until the robot that plans joins its next ones.
-void TourPlanning::take(const Query& query, std::span<const Stop> stops, const Tours& tours) {
+void TourPlanning::set_tours(const Query& query, std::span<const StopClusters> stops, const Tours& tours) {
   for (std::size_t r = 0; r < members_.size(); ++r) {
     Member& member = members_[r];
     std::vector<TourStop> tour;
@@ -435,11 +446,11 @@ void TourPlanning::note_frontiers(const Query& query) {
 }
 
 void TourPlanning::update(const Query& query) {
-  follow_map(query);
-  const std::vector<Stop> places = stops(query.starts);
+  update_map(query);
+  const std::vector<StopClusters> places = stops(query.starts);
   TourProblem all = problem(query, places);
   const Tours before = tours_before(query, places, all);
-  take(query, places, shared_out(all, before));
+  set_tours(query, places, shared_out(all, before));
   join_next_stops(query);
   note_frontiers(query);
 }

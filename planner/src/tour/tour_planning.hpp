@@ -1,11 +1,11 @@
 #pragma once
 
+#include "routing/tour_search.hpp"
 #include "tour/cluster_sights.hpp"
 #include "tour/cluster_viewpoints.hpp"
 #include "tour/frontier_clusters.hpp"
+#include "tour/graph_distances.hpp"
 #include "tour/joined_stops.hpp"
-#include "tour/tour_search.hpp"
-#include "tour/travel_distances.hpp"
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -34,17 +34,16 @@ struct TourStop {
 class TourPlanning {
  public:
   struct Options {
-    // Of the greatest range of a robot's sensor: edges of the cubes in which
-    double cluster_edge = 0.4;    ///< frontiers make a cluster,
-    double zone_edge = 0.8;       ///< clusters that are far from all robots make one stop,
-    double graph_edge = 0.2;      ///< a robot's cells make a node
-    double spacing = 0.05;        ///< cells are tried for clusters that the usual places do not show,
-    double near = 2.0;            ///< of a robot's range: clusters up to here are stops of their own
-    double least_area = 1.5;      ///< [m2] of a cluster worth a stop
-    double least_gain = 10.0;     ///< [frontiers] that a stop shows
-    std::size_t joined = 40;      ///< nearest clusters, which are looked at from as few places as see them
-    std::size_t refined = 5;      ///< stops whose viewpoints are chosen together
-    std::size_t measured = 2500;  ///< nearest nodes to which the distances from a stop are known
+    double cluster_edge = 0.4;    ///< [longest range] edge of the cubes that cut clusters
+    double zone_edge = 0.8;       ///< [longest range] edge of a zone, whose far clusters make one stop
+    double graph_edge = 0.2;      ///< [longest range] edge of the graph's cubes
+    double spacing = 0.05;        ///< [own range] between the cells that are tried all over the graph
+    double near = 2.0;            ///< [own range] up to here each cluster is a stop of its own
+    double least_area = 1.5;      ///< [m2] least size of a cluster with a stop
+    double least_gain = 10.0;     ///< [frontiers] least number in view from a stop
+    std::size_t joined = 40;      ///< nearest clusters, which are seen from as few viewpoints as can be
+    std::size_t refined = 5;      ///< first stops, whose viewpoints are chosen together
+    std::size_t measured = 2500;  ///< nearest nodes of the graph to which the distances from a stop are known
   };
 
   /// @param starts  of the robots; those on a plane stay on it
@@ -70,9 +69,9 @@ class TourPlanning {
   void look_again(std::size_t robot) { members_[robot].sights.look_again(); }
 
   /// From the next planning on these voxels have changed.
-  void note(std::span<const VoxelKey> changed);
+  void note_changed_voxels(std::span<const VoxelKey> changed);
   /// The same for one robot: voxels, or cells that are closed to it from now on.
-  void note(std::size_t robot, std::span<const VoxelKey> changed);
+  void note_changed_voxels(std::size_t robot, std::span<const VoxelKey> changed);
 
   /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little.
   [[nodiscard]] double least_gain(std::size_t robot) const;
@@ -87,7 +86,7 @@ class TourPlanning {
     return members_[robot].first_view;
   }
   /// Whether the robot can get to a cell, wherever other robots are; as of its last update.
-  [[nodiscard]] bool gets_to(std::size_t robot, const VoxelKey& cell) const;
+  [[nodiscard]] bool can_reach(std::size_t robot, const VoxelKey& cell) const;
   /// [m] from where the robot will be to the first stop of its tour, about; 0 if there is none.
   [[nodiscard]] double first_distance(std::size_t robot) const;
   /// On a short path of the robot to some cell, as far [m] beyond where it is by now; nothing if the path is
@@ -113,8 +112,8 @@ class TourPlanning {
   struct Member {
     Robot robot;
     ViewRegion region;
-    TravelDistances distances;  // from where it is when its trajectory begins
-    bool planned = false;       // before
+    GraphDistances distances;  // from where it is when its trajectory begins
+    bool planned = false;      // before
     bool lost = false;
     std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
@@ -128,26 +127,27 @@ class TourPlanning {
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] bool nobody_sees_any() const;
-  bool ask_for_part_of(const VoxelGrid& grid);
+  bool lower_least_sizes(const VoxelGrid& grid);
   [[nodiscard]] static std::size_t least_frontiers(const Options& options, const Lattice& lattice);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
-  // Clusters that are one stop of the tours.
-  using Stop = std::vector<std::uint32_t>;
-  [[nodiscard]] std::vector<Stop> stops(std::span<const MotionState> starts) const;
+  // Places of the clusters that are one stop when tours are searched.
+  using StopClusters = std::vector<std::uint32_t>;
+  [[nodiscard]] std::vector<StopClusters> stops(std::span<const MotionState> starts) const;
   [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
-  [[nodiscard]] TourProblem problem(const Query& query, std::span<const Stop> stops);
+  [[nodiscard]] TourProblem problem(const Query& query, std::span<const StopClusters> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
-                                                std::span<const Stop> stops);
-  [[nodiscard]] Stop in_order(const Member& member, const Stop& stop, Eigen::Vector3d from) const;
+                                                std::span<const StopClusters> stops);
+  [[nodiscard]] StopClusters in_order(const Member& member, const StopClusters& stop,
+                                      Eigen::Vector3d from) const;
   // The stages of `update`.
-  void follow_map(const Query& query);
+  void update_map(const Query& query);
   void look_closer(const Query& query,
                    const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights);
-  [[nodiscard]] Tours tours_before(const Query& query, std::span<const Stop> stops,
+  [[nodiscard]] Tours tours_before(const Query& query, std::span<const StopClusters> stops,
                                    TourProblem& problem) const;
   [[nodiscard]] static Tours shared_out(const TourProblem& problem, const Tours& before);
-  void take(const Query& query, std::span<const Stop> stops, const Tours& tours);
+  void set_tours(const Query& query, std::span<const StopClusters> stops, const Tours& tours);
   void join_next_stops(const Query& query);
   void note_frontiers(const Query& query);
   // The stages of `join_next_stops` (next_stops.cpp).
@@ -177,7 +177,7 @@ class TourPlanning {
   FrontierClusters clusters_;
   // [frontiers] What is worth a stop by what is known; it counts from when nobody sees a cluster of the usual
   // size.
-  double worth_ = std::numeric_limits<double>::infinity();
+  double least_left_ = std::numeric_limits<double>::infinity();
   std::vector<Member> members_;
 };
 

@@ -165,9 +165,10 @@ void TravelGraph::for_each_touching(Name name, const Visit& visit) const {
 
 // Connects each node of a cube with its neighbours and with theirs: so a path along a diagonal is about as
 // long as it is.
-void TravelGraph::connect(std::size_t index) {
+// @return whether an edge is another one than before
+bool TravelGraph::connect(std::size_t index) {
   Cube& cube = cubes_[index];
-  cube.edges.clear();
+  const std::vector<Cube::Edge> before = std::exchange(cube.edges, {});
   std::vector<Name> touching, near;
   for (std::uint32_t part = 0; part < cube.centers.size(); ++part) {
     const Name name = name_of(index, part);
@@ -180,6 +181,25 @@ void TravelGraph::connect(std::size_t index) {
       if (to != name)
         cube.edges.push_back({part, to, static_cast<float>((center_of(to) - center_of(name)).norm())});
   }
+  return cube.edges != before;
+}
+
+// Calls `visit(number)` for a cube and those that are one or two faces away.
+template <class Visit>
+void TravelGraph::for_each_as_near_as_two(std::size_t index, const Visit& visit) const {
+  constexpr int kMost = 2;
+  const auto [x_count, y_count, z_count] = count_;
+  const auto x = static_cast<int>(index / (y_count * z_count)), y = static_cast<int>(index / z_count % y_count),
+             z = static_cast<int>(index % z_count);
+  const auto is_one = [](int at, std::size_t count) { return at >= 0 && at < static_cast<int>(count); };
+  for (int dx = -kMost; dx <= kMost; ++dx)
+    for (int dy = std::abs(dx) - kMost; dy <= kMost - std::abs(dx); ++dy) {
+      const int rest = kMost - std::abs(dx) - std::abs(dy);
+      for (int dz = -rest; dz <= rest; ++dz)
+        if (is_one(x + dx, x_count) && is_one(y + dy, y_count) && is_one(z + dz, z_count))
+          visit((static_cast<std::size_t>(x + dx) * y_count + static_cast<std::size_t>(y + dy)) * z_count +
+                static_cast<std::size_t>(z + dz));
+    }
 }
 
 // Nodes are numbered by their names.
@@ -219,17 +239,19 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
     reads[read_cubes[i]] = read(cubes_[read_cubes[i]], corridor) ? 1 : 0;
   });
   // A cube's links lead to those after it, and edges to neighbours of neighbours.
-  std::vector<std::uint8_t> links = reads;
-  changed_ = reads;
+  std::vector<std::uint8_t> links = reads, edges(cubes_.size());
   for (const std::size_t i : set_places(reads)) {
     for (const std::size_t back : {count_[1] * count_[2], count_[2], std::size_t{1}})
       if (i >= back) links[i - back] = 1;
-    for_each_cube(grown(cubes_[i].cells, 2 * edge_), [&](std::size_t cube) { changed_[cube] = 1; });
+    for_each_as_near_as_two(i, [&](std::size_t cube) { edges[cube] = 1; });
   }
-  const std::vector<std::size_t> linked = set_places(links), connected = set_places(changed_);
+  changed_ = std::move(reads);
+  const std::vector<std::size_t> linked = set_places(links), connected = set_places(edges);
   if (connected.empty()) return;
   for_each_index(linked.size(), [&](std::size_t i) { link(linked[i]); });
-  for_each_index(connected.size(), [&](std::size_t i) { connect(connected[i]); });
+  for_each_index(connected.size(), [&](std::size_t i) {
+    if (connect(connected[i])) changed_[connected[i]] = 1;
+  });
   number_nodes();
 }
 

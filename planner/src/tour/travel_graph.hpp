@@ -62,7 +62,7 @@ class TravelGraph {
   /// @param count  how many are enough; there may be somewhat more
   [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
                                                                   std::size_t count) const;
-  /// Whether the last update has found the node's cells or neighbours anew.
+  /// Whether the last update has changed the node's cells or its edges.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
   /// The nodes of a shortest path to a node, from its end to its begin.
@@ -86,6 +86,7 @@ class TravelGraph {
       std::uint32_t from;  // part
       Name to;
       float length;  // [m]
+      bool operator==(const Edge&) const = default;
     };
     std::vector<Edge> edges;  // sorted
   };
@@ -111,7 +112,9 @@ class TravelGraph {
   void link(std::size_t index);
   template <class Visit>
   void for_each_touching(Name name, const Visit& visit) const;
-  void connect(std::size_t index);
+  bool connect(std::size_t index);
+  template <class Visit>
+  void for_each_as_near_as_two(std::size_t index, const Visit& visit) const;
   void number_nodes();
 
   Lattice lattice_;
@@ -123,7 +126,7 @@ class TravelGraph {
   std::vector<std::uint32_t> first_;  // node of the first part of each cube
   BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
-  std::vector<std::uint8_t> changed_;  // cubes whose edges the last update has found anew
+  std::vector<std::uint8_t> changed_;  // cubes whose cells or edges the last update has changed
   std::vector<Name> names_;            // of the nodes, in this order
   std::vector<std::size_t> begin_;     // of each node's edges
   struct Edge {

@@ -29,7 +29,7 @@ std::size_t TourPlanning::least_frontiers(const Options& options, const Lattice&
 
 double TourPlanning::least_gain(std::size_t robot) const {
   return std::min(
-      {options_.least_gain, worth_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
+      {options_.least_gain, least_left_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
 }
 
 // As far as they have planned.
@@ -41,14 +41,14 @@ bool TourPlanning::nobody_sees_any() const {
 
 // A small world has nothing larger than what is left to those who come by in a large one.
 // @return whether less is asked for than before
-bool TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
+bool TourPlanning::lower_least_sizes(const VoxelGrid& grid) {
   constexpr double kPart = 0.001;
   const auto [unknown, free, occupied] = grid.count();
-  const double before = worth_;
-  worth_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
+  const double before = least_left_;
+  least_left_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
   const std::size_t least = least_frontiers(options_, lattice_);
-  clusters_.set_least(std::min(least, static_cast<std::size_t>(worth_)));
-  return worth_ < std::min(before, std::max(options_.least_gain, static_cast<double>(least)));
+  clusters_.set_least(std::min(least, static_cast<std::size_t>(least_left_)));
+  return least_left_ < std::min(before, std::max(options_.least_gain, static_cast<double>(least)));
 }
 
 // At what is left when nobody sees a cluster of the usual size: at smaller ones and, if they are much of what
@@ -56,13 +56,13 @@ bool TourPlanning::ask_for_part_of(const VoxelGrid& grid) {
 void TourPlanning::look_closer(const Query& query,
                                const std::function<ClusterSights::Query(const ViewpointQuery&)>& sights) {
   ClusterSights& own = members_[query.robot].sights;
-  if (ask_for_part_of(query.grid)) {
+  if (lower_least_sizes(query.grid)) {
     for (Member& member : members_) member.sights.look_again();
     own.update(sights(sight_of(query.robot, query.caster, query.grid)));
     if (!nobody_sees_any()) return;
   }
   ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
-  view.least_gain = std::max(view.least_gain, worth_);
+  view.least_gain = std::max(view.least_gain, least_left_);
   own.look_at_faces(sights(view));
 }
 

@@ -181,8 +181,8 @@ class Stage : public Ipopt::TNLP {
   std::vector<std::size_t> limited_;  // viewpoints from which the turn to the next is limited
 };
 
-PathEnd run(const Ipopt::SmartPtr<Stage>& stage, int max_iterations, bool limited) {
-  if (stage->flat()) return PathEnd::kConverged;
+OptimizationEnd run(const Ipopt::SmartPtr<Stage>& stage, int max_iterations, bool limited) {
+  if (stage->flat()) return OptimizationEnd::kConverged;
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> solver = new Ipopt::IpoptApplication(false);
   const auto options = solver->Options();
   options->SetIntegerValue("print_level", 0);
@@ -201,15 +201,15 @@ PathEnd run(const Ipopt::SmartPtr<Stage>& stage, int max_iterations, bool limite
   if (limited) options->SetNumericValue("mu_init", 1e-3);
   // An empty stream: without it Ipopt reads ipopt.opt from wherever the program happens to run.
   std::istringstream no_file;
-  if (solver->Initialize(no_file) != Ipopt::Solve_Succeeded) return PathEnd::kSolverStopped;
+  if (solver->Initialize(no_file) != Ipopt::Solve_Succeeded) return OptimizationEnd::kSolverStopped;
   switch (solver->OptimizeTNLP(stage)) {
     case Ipopt::Solve_Succeeded:
     case Ipopt::Solved_To_Acceptable_Level:
-      return PathEnd::kConverged;
+      return OptimizationEnd::kConverged;
     case Ipopt::Maximum_Iterations_Exceeded:
-      return PathEnd::kEvaluationLimit;
+      return OptimizationEnd::kEvaluationLimit;
     default:
-      return stage->cut_short() ? PathEnd::kEvaluationLimit : PathEnd::kSolverStopped;
+      return stage->cut_short() ? OptimizationEnd::kEvaluationLimit : OptimizationEnd::kSolverStopped;
   }
 }
 
@@ -225,7 +225,7 @@ Ascent ascend(const InformationGain& gain, std::span<const double> start, const 
   Ascent ascent;
   for (std::size_t s = 0; s < sharpness.size(); ++s) {
     const int evaluations = (max_evaluations - climb.evaluations()) / static_cast<int>(sharpness.size() - s);
-    ascent.end = PathEnd::kEvaluationLimit;
+    ascent.end = OptimizationEnd::kEvaluationLimit;
     if (evaluations < 1) continue;
     const Ipopt::SmartPtr<Stage> stage = new Stage(climb, climb.best(), sharpness[s], evaluations);
     ascent.end = run(stage, evaluations, limits.limited());

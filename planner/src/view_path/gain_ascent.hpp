@@ -14,7 +14,7 @@ namespace frontlux::planner {
 struct Ascent {
   std::vector<double> yaws;  ///< [rad] those with most distinct frontiers in view; of equals the last
   int evaluations = 0;
-  PathEnd end = PathEnd::kConverged;
+  OptimizationEnd end = OptimizationEnd::kConverged;
 };
 
 /// Climbs along the gain's gradient by the yaws between the first and the last, with Ipopt.

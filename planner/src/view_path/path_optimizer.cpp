@@ -23,13 +23,13 @@ void check_limit(const char* name, double value, const char* unit) {
 }
 
 // Why there is nothing to climb, if so.
-std::optional<PathEnd> no_ascent(const InformationGain& gain, const PathOptimizerOptions& options) {
-  if (gain.viewpoints() < 3) return PathEnd::kNothingToTurn;
-  if (gain.view().sees_all_around()) return PathEnd::kYawHasNoEffect;
+std::optional<OptimizationEnd> no_ascent(const InformationGain& gain, const PathOptimizerOptions& options) {
+  if (gain.viewpoints() < 3) return OptimizationEnd::kNothingToTurn;
+  if (gain.view().sees_all_around()) return OptimizationEnd::kYawHasNoEffect;
   bool visible = false;
   for (std::size_t i = 1; i + 1 < gain.viewpoints(); ++i) visible = visible || !gain.frontiers_of(i).empty();
-  if (!visible) return PathEnd::kNothingVisible;
-  if (!options.ascend) return PathEnd::kAscentOff;
+  if (!visible) return OptimizationEnd::kNothingVisible;
+  if (!options.ascend) return OptimizationEnd::kAscentOff;
   return std::nullopt;
 }
 
@@ -58,7 +58,7 @@ void PathOptimizerOptions::check() const {
   check_limit("max_yaw_rate", max_yaw_rate, " rad/m");
 }
 
-PathOptimizerOptions paper_path_options() {
+PathOptimizerOptions paper_optimizer_options() {
   PathOptimizerOptions options;
   options.gain.mode = GainMode::kSum;
   options.start = YawStart::kTangent;
@@ -66,7 +66,7 @@ PathOptimizerOptions paper_path_options() {
   return options;
 }
 
-std::string_view describe(PathEnd end) {
+std::string_view describe(OptimizationEnd end) {
   constexpr std::array<std::string_view, 8> kTexts = {
       "converged",
       "the limit on evaluations was reached",
@@ -86,7 +86,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   const InformationGain gain(viewpoints, frontiers, pairs, view, options.gain);
   OptimizedPath path;
   if (viewpoints.empty()) {
-    path.end = PathEnd::kNothingToTurn;
+    path.end = OptimizationEnd::kNothingToTurn;
     return path;
   }
   const auto report = [&](std::span<const double> yaws) {
@@ -99,7 +99,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   const auto even = limits.even_turn(tangent.front(), tangent.back());
   const auto nothing_to_climb = no_ascent(gain, options);
   const bool reachable = limits.allow(even);
-  const bool turn = !nothing_to_climb || *nothing_to_climb == PathEnd::kAscentOff;
+  const bool turn = !nothing_to_climb || *nothing_to_climb == OptimizationEnd::kAscentOff;
 
   if (!reachable)
     path.yaws = even;
@@ -111,7 +111,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   path.start = report(path.yaws);
 
   if (!reachable)
-    path.end = PathEnd::kLimitsUnreachable;
+    path.end = OptimizationEnd::kLimitsUnreachable;
   else if (nothing_to_climb)
     path.end = *nothing_to_climb;
   else {

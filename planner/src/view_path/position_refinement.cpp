@@ -166,7 +166,7 @@ RefinedPath refine_positions(std::span<const Pose> viewpoints, std::span<const V
     const auto& [fuzzy, distinct] = turned.result;
     const bool better = distinct > refined.after.distinct ||
                         (distinct == refined.after.distinct && fuzzy > refined.after.fuzzy);
-    if (!better || turned.end == PathEnd::kLimitsUnreachable) break;
+    if (!better || turned.end == OptimizationEnd::kLimitsUnreachable) break;
     for (std::size_t i = 1; i + 1 < path.size(); ++i) path[i].yaw = turned.yaws[i];
     refined.viewpoints = std::move(path);
     refined.after = turned.result;

@@ -30,7 +30,7 @@ void read(VoxelColumns& columns, Erosion& erosion, const VoxelGrid& grid,
   else
     columns.read(grid, Occupancy::kFree);
   erosion.erode(columns);
-  columns.settle();
+  columns.clear_stale();
 }
 
 // Boxes of up to four words a column, on bricks and off them, at both ends of the key range and in its

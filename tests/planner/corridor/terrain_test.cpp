@@ -17,7 +17,7 @@ bool is(const VoxelGrid& grid, const KeyBox& box, Occupancy state, int x, int y,
 
 bool is_ground(const VoxelGrid& grid, const Terrain::Options& options, int x, int y, int z) {
   return is(grid, options.box, Occupancy::kOccupied, x, y, z) &&
-         (!options.gap || !is(grid, options.box, Occupancy::kOccupied, x, y, z + 1));
+         (!options.depth || !is(grid, options.box, Occupancy::kOccupied, x, y, z + 1));
 }
 
 bool is_hole(const VoxelGrid& grid, const Terrain::Options& options, int x, int y, int z) {
@@ -47,14 +47,14 @@ bool is_carried(const VoxelGrid& grid, const Terrain::Options& options, const Vo
   };
   for (const KeyBox& box : options.exempt)
     if (box.contains(floor))
-      return options.gap ? no_hole_under_it([&](int x, int y) {
+      return options.depth ? no_hole_under_it([&](int x, int y) {
         return hole(x, y) && is(grid, options.box, Occupancy::kFree, x, y, floor.z - 1);
       })
-                         : !holes_all_around();
+                           : !holes_all_around();
   bool near = false;
   for (int x = -options.reach; x <= options.reach; ++x)
     for (int y = -options.reach; y <= options.reach; ++y)
-      for (int z = -options.gap.value_or(0); z <= 0; ++z)
+      for (int z = -options.depth.value_or(0); z <= 0; ++z)
         near = near || is_ground(grid, options, floor.x + x, floor.y + y, floor.z + z);
   return near && no_hole_under_it(hole);
 }
@@ -75,7 +75,7 @@ TEST(Terrain, EqualsBruteForceAfterRandomChanges) {
     if (seed % 3 != 0) {
       options.above = random.below(3);
       options.below = random.below(4);
-      options.gap = random.below(3);
+      options.depth = random.below(3);
     }
     if (random.one_in(2))
       options.exempt = {{corner, make_key(corner.x + 3, corner.y + 2, std::min(corner.z + 2, 65535))}};

@@ -293,7 +293,7 @@ TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
     const auto anywhere = [](const VoxelKey&) { return true; };
     for (int i = 0; i < 40; ++i) {
       const VoxelKey goal = random.key_in(kBounds);
-      EXPECT_EQ(some.find_way(goal, anywhere), all.contains(goal));
+      EXPECT_EQ(some.find_path(goal, anywhere), all.contains(goal));
       EXPECT_EQ(some.path_to(goal).size(), all.path_to(goal).size());
       near += all.contains(goal) ? 1 : 0;
       none += all.contains(goal) ? 0 : 1;

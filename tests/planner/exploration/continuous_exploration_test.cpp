@@ -225,24 +225,93 @@ TEST(ContinuousExploration, SeesNoFrontiersBehindSurfaces) {
   EXPECT_EQ(frontiers(), all.size() - hidden);
 }
 
-// Planning takes for visible what the camera, which looks the other way, does not see.
+// A scan of one ray.
+Scan scan_with(const Pose& pose, float range, double max_range) {
+  return {pose.position.cast<float>(), max_range, {Eigen::Vector3f::UnitX()}, {range}};
+}
+// It changes nothing.
+Scan empty_scan(const Pose& pose) { return scan_with(pose, std::numeric_limits<float>::infinity(), 0.01); }
+
+// Planning takes for visible what the camera, which looks the other way, does not see. Also if the robot
+// comes to rest beside the middle of the voxel, and so in another one, where its trajectory ends.
 TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
+  for (const double off : {0.0, 0.2}) {
+    const TeamInWorld team("room", 1, {small_uav()});
+    ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+    exploration.begin(team.starts, 0.0);
+    for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
+      Pose pose = exploration.at(0, time).pose;
+      pose.position.x() += off;
+      pose.yaw = turn(std::numbers::pi, pose.yaw);
+      exploration.insert(0, pose, empty_scan(pose));
+      while (exploration.plan(time)) {
+      }
+    }
+    EXPECT_TRUE(exploration.end()) << off;
+  }
+}
+
+// Each robot gives up what it has not seen, also if both plan at the same times.
+TEST_P(ContinuousExplorationBy, GivesUpWhatEitherRobotDoesNotSee) {
+  const TeamInWorld team("room", 1, {small_uav(), small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  std::array<std::size_t, 2> given_up{};
+  for (double time = 0.0; time < 30.0 && !exploration.end(); time += 1.0) {
+    for (std::size_t r = 0; r < 2; ++r) {
+      const Pose pose = exploration.at(r, time).pose;
+      exploration.insert(r, pose, empty_scan(pose));
+    }
+    while (const auto now = exploration.plan(time))
+      given_up.at(now->robot) += now->step.robots[now->robot].still_unknown.size();
+  }
+  EXPECT_GT(given_up[0], 0U);
+  EXPECT_GT(given_up[1], 0U);
+}
+
+// A sensor that has failed for a while shows nothing of what is in its view.
+TEST_P(ContinuousExplorationBy, GivesNothingUpForScansWithoutRanges) {
   const TeamInWorld team("room", 1, {small_uav()});
   ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
   exploration.begin(team.starts, 0.0);
-  Scan nothing;
-  nothing.max_range = 10.0;
-  nothing.directions = {{1, 0, 0}};
-  nothing.ranges = {std::numeric_limits<float>::quiet_NaN()};
-  for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
-    Pose pose = exploration.at(0, time).pose;
-    pose.yaw = turn(std::numbers::pi, pose.yaw);
-    nothing.origin = pose.position.cast<float>();
-    exploration.insert(0, pose, nothing);
-    while (exploration.plan(time)) {
-    }
+  for (double time = 0.0; time < 20.0; time += 0.1) {
+    const Pose pose = exploration.at(0, time).pose;
+    exploration.insert(0, pose, scan_with(pose, std::numeric_limits<float>::quiet_NaN(), 10.0));
+    while (const auto now = exploration.plan(time)) EXPECT_TRUE(now->step.robots[0].still_unknown.empty());
   }
-  EXPECT_TRUE(exploration.end());
+}
+
+// Where a robot starts there is nothing, whatever a map from before says.
+TEST_P(ContinuousExplorationBy, BeginsWhereSomethingStoodBefore) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  Mapping map = team.empty_map();
+  const Eigen::Vector3f middle = team.starts[0].pose.position.cast<float>();
+  map.insert(middle, {&middle, 1});
+  ASSERT_EQ(map.grid().at(map.grid().lattice().key(middle).value()), Occupancy::kOccupied);
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), std::move(map));
+  exploration.begin(team.starts, 0.0);
+  const auto planned = exploration.plan(0.0);
+  ASSERT_TRUE(planned);
+  EXPECT_TRUE(planned->step.robots[0].goal.pose) << planned->step.robots[0].goal.reason;
+}
+
+// An account of what has been mapped takes nothing from the plannings after it.
+TEST_P(ContinuousExplorationBy, GoesOnAfterAFinish) {
+  TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GetParam());
+  scene.explore(2.0);
+  ContinuousExploration& exploration = scene.exploration();
+  while (exploration.plan(scene.time())) {
+  }
+  const double time = scene.time() + 20.0;  // it has come to rest
+  const Pose pose = exploration.at(0, time).pose;
+  const Lattice lattice = scene.grid().lattice();
+  const VoxelKey here = lattice.key(pose.position).value();
+  for (int i = 0; i < 10; ++i)
+    exploration.insert(0, pose, beam(lattice, here, make_key(here.x + 1, here.y, here.z), true));
+  EXPECT_EQ(exploration.finish(time).time, time);
+  const auto planned = exploration.plan(time + 1.0);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
 }
 
 TEST(ContinuousExploration, EndsAtItsLimitOfPlannings) {

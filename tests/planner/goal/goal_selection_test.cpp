@@ -11,7 +11,7 @@ namespace frontlux::test {
 namespace {
 
 TEST(GoalSelection, GroundRobotTakesTheCellWithTheBestViewQuality) {
-  for (const TravelDistance distance : {TravelDistance::kPath, TravelDistance::kStraight})
+  for (const DistanceMeasure distance : {DistanceMeasure::kPath, DistanceMeasure::kStraight})
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       GoalRoom room(26, 6, seed);
       room.clear(13, 13, 2);
@@ -28,7 +28,7 @@ TEST(GoalSelection, GroundRobotTakesTheCellWithTheBestViewQuality) {
       ASSERT_EQ(steps.size(), cells.size());
       std::optional<Found> best;
       for (const VoxelKey& cell : cells) {
-        const double d = distance == TravelDistance::kPath
+        const double d = distance == DistanceMeasure::kPath
                              ? steps.at(cell) * kResolution
                              : offset_between(decision.start, cell, kResolution).norm();
         if (d < 0.59) continue;

@@ -56,15 +56,15 @@ TEST(Separation, PositionsTooNearAreThoseWithASmallGap) {
 
 TEST(Separation, FollowsTheNextTrajectoryFromItsBeginOn) {
   const MotionLimits limits;
-  const detail::Follower robot{straight({0, 0, 0}, {4, 0, 0}, 0.0, limits),
-                               straight({9, 9, 9}, {9, 9, 0}, 2.0, limits)};
+  const detail::RobotMotion robot{straight({0, 0, 0}, {4, 0, 0}, 0.0, limits),
+                                  straight({9, 9, 9}, {9, 9, 0}, 2.0, limits)};
   EXPECT_LT(robot.at(1.99).pose.position.x(), 4.0);
   EXPECT_EQ(robot.at(2.0).pose.position, Vector3d(9, 9, 9));
   EXPECT_EQ(robot.last().begin(), 2.0);
 }
 
 // The least gap of two robots from a time on, by very many samples.
-double least_gap(const Trajectory& a, const AlignedBox3d& body, const detail::Follower& b,
+double least_gap(const Trajectory& a, const AlignedBox3d& body, const detail::RobotMotion& b,
                  const AlignedBox3d& other_body) {
   constexpr double kFine = 1e-3;  // [s]
   double least = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ TEST(Separation, IsThatOfManySamples) {
     const auto point = [&] { return random.point(-2, 2); };
     const AlignedBox3d body = cube(random.uniform(0.2, 0.8)), other_body = cube(random.uniform(0.2, 0.8));
     const Trajectory mine = straight(point(), point(), random.uniform(0, 2), limits());
-    detail::Follower other{straight(point(), point(), 0.0, limits())};
+    detail::RobotMotion other{straight(point(), point(), 0.0, limits())};
     if (random.one_in(2)) {
       // From where it is resting by then: trajectories have no jumps.
       const Vector3d from = other.now.at(other.now.end()).pose.position;
@@ -111,7 +111,7 @@ TEST(Separation, IsThatOfManySamples) {
 TEST(Separation, PlacesThatAreJustFarEnoughAreFree) {
   for (int i = 1; i < 200; ++i) {
     const double at = (i + 0.5) * 0.3;
-    const detail::Follower other{Trajectory({{at, 0, 0}, 0.0}, 0.0)};
+    const detail::RobotMotion other{Trajectory({{at, 0, 0}, 0.0}, 0.0)};
     const auto ends = [&](double x) { return straight({x - 1.0, 0, 0}, {x, 0, 0}, 0.0, {}); };
     EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
     EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
@@ -124,13 +124,13 @@ TEST(Separation, LooksAsFarAheadAsTheOtherMoves) {
   const Trajectory mine = straight({0, 0, 0}, {1, 0, 0}, 0.0, limits);
   const auto comes_to = [&](double x) {
     const std::vector<Pose> way = {{{20, 0, 0}, 0.0}, {{x, 0, 0}, 0.0}};
-    return detail::Follower{Trajectory({{20, 0, 0}, 0.0}, 0.0),
-                            Trajectory::through({way.front()}, 10.0, way, limits, kAllFree).value()};
+    return detail::RobotMotion{Trajectory({{20, 0, 0}, 0.0}, 0.0),
+                               Trajectory::through({way.front()}, 10.0, way, limits, kAllFree).value()};
   };
   EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
   EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.5), cube(0.5), 0.1));
   // One that rests does so for ever, whenever it was told: also where there are more steps than time.
-  const auto rests_at = [](double x) { return detail::Follower{Trajectory({{x, 0, 0}, 0.0}, 1e9)}; };
+  const auto rests_at = [](double x) { return detail::RobotMotion{Trajectory({{x, 0, 0}, 0.0}, 1e9)}; };
   EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.7), cube(0.5), 0.1));
   EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.5), cube(0.5), 0.1));
   // What was before does not matter.

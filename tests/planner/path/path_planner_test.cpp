@@ -180,7 +180,7 @@ TEST(PathPlanner, FallsBackOnACorridorThatDoesNotKnowItsCells) {
   ASSERT_TRUE(corridor.cells().empty());
   const Pose start = pose(1.41, 1.37, 1.61), goal = pose(5.17, 1.5, 2.4);
   ASSERT_TRUE(
-      corridor.find_way(*scene.grid.lattice().key(goal.position), [](const VoxelKey&) { return true; }));
+      corridor.find_path(*scene.grid.lattice().key(goal.position), [](const VoxelKey&) { return true; }));
   for (const PathSearch search : {PathSearch::kRrt, PathSearch::kRrtConnect, PathSearch::kRrtStar}) {
     PathOptions options;
     options.search = search;

@@ -150,14 +150,14 @@ TEST(TourPlanning, LearnsOfCellsThatAreBlocked) {
   OpenSpace space;
   space.plan(space.corridor());
   const VoxelKey beyond = make_key(32780, 32765, 32772);
-  ASSERT_TRUE(space.planning.gets_to(0, beyond));
+  ASSERT_TRUE(space.planning.can_reach(0, beyond));
   Keys wall;  // across all that is known
   for_each_key({make_key(32774, 32750, 32768), make_key(32774, 32800, 32779)},
                [&](const VoxelKey& key) { wall.push_back(key); });
-  space.planning.note(0, wall);
+  space.planning.note_changed_voxels(0, wall);
   space.plan(space.corridor(wall));
-  EXPECT_FALSE(space.planning.gets_to(0, beyond));
-  EXPECT_TRUE(space.planning.gets_to(0, make_key(32770, 32765, 32772)));
+  EXPECT_FALSE(space.planning.can_reach(0, beyond));
+  EXPECT_TRUE(space.planning.can_reach(0, make_key(32770, 32765, 32772)));
 }
 
 // The floor is seen after the air above it, in a map of which the robot knows cells already.
@@ -190,14 +190,14 @@ TEST(TourPlanning, LearnsOfGroundThatIsSeenLate) {
     };
     plan();
     ASSERT_TRUE(corridor.contains(at));
-    ASSERT_FALSE(planning.gets_to(0, late));
+    ASSERT_FALSE(planning.can_reach(0, late));
     for_each_key({make_key(32777, 32750, kFloor), make_key(32790, 32790, kFloor)},
                  [&](const VoxelKey& key) { seen.push_back(key); });
     for (const VoxelKey& key : seen) grid.set(key, Occupancy::kOccupied);
-    planning.note(seen);
+    planning.note_changed_voxels(seen);
     plan();
     ASSERT_TRUE(corridor.contains(late));
-    EXPECT_TRUE(planning.gets_to(0, late));
+    EXPECT_TRUE(planning.can_reach(0, late));
   }
 }
 

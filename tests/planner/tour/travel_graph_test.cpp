@@ -2,7 +2,7 @@
 
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
-#include "tour/travel_distances.hpp"
+#include "tour/graph_distances.hpp"
 
 namespace frontlux::planner::detail {
 namespace {
@@ -194,14 +194,14 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
   EXPECT_GT(others, 50U);
 }
 
-TEST(TravelDistances, OfAllPairsAreThoseOfEachPair) {
+TEST(GraphDistances, OfAllPairsAreThoseOfEachPair) {
   Random random(57);
   std::size_t near = 0, far = 0;
   for (int round = 0; round < 10; ++round) {
     const VoxelGrid grid = random_rooms(random);
     TravelCorridor corridor(flying_cube(), grid.lattice(), kBounds);
     corridor.update({grid}, free_key(random, grid));
-    TravelDistances distances(grid.lattice(), TravelGraph(grid.lattice(), kBounds, 4, 2), 40);
+    GraphDistances distances(grid.lattice(), TravelGraph(grid.lattice(), kBounds, 4, 2), 40);
     distances.update(corridor, {{kBounds}});
     Keys measured;
     std::vector<std::optional<VoxelKey>> cells;
@@ -274,7 +274,7 @@ TEST(TravelGraph, FindsTheCellsAroundAWay) {
       }
     }
     fewer += nodes.size() < graph.size() ? 1 : 0;
-    EXPECT_TRUE(corridor.find_way(goal, [&](const VoxelKey& cell) {
+    EXPECT_TRUE(corridor.find_path(goal, [&](const VoxelKey& cell) {
       return std::ranges::binary_search(nodes, graph.node(cell).value());
     }));
   }

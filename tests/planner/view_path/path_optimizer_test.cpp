@@ -70,7 +70,7 @@ TEST(PathOptimizer, TheGradientTurnsAViewpointTowardsWhatItMisses) {
                               5.0 * Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0));
     scene.list.push_back({1, j});
   }
-  PathOptimizerOptions options = paper_path_options();
+  PathOptimizerOptions options = paper_optimizer_options();
   const OptimizedPath path = optimize(scene, options);
   EXPECT_EQ(path.tangent.distinct, 0U);
   EXPECT_EQ(path.result.distinct, 20U);
@@ -78,7 +78,7 @@ TEST(PathOptimizer, TheGradientTurnsAViewpointTowardsWhatItMisses) {
   options.max_evaluations = 400;
   options.sharpness = {8.0};
   const OptimizedPath settled = optimize(scene, options);
-  EXPECT_EQ(settled.end, PathEnd::kConverged) << describe(settled.end);
+  EXPECT_EQ(settled.end, OptimizationEnd::kConverged) << describe(settled.end);
   EXPECT_NEAR(settled.yaws[1], 1.19, 1e-2);
 }
 
@@ -99,14 +99,16 @@ TEST(PathOptimizer, KeepsTheLimitsOnTurning) {
       const double length = (scene.path[i + 1].position - scene.path[i].position).norm();
       const double limit = trial % 2 == 0 ? options.max_yaw_step : options.max_yaw_rate * length;
       all += limit;
-      if (path.end != PathEnd::kLimitsUnreachable) {
+      if (path.end != OptimizationEnd::kLimitsUnreachable) {
         EXPECT_LE(angle_between(path.yaws[i], path.yaws[i + 1]), limit + 2e-9) << trial;
       }
     }
     const double needed = angle_between(path.yaws.front(), path.yaws.back());
-    EXPECT_EQ(path.end == PathEnd::kLimitsUnreachable, needed > all + 1e-8) << trial;
-    unreachable += path.end == PathEnd::kLimitsUnreachable ? 1 : 0;
-    turned += path.end != PathEnd::kLimitsUnreachable && path.result.distinct > path.tangent.distinct ? 1 : 0;
+    EXPECT_EQ(path.end == OptimizationEnd::kLimitsUnreachable, needed > all + 1e-8) << trial;
+    unreachable += path.end == OptimizationEnd::kLimitsUnreachable ? 1 : 0;
+    turned += path.end != OptimizationEnd::kLimitsUnreachable && path.result.distinct > path.tangent.distinct
+                  ? 1
+                  : 0;
     EXPECT_GE(path.result.distinct, path.start.distinct);
     EXPECT_EQ(path.result.distinct, test::distinct_by_hand(scene, path.yaws));
   }
@@ -117,33 +119,33 @@ TEST(PathOptimizer, KeepsTheLimitsOnTurning) {
 TEST(PathOptimizer, WhatCannotBeTurnedHasAReason) {
   Random random(5);
   const Scene scene = test::random_scene(random, 5, 50);
-  EXPECT_EQ(optimize({{}, {}, {}, test::camera()}).end, PathEnd::kNothingToTurn);
+  EXPECT_EQ(optimize({{}, {}, {}, test::camera()}).end, OptimizationEnd::kNothingToTurn);
   EXPECT_TRUE(optimize({{}, {}, {}, test::camera()}).yaws.empty());
 
   const Scene one{{scene.path[0]}, {Eigen::Vector3d(2, 0, 0)}, {{0, 0}}, test::camera()};
-  EXPECT_EQ(optimize(one).end, PathEnd::kNothingToTurn);
+  EXPECT_EQ(optimize(one).end, OptimizationEnd::kNothingToTurn);
   EXPECT_EQ(optimize(one).yaws, std::vector{scene.path[0].yaw});
   EXPECT_EQ(optimize(one).result.distinct, test::distinct_by_hand(one, one.yaws()));
 
   const Scene two{{scene.path[0], scene.path[1]}, scene.frontiers, {{0, 0}, {1, 1}}, test::camera()};
-  EXPECT_EQ(optimize(two).end, PathEnd::kNothingToTurn);
+  EXPECT_EQ(optimize(two).end, OptimizationEnd::kNothingToTurn);
   EXPECT_EQ(optimize(two).yaws, two.yaws());
 
   const Scene empty{scene.path, {}, {}, test::camera()};
-  EXPECT_EQ(optimize(empty).end, PathEnd::kNothingVisible);
+  EXPECT_EQ(optimize(empty).end, OptimizationEnd::kNothingVisible);
   EXPECT_EQ(optimize(empty).yaws, tangent_yaws(scene.path));
   EXPECT_EQ(optimize(empty).result.distinct, 0U);
 
   Scene lidar = scene;
   lidar.view = {FieldOfView::Shape::kSpinning, 0.0, 0.7, 6.0};
-  EXPECT_EQ(optimize(lidar).end, PathEnd::kYawHasNoEffect);
+  EXPECT_EQ(optimize(lidar).end, OptimizationEnd::kYawHasNoEffect);
   EXPECT_EQ(optimize(lidar).result.distinct, test::distinct_by_hand(lidar, lidar.yaws()));
 
   PathOptimizerOptions plain, short_of;
   plain.ascend = false;
   short_of.max_evaluations = 4;
-  EXPECT_EQ(optimize(scene, plain).end, PathEnd::kAscentOff);
-  EXPECT_EQ(optimize(scene, short_of).end, PathEnd::kEvaluationLimit);
+  EXPECT_EQ(optimize(scene, plain).end, OptimizationEnd::kAscentOff);
+  EXPECT_EQ(optimize(scene, short_of).end, OptimizationEnd::kEvaluationLimit);
   EXPECT_LE(optimize(scene, short_of).evaluations, 4);
 }
 
@@ -230,7 +232,7 @@ TEST_F(PathOptimizerFolder, IpoptIsSilentAndReadsNoFile) {
   testing::internal::CaptureStderr();
   const auto turned = optimize(scene);
   (void)optimize(scene, limited);
-  (void)optimize(scene, paper_path_options());
+  (void)optimize(scene, paper_optimizer_options());
   const auto out = testing::internal::GetCapturedStdout(), err = testing::internal::GetCapturedStderr();
   std::filesystem::current_path(home);
   EXPECT_EQ(out, "");

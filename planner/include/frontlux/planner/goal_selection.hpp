@@ -28,7 +28,7 @@ enum class GoalRule : std::uint8_t {
 };
 
 /// What eq. 1 takes for the distance between a viewpoint and the robot.
-enum class TravelDistance : std::uint8_t {
+enum class DistanceMeasure : std::uint8_t {
   kPath,      ///< length of the shortest path through the corridor; to the mean of a cluster, which may have
               ///< no path to it, the straight distance
   kStraight,  ///< Euclidean, as printed
@@ -39,7 +39,7 @@ struct FRONTLUX_EXPORT GoalOptions {
   /// What makes a goal.
   GoalRule rule = GoalRule::kViewQuality;
   /// How the distance to a goal is measured.
-  TravelDistance distance = TravelDistance::kPath;
+  DistanceMeasure distance = DistanceMeasure::kPath;
   double lambda = 0.1386;     ///< [1/m] half per 5 m
   double min_distance = 0.6;  ///< [m] cells nearer to the robot are not goals
   /// [m] If not 0, the quality of cells at a distance d below it is eq. 1 times d / advance. A robot uncovers
@@ -182,8 +182,9 @@ class FRONTLUX_EXPORT GoalSelection {
   void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
                  CorridorExtent extent = CorridorExtent::kAllCells);
 
-  /// See `TravelCorridor::find_way`. @pre robot < team().size()
-  bool find_way(std::size_t robot, const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
+  /// See `TravelCorridor::find_path`. @pre robot < team().size()
+  bool find_path(std::size_t robot, const VoxelKey& cell,
+                 const std::function<bool(const VoxelKey&)>& through);
 
   /// From the next step on these cells are impassable for a robot: see `TravelCorridor::block`.
   /// @pre robot < team().size()

@@ -40,7 +40,7 @@ struct FRONTLUX_EXPORT PathOptimizerOptions {
 
 /// As printed in the paper: the sum of all views, from the path's tangent. The result still never has fewer
 /// distinct frontiers in view than the tangent.
-[[nodiscard]] FRONTLUX_EXPORT PathOptimizerOptions paper_path_options();
+[[nodiscard]] FRONTLUX_EXPORT PathOptimizerOptions paper_optimizer_options();
 
 /// A path's gain: the differentiable one at the last sharpness, and the number of distinct frontiers in view.
 struct PathGain {
@@ -51,7 +51,7 @@ struct PathGain {
 };
 
 /// Why the optimisation ended.
-enum class PathEnd : std::uint8_t {
+enum class OptimizationEnd : std::uint8_t {
   kConverged,
   kEvaluationLimit,   ///< the last ascent was cut short; the yaws are the best so far
   kSolverStopped,     ///< Ipopt could not go on; the yaws are the best so far
@@ -63,7 +63,7 @@ enum class PathEnd : std::uint8_t {
 };
 
 /// In words.
-[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(PathEnd end);
+[[nodiscard]] FRONTLUX_EXPORT std::string_view describe(OptimizationEnd end);
 
 /// A path with optimised yaws, and what they gain.
 struct OptimizedPath {
@@ -74,7 +74,7 @@ struct OptimizedPath {
   PathGain result;
   int evaluations = 0;  ///< of the differentiable gain
   /// Why it ended.
-  PathEnd end = PathEnd::kConverged;
+  OptimizationEnd end = OptimizationEnd::kConverged;
 };
 
 /// Turns the viewpoints between the first and the last so that the path sees more frontiers. Of the yaws in

@@ -115,7 +115,7 @@ struct FRONTLUX_EXPORT TravelOptions {
   }
 
   /// [m] On the ground: how far into its box steps and slopes may reach from below.
-  [[nodiscard]] double clearance() const {
+  [[nodiscard]] double ground_intrusion() const {
     const double half = std::max(extents.x(), extents.y()) / 2;
     return motion == Motion::kGround ? std::max(step, std::tan(slope) * half) : 0.0;
   }
@@ -166,7 +166,7 @@ enum class CorridorExtent : std::uint8_t {
   kAllCells,  ///< all cells and their distances, in time that grows with their number
   kNearby,    ///< distances up to some 40 cells away, in time that grows with what has changed: `cells` is
               ///< empty, `distance` and `contains` know cells near by only, `path_to` those and that of
-              ///< `find_way`
+              ///< `find_path`
 };
 
 /// The cells that a robot can reach through what is known to be free, and how far they are.
@@ -197,16 +197,16 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// Searches a path to one cell, wherever it is. Until the next update `path_to` returns it.
   /// @param through  cells that it may lead through, as far as they are passable
   /// @return whether there is one
-  bool find_way(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
+  bool find_path(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
 
   /// Makes these cells impassable from the next update on at the latest, whatever the map says: there is
   /// something that no sensor has seen.
   void block(std::span<const VoxelKey> cells);
 
   /// Makes the cells in these boxes impassable from the next update on at the latest, in the place of those
-  /// of the call before: other robots are there, or will be. Of a box that holds the robot's own cell
-  /// there remains what lies beyond that cell, seen from the box's nearest face; of a robot that drives, from
-  /// its nearest side.
+  /// of the call before: other robots are there, or will be. If a box holds the robot's own cell, the part
+  /// from the box's nearest face up to that cell stays passable, so that the robot can leave. For a robot
+  /// that drives only the four sides count.
   void keep_out_of(std::vector<KeyBox> boxes);
 
   /// If it is not `kReady`, there are no cells.

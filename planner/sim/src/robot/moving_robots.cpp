@@ -54,7 +54,7 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
       pose_errors_(pose_errors) {
   if (!(pose_errors.drift >= 0.0 && pose_errors.drift <= 1.0))
     refuse("the drift is " + std::to_string(pose_errors.drift) +
-           " of the way, but has to lie between 0 and 1");
+           " of the path length, but has to lie between 0 and 1");
   if (!(pose_errors.fix_every >= 0.0 && std::isfinite(pose_errors.fix_every)))
     refuse("robots know their places every " + std::to_string(pose_errors.fix_every) +
            " s, but the time has to be finite and at least 0");
@@ -99,7 +99,7 @@ void MovingRobots::draw_direction(std::size_t robot) {
 Eigen::Vector3d MovingRobots::error(std::size_t robot, double time) const {
   const Progress& now = progress_[robot];
   const double since = time - static_cast<double>(now.fixes) * pose_errors_.fix_every;
-  return pose_errors_.drift * now.way * now.direction + std::max(0.0, 1.0 - since) * now.known;
+  return pose_errors_.drift * now.since_fix * now.direction + std::max(0.0, 1.0 - since) * now.known_error;
 }
 
 // @param time  when it gets there
@@ -109,19 +109,19 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   MotionRecord& record = records_[robot];
   const double seconds = time - time_;
   if (pose_errors_.fix_every > 0.0 && time >= static_cast<double>(now.fixes + 1) * pose_errors_.fix_every) {
-    now.known = error(robot, time);
-    now.way = 0.0;
+    now.known_error = error(robot, time);
+    now.since_fix = 0.0;
     ++now.fixes;
     draw_direction(robot);
   }
   const double step = (to.pose.position - now.believed.position).norm();
-  now.way += step;
+  now.since_fix += step;
   const Eigen::Vector3d at = to.pose.position + error(robot, time);
   const Eigen::Vector3d from = now.pose.position, motion = at - from;
   const SweptBody swept(robots_[robot].robot.travel.planned_shape(), body(robot, from), motion);
   const bool contact = !motion.isZero(0.0) && solids_.count(swept) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
-    now.way -= step;
+    now.since_fix -= step;
     ++record.held_back;
     record.idle += seconds;
     now.halted = true;

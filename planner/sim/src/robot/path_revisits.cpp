@@ -22,9 +22,9 @@ Eigen::Vector3d cell_of(const Eigen::Vector3d& place) {
 }  // namespace
 
 void PathRevisits::go_to(const Eigen::Vector3d& place) {
-  const Eigen::Vector3d from = at_, way = place - from;
-  const double length = way.norm(), pieces = std::ceil(length / kPiece);
-  for (double i = 1.0; i <= pieces; ++i) add(from + i / pieces * way, length / pieces);
+  const Eigen::Vector3d from = at_, motion = place - from;
+  const double length = motion.norm(), pieces = std::ceil(length / kPiece);
+  for (double i = 1.0; i <= pieces; ++i) add(from + i / pieces * motion, length / pieces);
   at_ = place;
 }
 

@@ -41,11 +41,11 @@ struct MotionRecord {
   double clearance = 1.0;
 };
 
-/// Errors of the poses that robots take for theirs; none by default. A robot follows its trajectory by where
-/// it believes to be, and is elsewhere: off by a part of the way since it last knew its place, in a direction
-/// that is drawn anew each time, on a plane a horizontal one. Headings are exact.
+/// Errors of the poses that robots believe to have; none by default. A robot that follows its trajectory is
+/// beside it, by a part of the length of its path since it last knew its place, in a direction that is drawn
+/// anew each time, horizontal if the robot drives. Headings are exact.
 struct PoseErrors {
-  double drift = 0.0;  ///< of the way, 0 to 1
+  double drift = 0.0;  ///< of the path length, 0 to 1
   double fix_every =
       0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
 };
@@ -95,9 +95,9 @@ class MovingRobots {
  private:
   struct Progress {
     planner::Pose pose, believed;
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // of the error
-    double way = 0.0;                                     // [m] since it last knew its place
-    Eigen::Vector3d known = Eigen::Vector3d::Zero();      // [m] the error that it learnt of then
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();    // of the error
+    double since_fix = 0.0;                                 // [m] of path since it last knew its place
+    Eigen::Vector3d known_error = Eigen::Vector3d::Zero();  // [m] which it learnt of then
     std::uint64_t fixes = 0;
     std::uint64_t scans = 0;
     bool touching = false, halted = false;

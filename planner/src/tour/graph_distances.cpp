@@ -1,4 +1,4 @@
-#include "tour/travel_distances.hpp"
+#include "tour/graph_distances.hpp"
 
 #include "mapping/sort_once.hpp"
 
@@ -10,10 +10,10 @@
 
 namespace frontlux::planner::detail {
 
-TravelDistances::TravelDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured)
+GraphDistances::GraphDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured)
     : lattice_(lattice), graph_(std::move(graph)), measured_(measured) {}
 
-void TravelDistances::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
+void GraphDistances::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   graph_.update(corridor, changed);
   from_start_.clear();
   // What was not asked for since the update before will not be soon, either.
@@ -26,13 +26,13 @@ void TravelDistances::update(const TravelCorridor& corridor, std::span<const Key
   for (auto& [from, near] : near_) near.asked = false;
 }
 
-void TravelDistances::start_from(const std::optional<VoxelKey>& cell) {
+void GraphDistances::start_from(const std::optional<VoxelKey>& cell) {
   const auto node = cell ? graph_.node(*cell) : std::nullopt;
   start_ = node ? cell : std::nullopt;
   if (node && (from_start_.empty() || from_start_[*node] != 0.0)) from_start_ = graph_.distances(*node);
 }
 
-void TravelDistances::measure_from(std::span<const VoxelKey> cells) {
+void GraphDistances::measure_from(std::span<const VoxelKey> cells) {
   std::vector<std::uint32_t> nodes;
   for (const VoxelKey& cell : cells) {
     const auto node = graph_.node(cell);
@@ -47,16 +47,16 @@ void TravelDistances::measure_from(std::span<const VoxelKey> cells) {
   for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
 }
 
-bool TravelDistances::reaches(const VoxelKey& cell) const {
+bool GraphDistances::reaches(const VoxelKey& cell) const {
   const auto node = graph_.node(cell);
   return node && start_ && from_start_[*node] != TravelGraph::kFar;
 }
 
-double TravelDistances::from_start(const VoxelKey& cell) const {
+double GraphDistances::from_start(const VoxelKey& cell) const {
   return reaches(cell) ? straightened(*start_, cell, from_start_[*graph_.node(cell)]) : TravelGraph::kFar;
 }
 
-double TravelDistances::between(const VoxelKey& from, const VoxelKey& to) const {
+double GraphDistances::between(const VoxelKey& from, const VoxelKey& to) const {
   const auto a = graph_.node(from), b = graph_.node(to);
   if (!a || !b) return TravelGraph::kFar;
   const auto& near = near_.at(graph_.name_of(*a)).distances;
@@ -65,7 +65,7 @@ double TravelDistances::between(const VoxelKey& from, const VoxelKey& to) const 
   return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
 }
 
-NumberTable TravelDistances::between(std::span<const std::optional<VoxelKey>> cells) const {
+NumberTable GraphDistances::between(std::span<const std::optional<VoxelKey>> cells) const {
   std::vector<std::pair<TravelGraph::Name, std::size_t>> names;  // sorted as those near by are
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (const auto node = cells[i] ? graph_.node(*cells[i]) : std::nullopt)
@@ -87,7 +87,7 @@ NumberTable TravelDistances::between(std::span<const std::optional<VoxelKey>> ce
 }
 
 // Nodes are wide: a path is no shorter than the straight line, and near by often that.
-double TravelDistances::straightened(const VoxelKey& from, const VoxelKey& to, double distance) const {
+double GraphDistances::straightened(const VoxelKey& from, const VoxelKey& to, double distance) const {
   constexpr double kClear = 8.0;  // [m]
   const Eigen::Vector3d a = lattice_.exact_center(from), b = lattice_.exact_center(to);
   const double straight = (b - a).norm();
@@ -98,8 +98,8 @@ double TravelDistances::straightened(const VoxelKey& from, const VoxelKey& to, d
   return clear ? straight : distance;
 }
 
-std::optional<VoxelKey> TravelDistances::cell_on_path_to(const VoxelKey& to, const VoxelKey& robot,
-                                                         double ahead) const {
+std::optional<VoxelKey> GraphDistances::cell_on_path_to(const VoxelKey& to, const VoxelKey& robot,
+                                                        double ahead) const {
   if (!reaches(to) || !reaches(robot)) return std::nullopt;
   const double length = from_start(robot) + ahead;
   if (from_start(to) <= length) return std::nullopt;
@@ -108,7 +108,7 @@ std::optional<VoxelKey> TravelDistances::cell_on_path_to(const VoxelKey& to, con
   return std::nullopt;
 }
 
-std::function<bool(const VoxelKey&)> TravelDistances::around_path_to(const VoxelKey& to) const {
+std::function<bool(const VoxelKey&)> GraphDistances::around_path_to(const VoxelKey& to) const {
   if (!reaches(to)) return [](const VoxelKey&) { return false; };
   std::vector<bool> around(graph_.size());
   for (const std::uint32_t node : graph_.around_path(from_start_, *graph_.node(to))) around[node] = true;

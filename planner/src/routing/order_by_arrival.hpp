@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tour/tour_search.hpp"
+#include "routing/tour_search.hpp"
 
 #include <cstdint>
 #include <span>
@@ -13,11 +13,11 @@ namespace frontlux::planner::detail {
 /// robot plans to do later rarely comes to pass; small stops between are not left behind.
 /// @param weights  of the stops in the mean
 /// @param order    to begin with, and to improve
-[[nodiscard]] std::vector<std::uint32_t> soonest_order(const TourProblem::Robot& robot,
-                                                       std::span<const double> weights,
-                                                       std::vector<std::uint32_t> order);
+[[nodiscard]] std::vector<std::uint32_t> order_by_arrival(const TourProblem::Robot& robot,
+                                                          std::span<const double> weights,
+                                                          std::vector<std::uint32_t> order);
 
-/// What `soonest_order` makes smaller [s].
+/// What `order_by_arrival` makes smaller [s].
 [[nodiscard]] double cost_of_order(const TourProblem::Robot& robot, std::span<const double> weights,
                                    std::span<const std::uint32_t> order);
 

@@ -1,4 +1,4 @@
-#include "walk/ray_end.hpp"
+#include "walk/end_ray.hpp"
 
 #include "walk/free_end.hpp"
 #include "walk/walk.hpp"

@@ -1,7 +1,8 @@
-#include "tour/tour_search.hpp"
+#include "routing/tour_search.hpp"
 
+#include "routing/measured_tours.hpp"
+#include "routing/order_by_arrival.hpp"
 #include "support/random.hpp"
-#include "tour/soonest_order.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -120,7 +121,8 @@ TEST(TourSearch, FindsNothingMoreToImprove) {
           };
           Tours turned = tours;
           std::reverse(at(turned[r], begin), at(turned[r], end));
-          if (problem.length(r, turned[r]) < problem.length(r, tours[r]) - kRounding)
+          if (MeasuredTours(problem, turned).lengths[r] <
+              MeasuredTours(problem, tours).lengths[r] - kRounding)
             ADD_FAILURE() << "a stretch of robot " << r << " from " << begin << " to " << end;
           if (end - begin > 3) continue;
           for (const bool other_way : {false, true})
@@ -190,7 +192,7 @@ TEST(SoonestOrder, IsCloseToTheBestOfAllOrders) {
     double least = TourProblem::kNever;
     do least = std::min(least, cost_of_order(robot, weights, order));
     while (std::next_permutation(order.begin(), order.end()));
-    const double found = cost_of_order(robot, weights, soonest_order(robot, weights, order));
+    const double found = cost_of_order(robot, weights, order_by_arrival(robot, weights, order));
     EXPECT_GE(found, least - 1e-9);
     EXPECT_LT(found, 1.3 * least);
     best += found < least + 1e-9 ? 1 : 0;
@@ -208,10 +210,10 @@ TEST(SoonestOrder, KeepsAllStopsAndNeverGetsWorse) {
     std::iota(given.begin(), given.end(), 0u);
     for (std::size_t i = given.size(); i > 1; --i)
       std::swap(given[i - 1], given[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
-    const auto order = soonest_order(robot, weights, given);
+    const auto order = order_by_arrival(robot, weights, given);
     EXPECT_EQ(stops_in({order}), 30u);
     EXPECT_LE(cost_of_order(robot, weights, order), cost_of_order(robot, weights, given));
-    EXPECT_EQ(soonest_order(robot, weights, order), order);  // nothing is left to improve
+    EXPECT_EQ(order_by_arrival(robot, weights, order), order);  // nothing is left to improve
   }
 }
 
@@ -225,13 +227,13 @@ TEST(SoonestOrder, TakesManyStopsBeforeOne) {
     for (std::size_t j = 0; j < 4; ++j) robot.between(i, j) = std::abs(places[i] - places[j]);
   }
   EXPECT_EQ(shortened_tours({4, {robot}}, {}).front(), (std::vector<std::uint32_t>{0, 1, 2, 3}));
-  EXPECT_EQ(soonest_order(robot, std::vector<double>(4, 1.0), {0, 1, 2, 3}),
+  EXPECT_EQ(order_by_arrival(robot, std::vector<double>(4, 1.0), {0, 1, 2, 3}),
             (std::vector<std::uint32_t>{1, 2, 3, 0}));
-  EXPECT_EQ(soonest_order(robot, std::vector<double>{9.0, 1.0, 1.0, 1.0}, {1, 2, 3, 0}),
+  EXPECT_EQ(order_by_arrival(robot, std::vector<double>{9.0, 1.0, 1.0, 1.0}, {1, 2, 3, 0}),
             (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }
 
-TEST(SoonestOrder, OfNothingIsNothing) { EXPECT_TRUE(soonest_order({}, {}, {}).empty()); }
+TEST(SoonestOrder, OfNothingIsNothing) { EXPECT_TRUE(order_by_arrival({}, {}, {}).empty()); }
 
 TEST(TourSearch, HasNoToursWithoutRobotsOrStops) {
   EXPECT_TRUE(shortened_tours({}, {}).empty());

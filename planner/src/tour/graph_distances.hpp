@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tour/number_table.hpp"
+#include "routing/number_table.hpp"
 #include "tour/travel_graph.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
@@ -16,10 +16,10 @@ namespace frontlux::planner::detail {
 
 /// Lengths of one robot's paths: from where it starts to everywhere, and between places that are not far from
 /// each other.
-class TravelDistances {
+class GraphDistances {
  public:
   /// @param measured  nearest nodes of the graph to which the distances from a place are known
-  TravelDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured);
+  GraphDistances(const Lattice& lattice, TravelGraph graph, std::size_t measured);
 
   [[nodiscard]] const TravelGraph& graph() const { return graph_; }
 

@@ -1,4 +1,4 @@
-#include "tour/shortest_choice.hpp"
+#include "routing/shortest_choice.hpp"
 
 #include "support/random.hpp"
 

@@ -1,4 +1,4 @@
-#include "tour/soonest_order.hpp"
+#include "routing/order_by_arrival.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -26,7 +26,7 @@ double cost_of_order(const TourProblem::Robot& robot, std::span<const double> we
   return all > 0.0 ? time + kSoon * sum / all : time;
 }
 
-Tour soonest_order(const TourProblem::Robot& robot, std::span<const double> weights, Tour order) {
+Tour order_by_arrival(const TourProblem::Robot& robot, std::span<const double> weights, Tour order) {
   double cost = cost_of_order(robot, weights, order);
   Tour best, changed;
   const auto consider = [&] {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tour/number_table.hpp"
+#include "routing/number_table.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,19 +21,11 @@ struct TourProblem {
   };
   std::size_t stops = 0;
   std::vector<Robot> robots;
-
-  [[nodiscard]] double length(std::size_t robot, const std::vector<std::uint32_t>& tour) const;
 };
 
-/// The stops of each robot, in order.
-using Tours = std::vector<std::vector<std::uint32_t>>;
-
-/// Puts stops that are in no tour where they cost least, and shortens the tours by moving stops and turning
-/// stretches round until no such change helps: the longest tour first, then all together. Stops that no robot
-/// can get to stay out.
-[[nodiscard]] Tours shortened_tours(const TourProblem& problem, Tours tours);
-
-/// What `shortened_tours` makes smaller [s].
-[[nodiscard]] double cost_of(const TourProblem& problem, const Tours& tours);
+/// Stops in order.
+using Tour = std::vector<std::uint32_t>;
+/// One of each robot.
+using Tours = std::vector<Tour>;
 
 }  // namespace frontlux::planner::detail
