@@ -66,6 +66,19 @@ TEST_P(GoalFallback, WhatNoRobotSeesIsReleasedByBothAndStaysUnassigned) {
   EXPECT_EQ(result.unassigned, 3U);
 }
 
+TEST_P(GoalFallback, WhatALostRobotWasToSeeIsForTheOthers) {
+  GoalRoom room(40, 16);
+  const std::vector<VoxelKey> frontiers = {room.unknown(20, 36, 8)};
+  const std::array poses{room.pose(20, 20, 10), room.pose(20, 10, 10)};
+  const auto caster = make_grid_ray_caster(room.grid);
+  GoalSelection selection({team()[1], team()[1]}, room.grid.lattice(), room.bounds());
+  EXPECT_EQ(selection.select(*caster, {room.grid}, frontiers, poses).goals[0].assigned, 1U);
+  selection.lose(0);
+  const TeamGoals result = selection.select(*caster, {room.grid}, frontiers, poses);
+  EXPECT_EQ(result.goals[0].assigned, 0U);
+  EXPECT_EQ(result.goals[1].assigned, 1U);
+}
+
 TEST_P(GoalFallback, WithNothingOfItsOwnTheAerialRobotTakesWhatTheOthersGoalDoesNotSee) {
   GoalRoom room(60, 8);
   std::vector<VoxelKey> frontiers;
