@@ -263,7 +263,7 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
     from = to;
   }
   sort_once(cells);
-  if (retreats) return cells;
+  if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
   Keys voxels;
   for (const VoxelKey& cell : cells) {
     static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {

@@ -97,6 +97,8 @@ struct ExplorationState {
   /// For a robot without a goal: back to the last place of its trail from which it could go on, from where it
   /// is; empty if there is none.
   [[nodiscard]] std::vector<Pose> plan_retreat(std::size_t robot, const Goal& goal);
+  /// Whether no voxel that its sensor has been in can be occupied beside its body.
+  [[nodiscard]] bool fills_its_voxel(std::size_t robot) const;
   /// Whether a robot cannot get to where it came from, although there is something to see, and is in the
   /// smaller part of what it has been in.
   [[nodiscard]] bool is_cut_off(std::size_t robot, const Goal& goal) const;

@@ -65,6 +65,14 @@ bool ExplorationState::can_reach(std::size_t robot, const VoxelKey& cell) const 
                                                         : tours->can_reach(robot, cell);
 }
 
+// Whether a robot's body, wherever it is in its cell, covers the voxel that its sensor is in: nothing else
+// can have been there when it came. A larger voxel may be occupied beside it.
+bool ExplorationState::fills_its_voxel(std::size_t robot) const {
+  const TravelOptions& travel = options.team[robot].robot.travel;
+  const double width = travel.drives() ? travel.extents.head<2>().minCoeff() : travel.extents.minCoeff();
+  return width / 2 >= lattice().resolution();
+}
+
 // A robot beside which a closer look has found something is in no corridor; it retreats to the last place
 // that is in one. Behind a passage that a closer look has closed its corridor holds nothing to see; it
 // retreats through the passage, if there is something to see from beyond. But where its sensor has been may
@@ -82,9 +90,10 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
     if (place + 1 < trail.size()) {
       const Eigen::Vector3d &here = trail[place].position, &next = trail[place + 1].position;
       length += (next - here).norm();
-      is_shut = !reached && (is_shut || leads_through_occupied(travel_map(), here, next));
+      is_shut = !reached && (is_shut || leads_through_occupied(mapping.grid(), here, next));
     }
-    if (!cell || is_shut || reached || !path_corridor(robot).passable(*cell)) continue;
+    if (!cell || (is_shut && fills_its_voxel(robot)) || reached || !path_corridor(robot).passable(*cell))
+      continue;
     if (has_no_corridor && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (has_no_corridor) return place;
