@@ -16,10 +16,12 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// Whether the sensor of a robot would go through a voxel that is known to be occupied.
-bool leads_through_occupied(const VoxelGrid& map, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+// Whether the sensor of a robot would go through a voxel that is known to be occupied, but for the one that
+// it is in.
+bool leads_through_occupied(const VoxelGrid& map, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                            const std::optional<VoxelKey>& own) {
   return !SegmentVoxels(map.lattice(), from, to).all_of([&](const VoxelKey& key) {
-    return map.at(key) != Occupancy::kOccupied;
+    return key == own || map.at(key) != Occupancy::kOccupied;
   });
 }
 
@@ -82,6 +84,8 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
   const std::vector<Pose>& trail = trails[robot];
   const bool has_no_corridor = goal.state == GoalState::kNoCorridor;
   std::optional<TravelCorridor> elsewhere;
+  const bool may_be_shut = fills_its_voxel(robot);
+  const auto own = lattice().key(poses[robot].position);
   double length = 0.0;   // [m] of the trail from the place on
   bool is_shut = false;  // the trail, between the place and what the robot can reach
   for (std::size_t place = trail.size(); place-- > 0;) {
@@ -90,10 +94,10 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
     if (place + 1 < trail.size()) {
       const Eigen::Vector3d &here = trail[place].position, &next = trail[place + 1].position;
       length += (next - here).norm();
-      is_shut = !reached && (is_shut || leads_through_occupied(mapping.grid(), here, next));
+      is_shut =
+          may_be_shut && !reached && (is_shut || leads_through_occupied(mapping.grid(), here, next, own));
     }
-    if (!cell || (is_shut && fills_its_voxel(robot)) || reached || !path_corridor(robot).passable(*cell))
-      continue;
+    if (!cell || is_shut || reached || !path_corridor(robot).passable(*cell)) continue;
     if (has_no_corridor && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (has_no_corridor) return place;

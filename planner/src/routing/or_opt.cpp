@@ -40,6 +40,7 @@ OrOpt::Rest OrOpt::rest_of(const Move& move) const {
 bool OrOpt::is_link(std::size_t r, const Link& link) const {
   return link.a != kNoStop && (after_[r][link.a] == link.b || after_[r][link.b] == link.a);
 }
+
 // Those between stops of the tours, and which of them are new since the last time.
 void OrOpt::note_links() {
   ++links_noted_;

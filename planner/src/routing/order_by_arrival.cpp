@@ -1,15 +1,14 @@
 #include "routing/order_by_arrival.hpp"
 
+#include "routing/measured_tours.hpp"
+
 #include <algorithm>
 #include <cstddef>
 
 namespace frontlux::planner::detail {
 namespace {
 
-using Tour = std::vector<std::uint32_t>;
-
 constexpr double kSoon = 3.0;         // weight of the mean arrival, beside the length
-constexpr double kWorth = 1e-6;       // [s] smaller gains are rounding
 constexpr std::size_t kMoved = 3;     // stops moved together, at most
 constexpr std::size_t kRounds = 200;  // of changes, at most
 
@@ -31,7 +30,7 @@ Tour order_by_arrival(const TourProblem::Robot& robot, std::span<const double> w
   Tour best, changed;
   const auto consider = [&] {
     const double now = cost_of_order(robot, weights, changed);
-    if (now >= cost - kWorth) return;
+    if (now >= cost - kLeastGain) return;
     cost = now;
     best = changed;
   };

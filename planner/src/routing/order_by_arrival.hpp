@@ -1,6 +1,6 @@
 #pragma once
 
-#include "routing/tour_search.hpp"
+#include "routing/tour_problem.hpp"
 
 #include <cstdint>
 #include <span>
