@@ -1,0 +1,41 @@
+#pragma once
+
+#include "explore/explore_run.hpp"
+
+#include <frontlux/planner/recording.hpp>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace frontlux::app {
+
+inline constexpr const char* kRecording = "run.frontlux";
+/// All that a run writes into its folder.
+inline constexpr std::array kRunFiles = {kRecording,   "run.json",  "steps.csv", "paths.csv", "events.csv",
+                                         "motion.csv", "tours.csv", "map.ot",    "map.bt",    kReport};
+
+/// Whether a new run may have its folder. Removes what killed runs left there unfinished.
+/// @param world  which the run must not overwrite
+/// @throws BadInput
+void check_folder(const ExploreRun& run, const std::string& world);
+/// The same, and makes the folder if there is none.
+/// @throws BadInput
+void make_folder(const ExploreRun& run, const std::string& world);
+
+/// A link in the place of a file of the run: what it points to is none of the run's.
+void remove_link(const std::filesystem::path& file);
+/// Of the run before, which the recording replaces: all but that.
+void remove_old_files(const std::filesystem::path& folder);
+/// What shows a run up to a step that others follow now: its report, pictures and films.
+void remove_views(const std::filesystem::path& folder);
+/// Of runs that were killed.
+void remove_unfinished_files(const std::filesystem::path& folder);
+
+/// What is left of a run that was stopped or could not go on, as the end of a message.
+/// @param steps  that it has recorded
+[[nodiscard]] std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head,
+                                       std::size_t steps);
+
+}  // namespace frontlux::app
