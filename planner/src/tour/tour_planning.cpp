@@ -2,6 +2,7 @@
 
 #include "corridor/whole_voxels.hpp"
 #include "mapping/sort_once.hpp"
+#include "routing/complete_distances.hpp"
 #include "tour/travel_seconds.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -9,9 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -37,31 +37,6 @@ double greatest_range(std::span<const Robot> robots) {
   double greatest = 0.0;
   for (const Robot& robot : robots) greatest = std::max(greatest, robot.view.max_range);
   return greatest;
-}
-
-// Distances to places before that are not known [m] are as short as those by one other place, or by where the
-// robot is. They are the same in both directions.
-void complete(NumberTable& distances, std::span<const double> from_robot) {
-  const std::size_t count = from_robot.size();
-  const auto mirror = [&] {
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = i + 1; j < count; ++j) distances(i, j) = distances(j, i);
-  };
-  mirror();
-  const NumberTable known = distances;
-  for_each_index(count, [&](std::size_t i) {
-    std::vector<double> by_one(i, TourProblem::kNever);
-    // Also where it is known: without a branch the compiler takes several at a time.
-    const auto shorten = [&](double to_middle, const double* from_middle) {
-      for (std::size_t j = 0; j < i && to_middle != TourProblem::kNever; ++j)
-        by_one[j] = std::min(by_one[j], to_middle + from_middle[j]);
-    };
-    shorten(from_robot[i], from_robot.data());
-    for (std::size_t k = 0; k < count; ++k) shorten(known(i, k), known.row(k));
-    for (std::size_t j = 0; j < i; ++j)
-      if (known(i, j) == TourProblem::kNever) distances(i, j) = by_one[j];
-  });
-  mirror();
 }
 
 }  // namespace
@@ -210,25 +185,13 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
   return viewpoints.empty() ? nullptr : &viewpoints.front();
 }
 
-// Clusters near a robot one by one; of the others those together that lie in one zone and that the same
-// robots can see. Beyond a distance zones are as much wider as they are farther away. The more stops there
-// would be, the less that distance is, and of very many also what counts as near, so that neither what is far
-// nor many robots make plannings longer and longer.
-std::vector<TourPlanning::StopClusters> TourPlanning::stops(std::span<const MotionState> starts) const {
-  constexpr std::size_t kMany = 200, kVeryMany = 500;
-  constexpr double kOneEdge = 4.0;  // of what is near: at most up to here zones are of one size
-  constexpr double kNearest = 0.1;  // of what is near: up to here clusters are stops of their own in any case
-  struct Seen {
-    std::uint32_t cluster;
-    VoxelKey middle;
-    std::vector<bool> by;
-    double nearest;  // of what is near
-  };
-  std::vector<Seen> seen;
-  std::set<std::uint32_t> first;  // clusters to which a robot is going
+// Those that some robot sees.
+std::vector<SeenCluster> TourPlanning::seen_clusters(std::span<const MotionState> starts) const {
+  std::set<std::uint32_t> first;  // ids of those to which a robot is going
   for (const Member& member : members_)
     if (!member.tour.empty())
       first.insert(member.tour.front().clusters.begin(), member.tour.front().clusters.end());
+  std::vector<SeenCluster> seen;
   const auto clusters = clusters_.clusters();
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     const KeyBox& box = clusters[i].box;
@@ -241,33 +204,15 @@ std::vector<TourPlanning::StopClusters> TourPlanning::stops(std::span<const Moti
       const double distance = (lattice_.exact_center(middle) - starts[r].pose.position).norm();
       if (by[r]) nearest = std::min(nearest, distance / (options_.near * members_[r].robot.view.max_range));
     }
-    if (nearest != TourProblem::kNever) seen.push_back({i, middle, std::move(by), nearest});
+    if (nearest != TourProblem::kNever)
+      seen.push_back({i, middle, std::move(by), nearest, first.contains(clusters[i].id)});
   }
-  const auto stops_if = [&](double near, double one_edge) {
-    std::vector<StopClusters> stops;
-    std::map<std::tuple<int, VoxelKey, std::vector<bool>>, StopClusters> zones;
-    for (const auto& [cluster, middle, by, nearest] : seen) {
-      if (nearest <= near || (nearest <= 1.0 && first.contains(clusters[cluster].id))) {
-        stops.push_back({cluster});
-        continue;
-      }
-      int edge = zone_edge_;  // [voxels]
-      for (double rest = nearest; rest > one_edge; rest /= 2.0) edge *= 2;
-      zones[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), by}].push_back(cluster);
-    }
-    for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
-    return stops;
-  };
-  double near = 1.0, one_edge = kOneEdge;
-  std::vector<StopClusters> stops = stops_if(near, one_edge);
-  while (stops.size() > kMany && one_edge > 1.0) stops = stops_if(near, one_edge /= std::sqrt(2.0));
-  while (stops.size() > kVeryMany && near > kNearest) stops = stops_if(near /= std::sqrt(2.0), one_edge);
-  return stops;
+  return seen;
 }
 
 // The clusters of a stop, each time the nearest one.
-TourPlanning::StopClusters TourPlanning::in_order(const Member& member, const StopClusters& stop,
-                                                  Eigen::Vector3d from) const {
+StopClusters TourPlanning::in_order(const Member& member, const StopClusters& stop,
+                                    Eigen::Vector3d from) const {
   std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> rest;
   for (const std::uint32_t cluster : stop)
     rest.emplace_back(cluster, lattice_.exact_center(best_viewpoint(member, cluster)->cell));
@@ -319,7 +264,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
   for (std::size_t i = 0; i < count; ++i)
     if (at[i] != nullptr) places[i] = at[i]->cell;
   NumberTable distances = member.distances.between(places);  // [m]
-  complete(distances, to);
+  complete_distances(distances, to);
   for_each_index(count, [&](std::size_t i) {
     for (std::size_t j = 0; j < count; ++j)
       if (i != j && distances(i, j) != TourProblem::kNever)
@@ -447,7 +392,7 @@ void TourPlanning::note_frontiers(const Query& query) {
 
 void TourPlanning::update(const Query& query) {
   update_map(query);
-  const std::vector<StopClusters> places = stops(query.starts);
+  const std::vector<StopClusters> places = group_into_stops(seen_clusters(query.starts), zone_edge_);
   TourProblem all = problem(query, places);
   const Tours before = tours_before(query, places, all);
   set_tours(query, places, shared_out(all, before));

@@ -6,6 +6,7 @@
 #include "tour/frontier_clusters.hpp"
 #include "tour/graph_distances.hpp"
 #include "tour/joined_stops.hpp"
+#include "tour/stop_groups.hpp"
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/robot.hpp>
@@ -131,9 +132,7 @@ class TourPlanning {
   [[nodiscard]] static std::size_t least_frontiers(const Options& options, const Lattice& lattice);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
-  // Places of the clusters that are one stop when tours are searched.
-  using StopClusters = std::vector<std::uint32_t>;
-  [[nodiscard]] std::vector<StopClusters> stops(std::span<const MotionState> starts) const;
+  [[nodiscard]] std::vector<SeenCluster> seen_clusters(std::span<const MotionState> starts) const;
   [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
   [[nodiscard]] TourProblem problem(const Query& query, std::span<const StopClusters> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,

@@ -189,8 +189,8 @@ template <class Visit>
 void TravelGraph::for_each_as_near_as_two(std::size_t index, const Visit& visit) const {
   constexpr int kMost = 2;
   const auto [x_count, y_count, z_count] = count_;
-  const auto x = static_cast<int>(index / (y_count * z_count)), y = static_cast<int>(index / z_count % y_count),
-             z = static_cast<int>(index % z_count);
+  const auto x = static_cast<int>(index / (y_count * z_count)),
+             y = static_cast<int>(index / z_count % y_count), z = static_cast<int>(index % z_count);
   const auto is_one = [](int at, std::size_t count) { return at >= 0 && at < static_cast<int>(count); };
   for (int dx = -kMost; dx <= kMost; ++dx)
     for (int dy = std::abs(dx) - kMost; dy <= kMost - std::abs(dx); ++dy) {
