@@ -100,11 +100,12 @@ struct RobotStep {
   std::vector<RenderedCell> image;
   /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
-  std::vector<Pose> planned;         ///< from where it was to the goal; empty if it stays
+  /// Viewpoints from where it was to the goal; empty if it stays. In motion: where it took its scans.
+  std::vector<Pose> planned;
   std::uint64_t gain_tangent = 0;    ///< distinct frontiers of its own in the path's view, if it looked ahead
   std::uint64_t gain_predicted = 0;  ///< the same with the yaws as optimised
   std::uint64_t gain_sum = 0;        ///< of its own frontiers in view, summed over the path's viewpoints
-  std::size_t travelled = 0;         ///< viewpoints of `planned` that it reached, the first included
+  std::size_t travelled = 0;         ///< of `planned` that it reached, the first included; in motion all
   double length = 0.0;               ///< [m] that it travelled
   std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans mapped
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
