@@ -139,6 +139,8 @@ TEST_F(MapCommandTest, RefusesRaysThatSpreadOutTooFarForTheirNumber) {
 TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");
+  expect_refused({path("clouds/b.ply"), "-o", map}, "b.ply is a single cloud; name the folder");
+  expect_refused({write("old.bt", "# Octomap OcTree binary file\n"), "-o", map}, "old.bt is a map");
   expect_refused({graph}, "--output");
   expect_refused({graph, "-o", path("map.pcd")}, "does not end in .bt or .ot");
   expect_refused({graph, "-o", path("no/map.bt")}, "there is no folder");

@@ -24,6 +24,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <unordered_set>
 #include <vector>
 
@@ -87,6 +88,13 @@ Recording open_folder(const std::filesystem::path& folder, const std::string& gi
 }
 
 Recording open_graph(const std::filesystem::path& file, const std::string& pose_file) {
+  std::error_code error;
+  const std::filesystem::path kind = std::filesystem::exists(file, error) ? file.extension() : "";
+  if (kind == ".ply" || kind == ".pcd")
+    throw BadInput("SCANS: " + file.string() +
+                   " is a single cloud; name the folder that holds it, with its pose in a file (--poses)");
+  if (kind == ".bt" || kind == ".ot")
+    throw BadInput("SCANS: " + file.string() + " is a map; name a scan graph or a folder of clouds");
   if (!pose_file.empty()) throw BadInput("--poses: a scan graph has its own poses; leave the option out");
   const auto scans = std::make_shared<std::vector<RecordedScan>>(io::read_scan_graph(file));
   return {scans->size(),
