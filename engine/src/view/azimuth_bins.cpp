@@ -30,9 +30,9 @@ int AzimuthBins::bin_of(int dx, int dy) const {
   return (*this)[dx * width_ + dy];
 }
 
-SectorSet AzimuthBins::sectors_of(const VoxelKey& from, const KeyBox& box) const {
-  const int left = box.min.x - from.x, right = box.max.x - from.x;
-  const int near = box.min.y - from.y, far = box.max.y - from.y;
+SectorSet AzimuthBins::sectors_of(const KeyBox& from, const KeyBox& box) const {
+  const int left = box.min.x - from.max.x, right = box.max.x - from.min.x;
+  const int near = box.min.y - from.max.y, far = box.max.y - from.min.y;
   // The corner that comes first on a turn to the left, and the one that comes last.
   const auto between = [&](int x, int y, int last_x, int last_y) {
     return SectorSet::between(bin_of(x, y), bin_of(last_x, last_y), count_);

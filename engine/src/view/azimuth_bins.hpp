@@ -23,7 +23,11 @@ class AzimuthBins {
   [[nodiscard]] std::uint16_t operator[](std::int32_t entry) const { return bins_.data()[middle_ + entry]; }
 
   /// The bins in which a voxel sees points of a box, at any height. @pre there are bins
-  [[nodiscard]] SectorSet sectors_of(const VoxelKey& from, const KeyBox& box) const;
+  [[nodiscard]] SectorSet sectors_of(const VoxelKey& from, const KeyBox& box) const {
+    return sectors_of({from, from}, box);
+  }
+  /// The same for the voxels of a box, all together.
+  [[nodiscard]] SectorSet sectors_of(const KeyBox& from, const KeyBox& box) const;
 
  private:
   [[nodiscard]] int bin_of(int dx, int dy) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,7 +12,8 @@ namespace frontlux::detail {
 /// bins are told apart in 64 parts only: with one of a part all of it is in the set.
 class SectorSet {
  public:
-  constexpr SectorSet() = default;  ///< none
+  static constexpr int kParts = 64;  ///< that are told apart
+  constexpr SectorSet() = default;   ///< none
   [[nodiscard]] static constexpr SectorSet all() { return SectorSet(~std::uint64_t{0}); }
   /// One of so many bins.
   [[nodiscard]] static constexpr SectorSet of(int bin, int bins) {
@@ -24,9 +26,16 @@ class SectorSet {
     return SectorSet(first <= last ? from_first & up_to_last : from_first | up_to_last);
   }
 
+  /// All bins of one of the parts that can be told apart.
+  [[nodiscard]] static constexpr SectorSet of_part(int part) { return SectorSet(std::uint64_t{1} << part); }
+
   [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
   /// Whether all sectors of another set are in this one.
   [[nodiscard]] constexpr bool contains(SectorSet other) const { return (other.bits_ & ~bits_) == 0; }
+  /// Of parts.
+  [[nodiscard]] constexpr int size() const { return std::popcount(bits_); }
+  constexpr void remove(SectorSet other) { bits_ &= ~other.bits_; }
+  [[nodiscard]] constexpr bool meets(SectorSet other) const { return (other.bits_ & bits_) != 0; }
   constexpr SectorSet& operator|=(SectorSet other) {
     bits_ |= other.bits_;
     return *this;
@@ -41,7 +50,6 @@ class SectorSet {
   }
 
  private:
-  static constexpr int kParts = 64;
   explicit constexpr SectorSet(std::uint64_t bits) : bits_(bits) {}
   static constexpr int part(int bin, int bins) { return bins <= kParts ? bin : bin * kParts / bins; }
 

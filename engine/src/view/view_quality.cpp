@@ -1,5 +1,6 @@
 #include "view/changed_boxes.hpp"
 #include "view/exact/exact_render.hpp"
+#include "view/hidden_changes.hpp"
 #include "view/view_render.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -18,6 +19,7 @@ struct detail::Kept {
   static constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t index = kNothing;
   SectorSet stale = SectorSet::all();  // what is not right any more; without bins all or none
+  bool again = true;  // to be rendered; perhaps with no sector, if only what is in view may have changed
 };
 
 namespace {
@@ -61,7 +63,7 @@ std::vector<Kept> find_kept(std::span<const Viewpoint> now, std::span<const View
           const SectorSet there = bins != nullptr ? bins->sectors_of(here, box) : SectorSet::all();
           if (!stale.contains(there) && view.may_contain_point({here, here}, box)) stale |= there;
         }
-        kept[i] = {old->index, stale};
+        kept[i] = {old->index, stale, stale.any()};
       }
     }
   });
@@ -142,7 +144,19 @@ std::size_t ViewQualityImage::update(const RayCaster& caster, std::span<const Vo
   auto order = same ? order_ : sorted(viewpoints);
   // What is drawn anew is drawn in all directions.
   const bool by_sector = options.samples == ViewQualityOptions::kAll && !buckets && options.azimuth_bins > 0;
-  const auto kept = find_kept(*order, *order_, *region_, boxes, by_sector ? azimuth_bins_.get() : nullptr);
+  auto kept = find_kept(*order, *order_, *region_, boxes, by_sector ? azimuth_bins_.get() : nullptr);
+  // Rays of a caster without a grid may leave the line.
+  if (const auto grid = by_sector ? caster.grid() : std::nullopt) {
+    std::vector<detail::Onlooker> onlookers;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (kept[i].again && kept[i].index != Kept::kNothing)
+        onlookers.push_back({(*order)[i].code, kept[i].stale});
+    detail::leave_out_hidden(*grid, change.keys, *targets_, *index, *region_, options.azimuth_bins,
+                             onlookers);
+    auto onlooker = onlookers.begin();
+    for (Kept& one : kept)
+      if (one.again && one.index != Kept::kNothing) one.stale = (onlooker++)->sectors;
+  }
   return remake(caster, viewpoints, std::move(order), std::move(index), kept);
 }
 
@@ -163,7 +177,7 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
   std::vector<StaleViewpoint> stale;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const Viewpoint& viewpoint = (*order)[i];
-    if (kept[i].stale.any()) stale.push_back({viewpoint.code, viewpoint.index, kept[i].stale});
+    if (kept[i].again) stale.push_back({viewpoint.code, viewpoint.index, kept[i].stale});
     if (same || kept[i].index == Kept::kNothing) continue;
     values[viewpoint.index] = values_[kept[i].index];
     std::copy_n(bin_hits_.begin() + static_cast<std::ptrdiff_t>(kept[i].index * bins), bins,

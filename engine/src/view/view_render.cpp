@@ -26,9 +26,16 @@ struct Surroundings {
   std::vector<std::int32_t> entries;  // of the view's tables, from the corner
   std::vector<std::int16_t> heights;  // above the corner
 
-  void list(const ViewRegion& view, const TargetIndex& targets, const KeyBox& tile) {
+  // Those in some sectors of some voxel of the tile; perhaps some others.
+  void list(const ViewScene& scene, const KeyBox& tile, SectorSet sectors) {
+    const ViewRegion& view = scene.view;
+    const TargetIndex& targets = scene.targets;
     corner = tile.min;
     targets.list_cubes(view, tile, cubes);
+    if (sectors != SectorSet::all())
+      std::erase_if(cubes, [&](std::uint32_t c) {
+        return !sectors.meets(scene.azimuth_bins.sectors_of(tile, targets.cubes()[c].box));
+      });
     cube_begin.assign(1, 0);
     for (const std::uint32_t c : cubes) cube_begin.push_back(cube_begin.back() + targets.cubes()[c].size());
     keys.resize(cube_begin.back());
@@ -49,7 +56,10 @@ class TileRenderer {
  public:
   void render(const ViewScene& scene, std::span<const StaleViewpoint> tile, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits) {
-    surroundings_.list(scene.view, scene.targets, cube_of_code(tile.front().code));
+    SectorSet sectors;
+    for (const StaleViewpoint& viewpoint : tile)
+      sectors |= viewpoint.in_view ? viewpoint.sectors : SectorSet::all();
+    surroundings_.list(scene, cube_of_code(tile.front().code), sectors);
     for (const StaleViewpoint& viewpoint : tile) {
       draw(scene, viewpoint);
       if (segments_.size() >= kEnoughSegments) finish(scene, values, bin_hits);
@@ -121,9 +131,14 @@ class TileRenderer {
     std::uint32_t population = 0, count = 0;
     if (scene.options.sampling == ViewQualityOptions::Sampling::kFeasible) {
       population = list_in_view(scene.view, from, origin);
-      const auto& ranks = ranks_.draw(population, samples, random);
-      count = static_cast<std::uint32_t>(ranks.size());
-      for (const std::uint32_t rank : ranks) add(in_view_[rank]);
+      if (viewpoint.in_view) {
+        for (const std::uint32_t target : std::span(in_view_).first(population)) add(target);
+        population = count = *viewpoint.in_view;
+      } else {
+        const auto& ranks = ranks_.draw(population, samples, random);
+        count = static_cast<std::uint32_t>(ranks.size());
+        for (const std::uint32_t rank : ranks) add(in_view_[rank]);
+      }
     } else {
       population = list_buckets(scene, from);
       const auto& ranks = ranks_.draw(population, samples, random);

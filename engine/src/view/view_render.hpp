@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct Viewpoint {
 struct StaleViewpoint {
   std::uint64_t code = 0;
   std::uint32_t index = 0;
-  SectorSet sectors = SectorSet::all();  ///< in which its visible targets have to be counted again
+  SectorSet sectors = SectorSet::all();       ///< in which its visible targets have to be counted again
+  std::optional<std::uint32_t> in_view = {};  ///< number of all targets in view, if known
 };
 
 /// Sorted by code, so that the viewpoints of a cube of 8 voxels are next to each other.
@@ -51,7 +53,7 @@ struct ViewScene {
 };
 
 /// Renders viewpoints, which are sorted, in tiles over the current task arena. Of sectors that are not stale
-/// the hits stay as they are: then all targets in view have to be drawn.
+/// the hits stay as they are: then all targets in view have to be drawn, and so if their number is known.
 /// @param values    written at `index` of each viewpoint
 /// @param bin_hits  likewise, `azimuth_bins` to a viewpoint
 void render_views(const ViewScene& scene, std::span<const StaleViewpoint> viewpoints,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "view/exact/places_in_view.hpp"
 #include "view/exact/ray_trie.hpp"
 #include "view/exact/trie_walk.hpp"
 #include "view/target_index.hpp"
@@ -16,18 +17,24 @@
 
 namespace frontlux::detail {
 
+/// What the walks for viewpoints of one stride look up.
+struct WalkTables {
+  RayTrie trie;
+  PlacesInView in_view;
+};
+
 /// The tries of a field of view, by the strides of viewpoints. Each is made when it is needed for the first
 /// time. Thread safety: full.
 class RayTries {
  public:
   /// Null if the rays are too many for a trie, or if there is none yet and `make` is false.
-  [[nodiscard]] std::shared_ptr<const RayTrie> get(const ViewRegion& view, int azimuth_bins, int stride_x,
-                                                   int stride_y, bool make);
+  [[nodiscard]] std::shared_ptr<const WalkTables> get(const ViewRegion& view, int azimuth_bins, int stride_x,
+                                                      int stride_y, bool make);
 
  private:
   struct Known {
     int stride_x, stride_y;
-    std::shared_ptr<const RayTrie> trie;
+    std::shared_ptr<const WalkTables> tables;
   };
   std::mutex mutex_;
   std::vector<Known> known_;
@@ -55,8 +62,8 @@ struct ExactScene {
 /// @param viewpoints  sorted
 /// @param values      written at `index` of each viewpoint
 /// @param bin_hits    likewise, `azimuth_bins` to a viewpoint; of sectors that are not stale they stay
-/// @return what is left to rays, sorted: viewpoints, or the rest of their sectors. All if the rays are too
-/// many for a trie
+/// @return what is left to rays, sorted: viewpoints, or the rest of their sectors with what is in view. All
+/// if the rays are too many for a trie
 [[nodiscard]] std::vector<StaleViewpoint> render_exactly(const ExactScene& scene,
                                                          std::span<const StaleViewpoint> viewpoints,
                                                          std::span<ViewQuality> values,

@@ -33,6 +33,15 @@ struct alignas(64) TileBits {
   }
 };
 
+/// The rows of a tile that a walk looks at: all, or half of them from `first` on.
+struct TileRows {
+  std::uint32_t first = 0;
+  bool half = false;
+
+  /// Those with all of these places. @pre there is one
+  [[nodiscard]] static TileRows with(const TileBits& places);
+};
+
 /// A number for each place of a tile, its bits in planes.
 struct TileCounts {
   static constexpr std::size_t kPlanes = 32;
@@ -62,17 +71,23 @@ struct SpreadFrom {
 struct TrieWalk {
   InstructionSet needs;
 
-  /// Adds to `counts` how many targets of a sector each viewpoint has in view, visible or not. The viewpoints
-  /// that have any go to `groups`, for each group, and to `any`.
-  void (*gather)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
-                 const TileBits& viewpoints, TileCounts& counts, std::span<TileBits> groups, TileBits& any);
+  /// Adds to `counts`, for each of the places in a table, the viewpoints whose bits are set there.
+  void (*add_up)(const std::byte* table, std::span<const std::int32_t> places, const TileBits& viewpoints,
+                 TileCounts& counts);
+
+  /// The viewpoints that have targets of a sector in view, visible or not, go to `groups`, for each group.
+  /// False if there are none.
+  /// @param rows  with all of the viewpoints; in other rows nothing is written
+  bool (*find_groups)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
+                      const TileBits& viewpoints, const TileRows& rows, std::span<TileBits> groups);
 
   /// Adds to `counts` how many targets of a sector each viewpoint sees. The targets of a group are visited
   /// only for the viewpoints in `groups`.
+  /// @param rows     as for `find_groups`
   /// @param reached  room for a set of viewpoints at each depth, and one more
   void (*count)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
                 const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
-                std::span<TileBits> reached, TileCounts& counts);
+                const TileRows& rows, std::span<TileBits> reached, TileCounts& counts);
 
   /// For each column from `first_bit` on, and for each row, writes the 16 bits that begin at the column.
   void (*spread)(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,

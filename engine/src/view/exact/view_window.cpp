@@ -99,7 +99,9 @@ void ViewWindow::fill_free(const VoxelGrid& grid, const TrieWalk& walk) {
   for (std::size_t level = 0; level < levels(); ++level) spread_level(level, walk);
 }
 
-bool ViewWindow::fill_targets(const TargetIndex& targets, const ViewRegion& view, const TrieWalk& walk) {
+void ViewWindow::fill_targets(const TargetIndex& targets, const ViewRegion& view, const TrieWalk& walk,
+                              std::vector<VoxelKey>& list) {
+  list.clear();
   const auto last = [](int high, int reach) { return std::min(high - reach, Lattice::kKeysPerAxis - 1); };
   targets.list_cubes(
       view,
@@ -107,7 +109,7 @@ bool ViewWindow::fill_targets(const TargetIndex& targets, const ViewRegion& view
        make_key(last(high_[0], layout_.reach_x), last(high_[1], layout_.reach_y),
                 last(high_[2], layout_.reach_z))},
       cubes_);
-  if (cubes_.empty()) return false;
+  if (cubes_.empty()) return;
   clear_packed();
   for (const std::uint32_t c : cubes_) {
     const TargetIndex::Cube& cube = targets.cubes()[c];
@@ -116,13 +118,13 @@ bool ViewWindow::fill_targets(const TargetIndex& targets, const ViewRegion& view
       bool inside = true;
       for (std::size_t a = 0; a < 3; ++a) inside = inside && low_[a] <= voxel[a] && voxel[a] <= high_[a];
       if (!inside) continue;
+      list.push_back(key);
       const Bit place = bit({voxel[0] - corner_[0], voxel[1] - corner_[1], voxel[2] - low_[2]});
       packed_[place.byte] = static_cast<std::uint8_t>(packed_[place.byte] | 1U << place.shift);
       present_[size(voxel[2] - low_[2])] = 1;
     }
   }
   for (std::size_t level = 0; level < levels(); ++level) spread_level(level, walk);
-  return true;
 }
 
 }  // namespace frontlux::detail

@@ -24,8 +24,9 @@ class ViewWindow {
   void aim(const WindowLayout& layout, const std::array<int, 3>& first_place, int top);
 
   void fill_free(const VoxelGrid& grid, const TrieWalk& walk);
-  /// False if there is none.
-  bool fill_targets(const TargetIndex& targets, const ViewRegion& view, const TrieWalk& walk);
+  /// Lists the targets, too.
+  void fill_targets(const TargetIndex& targets, const ViewRegion& view, const TrieWalk& walk,
+                    std::vector<VoxelKey>& list);
 
   /// For `TrieWalk`, of the tile at a height.
   [[nodiscard]] const std::byte* level(int z) const {

@@ -10,6 +10,7 @@ namespace frontlux::detail {
 struct ViewTile {
   static constexpr int kColumns = 16, kRows = 32;
   static constexpr std::size_t kBytes = kColumns * kRows / 8;
+  static constexpr std::size_t kRowBytes = kColumns / 8;
   static constexpr int kMaxStride = 4;
 };
 
