@@ -3,6 +3,7 @@
 #include "corridor/whole_voxels.hpp"
 #include "mapping/sort_once.hpp"
 #include "routing/complete_distances.hpp"
+#include "routing/idle_robots.hpp"
 #include "tour/travel_seconds.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -395,7 +396,9 @@ void TourPlanning::update(const Query& query) {
   const std::vector<StopClusters> places = group_into_stops(seen_clusters(query.starts), zone_edge_);
   TourProblem all = problem(query, places);
   const Tours before = tours_before(query, places, all);
-  set_tours(query, places, shared_out(all, before));
+  Tours tours = shared_out(all, before);
+  give_idle_robots_stops(all, tours);
+  set_tours(query, places, tours);
   join_next_stops(query);
   note_frontiers(query);
 }

@@ -1,0 +1,45 @@
+#include "routing/idle_robots.hpp"
+
+#include <cstddef>
+
+namespace frontlux::planner::detail {
+namespace {
+
+constexpr double kLeastGain = 5.0;  // [s] by which it gets there sooner
+
+// Of a stop in another robot's tour.
+struct Place {
+  double seconds = TourProblem::kNever;  // to get there
+  std::size_t tour = 0, at = 0;
+};
+
+Place nearest_stop_that_waits(const TourProblem& problem, const Tours& tours, std::size_t idle) {
+  Place nearest;
+  for (std::size_t r = 0; r < tours.size(); ++r) {
+    const TourProblem::Robot& other = problem.robots[r];
+    double arrival = 0.0;
+    for (std::size_t i = 0; i < tours[r].size(); ++i) {
+      const std::uint32_t stop = tours[r][i];
+      arrival += i == 0 ? other.first[stop] : other.between(tours[r][i - 1], stop);
+      const double seconds = problem.robots[idle].first[stop];
+      if (i == 0 || i < other.fixed || seconds >= nearest.seconds) continue;
+      if (2 * seconds <= arrival && seconds + kLeastGain <= arrival) nearest = {seconds, r, i};
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+void give_idle_robots_stops(const TourProblem& problem, Tours& tours) {
+  for (std::size_t r = 0; r < tours.size(); ++r) {
+    if (!tours[r].empty()) continue;
+    const auto [seconds, tour, at] = nearest_stop_that_waits(problem, tours, r);
+    if (seconds == TourProblem::kNever) continue;
+    const auto stop = tours[tour].begin() + static_cast<std::ptrdiff_t>(at);
+    tours[r].push_back(*stop);
+    tours[tour].erase(stop);
+  }
+}
+
+}  // namespace frontlux::planner::detail
