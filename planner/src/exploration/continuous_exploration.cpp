@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -85,11 +86,15 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   State& state = *state_;
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
   check_time(time);
+  check_finite({&pose, 1});
+  if (!state.team.lattice().key(pose.position)) refuse("a pose outside the map's key range");
   State::Member& member = state.members[robot];
   Pose rests = pose;
   state.stay_on_plane(robot, rests, time);
   member.motion = {Trajectory(rests, time)};
   member.stopped = true;
+  member.blocked = false;
+  member.needed.clear();
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
   const bool learns = !cells.empty() && (!member.planned || std::ranges::any_of(cells, is_new));
@@ -103,13 +108,12 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
   stopped(robot, pose, time, {});  // in a cell that it may not be in, none is in its reach
   State::Member& member = state_->members[robot];
   member.activity = State::Activity::kLost;
-  member.blocked = member.meets_other = false;
+  member.meets_other = false;
   member.request.reset();
   state_->withdraw_requests(robot);
   state_->tell_of_loss(robot);
   member.goal = {};
   member.goal_frontiers.clear();
-  member.needed.clear();
   state_->team.selection->lose(robot);
   state_->team.targets[robot].clear();
   if (state_->team.tours) state_->team.tours->lose(robot);
@@ -120,9 +124,21 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   if (!state.team.selection) refuse("a planning before its beginning");
   check_time(time);
   state.start_next_trajectories(time);
-  for (std::size_t r = 0; r < state.members.size(); ++r)
-    if (const auto reason = state.reason_to_plan(state.members[r], time)) return state.plan(r, *reason, time);
-  return std::nullopt;
+  // The first in the team, but before all others who has waited for two periods: where plannings take long,
+  // the first ones have a reason again before the last ones have had their turn.
+  std::optional<std::pair<std::size_t, PlanReason>> next;
+  double longest = 2 * state.team.options.period;
+  for (std::size_t r = 0; r < state.members.size(); ++r) {
+    const State::Member& member = state.members[r];
+    const auto reason = state.reason_to_plan(member, time);
+    if (!reason) continue;
+    const double waited = time - member.planned.value_or(member.motion.now.begin());
+    if (next && waited < longest) continue;
+    next = {r, *reason};
+    longest = std::max(longest, waited);
+  }
+  if (!next) return std::nullopt;
+  return state.plan(next->first, next->second, time);
 }
 
 ExplorationStep ContinuousExploration::finish(double time) {

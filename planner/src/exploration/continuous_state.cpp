@@ -406,9 +406,11 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
                                            ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kPaths);
   Member& member = members[robot];
-  if (keeps_apart(robot, trajectory) || brakes_instead(robot, start, trajectory)) {
+  const bool apart = keeps_apart(robot, trajectory);
+  if (apart || brakes_instead(robot, start, trajectory)) {
     member.needed = voxels_needed(robot, trajectory);
     member.motion.next = trajectory;
+    if (!apart) tell_of_stop(robot, start);
     return true;
   }
   trajectory = member.motion.last();  // which keeps apart
@@ -423,15 +425,13 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   return false;
 }
 
-// Of a robot whose path is neither free nor can be left: it brakes, if that keeps apart from the others. If
-// it would run into one that has stopped, it brakes in any case.
+// Of a robot whose path is neither free nor can be left: it brakes, also on the path of another one, which
+// can still get out of its way.
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
   member.goal_frontiers.clear();
   if (!member.blocked && !member.meets_other) return false;
-  Trajectory braking = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
-  if (!member.meets_other && !keeps_apart(robot, braking)) return false;
-  trajectory = std::move(braking);
+  trajectory = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
   member.activity = Activity::kMoves;
   return true;
 }

@@ -359,6 +359,9 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   refuses([&] { static_cast<void>(exploration.at(1, 0.0)); }, "no robot 1");
   EXPECT_REFUSED(exploration.insert(0, lost.pose, scan));
   EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
+  const Pose far{{1e5, 0.0, 0.0}, 0.0};
+  refuses([&] { exploration.stopped(0, far, 0.0, {}); }, "outside the map's key range");
+  refuses([&] { exploration.lose(0, far, 0.0); }, "outside the map's key range");
   for (const double time : {nan, 1.7e15, -1.7e15}) {  // microseconds since 1970
     refuses([&] { static_cast<void>(exploration.plan(time)); }, "the time is ");
     refuses([&] { static_cast<void>(exploration.finish(time)); }, "the time is ");

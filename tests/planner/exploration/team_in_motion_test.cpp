@@ -215,5 +215,51 @@ TEST(TeamInMotion, EndsWithItsLastRobot) {
   EXPECT_FALSE(exploration.plan(scene.time() + 10.0));
 }
 
+// Where a planning takes so long that the first robot has a reason again before the last one had its turn.
+TEST(TeamInMotion, EachHasItsTurnHoweverLongPlanningsTake) {
+  TeamInMotion scene("room", std::vector<RobotDescription>(3, small_uav()), sim::AtContact::kGoOn,
+                     GoalChoice::kTours);
+  std::vector<int> plannings(3);
+  double time = 0.0;
+  for (int i = 0; i < 24; ++i, time += 0.6)
+    if (const auto planned = scene.exploration().plan(time)) ++plannings[planned->robot];
+  for (const int count : plannings) EXPECT_GE(count, 4);
+}
+
+// An obstacle is found on a robot's path while others pass near by: it brakes, and they keep away.
+TEST(TeamInMotion, BrakesForObstaclesOnThePathsOfOthers) {
+  int obstacles = 0;
+  for (const double begin : {7.3, 7.4, 7.8, 8.5}) {
+    TeamInMotion scene("room", std::vector<RobotDescription>(3, small_uav()), sim::AtContact::kGoOn,
+                       GoalChoice::kTours);
+    ContinuousExploration& exploration = scene.exploration();
+    scene.explore(begin);
+    while (exploration.plan(scene.time())) {
+    }
+    const double now = scene.time() + 0.02;
+    for (std::size_t who = 0; who < 3; ++who) {
+      const Pose pose = exploration.at(who, now).pose;
+      const Eigen::Vector3d ahead = exploration.at(who, now + 1.4).pose.position;
+      const VoxelGrid grid = scene.grid();
+      const auto voxel = grid.lattice().key(ahead);
+      ASSERT_TRUE(voxel);
+      if (grid.at(*voxel) != Occupancy::kFree || (ahead - pose.position).norm() < 1.5) continue;
+      const Eigen::Vector3f ray = (grid.lattice().exact_center(*voxel) - pose.position).cast<float>();
+      for (int hit = 0; hit < 10; ++hit)
+        exploration.insert(who, pose, {pose.position.cast<float>(), 10.0, {ray.normalized()}, {ray.norm()}});
+      if (scene.grid().at(*voxel) != Occupancy::kOccupied) continue;
+      ++obstacles;
+      for (double time = now; time < now + 3.0; time += 0.02) {
+        while (exploration.plan(time)) {
+        }
+        EXPECT_NE(grid.lattice().key(exploration.at(who, time).pose.position), *voxel)
+            << begin << ": robot " << who << " after " << time - now << " s";
+      }
+      break;
+    }
+  }
+  EXPECT_GT(obstacles, 2);
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -46,13 +46,15 @@ struct PlannedMotion {
 /// thread. Each robot plans for itself: when it is about to arrive, when what it was going for has been
 /// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period`. It knows the
 /// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
-/// others for all time to come. If there is none such, the robot keeps the one it has.
+/// others for all time to come. If there is none such, the robot keeps the one it has; it brakes if something
+/// is on that, even where another one would pass, which plans at once then.
 ///
 ///     ContinuousExploration exploration(options, std::move(mapping));
 ///     exploration.begin(starts, now());
 ///     while (!exploration.end()) {
 ///       exploration.insert(robot, pose, scan);                     // as they come
-///       while (const auto planned = exploration.plan(now())) send(planned->robot, planned->trajectory);
+///       const double time = now();
+///       while (const auto planned = exploration.plan(time)) send(planned->robot, planned->trajectory);
 ///     }
 ///
 /// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
