@@ -1,9 +1,9 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
-#include "explore/explore_options.hpp"
 #include "explore/explore_run.hpp"
-#include "explore/explore_task.hpp"
+#include "setup/explore_options.hpp"
+#include "setup/explore_task.hpp"
 
 #include <filesystem>
 #include <memory>

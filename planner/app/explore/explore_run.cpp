@@ -1,7 +1,6 @@
 #include "explore/explore_run.hpp"
 
 #include "bad_input.hpp"
-#include "explore/explore_setup.hpp"
 #include "explore/resumed_run.hpp"
 #include "explore/run_display.hpp"
 #include "explore/run_files.hpp"
@@ -10,6 +9,7 @@
 #include "explore/run_loop.hpp"
 #include "explore/run_warnings.hpp"
 #include "interrupt.hpp"
+#include "setup/explore_setup.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>

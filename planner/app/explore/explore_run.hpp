@@ -1,6 +1,6 @@
 #pragma once
 
-#include "explore/explore_options.hpp"
+#include "setup/explore_options.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "explore/explore_options.hpp"
 #include "explore/explore_run.hpp"
+#include "setup/explore_options.hpp"
 
 #include <frontlux/planner/recording.hpp>
 

@@ -1,8 +1,8 @@
 #include "explore/run_display.hpp"
 
 #include "explore/explore_run.hpp"
-#include "explore/explore_setup.hpp"
 #include "explore/run_warnings.hpp"
+#include "setup/explore_setup.hpp"
 #include "text.hpp"
 
 #include <frontlux/planner/exploration.hpp>

@@ -1,8 +1,8 @@
 #include "explore/run_json.hpp"
 
 #include "explore/explore_run.hpp"
-#include "explore/explore_setup.hpp"
-#include "explore/explore_task.hpp"
+#include "setup/explore_setup.hpp"
+#include "setup/explore_task.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/machine.hpp>

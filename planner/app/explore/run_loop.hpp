@@ -1,6 +1,6 @@
 #pragma once
 
-#include "explore/explore_setup.hpp"
+#include "setup/explore_setup.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/mapping.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "explore/explore_setup.hpp"
 #include "explore/run_files.hpp"
 #include "explore/run_loop.hpp"
+#include "setup/explore_setup.hpp"
 
 #include <frontlux/sim/unseen.hpp>
 

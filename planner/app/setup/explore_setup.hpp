@@ -1,6 +1,6 @@
 #pragma once
 
-#include "explore/explore_options.hpp"
+#include "setup/explore_options.hpp"
 #include "world_source.hpp"
 
 #include <frontlux/io/robot_file.hpp>

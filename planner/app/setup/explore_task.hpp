@@ -1,7 +1,7 @@
 #pragma once
 
 #include "command.hpp"
-#include "explore/explore_options.hpp"
+#include "setup/explore_options.hpp"
 
 #include <string>
 

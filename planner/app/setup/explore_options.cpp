@@ -1,4 +1,4 @@
-#include "explore/explore_options.hpp"
+#include "setup/explore_options.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "explore/explore_setup.hpp"
+#include "setup/explore_setup.hpp"
 
 #include "bad_input.hpp"
 #include "text.hpp"

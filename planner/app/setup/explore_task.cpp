@@ -1,7 +1,7 @@
-#include "explore/explore_task.hpp"
+#include "setup/explore_task.hpp"
 
 #include "bad_input.hpp"
-#include "explore/explore_setup.hpp"
+#include "setup/explore_setup.hpp"
 #include "text.hpp"
 
 #include <frontlux/file.hpp>
