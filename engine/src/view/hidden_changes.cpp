@@ -25,7 +25,8 @@ struct Fan {
 };
 
 // Of a turn, from `begin` to `end`.
-Fan fan(int octant, double begin, double end, double slope) {
+// @param reach, height  [voxels] more steps than these no path has
+Fan fan(int octant, double begin, double end, double slope, int reach, int height) {
   const auto direction = [](double turns) {
     return std::array{std::fabs(std::cos(2 * std::numbers::pi * turns)),
                       std::fabs(std::sin(2 * std::numbers::pi * turns))};
@@ -34,14 +35,14 @@ Fan fan(int octant, double begin, double end, double slope) {
   const bool along_x = octant == 0 || octant == 3 || octant == 4 || octant == 7;
   const auto [less, greater] = std::minmax(
       {along_x ? one[1] / one[0] : one[0] / one[1], along_x ? other[1] / other[0] : other[0] / other[1]});
-  constexpr double kMany = 1e3;
+  const double across = reach, up = height;
   return {along_x,
           octant < 2 || octant > 5 ? 1 : -1,
           octant < 4 ? 1 : -1,
-          static_cast<int>(std::min(1 / greater - kRounding, kMany)),
-          static_cast<int>(std::ceil(std::min(1 / less + kRounding, kMany))),
+          static_cast<int>(std::min(1 / greater - kRounding, across)),
+          static_cast<int>(std::ceil(std::min(1 / less + kRounding, across))),
           greater / std::hypot(1.0, greater) + kRounding,
-          static_cast<int>(std::ceil(std::min(slope * std::hypot(1.0, greater) + kRounding, kMany)))};
+          static_cast<int>(std::ceil(std::min(slope * std::hypot(1.0, greater) + kRounding, up)))};
 }
 
 // Columns of voxels in reach of all changes, a bit for each voxel.
@@ -166,8 +167,9 @@ class Flood {
           if (s + 1 < states || !bounded) path = ahead[std::min(s + 1, states - 1)];
           if (s >= fewest) unite(path, beside);
           for (int r = 0; r < fan.rises; ++r) {
-            const Column there = from(open, changed, path);
+            const Column there = from(open, changed, path), before = path;
             for (std::size_t w = 0; w < kWords; ++w) path[w] |= moved(there, w);
+            if (path == before) break;
           }
           unite(any, path);
           here[s] = from(open, changed, path);
@@ -206,7 +208,7 @@ void leave_out(const VoxelGrid& grid, std::span<const VoxelKey> changed, std::sp
   }
   for (const VoxelKey& key : targets) columns.add_changed(key);
 
-  const int parts = std::min(bins, SectorSet::kParts);
+  const int parts = std::min(bins, SectorSet::kParts), height = box.max.z - box.min.z + 1;
   const auto begin_of = [&](int part) {  // of a turn
     return static_cast<double>((part * bins + parts - 1) / parts) / bins;
   };
@@ -219,7 +221,7 @@ void leave_out(const VoxelGrid& grid, std::span<const VoxelKey> changed, std::sp
       for (int octant = 0; octant < 8; ++octant) {
         const double begin = std::max(begin_of(part), octant / 8.0);
         const double end = std::min(begin_of(part + 1), (octant + 1) / 8.0);
-        if (end - begin > kRounding) flood.add(fan(octant, begin, end, view.slope()));
+        if (end - begin > kRounding) flood.add(fan(octant, begin, end, view.slope(), view.reach(), height));
       }
       hidden[p].assign(onlookers.size(), 0);
       const SectorSet sector = SectorSet::of_part(part);

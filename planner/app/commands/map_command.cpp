@@ -89,7 +89,7 @@ Recording open_folder(const std::filesystem::path& folder, const std::string& gi
 
 Recording open_graph(const std::filesystem::path& file, const std::string& pose_file) {
   std::error_code error;
-  const std::filesystem::path kind = std::filesystem::exists(file, error) ? file.extension() : "";
+  const std::filesystem::path kind = std::filesystem::exists(file, error) ? lower_extension(file) : "";
   if (kind == ".ply" || kind == ".pcd")
     throw BadInput("SCANS: " + file.string() +
                    " is a single cloud; name the folder that holds it, with its pose in a file (--poses)");

@@ -24,6 +24,18 @@ void check_time(double time) {
     refuse("the time is " + std::to_string(time) + " s, but has to be finite and within 10^10 s (300 years)");
 }
 
+// How soon a robot with a reason is to plan, and of equals who has waited for longer [s].
+using Turn = std::pair<int, double>;
+
+// Who may have to brake comes first. Where plannings take long, the first robots have a reason again before
+// the last ones have had their turn: who has waited for long comes before others.
+Turn turn_of(PlanReason reason, double waited, double period) {
+  if (waited >= 4 * period) return {3, waited};
+  if (reason == PlanReason::kStopped || reason == PlanReason::kBlocked) return {2, 0.0};
+  if (waited >= 2 * period) return {1, waited};
+  return {0, 0.0};
+}
+
 }  // namespace
 
 std::string_view name_of(PlanReason reason) {
@@ -87,10 +99,10 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
   check_time(time);
   check_finite({&pose, 1});
-  if (!state.team.lattice().key(pose.position)) refuse("a pose outside the map's key range");
   State::Member& member = state.members[robot];
   Pose rests = pose;
   state.stay_on_plane(robot, rests, time);
+  if (!state.team.lattice().key(rests.position)) refuse("a pose outside the map's key range");
   member.motion = {Trajectory(rests, time)};
   member.stopped = true;
   member.blocked = false;
@@ -124,18 +136,17 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   if (!state.team.selection) refuse("a planning before its beginning");
   check_time(time);
   state.start_next_trajectories(time);
-  // The first in the team, but before all others who has waited for two periods: where plannings take long,
-  // the first ones have a reason again before the last ones have had their turn.
   std::optional<std::pair<std::size_t, PlanReason>> next;
-  double longest = 2 * state.team.options.period;
+  Turn best;
   for (std::size_t r = 0; r < state.members.size(); ++r) {
     const State::Member& member = state.members[r];
     const auto reason = state.reason_to_plan(member, time);
     if (!reason) continue;
     const double waited = time - member.planned.value_or(member.motion.now.begin());
-    if (next && waited < longest) continue;
+    const Turn turn = turn_of(*reason, waited, state.team.options.period);
+    if (next && turn <= best) continue;
     next = {r, *reason};
-    longest = std::max(longest, waited);
+    best = turn;
   }
   if (!next) return std::nullopt;
   return state.plan(next->first, next->second, time);

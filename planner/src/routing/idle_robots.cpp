@@ -31,15 +31,13 @@ Place nearest_stop_that_waits(const TourProblem& problem, const Tours& tours, st
 
 }  // namespace
 
-void give_idle_robots_stops(const TourProblem& problem, Tours& tours) {
-  for (std::size_t r = 0; r < tours.size(); ++r) {
-    if (!tours[r].empty()) continue;
-    const auto [seconds, tour, at] = nearest_stop_that_waits(problem, tours, r);
-    if (seconds == TourProblem::kNever) continue;
-    const auto stop = tours[tour].begin() + static_cast<std::ptrdiff_t>(at);
-    tours[r].push_back(*stop);
-    tours[tour].erase(stop);
-  }
+void give_idle_robot_a_stop(const TourProblem& problem, std::size_t robot, Tours& tours) {
+  if (!tours[robot].empty()) return;
+  const auto [seconds, tour, at] = nearest_stop_that_waits(problem, tours, robot);
+  if (seconds == TourProblem::kNever) return;
+  const auto stop = tours[tour].begin() + static_cast<std::ptrdiff_t>(at);
+  tours[robot].push_back(*stop);
+  tours[tour].erase(stop);
 }
 
 }  // namespace frontlux::planner::detail

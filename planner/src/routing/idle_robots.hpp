@@ -2,11 +2,13 @@
 
 #include "routing/tour_problem.hpp"
 
+#include <cstddef>
+
 namespace frontlux::planner::detail {
 
-/// A robot without a stop takes one from another's tour if it gets there in half of the time that the other
-/// one will need: the nearest such stop. Where others set out for already, it does not go. The shortest tours
-/// would rather let it rest beside a stop that another robot passes much later.
-void give_idle_robots_stops(const TourProblem& problem, Tours& tours);
+/// A robot without a stop takes one from another's tour: the nearest one where it is 5 s sooner than the
+/// other one, and in half of the time. It leaves what the other one has set out for. The shortest tours would
+/// rather let it rest beside a stop that another robot passes much later.
+void give_idle_robot_a_stop(const TourProblem& problem, std::size_t robot, Tours& tours);
 
 }  // namespace frontlux::planner::detail

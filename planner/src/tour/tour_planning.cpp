@@ -397,7 +397,7 @@ void TourPlanning::update(const Query& query) {
   TourProblem all = problem(query, places);
   const Tours before = tours_before(query, places, all);
   Tours tours = shared_out(all, before);
-  give_idle_robots_stops(all, tours);
+  give_idle_robot_a_stop(all, query.robot, tours);
   set_tours(query, places, tours);
   join_next_stops(query);
   note_frontiers(query);

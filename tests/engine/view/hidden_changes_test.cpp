@@ -50,7 +50,9 @@ TEST(HiddenChanges, AreNeverInSight) {
   std::size_t stay = 0, left_out = 0;
   for (int round = 0; round < 60; ++round) {
     const Change change = random_change(random);
-    const FieldOfView field{FieldOfView::Shape::kPyramid, 90 * kDegree, random.uniform(20, 150) * kDegree,
+    using Shape = FieldOfView::Shape;
+    const FieldOfView field{std::array{Shape::kPyramid, Shape::kSpinning, Shape::kCone}[random.bits() % 3],
+                            random.uniform(5, 170) * kDegree, random.uniform(1, 175) * kDegree,
                             random.uniform(2, 16) * kResolution};
     const ViewRegion view(field, kResolution);
     const int bins = std::array{1, 7, 8, 36, 100}[static_cast<std::size_t>(round % 5)];

@@ -249,9 +249,21 @@ TEST(TeamInMotion, BrakesForObstaclesOnThePathsOfOthers) {
         exploration.insert(who, pose, {pose.position.cast<float>(), 10.0, {ray.normalized()}, {ray.norm()}});
       if (scene.grid().at(*voxel) != Occupancy::kOccupied) continue;
       ++obstacles;
+      const auto gap = [&](std::size_t a, std::size_t b, double time) {
+        const auto body = [&](std::size_t r) {
+          return body_of(small_uav().robot.travel).translated(exploration.at(r, time).pose.position);
+        };
+        return body(a).exteriorDistance(body(b));
+      };
+      const std::array pairs = {std::pair(0UL, 1UL), std::pair(0UL, 2UL), std::pair(1UL, 2UL)};
+      std::array<double, 3> allowed{};
+      for (std::size_t i = 0; i < 3; ++i)
+        allowed[i] = std::min(kSeparation, gap(pairs[i].first, pairs[i].second, now)) - 1e-6;
       for (double time = now; time < now + 3.0; time += 0.02) {
         while (exploration.plan(time)) {
         }
+        for (std::size_t i = 0; i < 3; ++i)
+          EXPECT_GE(gap(pairs[i].first, pairs[i].second, time), allowed[i]) << begin << ": " << time - now;
         EXPECT_NE(grid.lattice().key(exploration.at(who, time).pose.position), *voxel)
             << begin << ": robot " << who << " after " << time - now << " s";
       }

@@ -27,7 +27,7 @@ struct Line {
 TEST(IdleRobots, TakeWhatTheOtherOneReachesMuchLater) {
   const TourProblem problem = Line{{10, 20, 40, 100}, {0, 45}}.problem();
   Tours tours{{0, 1, 2, 3}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0, 1, 3}, {2}})) << "the nearest one, not the last";
 }
 
@@ -35,18 +35,25 @@ TEST(IdleRobots, RestWhereTheyWouldNotBeMuchSooner) {
   const TourProblem problem =
       Line{{10, 20, 40}, {0, 62}}.problem();  // 22 s to 40, where the other is after 40 s
   Tours tours{{0, 1, 2}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0, 1, 2}, {}}));
+}
+
+TEST(IdleRobots, RestWhereTheyWouldBeBarelySooner) {
+  const TourProblem problem = Line{{1, 7}, {0, 10}}.problem();  // 3 s to 7, where the other is after 7 s
+  Tours tours{{0, 1}, {}};
+  give_idle_robot_a_stop(problem, 1, tours);
+  EXPECT_EQ(tours, (Tours{{0, 1}, {}}));
 }
 
 TEST(IdleRobots, LeaveWhatTheOtherOneSetsOutFor) {
   TourProblem problem = Line{{40, 41, 42}, {0, 45}}.problem();
   Tours tours{{0}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0}, {}}));
   problem.robots[0].fixed = 2;
   tours = {{0, 1, 2}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0, 1}, {2}}));
 }
 
@@ -54,11 +61,11 @@ TEST(IdleRobots, LeaveWhatIsNotForThem) {
   TourProblem problem = Line{{10, 40, 44}, {0, 45}}.problem();
   problem.robots[1].first[2] = TourProblem::kNever;
   Tours tours{{0, 1, 2}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0, 2}, {1}}));
   for (double& seconds : problem.robots[1].first) seconds = TourProblem::kNever;
   tours = {{0, 1, 2}, {}};
-  give_idle_robots_stops(problem, tours);
+  give_idle_robot_a_stop(problem, 1, tours);
   EXPECT_EQ(tours, (Tours{{0, 1, 2}, {}}));
 }
 
@@ -72,11 +79,12 @@ TEST(IdleRobots, NoStopIsLostAndWhoHasStopsGetsNone) {
     for (std::uint32_t i = 0; i < line.stops.size(); ++i)
       tours[static_cast<std::size_t>(random.below(static_cast<int>(tours.size())))].push_back(i);
     const Tours before = tours;
-    give_idle_robots_stops(line.problem(), tours);
+    const auto idle = static_cast<std::size_t>(random.below(static_cast<int>(tours.size())));
+    give_idle_robot_a_stop(line.problem(), idle, tours);
     std::vector<std::uint32_t> stops;
     for (std::size_t r = 0; r < tours.size(); ++r) {
       stops.insert(stops.end(), tours[r].begin(), tours[r].end());
-      EXPECT_LE(tours[r].size(), std::max<std::size_t>(before[r].size(), 1));
+      EXPECT_LE(tours[r].size(), std::max<std::size_t>(before[r].size(), r == idle ? 1 : 0));
       if (!before[r].empty()) {
         EXPECT_EQ(tours[r].front(), before[r].front());
       }

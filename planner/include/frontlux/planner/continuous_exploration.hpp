@@ -53,8 +53,7 @@ struct PlannedMotion {
 ///     exploration.begin(starts, now());
 ///     while (!exploration.end()) {
 ///       exploration.insert(robot, pose, scan);                     // as they come
-///       const double time = now();
-///       while (const auto planned = exploration.plan(time)) send(planned->robot, planned->trajectory);
+///       if (const auto planned = exploration.plan(now())) send(planned->robot, planned->trajectory);
 ///     }
 ///
 /// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
@@ -92,7 +91,9 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// where the others keep apart from it, and what it was to see becomes theirs. It does not come back.
   void lose(std::size_t robot, const Pose& pose, double time);
 
-  /// Plans for the first robot that has a reason to; nothing if none has. Call it until it returns nothing.
+  /// Plans for a robot that has a reason to; nothing if none has. A robot on whose path something is, or that
+  /// was stopped, comes before others, then who has waited for two periods; else the first in the team does.
+  /// Each plans at most once for a time.
   /// @throws std::invalid_argument before `begin`, or for a time out of bounds; so does `finish`
   [[nodiscard]] std::optional<PlannedMotion> plan(double time);
 
