@@ -106,14 +106,14 @@ class Run {
 
   /// Takes the folder for this run, and writes the tables up to now.
   void open_files() {
-    if (recording_ == nullptr) make_folder(how_, options_.source.world);
     // The recording comes first and is locked: another process may still be writing this run.
-    if (recording_ == nullptr) {
+    if (recording_ != nullptr) {
+      writer_.emplace(file(), *recording_);
+    } else {
+      make_folder(how_, options_.source.world);
       remove_link(file());
       writer_.emplace(file(), setup_.head);
       remove_old_files(how_.folder);
-    } else {
-      writer_.emplace(file(), *recording_);
     }
     recorded_ = recorded_steps().size();
     if (!loop_->end()) remove_views(how_.folder);

@@ -5,7 +5,7 @@
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr double kLeastGain = 5.0;  // [s] by which it gets there sooner
+constexpr double kSooner = 5.0;  // [s] that it gets there before the other one, at least
 
 // Of a stop in another robot's tour.
 struct Place {
@@ -23,7 +23,7 @@ Place nearest_stop_that_waits(const TourProblem& problem, const Tours& tours, st
       arrival += i == 0 ? other.first[stop] : other.between(tours[r][i - 1], stop);
       const double seconds = problem.robots[idle].first[stop];
       if (i == 0 || i < other.fixed || seconds >= nearest.seconds) continue;
-      if (2 * seconds <= arrival && seconds + kLeastGain <= arrival) nearest = {seconds, r, i};
+      if (2 * seconds <= arrival && seconds + kSooner <= arrival) nearest = {seconds, r, i};
     }
   }
   return nearest;

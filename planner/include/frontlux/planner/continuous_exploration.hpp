@@ -91,9 +91,9 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// where the others keep apart from it, and what it was to see becomes theirs. It does not come back.
   void lose(std::size_t robot, const Pose& pose, double time);
 
-  /// Plans for a robot that has a reason to; nothing if none has. A robot on whose path something is, or that
-  /// was stopped, comes before others, then who has waited for two periods; else the first in the team does.
-  /// Each plans at most once for a time.
+  /// Plans for a robot that has a reason to; nothing if none has. Who has waited for four periods comes
+  /// first, then a robot on whose path something is, or that was stopped, then who has waited for two
+  /// periods; of the rest the first in the team. Each plans at most once for a time.
   /// @throws std::invalid_argument before `begin`, or for a time out of bounds; so does `finish`
   [[nodiscard]] std::optional<PlannedMotion> plan(double time);
 
