@@ -5,10 +5,6 @@
 #include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
 #include "mapping/sort_once.hpp"
-#include "motion/departure.hpp"
-
-#include <frontlux/planner/body_stencil.hpp>
-#include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,37 +31,17 @@ bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) 
           std::abs(std::remainder(scanned.yaw - end.yaw, 2 * std::numbers::pi)) < kAligned);
 }
 
-// Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
-// about straight.
-std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
-  constexpr double kStep = 0.1, kOff = 0.03, kMost = 1000.0;  // [s], [m], poses
-  const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
-  const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
-  std::vector<Pose> all, some;
-  for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
-  const auto straight = [&](std::size_t a, std::size_t b) {
-    const Eigen::Vector3d along = (all[b].position - all[a].position).stableNormalized();
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const Eigen::Vector3d to = all[i].position - all[a].position;
-      if ((to - to.dot(along) * along).norm() > kOff) return false;
-    }
-    return true;
-  };
-  for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
-    if (i > 0 && i + 1 < all.size() && straight(kept, i + 1)) continue;
-    some.push_back(all[i]);
-    kept = i;
-  }
-  return some;
-}
-
 }  // namespace
 
-// The trajectories whose time has come take the place of those before.
-void ContinuousExploration::State::start_next_trajectories(double time) {
-  for (Member& member : members)
-    if (member.motion.next && time >= member.motion.next->begin())
+// Robots have followed their trajectories; those whose time has come take the place of those before.
+void ContinuousExploration::State::follow_trajectories(double time) {
+  for (Member& member : members) {
+    if (member.motion.next && time >= member.motion.next->begin()) {
+      member.driven.follow(member.motion.now, member.motion.next->begin());
       member.motion = {*std::move(member.motion.next)};
+    }
+    member.driven.follow(member.motion.now, time);
+  }
 }
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
@@ -104,6 +80,19 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
 void ContinuousExploration::State::stay_on_plane(std::size_t robot, Pose& pose, double time) const {
   if (team.options.team[robot].robot.travel.motion == Motion::kPlane)
     pose.position.z() = members[robot].motion.at(time).pose.position.z();
+}
+
+// By the path from the first to the last of some poses. The first is in the trail, if there is one.
+void ContinuousExploration::State::extend_trail(std::size_t robot, std::span<const Pose> poses, double time) {
+  std::vector<Pose>& trail = team.trails[robot];
+  const std::vector<Pose> path = members[robot].driven.through(poses, team.lattice().resolution());
+  for (std::size_t i = trail.empty() ? 0 : 1; i < path.size(); ++i) {
+    Pose place = path[i];
+    stay_on_plane(robot, place, time);
+    const auto key = team.lattice().key(place.position);
+    // Not where it cannot have been: it may go back over its trail.
+    if (key && team.mapping.bounds().contains(*key)) trail.push_back(place);
+  }
 }
 
 // Takes note of what a scan has changed.
@@ -145,13 +134,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     robot.gained = team.mapped_frontiers(robot.changed);
     members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
-    // Not where it cannot have been: it may go back over its trail.
-    for (std::size_t i = team.number == 0 ? 0 : 1; i < robot.planned.size(); ++i) {
-      Pose place = robot.planned[i];
-      stay_on_plane(r, place, time);
-      const auto key = team.lattice().key(place.position);
-      if (key && team.mapping.bounds().contains(*key)) team.trails[r].push_back(place);
-    }
+    extend_trail(r, robot.planned, time);
   }
   clock.reset();
   return step;
@@ -222,133 +205,6 @@ std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t r
   return places;
 }
 
-bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
-                                               std::size_t other) const {
-  const auto body = [&](std::size_t r) { return body_of(team.options.team[r].robot.travel); };
-  return detail::keeps_apart(trajectory, from, body(robot), members[other].motion, body(other), kSeparation);
-}
-
-bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
-  for (std::size_t other = 0; other < members.size(); ++other)
-    if (other != robot && !keeps_apart(robot, trajectory, trajectory.begin(), other)) return false;
-  return true;
-}
-
-SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const {
-  const TravelCorridor& corridor = team.path_corridor(robot);
-  return [this, &corridor](const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                           const Eigen::Vector3d& deviation) {
-    return SegmentVoxels(team.lattice(), from, to, corridor.reach() + deviation)
-        .all_of([&](const VoxelKey& key) { return corridor.passable(key); });
-  };
-}
-
-// What has to stay free for the rest of a trajectory. The path of a retreat need not be free for the body,
-// since the robot came on it, but may not be shut.
-Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
-  constexpr double kStep = 0.05;  // [s]
-  const TravelOptions& body = team.options.team[robot].robot.travel;
-  const BodyStencil stencil(body, team.lattice().resolution());
-  const bool retreats = members[robot].activity == Activity::kRetreats;
-  const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
-  Keys cells;
-  Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
-  for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
-    const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
-    // Between its cells' middles a body touches voxels that are none of its own cell's.
-    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
-      if (cells.empty() || cells.back() != key) cells.push_back(key);
-      return true;
-    }));
-    from = to;
-  }
-  sort_once(cells);
-  if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
-  Keys voxels;
-  for (const VoxelKey& cell : cells) {
-    static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
-      if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
-      return true;
-    }));
-  }
-  sort_once(voxels);
-  return voxels;
-}
-
-// Off another one's path, or back on the path on which it came, to the last place from which it can go on.
-Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double start,
-                                                      ExplorationStep& step) {
-  Member& member = members[robot];
-  RobotStep& now = step.robots[robot];
-  const Trajectory& old = member.motion.last();
-  const MotionState then = old.at(start);
-  member.activity = Activity::kMoves;
-  std::vector<Pose> path;
-  if (then.velocity.isZero()) {
-    ask_for_room(robot, step);
-    const detail::PhaseClock clock(step, Phase::kPaths);
-    path = path_aside(robot);
-    member.activity = Activity::kMakesRoom;
-    if (path.empty()) {
-      end_request(robot);
-      if (!waits_for_room(robot)) path = team.plan_retreat(robot, now.goal);
-      member.activity = path.empty() ? Activity::kRests : Activity::kRetreats;
-    }
-  }
-  if (member.activity == Activity::kMakesRoom) now.goal.reason = "no goal: it makes room for another robot";
-  if (waits_for_room(robot)) now.goal.reason = "no goal: it waits for another robot to make room";
-  if (!path.empty()) {
-    path.insert(path.begin(), then.pose);
-    now.path = PathOutcome::kFound;
-  }
-  const detail::PhaseClock clock(step, Phase::kPaths);
-  return old.after_stop(start, path, team.options.team[robot].robot.limits, segment_test(robot));
-}
-
-// To the robot's goal, or back, or to rest.
-Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, double start,
-                                                         ExplorationStep& step) {
-  Member& member = members[robot];
-  RobotStep& now = step.robots[robot];
-  const Trajectory& old = member.motion.last();
-  const MotionLimits& limits = team.options.team[robot].robot.limits;
-  member.goal_frontiers.clear();
-  if (!now.goal.pose) return without_goal(robot, start, step);
-  member.request.reset();
-  withdraw_requests(robot);
-  team.retreated_to[robot].clear();
-  const SegmentTest is_free = segment_test(robot);
-  std::optional<detail::Departure> departure;
-  {
-    const detail::PhaseClock clock(step, Phase::kPaths);
-    Pose to = *now.goal.pose;
-    if (team.ahead[robot]) to.position = team.lattice().exact_center(*team.ahead[robot]);
-    bool found = false;  // a path; that of the departure is one of those found
-    const auto path_from = [&](const Pose& from) {
-      PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, to,
-                                {team.options.seed, team.number, robot}, team.options.path);
-      if (!found || !plan.viewpoints.empty()) now.path = plan.outcome;
-      found = found || !plan.viewpoints.empty();
-      return std::move(plan.viewpoints);
-    };
-    departure = detail::best_departure(old, start, path_from, limits, is_free);
-  }
-  // Without a path it brakes; when it has come to rest, it plans again.
-  member.activity = departure || !old.at(start).velocity.isZero() ? Activity::kMoves : Activity::kRests;
-  if (!departure) return old.after_stop(start, {}, limits, is_free);
-  const detail::PhaseClock clock(step, Phase::kOptimization);
-  std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
-  const InformationGain gain = team.optimize_path(robot, step);
-  if (team.tours)
-    member.goal_frontiers = team.tours->first_view(robot);
-  else
-    for (const std::uint32_t i :
-         detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
-      member.goal_frontiers.push_back(team.targets[robot][i]);
-  departure->viewpoints = std::exchange(now.planned, std::move(sensed));
-  return detail::depart(old, start, *departure, limits, is_free);
-}
-
 PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason reason, double time) {
   Member& member = members[robot];
   const double start = time + team.options.latency;
@@ -392,48 +248,12 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
-  step.robots[robot].trajectory = poses_along(trajectory, start);
+  step.robots[robot].trajectory = detail::poses_along(trajectory, start, trajectory.end());
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))
       planned.step.robots[robot].tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
   return planned;
-}
-
-// Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
-// @return whether it follows another one than before
-bool ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
-                                           ExplorationStep& step) {
-  const detail::PhaseClock clock(step, Phase::kPaths);
-  Member& member = members[robot];
-  const bool apart = keeps_apart(robot, trajectory);
-  if (apart || brakes_instead(robot, start, trajectory)) {
-    member.needed = voxels_needed(robot, trajectory);
-    member.motion.next = trajectory;
-    if (!apart) tell_of_stop(robot, start);
-    return true;
-  }
-  trajectory = member.motion.last();  // which keeps apart
-  const bool goes_on = trajectory.end() > start;
-  const bool retreated =
-      std::exchange(member.activity, goes_on ? Activity::kMoves : Activity::kRests) == Activity::kRetreats;
-  const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return false;
-  // Another one may make room: it tries the retreat again.
-  team.retreated_to[robot].pop_back();
-  member.activity = Activity::kMoves;
-  return false;
-}
-
-// Of a robot whose path is neither free nor can be left: it brakes, also on the path of another one, which
-// can still get out of its way.
-bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
-  Member& member = members[robot];
-  member.goal_frontiers.clear();
-  if (!member.blocked && !member.meets_other) return false;
-  trajectory = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
-  member.activity = Activity::kMoves;
-  return true;
 }
 
 // And plannings in which it waits: `end` decides by both. A goal that is kept counts once: it is not reached.

@@ -15,32 +15,26 @@ constexpr int kLongestPause = 8;  // [plannings]
 
 // The boxes of a query. Most clusters are far from all of them, which the box around tells at once.
 struct ClusterSights::Changes {
-  struct Boxes {
-    std::span<const KeyBox> boxes;
-    std::optional<KeyBox> around = {};
-
-    explicit Boxes(std::span<const KeyBox> given) : boxes(given) {
-      for (const KeyBox& box : boxes) around = around ? hull(*around, box) : box;
-    }
-    [[nodiscard]] bool meet(const KeyBox& within) const {
-      return around && intersection(*around, within) && std::ranges::any_of(boxes, [&](const KeyBox& box) {
-               return intersection(box, within).has_value();
-             });
-    }
-  };
-  Boxes voxels, cells;
+  std::span<const KeyBox> boxes;
+  std::optional<KeyBox> around = {};
   int reach;  // [voxels] of the robot's view
 
-  explicit Changes(const Query& query)
-      : voxels(query.changes), cells(query.cells), reach(query.view.region.reach()) {}
+  explicit Changes(const Query& query) : boxes(query.changes), reach(query.view.region.reach()) {
+    for (const KeyBox& box : boxes) around = around ? hull(*around, box) : box;
+  }
+  [[nodiscard]] bool meet(const KeyBox& within) const {
+    return around && intersection(*around, within) && std::ranges::any_of(boxes, [&](const KeyBox& box) {
+             return intersection(box, within).has_value();
+           });
+  }
 };
 
 // Whether other viewpoints may be the best now. Of a cluster that the robot does not see all that a robot
 // might see it from counts.
 bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& cluster, const Sight& sight) {
   if (sight.revision != cluster.revision) return true;
-  if (sight.depend_on && !sight.viewpoints.empty()) return changes.cells.meet(*sight.depend_on);
-  return changes.voxels.meet(grown(cluster.box, changes.reach));
+  const bool is_seen = sight.depend_on && !sight.viewpoints.empty();
+  return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
@@ -80,6 +74,10 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
       continue;
     }
     sight.pause = std::max(0, sight.pause - 1);
+    if (std::ranges::any_of(sight.out_of_reach, query.reaches)) {
+      sight.stale = sight.faces_stale = true;
+      sight.out_of_reach.clear();
+    }
     if (sight.stale) hidden.emplace_back(&cluster, &sight);
   }
   return hidden;
@@ -88,7 +86,9 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
+    auto [viewpoints, out_of_reach] = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
+    sight->viewpoints = std::move(viewpoints);
+    sight->out_of_reach = std::move(out_of_reach);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->depend_on.reset();
     sight->stale = false;
@@ -113,7 +113,9 @@ void ClusterSights::look_at_faces(const Query& query) {
       hidden.emplace_back(&cluster, &sight);
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
+    auto [viewpoints, out_of_reach] = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
+    sight->viewpoints = std::move(viewpoints);
+    sight->out_of_reach = std::move(out_of_reach);
     sight->faces_stale = false;
     if (sight->viewpoints.empty()) return;
     sight->found = sight->viewpoints;

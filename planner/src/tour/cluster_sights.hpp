@@ -21,9 +21,9 @@ class ClusterSights {
   struct Query {
     const ViewpointQuery& view;
     std::span<const FrontierCluster> clusters;  ///< all that there are now
-    std::span<const KeyBox> changes;            ///< boxes that hold all voxels changed since the last update
-    std::span<const KeyBox>
-        cells;  ///< the same, with all cells in which the robot fits only now, or not any more
+    /// Boxes that hold all voxels changed since the last update, and all cells in which the robot fits only
+    /// now, or not any more.
+    std::span<const KeyBox> changes;
     const std::function<bool(const VoxelKey&)>& reaches;  ///< whether the robot can get to a cell
     bool can_move = true;                                 ///< whether it can get anywhere
   };
@@ -53,6 +53,7 @@ class ClusterSights {
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
     bool faces_stale = true;                   // since its faces were looked for
+    std::vector<VoxelKey> out_of_reach;        // then, cells from which it might be seen
     int in_vain = 0;                           // that often, in a row
     int pause = 0;                             // plannings until the next time
   };

@@ -210,12 +210,13 @@ FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierClust
   return {std::move(found)};
 }
 
-std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster,
-                                                  Aim aim,
-                                                  const std::function<bool(const VoxelKey&)>& reaches) {
+ViewpointsAnywhere viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster, Aim aim,
+                                       const std::function<bool(const VoxelKey&)>& reaches) {
   std::vector<VoxelKey> cells = query.graph.spread_cells(grown(cluster.box, query.region.reach()));
-  std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(cell); });
-  return best_viewpoints(query, cluster, cells, kSmallSample, aim);
+  const auto beyond = std::stable_partition(cells.begin(), cells.end(), reaches);
+  const std::vector<VoxelKey> out_of_reach(beyond, cells.end());
+  cells.erase(beyond, cells.end());
+  return {best_viewpoints(query, cluster, cells, kSmallSample, aim), out_of_reach};
 }
 
 }  // namespace frontlux::planner::detail

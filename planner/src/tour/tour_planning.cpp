@@ -158,7 +158,7 @@ std::optional<VoxelKey> TourPlanning::place_to_see_from(
   const ViewpointQuery view = sight_of(robot, caster, grid);
   for (const FrontierCluster& cluster : clusters_.clusters()) {
     if (is_others(cluster)) continue;
-    const auto viewpoints = viewpoints_anywhere(view, cluster, Aim::kMiddle, among);
+    const auto viewpoints = viewpoints_anywhere(view, cluster, Aim::kMiddle, among).viewpoints;
     if (!viewpoints.empty()) return viewpoints.front().cell;
   }
   return std::nullopt;
@@ -302,7 +302,7 @@ void TourPlanning::update_map(const Query& query) {
   };
   const bool can_move = query.corridor.state() == CorridorState::kReady;
   const auto sights = [&](const ViewpointQuery& view) {
-    return ClusterSights::Query{view, clusters_.clusters(), changes, cells, can_go, can_move};
+    return ClusterSights::Query{view, clusters_.clusters(), cells, can_go, can_move};
   };
   member.sights.update(sights(sight_of(query.robot, query.caster, query.grid)));
   if (can_move && nobody_sees_any()) look_closer(query, sights);

@@ -39,10 +39,11 @@ struct Scene {
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster;
   ClusterSights sights;
+  bool is_shut_in = false;
   std::atomic<int> asked = 0;  // whether the robot gets to a cell
   const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
     ++asked;
-    return corridor.contains(cell);
+    return !is_shut_in && corridor.contains(cell);
   };
 
   Scene() {
@@ -54,10 +55,10 @@ struct Scene {
   }
 
   void look(const std::vector<FrontierCluster>& clusters, std::span<const KeyBox> changes) {
-    sights.update({{*caster, grid, graph, view, region}, clusters, changes, changes, reaches});
+    sights.update({{*caster, grid, graph, view, region}, clusters, changes, reaches});
   }
   void look_at_faces(const std::vector<FrontierCluster>& clusters) {
-    sights.look_at_faces({{*caster, grid, graph, view, region}, clusters, {}, {}, reaches});
+    sights.look_at_faces({{*caster, grid, graph, view, region}, clusters, {}, reaches});
   }
 };
 
@@ -149,6 +150,25 @@ TEST(ClusterSights, TriesAllBeforeItSeesNone) {
   scene.asked = 0;
   scene.look({hidden}, {});
   EXPECT_EQ(scene.asked, 0);
+}
+
+// A door far from the cluster lets the robot get to where it sees the cluster from.
+TEST(ClusterSights, FindsWhatTheRobotGetsToLater) {
+  for (const bool faces : {false, true}) {
+    Scene scene;
+    const FrontierCluster cluster =
+        faces ? cluster_of(1, at(5, 5, -1)) : cluster_of(3, at(35, 7, 2));  // in line with the tunnel
+    scene.is_shut_in = true;
+    const auto look = [&] {
+      scene.look({cluster}, {});
+      if (faces) scene.look_at_faces({cluster});
+      return !scene.sights.viewpoints(cluster.id).empty();
+    };
+    EXPECT_FALSE(look());
+    scene.is_shut_in = false;
+    EXPECT_TRUE(look());
+    EXPECT_TRUE(look()) << "they stay";
+  }
 }
 
 // The layer under the room, of which the camera sees no middle.

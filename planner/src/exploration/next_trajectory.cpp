@@ -1,0 +1,189 @@
+// The trajectory that a robot takes next: to its goal, back, or to rest, apart from the others.
+
+#include "exploration/continuous_state.hpp"
+#include "exploration/frontiers_in_view.hpp"
+#include "exploration/phase_clock.hpp"
+#include "mapping/sort_once.hpp"
+#include "motion/departure.hpp"
+
+#include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/segment_voxels.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace frontlux::planner {
+namespace {
+
+using Keys = std::vector<VoxelKey>;
+
+}  // namespace
+
+bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
+                                               std::size_t other) const {
+  const auto body = [&](std::size_t r) { return body_of(team.options.team[r].robot.travel); };
+  return detail::keeps_apart(trajectory, from, body(robot), members[other].motion, body(other), kSeparation);
+}
+
+bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
+  for (std::size_t other = 0; other < members.size(); ++other)
+    if (other != robot && !keeps_apart(robot, trajectory, trajectory.begin(), other)) return false;
+  return true;
+}
+
+SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const {
+  const TravelCorridor& corridor = team.path_corridor(robot);
+  return [this, &corridor](const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const Eigen::Vector3d& deviation) {
+    return SegmentVoxels(team.lattice(), from, to, corridor.reach() + deviation)
+        .all_of([&](const VoxelKey& key) { return corridor.passable(key); });
+  };
+}
+
+// What has to stay free for the rest of a trajectory. The path of a retreat need not be free for the body,
+// since the robot came on it, but may not be shut.
+Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+  constexpr double kStep = 0.05;  // [s]
+  const TravelOptions& body = team.options.team[robot].robot.travel;
+  const BodyStencil stencil(body, team.lattice().resolution());
+  const bool retreats = members[robot].activity == Activity::kRetreats;
+  const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
+  Keys cells;
+  Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
+  for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
+    const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
+    // Between its cells' middles a body touches voxels that are none of its own cell's.
+    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
+      if (cells.empty() || cells.back() != key) cells.push_back(key);
+      return true;
+    }));
+    from = to;
+  }
+  sort_once(cells);
+  if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
+  Keys voxels;
+  for (const VoxelKey& cell : cells) {
+    static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
+      if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
+      return true;
+    }));
+  }
+  sort_once(voxels);
+  return voxels;
+}
+
+// Off another one's path, or back on the path on which it came, to the last place from which it can go on.
+Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double start,
+                                                      ExplorationStep& step) {
+  Member& member = members[robot];
+  RobotStep& now = step.robots[robot];
+  const Trajectory& old = member.motion.last();
+  const MotionState then = old.at(start);
+  member.activity = Activity::kMoves;
+  std::vector<Pose> path;
+  if (then.velocity.isZero()) {
+    ask_for_room(robot, step);
+    const detail::PhaseClock clock(step, Phase::kPaths);
+    path = path_aside(robot);
+    member.activity = Activity::kMakesRoom;
+    if (path.empty()) {
+      end_request(robot);
+      const std::array<Pose, 2> since_scan = {member.sensed.back(), then.pose};
+      if ((since_scan[0].position - since_scan[1].position).norm() > team.lattice().resolution())
+        extend_trail(robot, since_scan, start);
+      if (!waits_for_room(robot)) path = team.plan_retreat(robot, now.goal);
+      member.activity = path.empty() ? Activity::kRests : Activity::kRetreats;
+    }
+  }
+  if (member.activity == Activity::kMakesRoom) now.goal.reason = "no goal: it makes room for another robot";
+  if (waits_for_room(robot)) now.goal.reason = "no goal: it waits for another robot to make room";
+  if (!path.empty()) {
+    path.insert(path.begin(), then.pose);
+    now.path = PathOutcome::kFound;
+  }
+  const detail::PhaseClock clock(step, Phase::kPaths);
+  return old.after_stop(start, path, team.options.team[robot].robot.limits, segment_test(robot));
+}
+
+// To the robot's goal, or back, or to rest.
+Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, double start,
+                                                         ExplorationStep& step) {
+  Member& member = members[robot];
+  RobotStep& now = step.robots[robot];
+  const Trajectory& old = member.motion.last();
+  const MotionLimits& limits = team.options.team[robot].robot.limits;
+  member.goal_frontiers.clear();
+  if (!now.goal.pose) return without_goal(robot, start, step);
+  member.request.reset();
+  withdraw_requests(robot);
+  team.retreated_to[robot].clear();
+  const SegmentTest is_free = segment_test(robot);
+  std::optional<detail::Departure> departure;
+  {
+    const detail::PhaseClock clock(step, Phase::kPaths);
+    Pose to = *now.goal.pose;
+    if (team.ahead[robot]) to.position = team.lattice().exact_center(*team.ahead[robot]);
+    bool found = false;  // a path; that of the departure is one of those found
+    const auto path_from = [&](const Pose& from) {
+      PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, to,
+                                {team.options.seed, team.number, robot}, team.options.path);
+      if (!found || !plan.viewpoints.empty()) now.path = plan.outcome;
+      found = found || !plan.viewpoints.empty();
+      return std::move(plan.viewpoints);
+    };
+    departure = detail::best_departure(old, start, path_from, limits, is_free);
+  }
+  // Without a path it brakes; when it has come to rest, it plans again.
+  member.activity = departure || !old.at(start).velocity.isZero() ? Activity::kMoves : Activity::kRests;
+  if (!departure) return old.after_stop(start, {}, limits, is_free);
+  const detail::PhaseClock clock(step, Phase::kOptimization);
+  std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
+  const InformationGain gain = team.optimize_path(robot, step);
+  if (team.tours)
+    member.goal_frontiers = team.tours->first_view(robot);
+  else
+    for (const std::uint32_t i :
+         detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
+      member.goal_frontiers.push_back(team.targets[robot][i]);
+  departure->viewpoints = std::exchange(now.planned, std::move(sensed));
+  return detail::depart(old, start, *departure, limits, is_free);
+}
+
+// Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
+// @return whether it follows another one than before
+bool ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
+                                           ExplorationStep& step) {
+  const detail::PhaseClock clock(step, Phase::kPaths);
+  Member& member = members[robot];
+  const bool apart = keeps_apart(robot, trajectory);
+  if (apart || brakes_instead(robot, start, trajectory)) {
+    member.needed = voxels_needed(robot, trajectory);
+    member.motion.next = trajectory;
+    if (!apart) tell_of_stop(robot, start);
+    return true;
+  }
+  trajectory = member.motion.last();  // which keeps apart
+  const bool goes_on = trajectory.end() > start;
+  const bool retreated =
+      std::exchange(member.activity, goes_on ? Activity::kMoves : Activity::kRests) == Activity::kRetreats;
+  const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
+  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return false;
+  // Another one may make room: it tries the retreat again.
+  team.retreated_to[robot].pop_back();
+  member.activity = Activity::kMoves;
+  return false;
+}
+
+// Of a robot whose path is neither free nor can be left: it brakes, also on the path of another one, which
+// can still get out of its way.
+bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
+  Member& member = members[robot];
+  member.goal_frontiers.clear();
+  if (!member.blocked && !member.meets_other) return false;
+  trajectory = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
+  member.activity = Activity::kMoves;
+  return true;
+}
+
+}  // namespace frontlux::planner
