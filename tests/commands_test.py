@@ -80,11 +80,13 @@ class Test:
                 self.complaints.append(f"{where}: frontlux {command} has no {option}")
 
     def try_frontlux(self, where, command):
-        command = command.replace("build/release/bin/frontlux", "frontlux").replace(" --gif", "")  # ReportCommandTest makes films
+        command = command.replace("build/release/bin/frontlux", "frontlux")
+        command = re.sub(" --gif| --video", "", command)  # ReportCommandTest makes films
         if re.search(r"[A-Z]+\.\.\.|<\w+>|\[-", command):
             return self.check_options(where, command.split())
         if " explore " in command and "--help" not in command:
-            limits = ["--max-steps 3"] if "--max-steps" not in command else []
+            command, given = re.subn(r"--max-steps \d+", "--max-steps 6", command)
+            limits = [] if given else ["--max-steps 3"]
             limits += [] if "--resume" in command else ["--force"]
             command = command.replace(" explore ", f" explore {' '.join(limits)} ", 1)
         done = self.run(command)

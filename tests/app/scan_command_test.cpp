@@ -76,8 +76,8 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({"room", "--sweep", "-1"}, {"--sweep", "-1"});
   expect({"room", "--sweep", "wide"}, {"--sweep", "wide"});
   expect(
-      {"room", "--resolution", "0.05", "--sweep", "0.05"},
-      {"room: sweep: a spacing of 0.05 m means looking at ", " places, more than 262144", "give a larger"});
+      {"room", "--resolution", "0.1", "--sweep", "0.02"},
+      {"room: sweep: a spacing of 0.02 m means looking at ", " places, more than 262144", "give a larger"});
   expect({"room", "--robot", "tank"}, {"--robot", "'tank'"});
   expect({"room", "--noise", "-1"}, {"--noise", "-1"});
   expect({"room", "--noise", "nan"}, {"--noise", "nan"});

@@ -257,17 +257,12 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 }
 
 // And plannings in which it waits: `end` decides by both. A goal that is kept counts once: it is not reached.
+// What shows too little is no stop of a tour.
 void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step, bool kept) {
   Member& member = members[robot];
-  double gain = step.goal.gain, least = team.options.epsilon;
-  if (team.tours) {  // its goal may show little, on the path to others
-    double seen = 0.0;
-    for (const detail::TourStop& stop : team.tours->tour(robot)) seen += static_cast<double>(stop.seen);
-    gain = std::max(gain, seen);
-    least = team.tours->least_gain(robot);
-  }
   const bool waits = !member.is_going() && (step.goal.pose || member.request || waits_for_room(robot));
-  const bool low = step.goal.pose ? gain < least : !member.is_going() && !waits;
+  const bool low =
+      step.goal.pose ? !team.tours && step.goal.gain < team.options.epsilon : !member.is_going() && !waits;
   if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = waits ? member.waits + 1 : 0;
   if (member.waits > kPatience && member.request) end_request(robot);

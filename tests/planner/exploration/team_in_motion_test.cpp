@@ -103,24 +103,6 @@ TEST_P(TeamInMotionBy, DoesNotGoOnThroughARobotThatFails) {
   EXPECT_GT(failures, 2U);
 }
 
-// A robot on its way to something worth it keeps the exploration from its end, also if what it goes for has
-// become too small for a stop since.
-TEST(TeamInMotion, LowGainIsOfAllThatIsStillGoneFor) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed)
-    for (const std::size_t count : {2U, 3U, 5U}) {
-      TeamInMotion scene(test::TeamInWorld("room", seed, std::vector<RobotDescription>(count, small_uav())),
-                         sim::AtContact::kGoOn, GoalChoice::kTours);
-      std::vector<double> gains(count);
-      scene.explore(200.0, [&](const PlannedMotion& now) {
-        const Goal& goal = now.step.robots[now.robot].goal;
-        gains[now.robot] = goal.pose ? goal.gain : 0.0;
-      });
-      if (scene.exploration().end() != ExplorationEnd::kLowGain) continue;
-      for (const double gain : gains)
-        EXPECT_LT(gain, scene.exploration().options().epsilon) << seed << " " << count;
-    }
-}
-
 // What a robot has for itself is worth nothing to it by so large an epsilon; with what it takes over from one
 // that is lost it may be.
 TEST_P(TeamInMotionBy, ALossIsNoEnd) {
