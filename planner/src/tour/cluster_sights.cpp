@@ -127,6 +127,12 @@ bool ClusterSights::sees_any() const {
   return std::ranges::any_of(sights_, [](const auto& sight) { return !sight.second.viewpoints.empty(); });
 }
 
+bool ClusterSights::would_see_any() const {
+  return std::ranges::any_of(sights_, [](const auto& sight) {
+    return sight.second.viewpoints.empty() && !sight.second.found.empty();
+  });
+}
+
 void ClusterSights::look_again() {
   for (auto& [cluster, sight] : sights_) {
     if (!sight.viewpoints.empty()) continue;

@@ -41,6 +41,8 @@ class ClusterSights {
 
   /// Whether there is a cluster that the robot sees from where it can get to.
   [[nodiscard]] bool sees_any() const;
+  /// Whether there is one that it would see from where it fits, but cannot get to.
+  [[nodiscard]] bool would_see_any() const;
 
   /// Those of a cluster that the robot can get to, the best first.
   [[nodiscard]] std::span<const ClusterViewpoint> viewpoints(std::uint32_t cluster) const;

@@ -304,8 +304,12 @@ void TourPlanning::update_map(const Query& query) {
   const auto sights = [&](const ViewpointQuery& view) {
     return ClusterSights::Query{view, clusters_.clusters(), cells, can_go, can_move};
   };
-  member.sights.update(sights(sight_of(query.robot, query.caster, query.grid)));
-  if (can_move && nobody_sees_any()) look_closer(query, sights);
+  const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
+  member.sights.update(sights(view));
+  if (!can_move) return;
+  // A flat patch of unknown floor may be all that keeps a robot from where it would see something.
+  if (!member.sights.sees_any() && member.sights.would_see_any()) member.sights.look_at_faces(sights(view));
+  if (nobody_sees_any()) look_closer(query, sights);
 }
 
 // What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.

@@ -171,6 +171,19 @@ TEST(ClusterSights, FindsWhatTheRobotGetsToLater) {
   }
 }
 
+TEST(ClusterSights, TellWhatTheRobotWouldSee) {
+  Scene scene;
+  const FrontierCluster seen = cluster_of(1, at(15, 3, 3)), hidden = cluster_of(2, at(30, 18, 8));
+  scene.look({hidden}, {{kBounds}});
+  EXPECT_FALSE(scene.sights.would_see_any());
+  scene.look({seen, hidden}, {});
+  EXPECT_FALSE(scene.sights.would_see_any()) << "it sees it";
+  scene.is_shut_in = true;
+  scene.look({seen, hidden}, {});
+  EXPECT_FALSE(scene.sights.sees_any());
+  EXPECT_TRUE(scene.sights.would_see_any());
+}
+
 // The layer under the room, of which the camera sees no middle.
 TEST(ClusterSights, LooksAtFaces) {
   Scene scene;

@@ -201,5 +201,68 @@ TEST(TourPlanning, LearnsOfGroundThatIsSeenLate) {
   }
 }
 
+// A hall whose floor is unknown in a strip across it, wider than what the robot on the floor gets over, and
+// flat: it sees the strip's voxels from the side only. Beyond, an opening in the end wall is in its view.
+struct ShutIn {
+  static constexpr int kFloor = 32767;
+  const KeyBox bounds{make_key(32750, 32757, kFloor), make_key(32810, 32773, kFloor + 14)};
+  const KeyBox strip{make_key(32774, 32757, kFloor), make_key(32778, 32773, kFloor)};
+  const KeyBox opening{make_key(32810, 32757, kFloor + 1), make_key(32810, 32773, kFloor + 14)};
+  const std::vector<VoxelKey> cells{make_key(32762, 32765, kFloor + 4), make_key(32800, 32765, kFloor + 8)};
+  VoxelGrid grid{kResolution};
+  std::vector<Robot> robots{{"ugv", {}, test::lidar(5.0), {}}, {"uav", {}, test::camera(8.0), {}}};
+  std::vector<MotionState> starts = std::vector<MotionState>(2);
+  std::optional<TourPlanning> planning;
+
+  explicit ShutIn(Occupancy end) {
+    robots[0].travel.motion = Motion::kPlane;
+    robots[0].travel.extents = {0.6, 0.6, 0.6};
+    robots[0].travel.sensor_height = 0.7;
+    robots[1].travel.extents = {0.4, 0.4, 0.4};
+    robots[1].travel.min_height = -100.0;
+    test::fill(grid, {make_key(32750, 32757, kFloor + 1), bounds.max}, Occupancy::kFree);
+    test::fill(grid, {bounds.min, make_key(32810, 32773, kFloor)}, Occupancy::kOccupied);
+    test::fill(grid, strip, Occupancy::kUnknown);
+    test::fill(grid, opening, end);
+    std::vector<Pose> poses;
+    for (std::size_t r = 0; r < 2; ++r) {
+      starts[r].pose.position = grid.lattice().exact_center(cells[r]);
+      poses.push_back(starts[r].pose);
+    }
+    planning.emplace(robots, poses, grid.lattice(), bounds, TourPlanning::Options{});
+  }
+  void plan(std::size_t robot) {
+    TravelCorridor corridor(robots[robot].travel, grid.lattice(), bounds);
+    corridor.update({grid}, cells[robot]);
+    const auto caster = make_grid_ray_caster(grid);
+    const FrontierSet frontiers(grid, bounds);
+    planning->update({robot, *caster, grid, corridor, frontiers.keys(), starts});
+  }
+};
+
+TEST(TourPlanning, LooksAtTheFloorThatShutsARobotIn) {
+  ShutIn hall(Occupancy::kUnknown);
+  hall.plan(1);
+  ASSERT_FALSE(hall.planning->tour(1).empty());
+  hall.plan(0);
+  ASSERT_FALSE(hall.planning->can_reach(0, make_key(32790, 32765, ShutIn::kFloor + 4)));
+  ASSERT_FALSE(hall.planning->tour(0).empty()) << "it rests for good";
+  EXPECT_TRUE(hall.planning->can_reach(0, hall.planning->tour(0).front().cell));
+  ASSERT_FALSE(hall.planning->first_view(0).empty());
+  for (const VoxelKey& key : hall.planning->first_view(0)) EXPECT_TRUE(hall.strip.contains(key));
+}
+
+// Others see something that it would not see from anywhere.
+TEST(TourPlanning, LeavesFlatPatchesThatKeepNobodyFromAnything) {
+  ShutIn hall(Occupancy::kOccupied);
+  test::fill(hall.grid,
+             {make_key(32798, 32757, ShutIn::kFloor + 12), make_key(32810, 32761, ShutIn::kFloor + 14)},
+             Occupancy::kUnknown);
+  hall.plan(1);
+  ASSERT_FALSE(hall.planning->tour(1).empty());
+  hall.plan(0);
+  EXPECT_TRUE(hall.planning->tour(0).empty());
+}
+
 }  // namespace
 }  // namespace frontlux::planner::detail
