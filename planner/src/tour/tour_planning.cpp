@@ -371,13 +371,10 @@ void TourPlanning::note_frontiers(const Query& query) {
         whose[id] = &member;
       }
   }
-  std::vector<Member*> owners(query.frontiers.size());
-  for_each_index(owners.size(), [&](std::size_t i) {
-    const std::uint32_t id = clusters_.cluster_of(query.frontiers[i]);
-    owners[i] = id < whose.size() ? whose[id] : nullptr;
-  });
-  for (std::size_t i = 0; i < owners.size(); ++i)
-    if (owners[i] != nullptr) owners[i]->frontiers.push_back(query.frontiers[i]);
+  const std::span<const std::uint32_t> ids = clusters_.clusters_of_frontiers();
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (ids[i] < whose.size() && whose[ids[i]] != nullptr)
+      whose[ids[i]]->frontiers.push_back(query.frontiers[i]);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;
