@@ -258,6 +258,7 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
     for_each_as_near_as_two(i, [&](std::size_t cube) { edges[cube] = 1; });
   }
   changed_ = std::move(reads);
+  changed_nodes_.clear();
   const std::vector<std::size_t> linked = set_places(links), connected = set_places(edges);
   if (connected.empty()) return;
   for (const std::size_t i : read_cubes)
@@ -267,104 +268,14 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
   for_each_index(connected.size(), [&](std::size_t i) {
     if (connect(connected[i])) changed_[connected[i]] = 1;
   });
+  for (const std::size_t i : connected)
+    for (std::uint32_t part = 0; changed_[i] != 0 && part < numbers_[i].parts; ++part)
+      changed_nodes_.push_back(numbers_[i].first + part);
 }
 
 std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   if (!fits(cell)) return std::nullopt;
   return numbers_[cube_of(cell)].first + part_[cell] - 1u;
-}
-
-// Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they
-// turn out to be nearer. Searches from several nodes after each other pay for what they reach only.
-class TravelGraph::Search {
- public:
-  explicit Search(const TravelGraph& graph)
-      : graph_(graph), lengths_(graph.size(), kFar), marks_(graph.cubes_.size() / 64 + 1) {}
-
-  // Ends when the distances of so many nodes are known. Those of other nodes are `kFar` afterwards.
-  void run(std::uint32_t from, std::size_t count) {
-    for (const std::uint32_t node : reached_) lengths_[node] = kFar;
-    reached_.assign(1, from);
-    lengths_[from] = 0.0;
-    open_.resize(std::max<std::size_t>(open_.size(), 1));
-    open_[0].emplace_back(0.0, from);
-    std::size_t known = 0, now = 0, end = 1;  // bands
-    for (; now < end && known < count; ++now) {
-      for (std::size_t i = 0; i < open_[now].size(); ++i) {
-        const auto [so_far, node] = open_[now][i];
-        if (so_far > lengths_[node]) continue;
-        for (const auto& [to, length] : graph_.nodes_[node].edges) {
-          const double through = so_far + static_cast<double>(length);
-          if (through >= lengths_[to]) continue;
-          if (lengths_[to] == kFar) reached_.push_back(to);
-          lengths_[to] = through;
-          const std::size_t next = band(through);
-          end = std::max(end, next + 1);
-          if (end > open_.size()) open_.resize(end);
-          open_[next].emplace_back(through, to);
-        }
-      }
-      for (const auto& [so_far, node] : open_[now]) known += so_far > lengths_[node] ? 0 : 1;
-      open_[now].clear();
-    }
-    for (std::size_t later = now; later < end; ++later) open_[later].clear();
-    std::erase_if(reached_, [&](std::uint32_t node) {
-      if (band(lengths_[node]) < now) return false;
-      lengths_[node] = kFar;
-      return true;
-    });
-  }
-
-  // [m] to each node
-  std::vector<double> take_lengths() { return std::move(lengths_); }
-
-  [[nodiscard]] std::vector<Distance> near() {
-    for (const std::uint32_t node : reached_) {
-      const std::size_t cube = cube_of(graph_.name_of(node));
-      marks_[cube / 64] |= std::uint64_t{1} << (cube % 64);
-    }
-    std::vector<Distance> near;
-    near.reserve(reached_.size());
-    for (std::size_t i = 0; i < marks_.size(); ++i)
-      for (std::uint64_t rest = std::exchange(marks_[i], 0); rest != 0; rest &= rest - 1) {
-        const std::size_t cube = 64 * i + static_cast<std::size_t>(std::countr_zero(rest));
-        const auto& [first, parts, room] = graph_.numbers_[cube];
-        for (std::uint32_t part = 0; part < parts; ++part)
-          if (const double length = lengths_[first + part]; length != kFar)
-            near.push_back({name_of(cube, part), length});
-      }
-    return near;
-  }
-
- private:
-  [[nodiscard]] std::size_t band(double length) const { return static_cast<std::size_t>(length / width_); }
-
-  const TravelGraph& graph_;
-  // [m] of nodes about as far as each other
-  const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
-  std::vector<double> lengths_;
-  std::vector<std::uint32_t> reached_;
-  std::vector<std::uint64_t> marks_;  // a bit for each cube: sorts the nodes
-  std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
-};
-
-std::vector<double> TravelGraph::distances(std::uint32_t from) const {
-  Search search(*this);
-  search.run(from, std::numeric_limits<std::size_t>::max());
-  return search.take_lengths();
-}
-
-std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
-    std::span<const std::uint32_t> from, std::size_t count) const {
-  std::vector<std::vector<Distance>> near(from.size());
-  for_each_range(from.size(), [&](std::size_t begin, std::size_t end) {
-    Search search(*this);
-    for (std::size_t i = begin; i < end; ++i) {
-      search.run(from[i], count);
-      near[i] = search.near();
-    }
-  });
-  return near;
 }
 
 std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& lengths,

@@ -60,11 +60,21 @@ class TravelGraph {
     double length;  ///< [m]
     auto operator<=>(const Distance&) const = default;
   };
-  /// From each of some nodes, of `distances` those to the nearest nodes, sorted by name. Whatever has changed
-  /// elsewhere, they are the same as long as none of these nodes `has_changed`.
+  /// Of `distances` those to the nearest nodes. Whatever has changed elsewhere, they are the same as long as
+  /// none of these nodes `has_changed`.
+  struct Near {
+    std::vector<Distance> distances;  ///< sorted by name; those up to `farthest` are meant
+    double farthest = 0.0;            ///< [m]
+    std::size_t bands = 0;            ///< all nodes in so many bands of distance are among them
+    /// [m] `kFar` if the node is not near.
+    [[nodiscard]] double distance_to(Name name) const;
+  };
+  struct NearQuery {
+    std::uint32_t from;            ///< node
+    const Near* before = nullptr;  ///< of this node, as of before the last update; it only saves time
+  };
   /// @param count  how many are enough; there may be somewhat more
-  [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
-                                                                  std::size_t count) const;
+  [[nodiscard]] std::vector<Near> near_distances(std::span<const NearQuery> queries, std::size_t count) const;
   /// Whether the last update has changed the node's cells or its edges.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
@@ -144,7 +154,8 @@ class TravelGraph {
   BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::array<std::vector<std::uint32_t>, 3> filled_;  // along each axis how many cubes have parts
   std::optional<KeyBox> extent_;
-  std::vector<std::uint8_t> changed_;  // cubes whose cells or edges the last update has changed
+  std::vector<std::uint8_t> changed_;         // cubes whose cells or edges the last update has changed
+  std::vector<std::uint32_t> changed_nodes_;  // in these cubes
 };
 
 }  // namespace frontlux::planner::detail
