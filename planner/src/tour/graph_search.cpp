@@ -124,7 +124,6 @@ class TravelGraph::Search {
       if (length != kFar) reach(node, length);
     }
     run(before.bands, kAll);
-    // Those that are lost may have been reached twice: as what they were, and anew.
     return nearest(before.bands, count);
   }
 
@@ -139,7 +138,7 @@ class TravelGraph::Search {
     lost_ = graph_.changed_nodes_;
     for (const std::uint32_t node : lost_) doubt_next_to(node, lengths_[node]);
     for (const std::uint32_t node : lost_) lengths_[node] = kFar;
-    for (; !doubted_.empty();) {  // the nearest first: what leads to a node is certain before
+    while (!doubted_.empty()) {  // the nearest first: what leads to a node is certain before
       const auto [length, node] = doubted_.top();
       doubted_.pop();
       if (lengths_[node] == kFar) continue;
@@ -189,8 +188,8 @@ class TravelGraph::Search {
   // [m] of nodes about as far as each other
   const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
   std::vector<double> lengths_;
-  std::vector<std::uint32_t> reached_;
-  std::vector<std::uint64_t> marks_;  // a bit for each cube: sorts the nodes
+  std::vector<std::uint32_t> reached_;  // some perhaps twice
+  std::vector<std::uint64_t> marks_;    // a bit for each cube: sorts the nodes
   std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
   std::size_t first_ = kAll, end_ = 0;  // bands that are open
   std::vector<std::size_t> in_band_;    // so many nodes
