@@ -37,17 +37,34 @@ bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& 
   return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
+// Of the viewpoints that were found those that the robot can get to.
+void ClusterSights::find_reached(const Query& query, Sight& sight) {
+  sight.stale = sight.stale || !sight.viewpoints.empty();
+  sight.viewpoints.clear();
+  std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
+                       [&](const ClusterViewpoint& viewpoint) { return query.reaches(viewpoint.cell); });
+  if (!sight.viewpoints.empty()) {
+    sight.stale = false;
+    sight.in_vain = sight.pause = 0;
+    return;
+  }
+  sight.pause = std::max(0, sight.pause - 1);
+  if (!std::ranges::any_of(sight.out_of_reach, query.reaches)) return;
+  sight.stale = sight.faces_stale = true;
+  sight.out_of_reach.clear();
+}
+
 // Returns the clusters that it sees from none, unless nothing has changed for them.
 std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Query& query) {
-  std::map<std::uint32_t, Sight> sights;
-  std::vector<std::pair<const FrontierCluster*, Sight*>> search;
+  std::vector<Hidden> all, search;
   const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
   const bool same_extent = extent_ == extent;
   const Changes changes(query);
+  ++updates_;
   for (const FrontierCluster& cluster : query.clusters) {
-    Sight& sight = sights[cluster.id];
-    if (const auto before = sights_.find(cluster.id); before != sights_.end())
-      sight = std::move(before->second);
+    Sight& sight = sights_[cluster.id];
+    sight.updated = updates_;
+    all.emplace_back(&cluster, &sight);
     if (!same_extent) sight.depend_on.reset();
     if (needs_a_look(changes, cluster, sight)) search.emplace_back(&cluster, &sight);
   }
@@ -59,28 +76,14 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
     sight->depend_on = depend_on;
     sight->stale = sight->faces_stale = true;
   });
-  sights_ = std::move(sights);
+  std::erase_if(sights_, [&](const auto& sight) { return sight.second.updated != updates_; });
   // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
-  std::vector<Hidden> hidden;
-  for (const FrontierCluster& cluster : query.clusters) {
-    Sight& sight = sights_[cluster.id];
-    sight.stale = sight.stale || !sight.viewpoints.empty();
-    sight.viewpoints.clear();
-    std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
-                         [&](const ClusterViewpoint& viewpoint) { return query.reaches(viewpoint.cell); });
-    if (!sight.viewpoints.empty()) {
-      sight.stale = false;
-      sight.in_vain = sight.pause = 0;
-      continue;
-    }
-    sight.pause = std::max(0, sight.pause - 1);
-    if (std::ranges::any_of(sight.out_of_reach, query.reaches)) {
-      sight.stale = sight.faces_stale = true;
-      sight.out_of_reach.clear();
-    }
-    if (sight.stale) hidden.emplace_back(&cluster, &sight);
-  }
-  return hidden;
+  constexpr std::size_t kAtOnce = 64;
+  for_each_chunk(all.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) find_reached(query, *all[i].second);
+  });
+  std::erase_if(all, [](const Hidden& any) { return !any.second->viewpoints.empty() || !any.second->stale; });
+  return all;
 }
 
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {

@@ -5,11 +5,12 @@
 
 #include <frontlux/key_box.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,7 @@ class ClusterSights {
     std::vector<VoxelKey> out_of_reach;        // then, cells from which it might be seen
     int in_vain = 0;                           // that often, in a row
     int pause = 0;                             // plannings until the next time
+    std::size_t updated = 0;                   // in which update, by their number
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
@@ -65,10 +67,12 @@ class ClusterSights {
   [[nodiscard]] static bool needs_a_look(const Changes& changes, const FrontierCluster& cluster,
                                          const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);
+  static void find_reached(const Query& query, Sight& sight);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
-  std::map<std::uint32_t, Sight> sights_;  // by cluster
-  std::optional<KeyBox> extent_;           // of the graph
+  std::unordered_map<std::uint32_t, Sight> sights_;  // by cluster
+  std::size_t updates_ = 0;
+  std::optional<KeyBox> extent_;  // of the graph
 };
 
 }  // namespace frontlux::planner::detail

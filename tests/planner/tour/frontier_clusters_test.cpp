@@ -147,6 +147,89 @@ TEST(FrontierClusters, KeepTheirIdsAndRevisionsWhileTheyStay) {
   EXPECT_LE(changed, 2u);  // it may fall into two
 }
 
+// The ids of clusters by definition: the largest first, of those of one size the one with the first key, each
+// takes that of the cluster in which most of its frontiers were last, of the first id among equals.
+class IdsByHand {
+ public:
+  std::map<VoxelKey, std::uint32_t> name(std::span<const FrontierCluster> clusters) {  // by first keys
+    std::vector<const FrontierCluster*> order;
+    for (const FrontierCluster& cluster : clusters) order.push_back(&cluster);
+    std::ranges::stable_sort(order, {},
+                             [](const FrontierCluster* c) { return -static_cast<int>(c->keys.size()); });
+    std::map<VoxelKey, std::uint32_t> ids, now = last_;
+    std::set<std::uint32_t> taken;
+    for (const FrontierCluster* cluster : order) {
+      std::map<std::uint32_t, int> before;
+      for (const VoxelKey& key : cluster->keys)
+        if (const auto in = last_.find(key); in != last_.end()) ++before[in->second];
+      std::uint32_t best = 0;
+      for (const auto& [id, count] : before)
+        if (!taken.contains(id) && (best == 0 || count > before[best])) best = id;
+      if (best == 0) best = next_++;
+      taken.insert(best);
+      ids[cluster->keys.front()] = best;
+      for (const VoxelKey& key : cluster->keys) now[key] = best;
+    }
+    last_ = now;
+    return ids;
+  }
+
+ private:
+  std::map<VoxelKey, std::uint32_t> last_;  // of each voxel that was ever in a cluster
+  std::uint32_t next_ = 1;
+};
+
+TEST(FrontierClusters, HaveTheIdsThatTheyOughtToHave) {
+  for (int seed = 0; seed < 40; ++seed) {
+    Random random(4500 + static_cast<unsigned>(seed));
+    FrontierClusters clusters(kBounds, 3 + random.below(5), 2 + static_cast<std::size_t>(random.below(6)));
+    IdsByHand by_hand;
+    std::set<VoxelKey> frontiers;
+    for (int round = 0; round < 60; ++round) {
+      for (const VoxelKey& key : random_frontiers(random, 1 + (round == 0 ? 9 : 0)))
+        if (random.below(1 + seed % 8) == 0 && !frontiers.erase(key)) frontiers.insert(key);
+      const std::vector<FrontierCluster> before(clusters.clusters().begin(), clusters.clusters().end());
+      const Keys now(frontiers.begin(), frontiers.end());
+      clusters.update(now);
+      const auto ids = by_hand.name(clusters.clusters());
+      for (const FrontierCluster& cluster : clusters.clusters()) {
+        ASSERT_EQ(cluster.id, ids.at(cluster.keys.front()));
+        const auto old = std::ranges::find(before, cluster.keys, &FrontierCluster::keys);
+        if (old == before.end()) continue;
+        EXPECT_EQ(old->revision == cluster.revision, old->id == cluster.id);
+      }
+      ASSERT_EQ(clusters.clusters_of_frontiers().size(), now.size());
+      for (std::size_t i = 0; i < now.size(); ++i)
+        ASSERT_EQ(clusters.clusters_of_frontiers()[i], clusters.cluster_of(now[i]));
+    }
+  }
+}
+
+// A cluster far from all changes loses its id to a larger one, which has the frontiers that it once had.
+TEST(FrontierClusters, LoseTheirIdToALargerOneWithoutAChangeOfTheirOwn) {
+  const auto line = [](int from, int to) {
+    Keys keys;
+    for (int x = from; x <= to; ++x) keys.push_back(make_key(x, 1004, 1004));
+    return keys;
+  };
+  FrontierClusters clusters(kBounds, 8, 4);  // cubes begin at 1000, 1008 and 1016
+  IdsByHand by_hand;
+  const auto ids = [&](const Keys& frontiers) {
+    clusters.update(frontiers);
+    std::vector<std::uint32_t> now;
+    const auto expected = by_hand.name(clusters.clusters());
+    for (const FrontierCluster& cluster : clusters.clusters()) {
+      now.push_back(cluster.id);
+      EXPECT_EQ(cluster.id, expected.at(cluster.keys.front()));
+      EXPECT_EQ(&clusters.cluster(cluster.id), &cluster);
+    }
+    return now;
+  };
+  EXPECT_EQ(ids(line(1003, 1009)), (std::vector<std::uint32_t>{1}));  // with two frontiers of the next cube
+  EXPECT_EQ(ids(line(1003, 1007)), (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(ids(line(1003, 1015)), (std::vector<std::uint32_t>{2, 1}));
+}
+
 // Also if few frontiers change at a time, so that most clusters and pieces are kept.
 TEST(FrontierClusters, AreTheSameAsNewOnesAfterFewChanges) {
   Random random(44);
