@@ -46,20 +46,26 @@ std::vector<Kept> find_kept(std::span<const Viewpoint> now, std::span<const View
   std::vector<Kept> kept(now.size());
   const std::vector<std::size_t> tiles = detail::tiles_of(now);
   for_each_range(tiles.size() - 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<KeyBox> near;
+    struct Near {
+      KeyBox box;
+      SectorSet sectors;  // in which some voxel of the tile sees it
+    };
+    std::vector<Near> near;
     const auto by_code = [](const Viewpoint& v, std::uint64_t code) { return v.code < code; };
     for (std::size_t t = begin; t < end; ++t) {
       const KeyBox tile = detail::cube_of_code(now[tiles[t]].code);
       near.clear();
       for (const KeyBox& box : changed)
-        if (view.may_contain_point(tile, box)) near.push_back(box);
+        if (view.may_contain_point(tile, box))
+          near.push_back({box, bins != nullptr ? bins->sectors_of(tile, box) : SectorSet::all()});
       auto old = std::lower_bound(before.begin(), before.end(), detail::cell_code(tile.min), by_code);
       for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) {
         while (old != before.end() && old->code < now[i].code) ++old;
         if (old == before.end() || old->code != now[i].code) continue;
         const VoxelKey here = detail::cell_of_code(now[i].code);
         SectorSet stale;
-        for (const KeyBox& box : near) {
+        for (const auto& [box, sectors] : near) {
+          if (stale.contains(sectors)) continue;
           const SectorSet there = bins != nullptr ? bins->sectors_of(here, box) : SectorSet::all();
           if (!stale.contains(there) && view.may_contain_point({here, here}, box)) stale |= there;
         }

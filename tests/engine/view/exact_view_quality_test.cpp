@@ -100,15 +100,15 @@ std::vector<detail::StaleViewpoint> all_stale(std::span<const VoxelKey> viewpoin
   return stale;
 }
 
-// By walks alone, however few the viewpoints.
-Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk) {
+// By walks alone, however few the viewpoints. Tiles with that many are walked as a whole.
+Truth walk_all(const Case& some, int bins, const detail::TrieWalk& walk, std::size_t whole = 128) {
   const ViewRegion view(some.view, kResolution);
   const detail::TargetIndex targets(some.targets);
   detail::RayTries tries;
   Truth mine;
   mine.values.resize(some.viewpoints.size());
   mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
-  const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, bins, {1, 1}},
+  const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, bins, {1, 1, whole, 1}},
                                            all_stale(some.viewpoints), mine.values, mine.bins);
   EXPECT_EQ(left.size(), 0U);
   return mine;
@@ -150,7 +150,8 @@ TEST(ExactViewQuality, IsBruteForcesOnRandomMaps) {
     const auto image = render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets,
                                            some.view, exact(bins));
     expect_equal(image, truth);
-    expect_equal(walk_all(some, bins, detail::trie_walks().front()), truth);
+    for (const std::size_t whole : {1U, 40U, 1000U})
+      expect_equal(walk_all(some, bins, detail::trie_walks().front(), whole), truth);
     if (HasFatalFailure()) return;
     for (const ViewQuality& value : truth.values) {
       seen += value.hits;
@@ -170,10 +171,53 @@ TEST(ExactViewQuality, IsTheSameOnEveryInstructionSet) {
     const Truth truth = brute_force(some, bins);
     for (const detail::TrieWalk& walk : detail::trie_walks()) {
       SCOPED_TRACE(some.name + ", instructions " + name_of(walk.needs));
-      expect_equal(walk_all(some, bins, walk), truth);
+      for (const std::size_t whole : {1U, 40U, 1000U}) expect_equal(walk_all(some, bins, walk, whole), truth);
       if (HasFatalFailure()) return;
     }
   }
+}
+
+// Whatever the thresholds: what walks leave are whole sectors, and rays count those.
+TEST(ExactViewQuality, IsTheSameFromWalksAndRaysTogether) {
+  std::size_t left_with_sectors = 0, walked = 0;
+  for (std::uint64_t seed = 300; seed < 340; ++seed) {
+    const Case some = random_case(seed);
+    SCOPED_TRACE(some.name);
+    const int bins = std::array{1, 7, 36, 100}[seed % 4];
+    const ViewRegion view(some.view, kResolution);
+    const detail::AzimuthBins azimuth_bins(view, bins);
+    const detail::TargetIndex targets(some.targets);
+    detail::RayTries tries;
+    Truth mine;
+    mine.values.resize(some.viewpoints.size());
+    mine.bins.resize(some.viewpoints.size() * static_cast<std::size_t>(bins));
+    auto stale = all_stale(some.viewpoints);
+    Random random(seed);
+    for (std::size_t i = 0; i < stale.size(); i += 2) {
+      stale[i].sectors = {};
+      for (int bin = 0; bin < bins; ++bin)
+        if (random.one_in(3)) stale[i].sectors |= detail::SectorSet::of(bin, bins);
+    }
+    // What is not stale has been counted before.
+    const Truth truth = brute_force(some, bins);
+    mine.bins = truth.bins;
+    for (const detail::StaleViewpoint& v : stale)
+      v.sectors.clear(std::span(mine.bins).subspan(v.index * static_cast<std::size_t>(bins),
+                                                   static_cast<std::size_t>(bins)));
+    const auto& walk = detail::trie_walks().front();
+    const auto left = detail::render_exactly({some.grid, view, targets, walk, tries, bins, {5, 3, 30, 1}},
+                                             stale, mine.values, mine.bins);
+    for (const auto& viewpoint : left) left_with_sectors += viewpoint.in_view ? 1 : 0;
+    walked += stale.size() - left.size();
+    const auto caster = make_grid_ray_caster(some.grid);
+    ViewQualityOptions options = exact(bins);
+    options.samples = ViewQualityOptions::kAll;
+    detail::render_views({*caster, view, azimuth_bins, targets, options}, left, mine.values, mine.bins);
+    expect_equal(mine, truth);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(left_with_sectors, 100U);
+  EXPECT_GT(walked, 100U);
 }
 
 TEST(ExactViewQuality, IsWhatRaysToAllTargetsSay) {

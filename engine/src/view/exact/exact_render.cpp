@@ -2,6 +2,8 @@
 
 #include "parallel/object_pool.hpp"
 #include "parallel/parallel_sort.hpp"
+#include "view/exact/sector_walker.hpp"
+#include "view/exact/tiling.hpp"
 #include "view/exact/view_window.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -10,73 +12,13 @@
 #include <array>
 #include <memory>
 #include <numeric>
-#include <optional>
+#include <tuple>
 #include <utility>
 
 namespace frontlux::detail {
 namespace {
 
 constexpr int kSectors = 16;  // if there are no azimuth bins
-
-// A viewpoint in order of tiles: by column of tiles, then by height, then by place in the tile.
-struct Placed {
-  std::uint64_t order;
-  std::uint32_t place;
-  std::uint32_t index;
-  std::uint32_t number;  // among those that are sorted
-  SectorSet sectors;     // that are stale
-
-  [[nodiscard]] std::uint64_t column() const { return order >> 16U; }
-};
-
-// Where tiles lie.
-struct Tiling {
-  std::array<int, 3> corner{};
-  std::array<int, 2> stride{1, 1};
-  static constexpr int kLevels = 32;  // of viewpoints in a column of tiles
-
-  explicit Tiling(std::span<const StaleViewpoint> viewpoints) {
-    const VoxelKey first = cell_of_code(viewpoints.front().code);
-    corner = {first.x, first.y, first.z};
-    std::array<int, 2> apart{};
-    for (const StaleViewpoint& viewpoint : viewpoints) {
-      const VoxelKey key = cell_of_code(viewpoint.code);
-      apart = {std::gcd(apart[0], key.x - first.x), std::gcd(apart[1], key.y - first.y)};
-      corner = {std::min<int>(corner[0], key.x), std::min<int>(corner[1], key.y),
-                std::min<int>(corner[2], key.z)};
-    }
-    for (std::size_t a = 0; a < 2; ++a)
-      while (stride[a] < ViewTile::kMaxStride && apart[a] % (2 * stride[a]) == 0) stride[a] *= 2;
-  }
-
-  [[nodiscard]] Placed place(const StaleViewpoint& viewpoint, std::uint32_t number) const {
-    const VoxelKey key = cell_of_code(viewpoint.code);
-    const int column = (key.x - corner[0]) / stride[0], row = (key.y - corner[1]) / stride[1];
-    const int level = key.z - corner[2];
-    const auto digits = [](int part) { return static_cast<std::uint64_t>(part); };
-    return {digits(level / kLevels) << 48U | digits(row / ViewTile::kRows) << 32U |
-                digits(column / ViewTile::kColumns) << 16U | digits(level % kLevels),
-            TileBits::place(column % ViewTile::kColumns, row % ViewTile::kRows), viewpoint.index, number,
-            viewpoint.sectors};
-  }
-
-  // Voxel of a tile's first place.
-  [[nodiscard]] std::array<int, 3> first_place(const Placed& placed) const {
-    const auto digits = [&](unsigned shift) { return static_cast<int>(placed.order >> shift & 0xFFFFU); };
-    return {corner[0] + digits(16) * ViewTile::kColumns * stride[0],
-            corner[1] + digits(32) * ViewTile::kRows * stride[1],
-            corner[2] + digits(48) * kLevels + digits(0)};
-  }
-};
-
-template <class Key>
-std::vector<std::size_t> runs(std::span<const Placed> placed, const Key& key) {
-  std::vector<std::size_t> begins;
-  for (std::size_t i = 0; i < placed.size(); ++i)
-    if (i == 0 || key(placed[i]) != key(placed[i - 1])) begins.push_back(i);
-  begins.push_back(placed.size());
-  return begins;
-}
 
 // What lies around a column of tiles.
 class Column {
@@ -123,89 +65,80 @@ class Column {
   std::vector<std::int32_t> places_;
 };
 
-// What a task needs for its tiles.
-class TileWalker {
+// What a task needs for columns of tiles.
+class ColumnRenderer {
  public:
-  TileWalker(const ExactScene& scene, const Tiling& tiling, const WalkTables& tables)
-      : scene_(scene),
-        tiling_(tiling),
-        trie_(tables.trie),
-        places_in_view_(tables.in_view),
-        reached_(trie_.depth() + 1),
-        groups_(trie_.groups().size()) {
-    groups_.front().words.fill(~std::uint64_t{0});
-  }
+  ColumnRenderer(const ExactScene& scene, const Tiling& tiling, const WalkTables& tables,
+                 ObjectPool<SectorWalker>& walkers)
+      : scene_(scene), tiling_(tiling), tables_(tables), walkers_(walkers) {}
 
   // In `left`, at the `number` of each viewpoint, remain the sectors in which rays take less time.
-  void render(const Column& column, std::span<const Placed> tile, std::span<ViewQuality> values,
+  void render(std::span<const Placed> viewpoints, std::span<ViewQuality> values,
               std::span<std::uint32_t> bin_hits, std::span<StaleViewpoint> left) {
-    in_view_.clear();
-    seen_.clear();
-    for (const Placed& placed : tile) {
-      placed.sectors.clear(bins_of(placed, bin_hits));
-      left[placed.number].sectors = {};
-    }
-    if (column.any()) look(column, tile, bin_hits, left);
-    for (const Placed& placed : tile) {
-      const auto bins = bins_of(placed, bin_hits);
-      const std::uint32_t in_view = in_view_.at(placed.place);
-      const std::uint32_t seen =
-          bins.empty() ? seen_.at(placed.place) : std::reduce(bins.begin(), bins.end());
-      left[placed.number].in_view = in_view;
-      values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
-    }
+    around_.look(scene_, tiling_, tables_, viewpoints);
+    column_.viewpoints = viewpoints;
+    column_.tiles = runs(viewpoints, [](const Placed& p) { return p.order; });
+    column_.by_index = scene_.azimuth_bins != 0;
+    column_.sectors = column_.by_index ? scene_.azimuth_bins : kSectors;
+    if (!column_.by_index) seen_.assign(viewpoints.size() * kSectors, 0);
+    column_.seen = column_.by_index ? bin_hits : std::span(seen_);
+    for_each_index(column_.size(), [&](std::size_t t) {
+      TileCounts in_view;
+      if (around_.any()) count_in_view(column_.tile(t), in_view);
+      for (const Placed& placed : column_.tile(t)) {
+        placed.sectors.clear(column_.seen_from(placed));
+        left[placed.number].sectors = {};
+        left[placed.number].in_view = in_view.at(placed.place);
+      }
+    });
+    if (around_.any()) count_seen(left);
+    for_each_index(column_.size(), [&](std::size_t t) {
+      for (const Placed& placed : column_.tile(t)) {
+        const auto by_sector = column_.seen_from(placed);
+        const std::uint32_t seen = std::reduce(by_sector.begin(), by_sector.end());
+        const std::uint32_t in_view = *left[placed.number].in_view;
+        values[placed.index] = {in_view, in_view, seen, static_cast<double>(seen), 0.0};
+      }
+    });
   }
 
  private:
-  [[nodiscard]] std::span<std::uint32_t> bins_of(const Placed& placed,
-                                                 std::span<std::uint32_t> bin_hits) const {
-    const auto bins = static_cast<std::size_t>(scene_.azimuth_bins);
-    return bin_hits.subspan(placed.index * bins, bins);
-  }
-  void look(const Column& column, std::span<const Placed> tile, std::span<std::uint32_t> bin_hits,
-            std::span<StaleViewpoint> left) {
+  void count_in_view(std::span<const Placed> tile, TileCounts& in_view) const {
     TileBits viewpoints{};
     for (const Placed& placed : tile) viewpoints.set(placed.place);
-    const int z = tiling_.first_place(tile.front())[2], reach_z = trie_.layout().reach_z;
+    const int z = tiling_.first_place(tile.front())[2], reach_z = tables_.trie.layout().reach_z;
     for (int dz = -reach_z; dz <= reach_z; ++dz)
-      scene_.walk.add_up(places_in_view_.level(dz), column.level(z + dz), viewpoints, in_view_);
-
-    const std::byte *const targets = column.targets.level(z), *const free = column.free.level(z);
-    for (const RayTrie::Sector& sector : trie_.sectors()) {
-      const TileBits concerned = scene_.azimuth_bins == 0 ? viewpoints : find_stale(tile, sector.bin, left);
-      if (!concerned.any()) continue;
-      const TileRows rows = TileRows::with(concerned);
-      if (!scene_.walk.find_groups(trie_, sector, targets, concerned, rows, groups_)) continue;
-      scene_.walk.count(trie_, sector, free, targets, groups_, concerned, rows, reached_, seen_);
-      if (scene_.azimuth_bins == 0) continue;
-      for (const Placed* placed : stale_)
-        bins_of(*placed, bin_hits)[static_cast<std::size_t>(sector.bin)] = seen_.at(placed->place);
-      seen_.clear();
-    }
+      scene_.walk.add_up(tables_.in_view.level(dz), around_.level(z + dz), viewpoints, in_view);
   }
 
-  // The viewpoints for which a sector is to be walked: none if those are so few that it is left to rays.
-  TileBits find_stale(std::span<const Placed> tile, int bin, std::span<StaleViewpoint> left) {
-    const SectorSet sector = SectorSet::of(bin, scene_.azimuth_bins);
-    stale_.clear();
-    TileBits places{};
-    for (const Placed& placed : tile)
-      if (placed.sectors.contains(sector)) {
-        stale_.push_back(&placed);
-        places.set(placed.place);
-      }
-    if (stale_.size() >= scene_.thresholds.tile) return places;
-    for (const Placed* placed : stale_) left[placed->number].sectors |= sector;
-    return {};
+  void count_seen(std::span<StaleViewpoint> left) {
+    const int lowest = tiling_.first_place(column_.viewpoints.front())[2];
+    column_.free = around_.free.level(lowest);
+    column_.targets = around_.targets.level(lowest);
+    WalkThresholds thresholds = scene_.thresholds;
+    if (scene_.azimuth_bins == 0) thresholds.walk = thresholds.part = 1;  // rays would count all sectors
+    const auto sectors = tables_.trie.sectors();
+    left_.resize(sectors.size());
+    for_each_index(sectors.size(), [&](std::size_t s) {
+      auto walker = walkers_.take(
+          [&] { return std::make_unique<SectorWalker>(scene_.walk, tables_.trie, thresholds); });
+      left_[s].clear();
+      walker->count(column_, sectors[s], left_[s]);
+      walkers_.give_back(std::move(walker));
+    });
+    for (std::size_t s = 0; s < sectors.size(); ++s)
+      for (const Placed* placed : left_[s])
+        left[placed->number].sectors |= SectorSet::of(sectors[s].bin, column_.sectors);
   }
 
   const ExactScene& scene_;
   const Tiling& tiling_;
-  const RayTrie& trie_;
-  const PlacesInView& places_in_view_;
-  TileCounts in_view_, seen_;
-  std::vector<TileBits> reached_, groups_;
-  std::vector<const Placed*> stale_;
+  const WalkTables& tables_;
+  ObjectPool<SectorWalker>& walkers_;
+  Column around_;
+  ViewColumn column_;
+  std::vector<std::uint32_t> seen_;               // if there are no bins
+  std::vector<std::vector<const Placed*>> left_;  // to rays, by sector
 };
 
 }  // namespace
@@ -239,38 +172,35 @@ std::vector<StaleViewpoint> render_exactly(const ExactScene& scene,
   for (std::size_t i = 0; i < placed.size(); ++i)
     placed[i] = tiling.place(viewpoints[i], static_cast<std::uint32_t>(i));
   parallel_sort(placed, [](const Placed& a, const Placed& b) {
-    return a.order < b.order || (a.order == b.order && a.number < b.number);
+    return std::tie(a.order, a.place, a.number) < std::tie(b.order, b.place, b.number);
   });
 
   left.assign(viewpoints.begin(), viewpoints.end());
   std::vector<Placed> dense;
-  const std::vector<std::size_t> tiles = runs(placed, [](const Placed& p) { return p.order; });
-  for (std::size_t t = 0; t + 1 < tiles.size(); ++t)
-    if (tiles[t + 1] - tiles[t] >= scene.thresholds.tile)
-      for (std::size_t i = tiles[t]; i < tiles[t + 1]; ++i) dense.push_back(placed[i]);
+  std::vector<std::size_t> columns{0};
+  const std::vector<std::size_t> all_columns = runs(placed, [](const Placed& p) { return p.column(); });
+  for (std::size_t c = 0; c + 1 < all_columns.size(); ++c) {
+    const auto column =
+        std::span<const Placed>(placed).subspan(all_columns[c], all_columns[c + 1] - all_columns[c]);
+    const std::size_t tiles = runs(column, [](const Placed& p) { return p.order; }).size() - 1;
+    if (column.size() < std::max(scene.thresholds.walk, tiles * scene.thresholds.part)) continue;
+    dense.insert(dense.end(), column.begin(), column.end());
+    columns.push_back(dense.size());
+  }
   const auto tables = dense.empty() ? nullptr
                                     : scene.tries.get(scene.view, scene.azimuth_bins, stride_x, stride_y,
                                                       dense.size() >= scene.thresholds.trie);
   if (tables) {
-    const std::vector<std::size_t> columns = runs(dense, [](const Placed& p) { return p.column(); });
-    ObjectPool<TileWalker> walkers;
+    ObjectPool<SectorWalker> walkers;
     for_each_range(columns.size() - 1, [&](std::size_t begin, std::size_t end) {
-      Column around;
-      for (std::size_t c = begin; c < end; ++c) {
-        const auto column = std::span<const Placed>(dense).subspan(columns[c], columns[c + 1] - columns[c]);
-        around.look(scene, tiling, *tables, column);
+      ColumnRenderer renderer(scene, tiling, *tables, walkers);
+      for (std::size_t c = begin; c < end; ++c)
         // Without isolation this thread would start further columns while it waits, each with windows of its
         // own.
         run_isolated([&] {
-          const std::vector<std::size_t> tiles_there = runs(column, [](const Placed& p) { return p.order; });
-          for_each_index(tiles_there.size() - 1, [&](std::size_t t) {
-            auto walker = walkers.take([&] { return std::make_unique<TileWalker>(scene, tiling, *tables); });
-            walker->render(around, column.subspan(tiles_there[t], tiles_there[t + 1] - tiles_there[t]),
-                           values, bin_hits, left);
-            walkers.give_back(std::move(walker));
-          });
+          renderer.render(std::span<const Placed>(dense).subspan(columns[c], columns[c + 1] - columns[c]),
+                          values, bin_hits, left);
         });
-      }
     });
   }
   std::erase_if(

@@ -2,6 +2,7 @@
 
 #include "view/exact/places_in_view.hpp"
 #include "view/exact/ray_trie.hpp"
+#include "view/exact/sector_walker.hpp"
 #include "view/exact/trie_walk.hpp"
 #include "view/target_index.hpp"
 #include "view/view_render.hpp"
@@ -38,12 +39,6 @@ class RayTries {
   };
   std::mutex mutex_;
   std::vector<Known> known_;
-};
-
-/// From how many viewpoints on a walk over a trie takes less time than rays.
-struct WalkThresholds {
-  std::size_t tile = 24;    ///< in a tile, and again in each of its sectors
-  std::size_t trie = 2000;  ///< in all such tiles, if the trie is still to be made
 };
 
 /// All that a viewpoint's exact value depends on.

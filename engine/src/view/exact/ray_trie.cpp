@@ -75,7 +75,7 @@ class RayTrieBuilder {
   RayTrieBuilder(RayTrie& trie, std::vector<Line>& lines) : trie_(trie), lines_(lines) {}
 
   void build(int bin) {
-    trie_.groups_.resize(2);  // 0 is no group, 1 has the targets that belong to no other
+    trie_.groups_.resize(1);  // of the targets that belong to no other
     std::vector<std::uint32_t> all(lines_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
     // Targets next to the viewpoint are seen in any map.
@@ -85,10 +85,10 @@ class RayTrieBuilder {
     const auto adjacent = static_cast<std::uint32_t>(loose_.size());
     fork({far, all.end()}, {}, {}, 0);
 
-    trie_.groups_[1].begin = count(trie_.targets_);
+    trie_.groups_[0].begin = count(trie_.targets_);
     trie_.targets_.insert(trie_.targets_.end(), loose_.begin(), loose_.end());
-    trie_.groups_[1].end = count(trie_.targets_);
-    trie_.sectors_.push_back({bin, 0, count(trie_.nodes_), 1, count(trie_.groups_), adjacent});
+    trie_.groups_[0].end = count(trie_.targets_);
+    trie_.sectors_.push_back({bin, 0, count(trie_.nodes_), 0, count(trie_.groups_), adjacent});
   }
 
  private:
@@ -125,7 +125,7 @@ class RayTrieBuilder {
       return;
     }
     trie_.targets_.push_back(target);
-    trie_.groups_[group_].end = count(trie_.targets_);
+    trie_.groups_[group_ - 1].end = count(trie_.targets_);
   }
 
   // Lines that part at a voxel, perhaps.
@@ -144,8 +144,8 @@ class RayTrieBuilder {
     std::vector<std::uint32_t> nodes;
     const bool opens_group = group_ == 0 && lines.size() <= kGroupTargets;
     if (opens_group) {
-      group_ = pending_group_ = count(trie_.groups_);
       trie_.groups_.push_back({count(trie_.targets_), count(trie_.targets_)});
+      group_ = pending_group_ = count(trie_.groups_);
     }
     while (!lines.empty()) {
       const Cell before = at;
@@ -181,20 +181,19 @@ class RayTrieBuilder {
   RayTrie& trie_;
   std::vector<Line>& lines_;
   std::vector<std::int32_t> loose_;
-  std::uint32_t group_ = 0, pending_group_ = 0;
+  std::uint32_t group_ = 0, pending_group_ = 0;  // as in nodes
 };
 
 void RayTrie::append(const RayTrie& sector) {
   const auto nodes = static_cast<std::uint32_t>(nodes_.size());
-  const auto groups = static_cast<std::uint32_t>(groups_.size()) - 1;  // all share group 0
+  const auto groups = static_cast<std::uint32_t>(groups_.size());
   const auto targets = static_cast<std::uint32_t>(targets_.size());
   for (Node node : sector.nodes_) {
     node.end += nodes;
-    node.group += node.group == 0 ? 0 : groups;
     nodes_.push_back(node);
   }
-  for (std::size_t g = 1; g < sector.groups_.size(); ++g)
-    groups_.push_back({sector.groups_[g].begin + targets, sector.groups_[g].end + targets});
+  for (const Group& group : sector.groups_) groups_.push_back({group.begin + targets, group.end + targets});
+  most_groups_ = std::max(most_groups_, sector.groups_.size());
   targets_.insert(targets_.end(), sector.targets_.begin(), sector.targets_.end());
   for (const Sector& s : sector.sectors_)
     sectors_.push_back({s.bin, s.nodes_begin + nodes, s.nodes_end + nodes, s.groups_begin + groups,
@@ -229,7 +228,6 @@ std::optional<RayTrie> RayTrie::make(const ViewRegion& view, int azimuth_bins, i
   });
   RayTrie trie;
   trie.layout_ = layout;
-  trie.groups_.emplace_back();
   for (const RayTrie& sector : sectors) trie.append(sector);
   return trie;
 }

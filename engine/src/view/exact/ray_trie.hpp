@@ -29,7 +29,7 @@ class RayTrie {
         steps;            ///< places that have to be free; the last one is repeated if they are fewer
     std::int32_t target;  ///< place of the offset at its end; any place if `is_target` is 0
     std::uint32_t end;    ///< first node that is not behind this one
-    std::uint32_t group;  ///< the group that begins with this node; 0: none
+    std::uint32_t group;  ///< the group that begins with this node, counted from 1 in its sector; 0: none
     std::uint16_t depth;  ///< nodes before it
     std::uint8_t is_target;
     std::uint8_t is_fork;  ///< so many nodes lie behind it that a walk checks whether it can leave them out
@@ -59,6 +59,8 @@ class RayTrie {
   /// Places of all offsets in view, once each.
   [[nodiscard]] std::span<const std::int32_t> targets() const { return targets_; }
   [[nodiscard]] std::span<const Sector> sectors() const { return sectors_; }
+  /// Of a sector.
+  [[nodiscard]] std::size_t most_groups() const { return most_groups_; }
   /// Nodes of the longest ray.
   [[nodiscard]] std::size_t depth() const { return depth_; }
 
@@ -68,10 +70,10 @@ class RayTrie {
 
   WindowLayout layout_;
   std::vector<Node> nodes_;
-  std::vector<Group> groups_;  // 0 is none
+  std::vector<Group> groups_;
   std::vector<std::int32_t> targets_;
   std::vector<Sector> sectors_;
-  std::size_t depth_ = 0;
+  std::size_t most_groups_ = 0, depth_ = 0;
 };
 
 }  // namespace frontlux::detail

@@ -2,7 +2,6 @@
 
 #include "isa/targets.hpp"
 
-#include <bit>
 #include <cstring>
 
 // Vectors are passed among functions of this file only, and those are inlined.
@@ -52,23 +51,6 @@ constexpr TrieWalk kWalks[] = {
     {InstructionSet::kNone, &plain::add_up, &plain::find_groups, &plain::count, &plain::spread}};
 
 }  // namespace
-
-TileRows TileRows::with(const TileBits& places) {
-  constexpr std::uint32_t kHalf = ViewTile::kRows / 2;
-  constexpr std::uint32_t kWordRows = 64 / ViewTile::kColumns;
-  const auto row_of = [](std::size_t word, int bit) {
-    return static_cast<std::uint32_t>(word) * kWordRows +
-           static_cast<std::uint32_t>(bit) / ViewTile::kColumns;
-  };
-  std::uint32_t first = ViewTile::kRows, last = 0;
-  for (std::size_t w = 0; w < places.words.size(); ++w)
-    if (const std::uint64_t word = places.words[w]; word != 0) {
-      first = std::min(first, row_of(w, std::countr_zero(word)));
-      last = row_of(w, 63 - std::countl_zero(word));
-    }
-  if (last >= first + kHalf) return {};
-  return {std::min(first, kHalf), true};
-}
 
 std::span<const TrieWalk> trie_walks() { return runnable(std::span<const TrieWalk>(kWalks)); }
 

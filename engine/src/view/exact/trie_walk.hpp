@@ -13,43 +13,44 @@
 /// The walk over a `RayTrie` for all places of a `ViewTile` at a time: a bit for each.
 namespace frontlux::detail {
 
-/// A bit for each place of a tile.
-struct alignas(64) TileBits {
-  std::array<std::uint64_t, ViewTile::kBytes / 8> words;
+/// A bit for each of some places.
+template <std::size_t kBytes>
+struct alignas(64) PlaceBits {
+  std::array<std::uint64_t, kBytes / 8> words;
 
-  [[nodiscard]] static constexpr std::uint32_t place(int column, int row) {
-    return static_cast<std::uint32_t>(row * ViewTile::kColumns + column);
-  }
   [[nodiscard]] bool at(std::uint32_t place) const { return (words[place / 64] >> place % 64 & 1U) != 0; }
   void set(std::uint32_t place) { words[place / 64] |= std::uint64_t{1} << place % 64; }
-  TileBits& operator&=(const TileBits& other) {
-    for (std::size_t w = 0; w < words.size(); ++w) words[w] &= other.words[w];
-    return *this;
-  }
-  [[nodiscard]] bool any() const {
-    std::uint64_t all = 0;
-    for (const std::uint64_t word : words) all |= word;
-    return all != 0;
-  }
 };
 
-/// The rows of a tile that a walk looks at: all, or half of them from `first` on.
-struct TileRows {
-  std::uint32_t first = 0;
+/// The bits of the places of a tile.
+using TileBits = PlaceBits<ViewTile::kBytes>;
+
+/// Parts of tiles of one column that are walked together: whole tiles, or halves of them.
+struct TileParts {
+  static constexpr std::size_t kBytes = 256;  ///< of all their places' bits, at most
+  static constexpr std::size_t kMost = kBytes / (ViewTile::kBytes / 2);
+
   bool half = false;
+  std::size_t size = 0;
+  std::array<std::size_t, kMost> begins{};  ///< of each, in windows [bytes]
 
-  /// Those with all of these places. @pre there is one
-  [[nodiscard]] static TileRows with(const TileBits& places);
+  [[nodiscard]] std::size_t part_bytes() const { return half ? ViewTile::kBytes / 2 : ViewTile::kBytes; }
+  [[nodiscard]] std::size_t bytes() const { return size * part_bytes(); }
+  [[nodiscard]] bool full() const { return bytes() == kBytes; }
 };
 
-/// A number for each place of a tile, its bits in planes.
-struct TileCounts {
+/// The bits of the places of such parts, one part after the other.
+using PartBits = PlaceBits<TileParts::kBytes>;
+
+/// A number for each place, its bits in planes.
+template <class Bits>
+struct PlaceCounts {
   static constexpr std::size_t kPlanes = 32;
-  std::array<TileBits, kPlanes> planes{};
+  std::array<Bits, kPlanes> planes{};
   std::size_t used = 0;  ///< planes that may not be zero
 
   void clear() {
-    std::fill_n(planes.begin(), used, TileBits{});
+    std::fill_n(planes.begin(), used, Bits{});
     used = 0;
   }
   [[nodiscard]] std::uint32_t at(std::uint32_t place) const {
@@ -58,6 +59,8 @@ struct TileCounts {
     return count;
   }
 };
+using TileCounts = PlaceCounts<TileBits>;
+using PartCounts = PlaceCounts<PartBits>;
 
 /// Rows of bits, eight columns to a byte: the bytes of all rows, then those of the next eight columns.
 struct SpreadFrom {
@@ -66,8 +69,8 @@ struct SpreadFrom {
   std::size_t first_bit;  ///< column to begin with; at least 24 follow the last
 };
 
-/// The walk of one instruction set. `free` and `targets` point to the lowest places in reach of a tile, in
-/// windows of the trie's layout.
+/// The walk of one instruction set. `free` and `targets` point into windows of the trie's layout, where
+/// `TileParts::begins` are counted from.
 struct TrieWalk {
   InstructionSet needs;
 
@@ -75,19 +78,20 @@ struct TrieWalk {
   void (*add_up)(const std::byte* table, std::span<const std::int32_t> places, const TileBits& viewpoints,
                  TileCounts& counts);
 
-  /// The viewpoints that have targets of a sector in view, visible or not, go to `groups`, for each group.
-  /// False if there are none.
-  /// @param rows  with all of the viewpoints; in other rows nothing is written
+  /// The viewpoints that have targets of a sector in view, visible or not, go to `groups`, for each group of
+  /// the sector from its first one on. False if there are none.
   bool (*find_groups)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
-                      const TileBits& viewpoints, const TileRows& rows, std::span<TileBits> groups);
+                      const TileParts& parts, const PartBits& viewpoints, std::span<PartBits> groups);
 
   /// Adds to `counts` how many targets of a sector each viewpoint sees. The targets of a group are visited
   /// only for the viewpoints in `groups`.
-  /// @param rows     as for `find_groups`
-  /// @param reached  room for a set of viewpoints at each depth, and one more
+  /// @param groups   from `find_groups`
+  /// @param reached  room, of `reached_size`
   void (*count)(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
-                const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
-                const TileRows& rows, std::span<TileBits> reached, TileCounts& counts);
+                const std::byte* targets, const TileParts& parts, std::span<const PartBits> groups,
+                const PartBits& viewpoints, std::span<PartBits> reached, PartCounts& counts);
+
+  [[nodiscard]] static std::size_t reached_size(const RayTrie& trie) { return 2 * (trie.depth() + 1); }
 
   /// For each column from `first_bit` on, and for each row, writes the 16 bits that begin at the column.
   void (*spread)(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,

@@ -1,211 +1,298 @@
 // The walk itself. Included by trie_walk.cpp once for each instruction set, inside a namespace that defines
 // `Part`, a vector of the processor's, `HalfPart`, one of at most half a tile, and `any_of` both.
 
-// The vectors that hold a tile, and half of its rows.
+// What the bits of whole tiles are walked by, and those of halves.
 struct Whole {
   using Vector = Part;
-  static constexpr std::size_t kParts = ViewTile::kBytes / sizeof(Vector);
 };
 struct Half {
   using Vector = HalfPart;
-  static constexpr std::size_t kParts = ViewTile::kBytes / 2 / sizeof(Vector);
 };
 
-// The bits of either.
-template <class Size>
-struct BitsOf {
-  static constexpr std::size_t kParts = Size::kParts;
-  typename Size::Vector parts[kParts];
-
-  [[gnu::always_inline]] BitsOf& operator&=(const BitsOf& b) {
-    for (std::size_t i = 0; i < kParts; ++i) parts[i] &= b.parts[i];
-    return *this;
-  }
-  [[gnu::always_inline]] BitsOf& operator|=(const BitsOf& b) {
-    for (std::size_t i = 0; i < kParts; ++i) parts[i] |= b.parts[i];
-    return *this;
-  }
-  [[gnu::always_inline]] BitsOf& operator^=(const BitsOf& b) {
-    for (std::size_t i = 0; i < kParts; ++i) parts[i] ^= b.parts[i];
-    return *this;
-  }
-  [[gnu::always_inline]] friend BitsOf operator&(BitsOf a, const BitsOf& b) { return a &= b; }
-  [[gnu::always_inline]] friend BitsOf operator|(BitsOf a, const BitsOf& b) { return a |= b; }
-  [[gnu::always_inline]] friend BitsOf operator^(BitsOf a, const BitsOf& b) { return a ^= b; }
-};
-
-template <class Size>
-[[gnu::always_inline]] inline bool any_of(const BitsOf<Size>& bits) {
-  auto all = bits.parts[0];
-  for (std::size_t i = 1; i < Size::kParts; ++i) all |= bits.parts[i];
-  return any_of(all);
+template <class Vector>
+[[gnu::always_inline]] inline Vector load(const void* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof(vector));
+  return vector;
 }
-
-template <class Bits>
-[[gnu::always_inline]] inline Bits load(const void* from) {
-  Bits bits;
-  for (std::size_t i = 0; i < Bits::kParts; ++i)
-    std::memcpy(&bits.parts[i], static_cast<const std::byte*>(from) + i * sizeof(bits.parts[i]),
-                sizeof(bits.parts[i]));
-  return bits;
-}
-template <class Bits>
-[[gnu::always_inline]] inline void store(void* to, const Bits& bits) {
-  for (std::size_t i = 0; i < Bits::kParts; ++i)
-    std::memcpy(static_cast<std::byte*>(to) + i * sizeof(bits.parts[i]), &bits.parts[i],
-                sizeof(bits.parts[i]));
-}
-
-// The part of a tile that begins with a row.
-[[gnu::always_inline]] inline std::byte* from_row(TileBits* bits, std::size_t row) {
-  return reinterpret_cast<std::byte*>(bits) + row * ViewTile::kRowBytes;
-}
-[[gnu::always_inline]] inline const std::byte* from_row(const TileBits* bits, std::size_t row) {
-  return reinterpret_cast<const std::byte*>(bits) + row * ViewTile::kRowBytes;
+template <class Vector>
+[[gnu::always_inline]] inline void store(void* to, const Vector& vector) {
+  std::memcpy(to, &vector, sizeof(vector));
 }
 
 // Adds bits to numbers in planes, sixteen at a time, so that carries go beyond the lowest planes seldom.
-template <class Bits>
+template <class Size, class Bits>
 class Adder {
  public:
   static constexpr std::size_t kSize = 16;
-  using Waiting = std::array<TileBits, kSize>;
+  using Waiting = std::array<Bits, kSize>;
 
-  // For the part of a tile that begins with a row. Room beside this object, so that what is in here stays in
-  // registers.
-  Adder(TileCounts& counts, std::size_t row, Waiting& waiting)
-      : counts_(counts), row_(row), waiting_(waiting) {}
-  ~Adder() { flush(counts_, row_, waiting_, size_); }
+  // For so many bytes of the bits. Room beside this object, so that what is in here stays in registers.
+  Adder(PlaceCounts<Bits>& counts, std::size_t bytes, Waiting& waiting)
+      : counts_(counts), bytes_(bytes), waiting_(waiting) {
+    waiting_.fill({});
+  }
+  ~Adder() {
+    clear_next();
+    flush(counts_, bytes_, waiting_);
+  }
   Adder(const Adder&) = delete;
   Adder& operator=(const Adder&) = delete;
 
-  // Without a branch on whether there is something to add.
-  [[gnu::always_inline]] void add(const Bits& bits, bool something) {
-    store(&waiting_[size_], bits);
+  // Room for the bits to add next. What is not written there is zero, or what has been written before if
+  // that was not added; `clear_next` makes that zero, too.
+  [[nodiscard]] [[gnu::always_inline]] std::byte* next() {
+    return reinterpret_cast<std::byte*>(&waiting_[size_]);
+  }
+  void clear_next() { *reinterpret_cast<Bits*>(next()) = {}; }
+  // Adds what is there. Without a branch on whether there is something to add.
+  [[gnu::always_inline]] void add(bool something) {
     std::size_t one = something ? 1 : 0;
     __asm__("" : "+r"(one));  // else the compiler makes a branch of it, which is hard to predict
     size_ += one;
     if (size_ == kSize) [[unlikely]] {
-      flush(counts_, row_, waiting_, size_);
+      flush(counts_, bytes_, waiting_);
       size_ = 0;
     }
   }
 
  private:
+  using Vector = typename Size::Vector;
   static constexpr std::size_t kLowPlanes = 4;
 
-  [[gnu::noinline]] static void flush(TileCounts& counts, std::size_t row, Waiting& waiting,
-                                      std::size_t size) {
-    std::fill(waiting.begin() + static_cast<std::ptrdiff_t>(size), waiting.end(), TileBits{});
-    std::array<Bits, kSize> carries;
-    for (std::size_t i = 0; i < kSize; ++i) carries[i] = load<Bits>(&waiting[i]);
-    std::size_t count = kSize;
-    for (std::size_t plane = 0; plane < kLowPlanes; ++plane) {
-      Bits sum = load<Bits>(from_row(&counts.planes[plane], row));
-      count /= 2;
-      for (std::size_t i = 0; i < count; ++i) carries[i] = add_three(sum, carries[2 * i], carries[2 * i + 1]);
-      store(from_row(&counts.planes[plane], row), sum);
-    }
+  static std::byte* at(Bits& bits, std::size_t byte) { return reinterpret_cast<std::byte*>(&bits) + byte; }
+
+  [[gnu::noinline]] static void flush(PlaceCounts<Bits>& counts, std::size_t bytes, Waiting& waiting) {
     counts.used = std::max(counts.used, kLowPlanes);
-    Bits carry = carries[0];
-    for (std::size_t plane = kLowPlanes; any_of(carry); ++plane) {
-      const Bits before = load<Bits>(from_row(&counts.planes[plane], row));
-      store(from_row(&counts.planes[plane], row), before ^ carry);
-      carry &= before;
-      counts.used = std::max(counts.used, plane + 1);
+    for (std::size_t byte = 0; byte < bytes; byte += sizeof(Vector)) {
+      Vector carries[kSize];
+      for (std::size_t i = 0; i < kSize; ++i) {
+        carries[i] = load<Vector>(at(waiting[i], byte));
+        store(at(waiting[i], byte), Vector{});
+      }
+      std::size_t count = kSize;
+      for (std::size_t plane = 0; plane < kLowPlanes; ++plane) {
+        Vector sum = load<Vector>(at(counts.planes[plane], byte));
+        count /= 2;
+        for (std::size_t i = 0; i < count; ++i)
+          carries[i] = add_three(sum, carries[2 * i], carries[2 * i + 1]);
+        store(at(counts.planes[plane], byte), sum);
+      }
+      Vector carry = carries[0];
+      for (std::size_t plane = kLowPlanes; any_of(carry); ++plane) {
+        const Vector before = load<Vector>(at(counts.planes[plane], byte));
+        store<Vector>(at(counts.planes[plane], byte), before ^ carry);
+        carry &= before;
+        counts.used = std::max(counts.used, plane + 1);
+      }
     }
   }
 
   // `sum` becomes the lower bit of the three; returns the upper.
-  [[gnu::always_inline]] static Bits add_three(Bits& sum, const Bits& a, const Bits& b) {
-    const Bits differ = sum ^ a;
-    const Bits carry = (sum & a) | (differ & b);
+  [[gnu::always_inline]] static Vector add_three(Vector& sum, const Vector& a, const Vector& b) {
+    const Vector differ = sum ^ a;
+    const Vector carry = (sum & a) | (differ & b);
     sum = differ ^ b;
     return carry;
   }
 
-  TileCounts& counts_;
-  std::size_t row_;
+  PlaceCounts<Bits>& counts_;
+  std::size_t bytes_;
   std::size_t size_ = 0;
   Waiting& waiting_;
 };
 
-using WholeBits = BitsOf<Whole>;
-using HalfBits = BitsOf<Half>;
-
 void add_up(const std::byte* table, std::span<const std::int32_t> places, const TileBits& viewpoints,
             TileCounts& counts) {
-  const WholeBits here = load<WholeBits>(&viewpoints);
-  typename Adder<WholeBits>::Waiting waiting;
-  Adder<WholeBits> adder(counts, 0, waiting);
+  const auto* const here = reinterpret_cast<const std::byte*>(&viewpoints);
+  typename Adder<Whole, TileBits>::Waiting waiting;
+  Adder<Whole, TileBits> adder(counts, sizeof(TileBits), waiting);
   for (const std::int32_t place : places) {
-    const WholeBits there = here & load<WholeBits>(table + place);
-    adder.add(there, any_of(there));
+    std::byte* const there = adder.next();
+    Part any{};
+    for (std::size_t byte = 0; byte < sizeof(TileBits); byte += sizeof(Part)) {
+      const Part bits = load<Part>(here + byte) & load<Part>(table + place + byte);
+      store(there + byte, bits);
+      any |= bits;
+    }
+    adder.add(any_of(any));
   }
 }
 
-template <class Bits>
-bool find_groups_from(std::size_t row, const RayTrie& trie, const RayTrie::Sector& sector,
-                      const std::byte* targets, const TileBits& viewpoints, std::span<TileBits> groups) {
-  const Bits here = load<Bits>(from_row(&viewpoints, row));
-  const std::byte* const windows = targets + row * ViewTile::kRowBytes;
-  Bits all = here ^ here;
+// Some of the vectors of parts: where they begin in windows, and among the parts' bits.
+template <class Size>
+struct Vectors {
+  static constexpr std::size_t kStep = sizeof(typename Size::Vector);
+  std::size_t size = 0;
+  std::array<std::size_t, TileParts::kBytes / kStep> begins, bytes;
+
+  [[nodiscard]] static Vectors of(const TileParts& parts) {
+    Vectors all;
+    for (std::size_t p = 0; p < parts.size; ++p)
+      for (std::size_t byte = 0; byte < parts.part_bytes(); byte += kStep, ++all.size) {
+        all.begins[all.size] = parts.begins[p] + byte;
+        all.bytes[all.size] = all.size * kStep;
+      }
+    return all;
+  }
+};
+
+template <class Size>
+bool find_groups_by(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
+                    const TileParts& parts, const PartBits& viewpoints, std::span<PartBits> groups) {
+  using Vector = typename Size::Vector;
+  const auto vectors = Vectors<Size>::of(parts);
+  const auto* const here = reinterpret_cast<const std::byte*>(&viewpoints);
+  const std::int32_t* const places = trie.targets().data();
+  Vector all{};
   for (std::uint32_t g = sector.groups_begin; g < sector.groups_end; ++g) {
-    const RayTrie::Group& group = trie.groups()[g];
-    Bits found = here ^ here;
-    for (std::uint32_t t = group.begin; t < group.end; ++t) found |= load<Bits>(windows + trie.targets()[t]);
-    found &= here;
-    store(from_row(&groups[g], row), found);
-    all |= found;
+    const RayTrie::Group group = trie.groups()[g];
+    auto* const out = reinterpret_cast<std::byte*>(&groups[g - sector.groups_begin]);
+    for (std::size_t v = 0; v < vectors.size; ++v) {
+      const std::byte* const there = targets + vectors.begins[v];
+      Vector found{};
+      for (std::uint32_t t = group.begin; t < group.end; ++t) found |= load<Vector>(there + places[t]);
+      found &= load<Vector>(here + v * sizeof(Vector));
+      store(out + v * sizeof(Vector), found);
+      all |= found;
+    }
   }
   return any_of(all);
 }
 
 bool find_groups(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* targets,
-                 const TileBits& viewpoints, const TileRows& rows, std::span<TileBits> groups) {
-  return rows.half ? find_groups_from<HalfBits>(rows.first, trie, sector, targets, viewpoints, groups)
-                   : find_groups_from<WholeBits>(0, trie, sector, targets, viewpoints, groups);
+                 const TileParts& parts, const PartBits& viewpoints, std::span<PartBits> groups) {
+  return parts.half ? find_groups_by<Half>(trie, sector, targets, parts, viewpoints, groups)
+                    : find_groups_by<Whole>(trie, sector, targets, parts, viewpoints, groups);
 }
 
-template <class Bits>
-void count_from(std::size_t row, const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
-                const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
-                std::span<TileBits> reached, TileCounts& counts) {
-  typename Adder<Bits>::Waiting waiting;
-  Adder<Bits> adder(counts, row, waiting);
-  const Bits here = load<Bits>(from_row(&viewpoints, row));
-  free += row * ViewTile::kRowBytes;
-  targets += row * ViewTile::kRowBytes;
+// Counts by visits to nodes.
+template <class Size>
+class Counter {
+ public:
+  using Vector = typename Size::Vector;
+  static constexpr std::size_t kStep = sizeof(Vector);
+
+  Counter(const RayTrie& trie, const std::byte* free, const std::byte* targets, std::span<PartBits> reached,
+          std::span<const PartBits> groups, Adder<Size, PartBits>& adder)
+      : nodes_(trie.nodes().data()),
+        free_(free),
+        targets_(targets),
+        reached_by_all_(reinterpret_cast<std::byte*>(reached.data())),
+        reached_by_some_(reinterpret_cast<std::byte*>(reached.data() + reached.size() / 2)),
+        groups_(groups),
+        adder_(adder) {}
+
+  void walk(const RayTrie::Sector& sector, const Vectors<Size>& all) {
+    visit<true>(sector.nodes_begin, sector.nodes_end, all, reached_by_all_);
+  }
+
+ private:
+  // @param reached  by depth, of the vectors, one after the other
+  template <bool kFindGroups>
+  void visit(std::uint32_t begin, std::uint32_t end, const Vectors<Size>& vectors, std::byte* reached) {
+    for (std::uint32_t n = begin; n < end;) {
+      const RayTrie::Node& node = nodes_[n];
+      const std::uint32_t behind = node.end;
+      if constexpr (kFindGroups)
+        if (node.group != 0) {
+          visit_group(n, vectors);
+          n = behind;
+          continue;
+        }
+      const bool is_fork = node.is_fork != 0;
+      std::byte* const near = reached + node.depth * sizeof(PartBits);
+      // Most nodes have no target: that is well worth a branch.
+      const bool any =
+          node.is_target != 0 ? step<true>(node, vectors, near) : step<false>(node, vectors, near);
+      n = is_fork & !any ? behind : n + 1;
+    }
+  }
+
+  // The nodes of a group, for those vectors only that have a target there.
+  [[gnu::noinline]] void visit_group(std::uint32_t first, const Vectors<Size>& all) {
+    const RayTrie::Node& node = nodes_[first];
+    const auto* const group = reinterpret_cast<const std::byte*>(&groups_[node.group - 1]);
+    const std::byte* const near = reached_by_all_ + node.depth * sizeof(PartBits);
+    std::byte* const out = reached_by_some_ + node.depth * sizeof(PartBits);
+    Vectors<Size> some;
+    for (std::size_t v = 0; v < all.size; ++v) {
+      const Vector bits = load<Vector>(near + v * kStep) & load<Vector>(group + v * kStep);
+      store(out + some.size * kStep, bits);
+      some.begins[some.size] = all.begins[v];
+      some.bytes[some.size] = all.bytes[v];
+      some.size += any_of(bits) ? 1 : 0;
+    }
+    if (some.size == 0) return;
+    adder_.clear_next();
+    visit<false>(first, node.end, some, reached_by_some_);
+  }
+
+  // Goes on to the end of a node. False if none does.
+  template <bool kTarget>
+  [[gnu::always_inline]] bool step(const RayTrie::Node& node, const Vectors<Size>& vectors, std::byte* near) {
+    const std::byte *const step0 = free_ + node.steps[0], *const step1 = free_ + node.steps[1];
+    const std::byte *const step2 = free_ + node.steps[2], *const step3 = free_ + node.steps[3];
+    const std::byte* const target = targets_ + node.target;
+    std::byte* const out = adder_.next();
+    const std::size_t size = vectors.size;
+    Vector any_far{}, any_seen{};
+    for (std::size_t v = 0; v < size; ++v) {
+      const std::size_t at = vectors.begins[v];
+      const Vector first_steps = load<Vector>(step0 + at) & load<Vector>(step1 + at);
+      const Vector steps = first_steps & load<Vector>(step2 + at) & load<Vector>(step3 + at);
+      const Vector far = load<Vector>(near + v * kStep) & steps;
+      store(near + sizeof(PartBits) + v * kStep, far);
+      any_far |= far;
+      if constexpr (kTarget) {
+        const Vector seen = far & load<Vector>(target + at);
+        store(out + vectors.bytes[v], seen);
+        any_seen |= seen;
+      }
+    }
+    if constexpr (kTarget) adder_.add(any_of(any_seen));
+    return any_of(any_far);
+  }
+
+  const RayTrie::Node* nodes_;
+  const std::byte *free_, *targets_;
+  std::byte *reached_by_all_, *reached_by_some_;
+  std::span<const PartBits> groups_;
+  Adder<Size, PartBits>& adder_;
+};
+
+template <class Size>
+void count_by(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
+              const std::byte* targets, const TileParts& parts, std::span<const PartBits> groups,
+              const PartBits& viewpoints, std::span<PartBits> reached, PartCounts& counts) {
+  using Vector = typename Size::Vector;
+  const auto vectors = Vectors<Size>::of(parts);
+  typename Adder<Size, PartBits>::Waiting waiting;
+  Adder<Size, PartBits> adder(counts, parts.bytes(), waiting);
+  const auto* const here = reinterpret_cast<const std::byte*>(&viewpoints);
   const auto first = trie.groups()[sector.groups_begin].begin;
   for (const std::int32_t place : trie.targets().subspan(first, sector.adjacent)) {
-    const Bits seen = here & load<Bits>(targets + place);
-    adder.add(seen, any_of(seen));
+    std::byte* const out = adder.next();
+    Vector any{};
+    for (std::size_t v = 0; v < vectors.size; ++v) {
+      const std::size_t byte = vectors.bytes[v];
+      const Vector seen = load<Vector>(here + byte) & load<Vector>(targets + place + vectors.begins[v]);
+      store(out + byte, seen);
+      any |= seen;
+    }
+    adder.add(any_of(any));
   }
-  store(&reached[0], here);
-  const RayTrie::Node* const nodes = trie.nodes().data();
-  TileBits* const at_depth = reached.data();
-  const TileBits* const in_groups = groups.data();
-  for (std::uint32_t n = sector.nodes_begin; n < sector.nodes_end;) {
-    const RayTrie::Node& node = nodes[n];
-    const Bits near = load<Bits>(&at_depth[node.depth]) & load<Bits>(from_row(&in_groups[node.group], row));
-    const Bits first_steps = load<Bits>(free + node.steps[0]) & load<Bits>(free + node.steps[1]);
-    const Bits steps = first_steps & load<Bits>(free + node.steps[2]) & load<Bits>(free + node.steps[3]);
-    const Bits far = near & steps;
-    store(&at_depth[node.depth + 1U], far);
-    const Bits seen = far & load<Bits>(targets + node.target);
-    adder.add(seen, static_cast<bool>(node.is_target & static_cast<unsigned>(any_of(seen))));
-    const bool leave = static_cast<bool>(node.is_fork & static_cast<unsigned>(!any_of(far)));
-    n = leave ? node.end : n + 1;
-  }
+  reached.front() = viewpoints;
+  Counter<Size>(trie, free, targets, reached, groups, adder).walk(sector, vectors);
 }
 
 void count(const RayTrie& trie, const RayTrie::Sector& sector, const std::byte* free,
-           const std::byte* targets, std::span<const TileBits> groups, const TileBits& viewpoints,
-           const TileRows& rows, std::span<TileBits> reached, TileCounts& counts) {
-  if (rows.half)
-    count_from<HalfBits>(rows.first, trie, sector, free, targets, groups, viewpoints, reached, counts);
+           const std::byte* targets, const TileParts& parts, std::span<const PartBits> groups,
+           const PartBits& viewpoints, std::span<PartBits> reached, PartCounts& counts) {
+  if (parts.half)
+    count_by<Half>(trie, sector, free, targets, parts, groups, viewpoints, reached, counts);
   else
-    count_from<WholeBits>(0, trie, sector, free, targets, groups, viewpoints, reached, counts);
+    count_by<Whole>(trie, sector, free, targets, parts, groups, viewpoints, reached, counts);
 }
 
 void spread(const SpreadFrom& from, std::size_t rows, std::size_t columns, std::size_t column_stride,

@@ -12,6 +12,11 @@ struct ViewTile {
   static constexpr std::size_t kBytes = kColumns * kRows / 8;
   static constexpr std::size_t kRowBytes = kColumns / 8;
   static constexpr int kMaxStride = 4;
+
+  /// Which bit belongs to a place.
+  [[nodiscard]] static constexpr std::uint32_t place(int column, int row) {
+    return static_cast<std::uint32_t>(row * kColumns + column);
+  }
 };
 
 /// The layout in memory of what lies around tiles (`ViewWindow`): what all 512 places find at one offset is
