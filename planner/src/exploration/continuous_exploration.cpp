@@ -103,8 +103,10 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   Pose rests = pose;
   state.stay_on_plane(robot, rests, time);
   if (!state.team.lattice().key(rests.position)) refuse("a pose outside the map's key range");
-  state.follow_trajectories(time);
-  member.motion = {Trajectory(rests, time)};
+  state.start_next_trajectories(time);
+  state.extend_trail(robot, time);
+  state.cut_trail(robot, rests.position);
+  state.set_motion(robot, Trajectory(rests, time));
   member.stopped = true;
   member.blocked = false;
   member.needed.clear();
@@ -136,7 +138,7 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a planning before its beginning");
   check_time(time);
-  state.follow_trajectories(time);
+  state.start_next_trajectories(time);
   std::optional<std::pair<std::size_t, PlanReason>> next;
   Turn best;
   for (std::size_t r = 0; r < state.members.size(); ++r) {
@@ -157,6 +159,7 @@ ExplorationStep ContinuousExploration::finish(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a finish before its beginning");
   check_time(time);
+  state.start_next_trajectories(time);
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   step.frontiers = state.team.frontiers.size();

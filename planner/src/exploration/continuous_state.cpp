@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -31,16 +32,44 @@ bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) 
           std::abs(std::remainder(scanned.yaw - end.yaw, 2 * std::numbers::pi)) < kAligned);
 }
 
+// Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
+// about straight.
+std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
+  constexpr double kStep = 0.1, kOff = 0.03, kMost = 1000.0;  // [s], [m], poses
+  const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
+  const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
+  std::vector<Pose> all, some;
+  for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
+  const auto straight = [&](std::size_t a, std::size_t b) {
+    const Eigen::Vector3d along = (all[b].position - all[a].position).stableNormalized();
+    for (std::size_t i = a + 1; i < b; ++i) {
+      const Eigen::Vector3d to = all[i].position - all[a].position;
+      if ((to - to.dot(along) * along).norm() > kOff) return false;
+    }
+    return true;
+  };
+  for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
+    if (i > 0 && i + 1 < all.size() && straight(kept, i + 1)) continue;
+    some.push_back(all[i]);
+    kept = i;
+  }
+  return some;
+}
+
 }  // namespace
 
-// Robots have followed their trajectories; those whose time has come take the place of those before.
-void ContinuousExploration::State::follow_trajectories(double time) {
-  for (Member& member : members) {
-    if (member.motion.next && time >= member.motion.next->begin()) {
-      member.driven.follow(member.motion.now, member.motion.next->begin());
-      member.motion = {*std::move(member.motion.next)};
-    }
-    member.driven.follow(member.motion.now, time);
+void ContinuousExploration::State::set_motion(std::size_t robot, Trajectory trajectory) {
+  members[robot].motion = {std::move(trajectory)};
+  members[robot].samples = 0;
+}
+
+// The trajectories whose time has come take the place of those before.
+void ContinuousExploration::State::start_next_trajectories(double time) {
+  for (std::size_t r = 0; r < members.size(); ++r) {
+    std::optional<Trajectory>& next = members[r].motion.next;
+    if (!next || time < next->begin()) continue;
+    extend_trail(r, next->begin());
+    set_motion(r, Trajectory(*next));
   }
 }
 
@@ -82,17 +111,39 @@ void ContinuousExploration::State::stay_on_plane(std::size_t robot, Pose& pose, 
     pose.position.z() = members[robot].motion.at(time).pose.position.z();
 }
 
-// By the path from the first to the last of some poses. The first is in the trail, if there is one.
-void ContinuousExploration::State::extend_trail(std::size_t robot, std::span<const Pose> poses, double time) {
+// A robot has followed its trajectory up to a time. Scans may be lost.
+void ContinuousExploration::State::extend_trail(std::size_t robot, double until) {
+  constexpr double kStep = 0.1;  // [s]
+  Member& member = members[robot];
+  const Trajectory& trajectory = member.motion.now;
   std::vector<Pose>& trail = team.trails[robot];
-  const std::vector<Pose> path = members[robot].driven.through(poses, team.lattice().resolution());
-  for (std::size_t i = trail.empty() ? 0 : 1; i < path.size(); ++i) {
-    Pose place = path[i];
-    stay_on_plane(robot, place, time);
+  const auto add = [&](const Pose& place, double apart) {
     const auto key = team.lattice().key(place.position);
-    // Not where it cannot have been: it may go back over its trail.
-    if (key && team.mapping.bounds().contains(*key)) trail.push_back(place);
+    const bool is_in_map = key && team.mapping.bounds().contains(*key);
+    if (is_in_map && (trail.empty() || (place.position - trail.back().position).norm() > apart))
+      trail.push_back(place);
+  };
+  const auto next = [&] { return trajectory.begin() + kStep * static_cast<double>(member.samples); };
+  for (; next() < std::min(until, trajectory.end()); ++member.samples)
+    add(trajectory.at(next()).pose, team.lattice().resolution());
+  if (until >= trajectory.end()) add(trajectory.at(trajectory.end()).pose, 0.0);
+}
+
+// A robot has come to rest before the end of its trajectory, some time ago perhaps: it has been nowhere
+// beyond.
+void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vector3d& rests) {
+  constexpr double kLate = 10.0;  // [s] after which a stop is told at most
+  std::vector<Pose>& trail = team.trails[robot];
+  double rest = kLate * team.options.team[robot].robot.limits.speed;  // [m]
+  double nearest = std::numeric_limits<double>::infinity();
+  std::size_t last = trail.size();
+  for (std::size_t i = trail.size(); i-- > 0 && rest >= 0.0;) {
+    const double off = (trail[i].position - rests).norm();
+    if (off <= nearest) last = i;
+    nearest = std::min(nearest, off);
+    if (i > 0) rest -= (trail[i].position - trail[i - 1].position).norm();
   }
+  if (last < trail.size()) trail.resize(last + 1);
 }
 
 // Takes note of what a scan has changed.
@@ -134,7 +185,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     robot.gained = team.mapped_frontiers(robot.changed);
     members[r].gained += robot.gained;
     members[r].sensed = {robot.planned.back()};
-    extend_trail(r, robot.planned, time);
+    extend_trail(r, time);
   }
   clock.reset();
   return step;
@@ -248,7 +299,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
-  step.robots[robot].trajectory = detail::poses_along(trajectory, start, trajectory.end());
+  step.robots[robot].trajectory = poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))

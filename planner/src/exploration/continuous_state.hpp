@@ -1,6 +1,5 @@
 #pragma once
 
-#include "exploration/driven_path.hpp"
 #include "exploration/exploration_state.hpp"
 #include "motion/separation.hpp"
 
@@ -49,7 +48,7 @@ struct ContinuousExploration::State {
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
-    detail::DrivenPath driven = {};   // since its last scan before the last planning
+    std::size_t samples = 0;        // of its trajectory that its trail has, or passes near by
     std::optional<Pose> looked = {};  // where it took its last scan that shows something, since it planned
     std::optional<Request> request = {};   // by another one, while it has no goal
     bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
@@ -65,11 +64,13 @@ struct ContinuousExploration::State {
   VoxelGrid before;                                            // the map at the last planning
   std::vector<std::pair<VoxelKey, std::size_t>> touched = {};  // since then, and by whom
 
-  void follow_trajectories(double time);
+  void set_motion(std::size_t robot, Trajectory trajectory);
+  void start_next_trajectories(double time);
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void note_scan(std::size_t robot, const MapChange& change);
-  void extend_trail(std::size_t robot, std::span<const Pose> poses, double time);
+  void extend_trail(std::size_t robot, double until);
+  void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
   [[nodiscard]] ExplorationStep collect(double time);
   /// A robot needs no room any more.

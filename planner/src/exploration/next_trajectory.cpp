@@ -10,7 +10,6 @@
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace frontlux::planner {
@@ -89,9 +88,6 @@ Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double 
     member.activity = Activity::kMakesRoom;
     if (path.empty()) {
       end_request(robot);
-      const std::array<Pose, 2> since_scan = {member.sensed.back(), then.pose};
-      if ((since_scan[0].position - since_scan[1].position).norm() > team.lattice().resolution())
-        extend_trail(robot, since_scan, start);
       if (!waits_for_room(robot)) path = team.plan_retreat(robot, now.goal);
       member.activity = path.empty() ? Activity::kRests : Activity::kRetreats;
     }

@@ -37,21 +37,32 @@ bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& 
   return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
+std::vector<VoxelKey> ClusterSights::cells_beyond(const Query& query, const FrontierCluster& cluster) {
+  const TravelGraph& graph = query.view.graph;
+  std::vector<VoxelKey> cells = graph.spread_cells(grown(cluster.box, query.view.region.reach()));
+  const auto node_of = [&](const VoxelKey& cell) { return graph.node(cell); };
+  cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());  // those of a node are together
+  std::erase_if(cells, query.connects);
+  return cells;
+}
+
 // Of the viewpoints that were found those that the robot can get to.
 void ClusterSights::find_reached(const Query& query, Sight& sight) {
   sight.stale = sight.stale || !sight.viewpoints.empty();
   sight.viewpoints.clear();
   std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
                        [&](const ClusterViewpoint& viewpoint) { return query.reaches(viewpoint.cell); });
+  sight.found_beyond =
+      std::ranges::any_of(sight.found, [&](const ClusterViewpoint& v) { return !query.connects(v.cell); });
   if (!sight.viewpoints.empty()) {
     sight.stale = false;
     sight.in_vain = sight.pause = 0;
     return;
   }
   sight.pause = std::max(0, sight.pause - 1);
-  if (!std::ranges::any_of(sight.out_of_reach, query.reaches)) return;
+  if ((sight.stale && sight.faces_stale) || std::ranges::none_of(sight.beyond, query.connects)) return;
   sight.stale = sight.faces_stale = true;
-  sight.out_of_reach.clear();
+  sight.beyond.clear();
 }
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
@@ -89,9 +100,8 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    auto [viewpoints, out_of_reach] = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
-    sight->viewpoints = std::move(viewpoints);
-    sight->out_of_reach = std::move(out_of_reach);
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
+    sight->beyond = cells_beyond(query, *cluster);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->depend_on.reset();
     sight->stale = false;
@@ -116,9 +126,8 @@ void ClusterSights::look_at_faces(const Query& query) {
       hidden.emplace_back(&cluster, &sight);
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
-    auto [viewpoints, out_of_reach] = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
-    sight->viewpoints = std::move(viewpoints);
-    sight->out_of_reach = std::move(out_of_reach);
+    sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
+    sight->beyond = cells_beyond(query, *cluster);
     sight->faces_stale = false;
     if (sight->viewpoints.empty()) return;
     sight->found = sight->viewpoints;
@@ -132,7 +141,7 @@ bool ClusterSights::sees_any() const {
 
 bool ClusterSights::would_see_any() const {
   return std::ranges::any_of(sights_, [](const auto& sight) {
-    return sight.second.viewpoints.empty() && !sight.second.found.empty();
+    return sight.second.viewpoints.empty() && sight.second.found_beyond;
   });
 }
 

@@ -25,8 +25,9 @@ class ClusterSights {
     /// Boxes that hold all voxels changed since the last update, and all cells in which the robot fits only
     /// now, or not any more.
     std::span<const KeyBox> changes;
-    const std::function<bool(const VoxelKey&)>& reaches;  ///< whether the robot can get to a cell
-    bool can_move = true;                                 ///< whether it can get anywhere
+    const std::function<bool(const VoxelKey&)>& reaches;   ///< whether the robot can get to a cell
+    const std::function<bool(const VoxelKey&)>& connects;  ///< whether it could if there were no others
+    bool can_move = true;                                  ///< whether it can get anywhere
   };
   /// Looks for the viewpoints of clusters that have changed, or near which something has. Where none of the
   /// usual places sees a cluster, cells all over the graph are tried, after each trial in vain with a pause
@@ -42,7 +43,7 @@ class ClusterSights {
 
   /// Whether there is a cluster that the robot sees from where it can get to.
   [[nodiscard]] bool sees_any() const;
-  /// Whether there is one that it would see from where it fits, but cannot get to.
+  /// Whether there is one that it would see from where it fits, but could not get to if there were no others.
   [[nodiscard]] bool would_see_any() const;
 
   /// Those of a cluster that the robot can get to, the best first.
@@ -56,14 +57,17 @@ class ClusterSights {
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
     bool faces_stale = true;                   // since its faces were looked for
-    std::vector<VoxelKey> out_of_reach;        // then, cells from which it might be seen
-    int in_vain = 0;                           // that often, in a row
-    int pause = 0;                             // plannings until the next time
-    std::size_t updated = 0;                   // in which update, by their number
+    // A cell of each node from which it might be seen, and which did not connect with the robot then.
+    std::vector<VoxelKey> beyond;
+    bool found_beyond = false;  // what is found does not connect with the robot
+    int in_vain = 0;            // that often, in a row
+    int pause = 0;              // plannings until the next time
+    std::size_t updated = 0;    // in which update, by their number
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
   struct Changes;
+  [[nodiscard]] static std::vector<VoxelKey> cells_beyond(const Query& query, const FrontierCluster& cluster);
   [[nodiscard]] static bool needs_a_look(const Changes& changes, const FrontierCluster& cluster,
                                          const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);

@@ -210,13 +210,12 @@ FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierClust
   return {std::move(found)};
 }
 
-ViewpointsAnywhere viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster, Aim aim,
-                                       const std::function<bool(const VoxelKey&)>& reaches) {
+std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, const FrontierCluster& cluster,
+                                                  Aim aim,
+                                                  const std::function<bool(const VoxelKey&)>& reaches) {
   std::vector<VoxelKey> cells = query.graph.spread_cells(grown(cluster.box, query.region.reach()));
-  const auto beyond = std::stable_partition(cells.begin(), cells.end(), reaches);
-  const std::vector<VoxelKey> out_of_reach(beyond, cells.end());
-  cells.erase(beyond, cells.end());
-  return {best_viewpoints(query, cluster, cells, kSmallSample, aim), out_of_reach};
+  std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(cell); });
+  return best_viewpoints(query, cluster, cells, kSmallSample, aim);
 }
 
 }  // namespace frontlux::planner::detail

@@ -58,16 +58,10 @@ struct FoundViewpoints {
 [[nodiscard]] FoundViewpoints find_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
                                               std::span<const ClusterViewpoint> before);
 
-/// What `viewpoints_anywhere` has found.
-struct ViewpointsAnywhere {
-  std::vector<ClusterViewpoint> viewpoints;
-  std::vector<VoxelKey> out_of_reach;  ///< cells that were left out
-};
-
 /// The same of cells all over the graph that the robot can get to.
-[[nodiscard]] ViewpointsAnywhere viewpoints_anywhere(const ViewpointQuery& query,
-                                                     const FrontierCluster& cluster, Aim aim,
-                                                     const std::function<bool(const VoxelKey&)>& reaches);
+[[nodiscard]] std::vector<ClusterViewpoint> viewpoints_anywhere(
+    const ViewpointQuery& query, const FrontierCluster& cluster, Aim aim,
+    const std::function<bool(const VoxelKey&)>& reaches);
 
 /// The part of each cluster that a robot sees from each viewpoint, at its yaw; by a sample of the frontiers.
 /// Viewpoints are rows, clusters are columns.

@@ -162,7 +162,7 @@ std::optional<VoxelKey> TourPlanning::place_to_see_from(
   const ViewpointQuery view = sight_of(robot, caster, grid);
   for (const FrontierCluster& cluster : clusters_.clusters()) {
     if (is_others(cluster)) continue;
-    const auto viewpoints = viewpoints_anywhere(view, cluster, Aim::kMiddle, among).viewpoints;
+    const auto viewpoints = viewpoints_anywhere(view, cluster, Aim::kMiddle, among);
     if (!viewpoints.empty()) return viewpoints.front().cell;
   }
   return std::nullopt;
@@ -304,15 +304,19 @@ void TourPlanning::update_map(const Query& query) {
   const std::function<bool(const VoxelKey&)> can_go = [&](const VoxelKey& cell) {
     return reaches(query, cell);
   };
+  const std::function<bool(const VoxelKey&)> connects = [&](const VoxelKey& cell) {
+    return can_reach(query.robot, cell);
+  };
   const bool can_move = query.corridor.state() == CorridorState::kReady;
   const auto sights = [&](const ViewpointQuery& view) {
-    return ClusterSights::Query{view, clusters_.clusters(), cells, can_go, can_move};
+    return ClusterSights::Query{view, clusters_.clusters(), cells, can_go, connects, can_move};
   };
   const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
   member.sights.update(sights(view));
   if (!can_move) return;
   // A flat patch of unknown floor may be all that keeps a robot from where it would see something.
-  if (!member.sights.sees_any() && member.sights.would_see_any()) member.sights.look_at_faces(sights(view));
+  if (!nobody_sees_any() && !member.sights.sees_any() && member.sights.would_see_any())
+    member.sights.look_at_faces(sights(view));
   if (nobody_sees_any()) look_closer(query, sights);
 }
 

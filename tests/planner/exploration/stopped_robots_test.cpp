@@ -152,36 +152,38 @@ TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
   EXPECT_GT(second->trajectory.length(), 0.0) << "it goes back the way it came";
 }
 
-// Also where it has driven around corners and its scans were lost.
+// Also where it has driven around a corner and its scans were lost, and if its stop is told late.
 TEST(StoppedRobots, GoBackAsTheyCame) {
-  for (const double begin : {5.0, 16.0, 22.0}) {  // soon it goes around a corner
-    TeamInMotion scene("maze", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
-    scene.explore(begin);
-    ContinuousExploration& exploration = scene.exploration();
-    double time = scene.time();
-    std::vector<Eigen::Vector3d> been;
-    const double stops = time + 12.0;
-    for (; time < stops; time += kSample) {
-      while (exploration.plan(time)) {
+  for (const double beyond : {0.0, 1.0})            // [m] where its trajectory ends by the time
+    for (const double begin : {5.0, 16.0, 22.0}) {  // [s] soon it goes around a corner
+      TeamInMotion scene("maze", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+      scene.explore(begin);
+      ContinuousExploration& exploration = scene.exploration();
+      double time = scene.time();
+      std::vector<Eigen::Vector3d> been;
+      for (const double stops = time + 12.0; time < stops; time += kSample) {
+        while (exploration.plan(time)) {
+        }
+        been.push_back(exploration.at(0, time).pose.position);
       }
-      been.push_back(exploration.at(0, time).pose.position);
+      const Eigen::Vector3d end = been.back();
+      while ((been.back() - end).norm() < beyond) been.pop_back();
+      exploration.stopped(0, {been.back(), 0.0}, time, {});
+      const auto planned = exploration.plan(time);
+      ASSERT_TRUE(planned);
+      const Trajectory& back = planned->trajectory;
+      for (double t = back.begin(); t < back.end(); t += kSample) {
+        const Eigen::Vector3d now = back.at(t).pose.position;
+        const auto off = [&](const Eigen::Vector3d& place) { return (place - now).norm(); };
+        EXPECT_LT(std::ranges::min(been | std::views::transform(off)), 0.2) << begin << " " << beyond;
+      }
+      const Eigen::Vector3d straight = (been.back() - been.front()).normalized();
+      EXPECT_TRUE(std::ranges::any_of(been, [&](const Eigen::Vector3d& place) {
+        const Eigen::Vector3d along = place - been.front();
+        return (along - along.dot(straight) * straight).norm() > 0.5;
+      })) << begin;
+      EXPECT_GT(back.length(), 0.1) << begin;
     }
-    exploration.stopped(0, exploration.at(0, time).pose, time, {});
-    const auto planned = exploration.plan(time);
-    ASSERT_TRUE(planned);
-    const Trajectory& back = planned->trajectory;
-    for (double t = back.begin(); t < back.end(); t += kSample) {
-      const Eigen::Vector3d now = back.at(t).pose.position;
-      const auto off = [&](const Eigen::Vector3d& place) { return (place - now).norm(); };
-      EXPECT_LT(std::ranges::min(been | std::views::transform(off)), 0.2) << begin;
-    }
-    const Eigen::Vector3d straight = (been.back() - been.front()).normalized();
-    EXPECT_TRUE(std::ranges::any_of(been, [&](const Eigen::Vector3d& place) {
-      const Eigen::Vector3d along = place - been.front();
-      return (along - along.dot(straight) * straight).norm() > 0.5;
-    })) << begin;
-    EXPECT_GT(back.length(), 0.2) << begin;
-  }
 }
 
 // Whatever they try, they are stopped where they are.

@@ -39,11 +39,16 @@ struct Scene {
   ViewRegion region{view, kResolution};
   std::unique_ptr<RayCaster> caster;
   ClusterSights sights;
-  bool is_shut_in = false;
+  bool is_shut_in = false, is_in_the_way = false;  // whatever the map says; another robot
+  std::atomic<int> asked_if_connected = 0;
+  const std::function<bool(const VoxelKey&)> connects = [this](const VoxelKey& cell) {
+    ++asked_if_connected;
+    return !is_shut_in && corridor.contains(cell);
+  };
   std::atomic<int> asked = 0;  // whether the robot gets to a cell
   const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
     ++asked;
-    return !is_shut_in && corridor.contains(cell);
+    return connects(cell) && !is_in_the_way;
   };
 
   Scene() {
@@ -55,10 +60,10 @@ struct Scene {
   }
 
   void look(const std::vector<FrontierCluster>& clusters, std::span<const KeyBox> changes) {
-    sights.update({{*caster, grid, graph, view, region}, clusters, changes, reaches});
+    sights.update({{*caster, grid, graph, view, region}, clusters, changes, reaches, connects});
   }
   void look_at_faces(const std::vector<FrontierCluster>& clusters) {
-    sights.look_at_faces({{*caster, grid, graph, view, region}, clusters, {}, reaches});
+    sights.look_at_faces({{*caster, grid, graph, view, region}, clusters, {}, reaches, connects});
   }
 };
 
@@ -182,6 +187,26 @@ TEST(ClusterSights, TellWhatTheRobotWouldSee) {
   scene.look({seen, hidden}, {});
   EXPECT_FALSE(scene.sights.sees_any());
   EXPECT_TRUE(scene.sights.would_see_any());
+  scene.is_shut_in = false;
+  scene.is_in_the_way = true;
+  scene.look({seen, hidden}, {});
+  EXPECT_FALSE(scene.sights.sees_any());
+  EXPECT_FALSE(scene.sights.would_see_any()) << "another robot does not shut it in";
+}
+
+// It is asked for each part of the graph's cubes whether it connects now, not for each cell.
+TEST(ClusterSights, CostLittleOfARobotThatIsShutIn) {
+  Scene scene;
+  scene.is_shut_in = true;
+  std::vector<FrontierCluster> clusters;
+  for (std::uint32_t i = 0; i < 10; ++i)
+    clusters.push_back(cluster_of(i + 1, at(30, static_cast<int>(i), 8)));
+  for (int planning = 0; planning < 3; ++planning) scene.look(clusters, {});
+  scene.asked = scene.asked_if_connected = 0;
+  scene.look(clusters, {});
+  EXPECT_EQ(scene.asked, 0);
+  EXPECT_GT(scene.asked_if_connected, 0);
+  EXPECT_LE(scene.asked_if_connected, 10 * static_cast<int>(2 * scene.graph.size()));
 }
 
 // The layer under the room, of which the camera sees no middle.
