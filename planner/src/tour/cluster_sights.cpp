@@ -37,11 +37,12 @@ bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& 
   return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
+// A cell of each node around a cluster, or a few, that does not connect with the robot.
 std::vector<VoxelKey> ClusterSights::cells_beyond(const Query& query, const FrontierCluster& cluster) {
   const TravelGraph& graph = query.view.graph;
   std::vector<VoxelKey> cells = graph.spread_cells(grown(cluster.box, query.view.region.reach()));
   const auto node_of = [&](const VoxelKey& cell) { return graph.node(cell); };
-  cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());  // those of a node are together
+  cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());
   std::erase_if(cells, query.connects);
   return cells;
 }
@@ -67,15 +68,15 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
 std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Query& query) {
-  std::vector<Hidden> all, search;
+  std::map<std::uint32_t, Sight> sights;
+  std::vector<std::pair<const FrontierCluster*, Sight*>> search;
   const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
   const bool same_extent = extent_ == extent;
   const Changes changes(query);
-  ++updates_;
   for (const FrontierCluster& cluster : query.clusters) {
-    Sight& sight = sights_[cluster.id];
-    sight.updated = updates_;
-    all.emplace_back(&cluster, &sight);
+    Sight& sight = sights[cluster.id];
+    if (const auto before = sights_.find(cluster.id); before != sights_.end())
+      sight = std::move(before->second);
     if (!same_extent) sight.depend_on.reset();
     if (needs_a_look(changes, cluster, sight)) search.emplace_back(&cluster, &sight);
   }
@@ -87,14 +88,15 @@ std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Q
     sight->depend_on = depend_on;
     sight->stale = sight->faces_stale = true;
   });
-  std::erase_if(sights_, [&](const auto& sight) { return sight.second.updated != updates_; });
+  sights_ = std::move(sights);
   // Where the robot can get to may change without a change near by: what it cannot get to now it keeps.
-  constexpr std::size_t kAtOnce = 64;
-  for_each_chunk(all.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) find_reached(query, *all[i].second);
-  });
-  std::erase_if(all, [](const Hidden& any) { return !any.second->viewpoints.empty() || !any.second->stale; });
-  return all;
+  std::vector<Hidden> hidden;
+  for (const FrontierCluster& cluster : query.clusters) {
+    Sight& sight = sights_[cluster.id];
+    find_reached(query, sight);
+    if (sight.viewpoints.empty() && sight.stale) hidden.emplace_back(&cluster, &sight);
+  }
+  return hidden;
 }
 
 void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidden> hidden) {

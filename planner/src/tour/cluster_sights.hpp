@@ -5,12 +5,11 @@
 
 #include <frontlux/key_box.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -59,10 +58,9 @@ class ClusterSights {
     bool faces_stale = true;                   // since its faces were looked for
     // A cell of each node from which it might be seen, and which did not connect with the robot then.
     std::vector<VoxelKey> beyond;
-    bool found_beyond = false;  // what is found does not connect with the robot
+    bool found_beyond = false;  // some of what is found does not connect with the robot
     int in_vain = 0;            // that often, in a row
     int pause = 0;              // plannings until the next time
-    std::size_t updated = 0;    // in which update, by their number
   };
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
@@ -74,9 +72,8 @@ class ClusterSights {
   static void find_reached(const Query& query, Sight& sight);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
-  std::unordered_map<std::uint32_t, Sight> sights_;  // by cluster
-  std::size_t updates_ = 0;
-  std::optional<KeyBox> extent_;  // of the graph
+  std::map<std::uint32_t, Sight> sights_;  // by cluster
+  std::optional<KeyBox> extent_;           // of the graph
 };
 
 }  // namespace frontlux::planner::detail

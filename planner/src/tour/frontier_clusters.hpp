@@ -11,6 +11,7 @@
 #include <map>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace frontlux::planner::detail {
@@ -25,8 +26,8 @@ struct FrontierCluster {
 
 /// The frontiers of a map in clusters. They connect by faces, edges and corners; clusters that reach from one
 /// cube of a lattice of cubes into another are cut there, but small pieces stay with a neighbour, up to a
-/// bounded width of all together. Only cubes with other frontiers than before, and the clusters that they or
-/// small pieces beside them have to do with, are made again.
+/// bounded width of all together. Only cubes with other frontiers than before, and clusters in them, are made
+/// again.
 class FrontierClusters {
  public:
   /// @param bounds  of all frontiers
@@ -49,11 +50,8 @@ class FrontierClusters {
   [[nodiscard]] std::uint32_t cluster_of(const VoxelKey& frontier) const {
     return pieces_[piece_[frontier]].cluster;
   }
-  /// The same for each frontier of the last update.
-  [[nodiscard]] std::span<const std::uint32_t> clusters_of_frontiers() const { return cluster_of_frontier_; }
 
  private:
-  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
   using Keys = std::vector<VoxelKey>;
   struct Cube {
     Keys frontiers;                     // sorted
@@ -64,58 +62,44 @@ class FrontierClusters {
     KeyBox box = {};
     std::uint64_t revision = 0;  // another one whenever its keys may be others
     std::uint32_t joins = 0;     // of a small one: `piece_for`
-    std::uint32_t group = 0;     // name of its group
     std::uint32_t cluster = 0;   // id; 0 if it is in none
-  };
-  // Pieces that small ones connect with those that they join: what becomes of them is their own affair.
-  using Group = std::vector<std::uint32_t>;
-  // What an update has changed.
-  struct Changes {
-    std::vector<std::uint32_t> groups;    // names
-    std::vector<std::uint32_t> clusters;  // ids of those that pieces were in
   };
   struct Part {
     std::vector<std::uint32_t> pieces;  // in their order
     std::size_t size = 0;               // [frontiers]
   };
+  using Ids = std::unordered_set<std::uint32_t>;
   struct Made {
-    Part part;                             // that a cluster is made of
-    std::vector<std::uint64_t> revisions;  // of its pieces
+    std::vector<std::uint64_t> revisions;  // of a cluster's pieces
+    std::uint32_t id;                      // of the cluster
   };
-  class Naming;
 
   [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
     return make_key(key.x / edge_, key.y / edge_, key.z / edge_);
   }
-  [[nodiscard]] bool is_small(std::uint32_t piece) const { return pieces_[piece].keys.size() < least_; }
-  void cut(Cube& cube, const VoxelKey& at, Changes& changes);
+  void cut(Cube& cube, const VoxelKey& at);
   [[nodiscard]] std::uint32_t new_piece();
+  [[nodiscard]] std::vector<std::uint32_t> pieces_in_order() const;
   [[nodiscard]] std::uint32_t piece_for(std::uint32_t small) const;
-  void find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed, Changes& changes);
-  [[nodiscard]] std::vector<std::uint32_t> take_groups(std::vector<std::uint32_t> names);
-  void group(std::span<const std::uint32_t> pieces);
-  [[nodiscard]] std::vector<Part> joined_pieces(std::span<const std::uint32_t> order) const;
+  void find_neighbors_of_small_pieces(const std::map<VoxelKey, Keys>& changed);
+  [[nodiscard]] std::vector<Part> joined_pieces() const;
   [[nodiscard]] std::vector<std::uint64_t> revisions_of(const Part& part) const;
-  [[nodiscard]] bool is_before(const Part& a, const Part& b) const;
-  [[nodiscard]] FrontierCluster make_cluster(const Part& part, Naming& naming);
-  void make_clusters(Changes changes);
-  void replace_clusters(Naming& naming);
-  Keys set_frontiers(std::span<const VoxelKey> frontiers);
+  [[nodiscard]] FrontierCluster make_cluster(const Part& part, const Ids& taken);
+  [[nodiscard]] std::uint32_t name_for(const Keys& keys, const Ids& taken);
+  void make_clusters();
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
-  std::vector<std::uint32_t> cluster_of_frontier_;   // id of each one's; 0 if it is in none
-  std::vector<std::uint32_t> places_ = {kNoPlace};   // of the ids among the clusters
-  std::unordered_map<std::uint32_t, Made> made_of_;  // by id
-  std::unordered_map<std::uint32_t, Group> groups_;  // by name
-  std::map<VoxelKey, Cube> cubes_;                   // that hold frontiers
-  std::vector<Piece> pieces_ = {{}};                 // 0 is never in use
-  std::vector<std::uint32_t> free_;                  // numbers
-  BoxArray<std::uint32_t> piece_;                    // number of each frontier's; 0 elsewhere
-  BoxArray<std::uint32_t> cluster_;                  // that each voxel was in last
-  std::uint32_t next_id_ = 1, next_group_ = 1;
+  std::unordered_map<std::uint32_t, std::size_t> places_;  // of the ids among the clusters
+  std::unordered_map<std::uint64_t, Made> made_of_;        // by the revisions of the clusters' first pieces
+  std::map<VoxelKey, Cube> cubes_;                         // that hold frontiers
+  std::vector<Piece> pieces_ = {{}};                       // 0 is never in use
+  std::vector<std::uint32_t> free_;                        // numbers
+  BoxArray<std::uint32_t> piece_;                          // number of each frontier's; 0 elsewhere
+  BoxArray<std::uint32_t> cluster_;                        // that each voxel was in last
+  std::uint32_t next_id_ = 1;
   std::uint64_t next_revision_ = 1;
   std::uint64_t next_piece_revision_ = 1;
 };

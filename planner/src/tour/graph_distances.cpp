@@ -1,5 +1,7 @@
 #include "tour/graph_distances.hpp"
 
+#include "mapping/sort_once.hpp"
+
 #include <frontlux/parallel.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
@@ -15,14 +17,13 @@ void GraphDistances::update(const TravelCorridor& corridor, std::span<const KeyB
   graph_.update(corridor, changed);
   from_start_.clear();
   // What was not asked for since the update before will not be soon, either.
-  std::erase_if(near_,
-                [&](const auto& entry) { return !entry.second.asked || graph_.has_changed(entry.first); });
-  for (auto& [from, near] : near_) {
-    near.asked = false;
-    near.is_current = std::ranges::none_of(near.near.distances, [&](const TravelGraph::Distance& distance) {
+  std::erase_if(near_, [&](const auto& entry) {
+    const Near& near = entry.second;
+    return !near.asked || std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
       return graph_.has_changed(distance.to);
     });
-  }
+  });
+  for (auto& [from, near] : near_) near.asked = false;
 }
 
 void GraphDistances::start_from(const std::optional<VoxelKey>& cell) {
@@ -32,21 +33,18 @@ void GraphDistances::start_from(const std::optional<VoxelKey>& cell) {
 }
 
 void GraphDistances::measure_from(std::span<const VoxelKey> cells) {
-  std::vector<TravelGraph::NearQuery> queries;
-  std::vector<Near*> asked;  // by each of them
+  std::vector<std::uint32_t> nodes;
   for (const VoxelKey& cell : cells) {
     const auto node = graph_.node(cell);
     if (!node) continue;
-    const auto [entry, is_new] = near_.try_emplace(graph_.name_of(*node));
-    Near& near = entry->second;
-    near.asked = true;
-    if (!is_new && near.is_current) continue;
-    queries.push_back({*node, is_new ? nullptr : &near.near});
-    asked.push_back(&near);
-    near.is_current = true;
+    if (const auto known = near_.find(graph_.name_of(*node)); known != near_.end())
+      known->second.asked = true;
+    else
+      nodes.push_back(*node);
   }
-  auto found = graph_.near_distances(queries, measured_);
-  for (std::size_t i = 0; i < found.size(); ++i) asked[i]->near = std::move(found[i]);
+  sort_once(nodes);
+  auto near = graph_.near_distances(nodes, measured_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
 }
 
 bool GraphDistances::reaches(const VoxelKey& cell) const {
@@ -61,8 +59,10 @@ double GraphDistances::from_start(const VoxelKey& cell) const {
 double GraphDistances::between(const VoxelKey& from, const VoxelKey& to) const {
   const auto a = graph_.node(from), b = graph_.node(to);
   if (!a || !b) return TravelGraph::kFar;
-  const double distance = near_.at(graph_.name_of(*a)).near.distance_to(graph_.name_of(*b));
-  return distance == TravelGraph::kFar ? distance : straightened(from, to, distance);
+  const auto& near = near_.at(graph_.name_of(*a)).distances;
+  const TravelGraph::Name name = graph_.name_of(*b);
+  const auto found = std::ranges::lower_bound(near, name, {}, &TravelGraph::Distance::to);
+  return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
 }
 
 NumberTable GraphDistances::between(std::span<const std::optional<VoxelKey>> cells) const {
@@ -74,14 +74,13 @@ NumberTable GraphDistances::between(std::span<const std::optional<VoxelKey>> cel
   NumberTable distances(cells.size(), cells.size(), TravelGraph::kFar);
   for_each_index(names.size(), [&](std::size_t n) {
     const auto& [from, i] = names[n];
-    const auto& [known, farthest, bands] = near_.at(from).near;
+    const auto& known = near_.at(from).distances;
     auto near = known.begin();
     for (const auto& [to, j] : names) {
       if (j >= i) continue;
       while (near != known.end() && near->to < to) ++near;
       if (near == known.end()) break;
-      if (near->to == to && near->length <= farthest)
-        distances(i, j) = straightened(*cells[i], *cells[j], near->length);
+      if (near->to == to) distances(i, j) = straightened(*cells[i], *cells[j], near->length);
     }
   });
   return distances;

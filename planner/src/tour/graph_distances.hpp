@@ -57,9 +57,8 @@ class GraphDistances {
   std::optional<VoxelKey> start_;
   std::vector<double> from_start_;  // [m] to each node; empty before they are found
   struct Near {
-    TravelGraph::Near near;
-    bool asked = true;       // for, since the last update
-    bool is_current = true;  // as of the last update; otherwise of the one before
+    std::vector<TravelGraph::Distance> distances;
+    bool asked = true;  // for, since the last update
   };
   std::map<TravelGraph::Name, Near> near_;  // from other nodes
 };

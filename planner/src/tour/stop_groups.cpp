@@ -1,29 +1,20 @@
 #include "tour/stop_groups.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <tuple>
 #include <utility>
 
 namespace frontlux::planner::detail {
 namespace {
 
-// Clusters of one zone that the same robots see make one stop.
-struct Zone {
-  int edge;  // [voxels]
-  VoxelKey at;
-  const std::vector<bool>* by;
-  std::uint32_t cluster;
-  [[nodiscard]] auto key() const { return std::tie(edge, at, *by); }
-};
-
 // @param near      distance up to which clusters are stops of their own
 // @param one_edge  distance up to which zones are of one size
 std::vector<StopClusters> stops_if(std::span<const SeenCluster> seen, int zone_edge, double near,
                                    double one_edge) {
   std::vector<StopClusters> stops;
-  std::vector<Zone> zones;  // of each cluster
+  std::map<std::tuple<int, VoxelKey, std::vector<bool>>, StopClusters> zones;
   for (const auto& [cluster, middle, by, distance, is_next] : seen) {
     if (distance <= near || (distance <= 1.0 && is_next)) {
       stops.push_back({cluster});
@@ -31,13 +22,9 @@ std::vector<StopClusters> stops_if(std::span<const SeenCluster> seen, int zone_e
     }
     int edge = zone_edge;
     for (double rest = distance; rest > one_edge; rest /= 2.0) edge *= 2;
-    zones.push_back({edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), &by, cluster});
+    zones[{edge, make_key(middle.x / edge, middle.y / edge, middle.z / edge), by}].push_back(cluster);
   }
-  std::ranges::stable_sort(zones, {}, &Zone::key);
-  for (std::size_t i = 0; i < zones.size(); ++i) {
-    if (i == 0 || zones[i].key() != zones[i - 1].key()) stops.emplace_back();
-    stops.back().push_back(zones[i].cluster);
-  }
+  for (auto& [zone, stop] : zones) stops.push_back(std::move(stop));
   return stops;
 }
 

@@ -20,8 +20,6 @@ namespace {
 
 using Keys = std::vector<VoxelKey>;
 
-constexpr std::size_t kCellsAtOnce = 64;  // whose distances one thread finds
-
 static_assert(TravelGraph::kFar == TourProblem::kNever);
 
 int voxels(double length, const Lattice& lattice) {
@@ -92,14 +90,12 @@ std::vector<RenderedCell> TourPlanning::candidates(std::size_t robot) const {
   std::vector<RenderedCell> cells;
   for (const FrontierCluster& cluster : clusters_.clusters())
     for (const auto& [cell, yaw, seen, aim] : member.sights.viewpoints(cluster.id))
-      cells.push_back({.cell = cell,
-                       .gain = static_cast<double>(seen),
-                       .yaw = yaw,
-                       .hits = static_cast<std::uint32_t>(seen)});
-  for_each_chunk(cells.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) cells[i].distance = member.distances.from_start(cells[i].cell);
-  });
-  std::erase_if(cells, [](const RenderedCell& cell) { return cell.distance == TourProblem::kNever; });
+      if (const double distance = member.distances.from_start(cell); distance != TourProblem::kNever)
+        cells.push_back({.cell = cell,
+                         .distance = distance,
+                         .gain = static_cast<double>(seen),
+                         .yaw = yaw,
+                         .hits = static_cast<std::uint32_t>(seen)});
   return cells;
 }
 
@@ -383,10 +379,13 @@ void TourPlanning::note_frontiers(const Query& query) {
         whose[id] = &member;
       }
   }
-  const std::span<const std::uint32_t> ids = clusters_.clusters_of_frontiers();
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    if (ids[i] < whose.size() && whose[ids[i]] != nullptr)
-      whose[ids[i]]->frontiers.push_back(query.frontiers[i]);
+  std::vector<Member*> owners(query.frontiers.size());
+  for_each_index(owners.size(), [&](std::size_t i) {
+    const std::uint32_t id = clusters_.cluster_of(query.frontiers[i]);
+    owners[i] = id < whose.size() ? whose[id] : nullptr;
+  });
+  for (std::size_t i = 0; i < owners.size(); ++i)
+    if (owners[i] != nullptr) owners[i]->frontiers.push_back(query.frontiers[i]);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;

@@ -41,8 +41,7 @@ TravelGraph::TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge,
   };
   number_of_ = {numbers(bounds.min.x, bounds.max.x, count_[1] * count_[2]),
                 numbers(bounds.min.y, bounds.max.y, count_[2]), numbers(bounds.min.z, bounds.max.z, 1)};
-  numbers_.resize(cubes_.size());
-  for (std::size_t axis = 0; axis < 3; ++axis) filled_[axis].resize(count_[axis]);
+  first_.resize(cubes_.size());
   for (std::size_t i = 0; i < cubes_.size(); ++i) {
     const auto at = [&](std::size_t place, int low) { return low + static_cast<int>(place) * edge_; };
     const VoxelKey corner =
@@ -164,45 +163,12 @@ void TravelGraph::for_each_touching(Name name, const Visit& visit) const {
         if (other == name) visit(name_of(index - back, part));
 }
 
-// Gives the parts of a cube numbers. They get other ones only where there are more parts than ever before.
-void TravelGraph::number_parts(std::size_t index) {
-  const std::size_t count = cubes_[index].centers.size();
-  auto& [first, parts, room] = numbers_[index];
-  if ((count == 0) != (parts == 0)) {
-    const std::array at = {index / (count_[1] * count_[2]), index / count_[2] % count_[1], index % count_[2]};
-    for (std::size_t axis = 0; axis < 3; ++axis) filled_[axis][at[axis]] += count == 0 ? -1u : 1u;
-  }
-  for (std::uint32_t part = 0; part < parts; ++part) nodes_[first + part].edges = {};
-  parts = static_cast<std::uint16_t>(count);
-  if (count <= room) return;
-  first = static_cast<std::uint32_t>(nodes_.size());
-  room = static_cast<std::uint16_t>(room == 0 ? count : std::bit_ceil(count));
-  for (std::uint32_t part = 0; part < room; ++part) nodes_.push_back({name_of(index, part), {}});
-}
-
-// Around all cubes with parts.
-void TravelGraph::find_extent() {
-  extent_.reset();
-  std::array<std::size_t, 3> low{}, high{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& filled = filled_[axis];
-    while (low[axis] < filled.size() && filled[low[axis]] == 0) ++low[axis];
-    if (low[axis] == filled.size()) return;
-    for (high[axis] = filled.size() - 1; filled[high[axis]] == 0;) --high[axis];
-  }
-  const auto cells_of = [this](const std::array<std::size_t, 3>& at) {
-    return cubes_[(at[0] * count_[1] + at[1]) * count_[2] + at[2]].cells;
-  };
-  extent_ = hull(cells_of(low), cells_of(high));
-}
-
 // Connects each node of a cube with its neighbours and with theirs: so a path along a diagonal is about as
 // long as it is.
 // @return whether an edge is another one than before
 bool TravelGraph::connect(std::size_t index) {
   Cube& cube = cubes_[index];
-  const std::vector<Edge> before = std::exchange(cube.edges, {});
-  const std::vector<std::size_t> ends_before = std::exchange(cube.ends, {});
+  const std::vector<Cube::Edge> before = std::exchange(cube.edges, {});
   std::vector<Name> touching, near;
   for (std::uint32_t part = 0; part < cube.centers.size(); ++part) {
     const Name name = name_of(index, part);
@@ -213,16 +179,9 @@ bool TravelGraph::connect(std::size_t index) {
     sort_once(near);
     for (const Name to : near)
       if (to != name)
-        cube.edges.push_back({number_of(to), static_cast<float>((center_of(to) - center_of(name)).norm())});
-    cube.ends.push_back(cube.edges.size());
+        cube.edges.push_back({part, to, static_cast<float>((center_of(to) - center_of(name)).norm())});
   }
-  std::size_t begin = 0;
-  for (std::uint32_t part = 0; part < cube.ends.size(); ++part) {
-    nodes_[numbers_[index].first + part].edges =
-        std::span(cube.edges).subspan(begin, cube.ends[part] - begin);
-    begin = cube.ends[part];
-  }
-  return cube.edges != before || cube.ends != ends_before;
+  return cube.edges != before;
 }
 
 // Calls `visit(number)` for a cube and those that are one or two faces away.
@@ -243,6 +202,35 @@ void TravelGraph::for_each_as_near_as_two(std::size_t index, const Visit& visit)
     }
 }
 
+// Nodes are numbered by their names.
+void TravelGraph::number_nodes() {
+  names_.clear();
+  extent_.reset();
+  std::vector<std::size_t> edges_before(cubes_.size());
+  std::size_t edges = 0;
+  for (std::size_t i = 0; i < cubes_.size(); ++i) {
+    const Cube& cube = cubes_[i];
+    first_[i] = static_cast<std::uint32_t>(names_.size());
+    edges_before[i] = edges;
+    edges += cube.edges.size();
+    for (std::uint32_t part = 0; part < cube.centers.size(); ++part) names_.push_back(name_of(i, part));
+    if (!cube.centers.empty()) extent_ = extent_ ? hull(*extent_, cube.cells) : cube.cells;
+  }
+  begin_.assign(names_.size() + 1, edges);
+  edges_.resize(edges);
+  for_each_range(cubes_.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      std::size_t at = edges_before[i];
+      auto edge = cubes_[i].edges.begin();
+      for (std::uint32_t part = 0; part < cubes_[i].centers.size(); ++part) {
+        begin_[first_[i] + part] = at;
+        for (; edge != cubes_[i].edges.end() && edge->from == part; ++edge)
+          edges_[at++] = {first_[cube_of(edge->to)] + part_of(edge->to), edge->length};
+      }
+    }
+  });
+}
+
 void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox> changed) {
   std::vector<std::uint8_t> reads(cubes_.size());
   for (const KeyBox& box : changed) for_each_cube(box, [&](std::size_t cube) { reads[cube] = 1; });
@@ -258,24 +246,106 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
     for_each_as_near_as_two(i, [&](std::size_t cube) { edges[cube] = 1; });
   }
   changed_ = std::move(reads);
-  changed_nodes_.clear();
   const std::vector<std::size_t> linked = set_places(links), connected = set_places(edges);
   if (connected.empty()) return;
-  for (const std::size_t i : read_cubes)
-    if (changed_[i] != 0) number_parts(i);
-  find_extent();
   for_each_index(linked.size(), [&](std::size_t i) { link(linked[i]); });
   for_each_index(connected.size(), [&](std::size_t i) {
     if (connect(connected[i])) changed_[connected[i]] = 1;
   });
-  for (const std::size_t i : connected)
-    for (std::uint32_t part = 0; changed_[i] != 0 && part < numbers_[i].parts; ++part)
-      changed_nodes_.push_back(numbers_[i].first + part);
+  number_nodes();
 }
 
 std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   if (!fits(cell)) return std::nullopt;
-  return numbers_[cube_of(cell)].first + part_[cell] - 1u;
+  return first_[cube_of(cell)] + part_[cell] - 1u;
+}
+
+// Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they
+// turn out to be nearer. Searches from several nodes after each other pay for what they reach only.
+class TravelGraph::Search {
+ public:
+  explicit Search(const TravelGraph& graph)
+      : graph_(graph), lengths_(graph.size(), kFar), marks_(graph.size() / 64 + 1) {}
+
+  // Ends when the distances of so many nodes are known. Those of other nodes are `kFar` afterwards.
+  void run(std::uint32_t from, std::size_t count) {
+    for (const std::uint32_t node : reached_) lengths_[node] = kFar;
+    reached_.assign(1, from);
+    lengths_[from] = 0.0;
+    open_.resize(std::max<std::size_t>(open_.size(), 1));
+    open_[0].emplace_back(0.0, from);
+    std::size_t known = 0, now = 0, end = 1;  // bands
+    for (; now < end && known < count; ++now) {
+      for (std::size_t i = 0; i < open_[now].size(); ++i) {
+        const auto [so_far, node] = open_[now][i];
+        if (so_far > lengths_[node]) continue;
+        for (std::size_t e = graph_.begin_[node]; e < graph_.begin_[node + 1]; ++e) {
+          const auto& [to, length] = graph_.edges_[e];
+          const double through = so_far + static_cast<double>(length);
+          if (through >= lengths_[to]) continue;
+          if (lengths_[to] == kFar) reached_.push_back(to);
+          lengths_[to] = through;
+          const std::size_t next = band(through);
+          end = std::max(end, next + 1);
+          if (end > open_.size()) open_.resize(end);
+          open_[next].emplace_back(through, to);
+        }
+      }
+      for (const auto& [so_far, node] : open_[now]) known += so_far > lengths_[node] ? 0 : 1;
+      open_[now].clear();
+    }
+    for (std::size_t later = now; later < end; ++later) open_[later].clear();
+    std::erase_if(reached_, [&](std::uint32_t node) {
+      if (band(lengths_[node]) < now) return false;
+      lengths_[node] = kFar;
+      return true;
+    });
+  }
+
+  // [m] to each node
+  std::vector<double> take_lengths() { return std::move(lengths_); }
+
+  [[nodiscard]] std::vector<Distance> near() {
+    for (const std::uint32_t node : reached_) marks_[node / 64] |= std::uint64_t{1} << (node % 64);
+    std::vector<Distance> near;
+    near.reserve(reached_.size());
+    for (std::size_t i = 0; i < marks_.size(); ++i)
+      for (std::uint64_t rest = std::exchange(marks_[i], 0); rest != 0; rest &= rest - 1) {
+        const std::size_t node = 64 * i + static_cast<std::size_t>(std::countr_zero(rest));
+        near.push_back({graph_.names_[node], lengths_[node]});
+      }
+    return near;
+  }
+
+ private:
+  [[nodiscard]] std::size_t band(double length) const { return static_cast<std::size_t>(length / width_); }
+
+  const TravelGraph& graph_;
+  // [m] of nodes about as far as each other
+  const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
+  std::vector<double> lengths_;
+  std::vector<std::uint32_t> reached_;
+  std::vector<std::uint64_t> marks_;  // a bit for each node: sorts them
+  std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
+};
+
+std::vector<double> TravelGraph::distances(std::uint32_t from) const {
+  Search search(*this);
+  search.run(from, std::numeric_limits<std::size_t>::max());
+  return search.take_lengths();
+}
+
+std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
+    std::span<const std::uint32_t> from, std::size_t count) const {
+  std::vector<std::vector<Distance>> near(from.size());
+  for_each_range(from.size(), [&](std::size_t begin, std::size_t end) {
+    Search search(*this);
+    for (std::size_t i = begin; i < end; ++i) {
+      search.run(from[i], count);
+      near[i] = search.near();
+    }
+  });
+  return near;
 }
 
 std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& lengths,
@@ -284,17 +354,18 @@ std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& len
   for (;;) {
     const std::uint32_t node = nodes.back();
     std::uint32_t before = node;
-    for (const auto& [next, length] : nodes_[node].edges)
-      if (lengths[next] + static_cast<double>(length) == lengths[node] && lengths[next] < lengths[node])
-        before = next;
+    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e)
+      if (lengths[edges_[e].to] + static_cast<double>(edges_[e].length) == lengths[node] &&
+          lengths[edges_[e].to] < lengths[node])
+        before = edges_[e].to;
     if (before == node) return nodes;
     nodes.push_back(before);
   }
 }
 
 VoxelKey TravelGraph::middle_cell(std::uint32_t node) const {
-  const Cube& cube = cubes_[cube_of(name_of(node))];
-  const std::uint32_t part = part_of(name_of(node));
+  const Cube& cube = cubes_[cube_of(names_[node])];
+  const std::uint32_t part = part_of(names_[node]);
   const VoxelKey* best = nullptr;
   double nearest = kFar;
   for (const VoxelKey& cell : cube.spread) {
@@ -311,7 +382,7 @@ std::vector<std::uint32_t> TravelGraph::around_path(const std::vector<double>& l
   std::vector<std::uint32_t> nodes;
   for (const std::uint32_t node : path_back(lengths, to)) {
     nodes.push_back(node);
-    for (const Edge& edge : nodes_[node].edges) nodes.push_back(edge.to);
+    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) nodes.push_back(edges_[e].to);
   }
   sort_once(nodes);
   return nodes;

@@ -28,7 +28,6 @@ class TravelGraph {
   /// @param edge    [voxels] of a cube, at most 40
   /// @param spacing [voxels] of the cells that `spread_cells` returns
   TravelGraph(const Lattice& lattice, const KeyBox& bounds, int edge, int spacing);
-  TravelGraph(TravelGraph&&) = default;  // nodes point to edges, which a copy would not have
 
   /// @param corridor  of the map as it is now; where other robots are does not matter
   /// @param changed   boxes of cells outside of which nothing has changed since the last update; at first,
@@ -43,9 +42,7 @@ class TravelGraph {
   [[nodiscard]] std::optional<std::uint32_t> node(const VoxelKey& cell) const;
   /// The lowest and the highest cell in which the robot fits; none if it fits nowhere.
   [[nodiscard]] std::optional<KeyBox> extent() const { return extent_; }
-  /// The nodes have numbers below this. Some numbers may be of no node: what an update does not change keeps
-  /// its number, so that an update costs as much as there are changes.
-  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
   /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
@@ -54,27 +51,17 @@ class TravelGraph {
 
   /// What a node is called until its cells change, whatever its number.
   using Name = std::uint64_t;
-  [[nodiscard]] Name name_of(std::uint32_t node) const { return nodes_[node].name; }
+  [[nodiscard]] Name name_of(std::uint32_t node) const { return names_[node]; }
   struct Distance {
     Name to;
     double length;  ///< [m]
     auto operator<=>(const Distance&) const = default;
   };
-  /// Of `distances` those to the nearest nodes. Whatever has changed elsewhere, they are the same as long as
-  /// none of these nodes `has_changed`.
-  struct Near {
-    std::vector<Distance> distances;  ///< sorted by name; those up to `farthest` are meant
-    double farthest = 0.0;            ///< [m]
-    std::size_t bands = 0;            ///< all nodes in so many bands of distance are among them
-    /// [m] `kFar` if the node is not near.
-    [[nodiscard]] double distance_to(Name name) const;
-  };
-  struct NearQuery {
-    std::uint32_t from;            ///< node
-    const Near* before = nullptr;  ///< of this node, as of before the last update; it only saves time
-  };
+  /// From each of some nodes, of `distances` those to the nearest nodes, sorted by name. Whatever has changed
+  /// elsewhere, they are the same as long as none of these nodes `has_changed`.
   /// @param count  how many are enough; there may be somewhat more
-  [[nodiscard]] std::vector<Near> near_distances(std::span<const NearQuery> queries, std::size_t count) const;
+  [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
+                                                                  std::size_t count) const;
   /// Whether the last update has changed the node's cells or its edges.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
@@ -90,27 +77,18 @@ class TravelGraph {
                                                        std::uint32_t to) const;
 
  private:
-  struct Edge {
-    std::uint32_t to;  // node
-    float length;      // [m]
-    bool operator==(const Edge&) const = default;
-  };
   struct Cube {
     KeyBox cells;
     std::vector<Eigen::Vector3d> centers;               // of its parts
     std::vector<VoxelKey> spread;                       // some of its cells
     std::vector<std::pair<std::uint32_t, Name>> links;  // from a part to a part of a later cube
-    std::vector<Edge> edges;                            // of one part after the other, by name
-    std::vector<std::size_t> ends;                      // of each part's edges
-  };
-  struct Node {
-    Name name;
-    std::span<const Edge> edges;  // in its cube
-  };
-  // The numbers of a cube's parts, with room for more of them.
-  struct Numbers {
-    std::uint32_t first = 0;
-    std::uint16_t parts = 0, room = 0;
+    struct Edge {
+      std::uint32_t from;  // part
+      Name to;
+      float length;  // [m]
+      bool operator==(const Edge&) const = default;
+    };
+    std::vector<Edge> edges;  // sorted
   };
   class Search;
 
@@ -125,9 +103,6 @@ class TravelGraph {
   [[nodiscard]] const Eigen::Vector3d& center_of(Name name) const {
     return cubes_[cube_of(name)].centers[part_of(name)];
   }
-  [[nodiscard]] std::uint32_t number_of(Name name) const {
-    return numbers_[cube_of(name)].first + part_of(name);
-  }
 
   [[nodiscard]] std::size_t cube_of(const VoxelKey& cell) const;
   template <class Visit>
@@ -137,11 +112,10 @@ class TravelGraph {
   void link(std::size_t index);
   template <class Visit>
   void for_each_touching(Name name, const Visit& visit) const;
-  void number_parts(std::size_t index);
-  void find_extent();
   bool connect(std::size_t index);
   template <class Visit>
   void for_each_as_near_as_two(std::size_t index, const Visit& visit) const;
+  void number_nodes();
 
   Lattice lattice_;
   int edge_, spacing_;
@@ -149,13 +123,17 @@ class TravelGraph {
   // For each key along an axis what it adds to the number of its cube: a division would take longer.
   std::array<std::vector<std::uint32_t>, 3> number_of_;
   std::vector<Cube> cubes_;
-  std::vector<Numbers> numbers_;  // of each cube's nodes
-  std::vector<Node> nodes_;
-  BoxArray<std::uint16_t> part_;  // of each cell in its cube, from 1 on; 0 where the robot does not fit
-  std::array<std::vector<std::uint32_t>, 3> filled_;  // along each axis how many cubes have parts
+  std::vector<std::uint32_t> first_;  // node of the first part of each cube
+  BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
-  std::vector<std::uint8_t> changed_;         // cubes whose cells or edges the last update has changed
-  std::vector<std::uint32_t> changed_nodes_;  // in these cubes
+  std::vector<std::uint8_t> changed_;  // cubes whose cells or edges the last update has changed
+  std::vector<Name> names_;            // of the nodes, in this order
+  std::vector<std::size_t> begin_;     // of each node's edges
+  struct Edge {
+    std::uint32_t to;
+    float length;  // [m]
+  };
+  std::vector<Edge> edges_;
 };
 
 }  // namespace frontlux::planner::detail
