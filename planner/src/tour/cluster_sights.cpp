@@ -53,13 +53,13 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
   sight.viewpoints.clear();
   std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
                        [&](const ClusterViewpoint& viewpoint) { return query.reaches(viewpoint.cell); });
-  sight.found_beyond =
-      std::ranges::any_of(sight.found, [&](const ClusterViewpoint& v) { return !query.connects(v.cell); });
   if (!sight.viewpoints.empty()) {
     sight.stale = false;
     sight.in_vain = sight.pause = 0;
     return;
   }
+  sight.found_beyond =
+      std::ranges::any_of(sight.found, [&](const ClusterViewpoint& v) { return !query.connects(v.cell); });
   sight.pause = std::max(0, sight.pause - 1);
   if ((sight.stale && sight.faces_stale) || std::ranges::none_of(sight.beyond, query.connects)) return;
   sight.stale = sight.faces_stale = true;

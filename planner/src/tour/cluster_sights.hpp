@@ -58,7 +58,7 @@ class ClusterSights {
     bool faces_stale = true;                   // since its faces were looked for
     // A cell of each node from which it might be seen, and which did not connect with the robot then.
     std::vector<VoxelKey> beyond;
-    bool found_beyond = false;  // some of what is found does not connect with the robot
+    bool found_beyond = false;  // where it has no viewpoints: some of what is found does not connect
     int in_vain = 0;            // that often, in a row
     int pause = 0;              // plannings until the next time
   };
