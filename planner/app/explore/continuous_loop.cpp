@@ -151,8 +151,11 @@ void ContinuousLoop::note_numbers(Mapped mapped) {
   double clearance = 1.0;
   for (std::size_t r = 0; r < robots_.records().size(); ++r) {
     const sim::MotionRecord& record = robots_.records()[r];
-    numbers_.robots[r] = {record.length, record.revisited, record.idle, record.held_back,
-                          numbers_.robots[r].failed};
+    RobotNumbers& robot = numbers_.robots[r];
+    robot.length = record.length;
+    robot.revisited = record.revisited;
+    robot.idle = record.idle;
+    robot.held_back = record.held_back;
     mapped.length += record.length;
     clearance = std::min(clearance, record.clearance);
   }
@@ -181,6 +184,7 @@ void ContinuousLoop::note_motion(std::span<const sim::MovingRobots::Stopped> sto
 void ContinuousLoop::note_plan(const planner::PlannedMotion& planned, const ExplorationStep& measured) {
   const planner::RobotStep& robot = planned.step.robots[planned.robot];
   const std::string& name = setup_.head.robots[planned.robot].robot.name;
+  numbers_.robots[planned.robot].goal = robot.goal.reason;
   rows_.events +=
       csv_row(planned.step.time, planned.step.number, name, planner::name_of(planned.reason),
               planner::name_of(robot.goal.state), robot.gain_predicted, planned.trajectory.begin(),

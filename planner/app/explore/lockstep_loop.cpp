@@ -57,6 +57,7 @@ void LockstepLoop::note(const ExplorationStep& step) {
     numbers_.robots[r].revisited = paths_[r].share();
     numbers_.robots[r].idle += step.time - before - moving;
     numbers_.robots[r].held_back += robot.blocked.empty() ? 0 : 1;
+    numbers_.robots[r].goal = robot.goal.reason;
     mapped.length += robot.length;
     for (const planner::VoxelChange& change : robot.changed) {
       if (change.before != Occupancy::kUnknown) continue;

@@ -70,7 +70,8 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
     robots[name] = {{"length_m", robot.length},
                     {"revisited", robot.revisited},
                     {"idle_s", robot.idle},
-                    {"held_back", robot.held_back}};
+                    {"held_back", robot.held_back},
+                    {"goal", robot.goal}};
     if (robot.failed) robots[name]["failed_s"] = *robot.failed;
     held_back += robot.held_back;
   }

@@ -33,6 +33,7 @@ struct RobotNumbers {
   double idle = 0.0;                  ///< [s] at rest without turning
   std::uint64_t held_back = 0;        ///< times that its bumper stopped it
   std::optional<double> failed = {};  ///< [s] when it did
+  std::string goal = {};              ///< why it had the goal that it was given last, or none
 };
 
 /// What a run comes to in seconds and metres, up to now.

@@ -30,7 +30,8 @@ std::string why_unseen(const sim::Unseen& unseen, const ExploreSetup& setup) {
     text +=
         "; " + percent(unseen.in_view) +
         " could have been seen from places where they fit, but they did not get there through what they knew "
-        "to be free, or would have seen too few frontiers there (--epsilon)";
+        "to be free, or would have seen too little there (run.json says under by_robot what is left and why; "
+        "--epsilon)";
   if (unseen.narrow >= kWorthAHint)
     text += "; " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
             " see them: if doors are too narrow, voxels finer than " + rounded(setup.head.resolution) +

@@ -162,7 +162,7 @@ ExplorationStep ContinuousExploration::finish(double time) {
   state.start_next_trajectories(time);
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
-  step.frontiers = state.team.frontiers.size();
+  state.team.count_frontiers(step);
   state.team.also_changed =
       state.team.changed;  // a planning that comes all the same brings corridors up to date
   ++state.team.number;

@@ -280,12 +280,13 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (keeps && team.tours)
     team.keep_stop(robot, step);
   else if (keeps)
-    team.keep_goal(robot, step);
+    team.update_corridor(robot, step);
   else if (team.tours)
     team.plan_tours(robot, starts, step);
   else
     team.select_goals(step, robot);
   if (team.tours) team.note_assignment(step);
+  team.count_frontiers(step);
   if (!keeps) member.chosen = time;
 
   const bool rested = rests(member);

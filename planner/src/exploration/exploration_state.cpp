@@ -128,8 +128,6 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
     const PhaseClock clock(step, Phase::kFrontiers);
     wanted = abandoned.without_abandoned(frontiers.keys());
     large = in_large_clusters(frontiers, wanted, options.min_cluster_size);
-    step.frontiers = frontiers.size();
-    step.abandoned = frontiers.size() - wanted.size();
   }
   TeamGoals goals;
   {
@@ -142,7 +140,8 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
       step.rays += goals.rays;
     }
   }
-  step.unassigned = goals.unassigned;
+  unassigned = goals.unassigned;
+  count_frontiers(step);
   for (std::size_t r = 0; r < size(); ++r) {
     targets[r].assign(selection->targets(r).begin(), selection->targets(r).end());
     step.robots[r].goal = std::move(goals.goals[r]);
@@ -165,10 +164,23 @@ void ExplorationState::note_assignment(ExplorationStep& step) {
   }
 }
 
-void ExplorationState::keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent) {
+void ExplorationState::update_corridor(std::size_t robot, ExplorationStep& step, CorridorExtent extent) {
   const PhaseClock clock(step, Phase::kGoals);
-  selection->keep_goal(change(), robot, poses[robot], extent);
+  selection->update_corridor(change(), robot, poses[robot], extent);
+}
+
+void ExplorationState::count_frontiers(ExplorationStep& step) const {
+  const Keys left = abandoned.without_abandoned(frontiers.keys());
   step.frontiers = frontiers.size();
+  step.abandoned = step.frontiers - left.size();
+  step.unassigned = std::min(unassigned, left.size());
+  if (!tours) return;
+  step.unassigned = left.size();
+  for (std::size_t r = 0; r < size(); ++r) {
+    Keys own;
+    std::ranges::set_intersection(tours->frontiers_of(r), left, std::back_inserter(own));
+    step.unassigned -= own.size();
+  }
 }
 
 // What the other robots are going to see.

@@ -43,6 +43,7 @@ struct ExplorationState {
   std::vector<Keys> retreated_to = {};              // by robots that had no goal since
   std::vector<Keys> assigned = {};                  // frontiers that are each robot's, as last noted; sorted
   Keys wanted = {};                                 // frontiers that are not abandoned, at the last selection
+  std::size_t unassigned = 0;                       // of them, at the last selection of goals
   Keys changed = {};                                // by the last step, sorted
   std::uint64_t number = 0;                         // of the next step
   double time = 0.0;                                // [s] in lock-step
@@ -70,7 +71,10 @@ struct ExplorationState {
   /// Notes which frontiers have become or ceased to be a robot's.
   void note_assignment(ExplorationStep& step);
   /// Brings a robot's corridor up to date; all robots keep their goals.
-  void keep_goal(std::size_t robot, ExplorationStep& step, CorridorExtent extent = CorridorExtent::kAllCells);
+  void update_corridor(std::size_t robot, ExplorationStep& step,
+                       CorridorExtent extent = CorridorExtent::kAllCells);
+  /// Writes how many frontiers there are, and how many of them are abandoned, or no robot's.
+  void count_frontiers(ExplorationStep& step) const;
   /// Leaves a robot the stop of its tour that it has for a goal.
   void keep_stop(std::size_t robot, ExplorationStep& step);
   /// Shares the frontiers out in tours, and gives a robot the first stop of its tour for a goal.

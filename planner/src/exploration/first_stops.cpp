@@ -6,11 +6,28 @@
 #include "exploration/phase_clock.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
 
 namespace frontlux::planner::detail {
+namespace {
+
+// Why what is left is in no tour.
+// @param gain  [frontiers] that a robot sees at least from a stop
+std::string describe(const TourPlanning::Left& left, double gain) {
+  std::string text;
+  const auto add = [&](std::size_t count, const std::string& where) {
+    if (count > 0) text += (text.empty() ? "; left are " : " and ") + std::to_string(count) + where;
+  };
+  add(left.small, " frontiers in clusters of fewer than " + std::to_string(left.enough));
+  add(left.unseen, " in clusters of which no robot sees " +
+                       std::to_string(static_cast<int>(std::ceil(gain))) + " from where it can get to");
+  return text;
+}
+
+}  // namespace
 
 // What a robot needs to know of its corridor as long as it has somewhere to go: all distances where finding
 // them takes a few milliseconds, since they are exact.
@@ -38,7 +55,7 @@ bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell
 }
 
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
-  keep_goal(robot, step, extent_of_tours(robot));
+  update_corridor(robot, step, extent_of_tours(robot));
   const VoxelKey& cell = step.robots[robot].goal.cell;
   if (find_path_to_stop(robot, cell, step)) return;
   const PhaseClock clock(step, Phase::kPaths);
@@ -58,7 +75,8 @@ Goal ExplorationState::first_stop(std::size_t robot) const {
   if (tour.empty()) {
     goal.state = GoalState::kNothingAssigned;
     goal.reason = std::string("no goal: there is nothing to see for it") +
-                  (options.team.size() > 1 ? " that is not another robot's" : "");
+                  (options.team.size() > 1 ? " that is not another robot's" : "") +
+                  describe(tours->left(), tours->least_gain(robot));
     return goal;
   }
   const TourStop& first = tour.front();
@@ -80,10 +98,9 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   {
     const PhaseClock clock(step, Phase::kGoals);
     wanted = abandoned.without_abandoned(frontiers.keys());
-    step.abandoned = frontiers.size() - wanted.size();
   }
   const auto update = [&](CorridorExtent extent) {
-    keep_goal(robot, step, extent);
+    update_corridor(robot, step, extent);
     const PhaseClock clock(step, Phase::kGoals);
     tours->update({robot, counting, mapping.grid(), path_corridor(robot), wanted, starts});
   };

@@ -70,7 +70,7 @@ Keys ContinuousExploration::State::path_without_resting(std::size_t robot, Explo
   const TravelCorridor& corridor = team.selection->corridor(robot);
   const auto keep_out_of = [&](Others which, CorridorExtent extent) {
     team.selection->keep_out_of(robot, places_of_others(robot, which));
-    team.keep_goal(robot, step, extent);
+    team.update_corridor(robot, step, extent);
   };
   const CorridorExtent extent = corridor.extent();
   keep_out_of(Others::kThatDoNotRest, CorridorExtent::kAllCells);

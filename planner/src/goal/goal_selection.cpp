@@ -96,8 +96,8 @@ TeamGoals GoalSelection::select(const RayCaster& caster, const MapChange& change
   return result;
 }
 
-void GoalSelection::keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
-                              CorridorExtent extent) {
+void GoalSelection::update_corridor(const MapChange& change, std::size_t robot, const Pose& pose,
+                                    CorridorExtent extent) {
   state_->note_change(change);
   state_->update_corridor(robot, change.grid, pose, extent);
 }

@@ -46,16 +46,16 @@ std::uint32_t FrontierClusters::new_piece() {
 
 // Finds the connected parts of a cube's frontiers anew.
 void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  constexpr std::uint32_t kUncut = ~std::uint32_t{0};
   for (const std::uint32_t piece : cube.pieces) {
     for (const VoxelKey& key : pieces_[piece].keys) piece_[key] = 0;
     pieces_[piece].keys.clear();
     free_.push_back(piece);
   }
   cube.pieces.clear();
-  for (const VoxelKey& key : cube.frontiers) piece_[key] = kNone;
+  for (const VoxelKey& key : cube.frontiers) piece_[key] = kUncut;
   for (const VoxelKey& first : cube.frontiers) {
-    if (piece_[first] != kNone) continue;
+    if (piece_[first] != kUncut) continue;
     const std::uint32_t number = new_piece();
     cube.pieces.push_back(number);
     Keys& keys = pieces_[number].keys;
@@ -63,7 +63,7 @@ void FrontierClusters::cut(Cube& cube, const VoxelKey& at) {
     piece_[first] = number;
     for (std::size_t i = 0; i < keys.size(); ++i)
       for_each_neighbor(VoxelKey(keys[i]), piece_.box(), [&](const VoxelKey& neighbor) {
-        if (piece_[neighbor] != kNone || cube_of(neighbor) != at) return;
+        if (piece_[neighbor] != kUncut || cube_of(neighbor) != at) return;
         piece_[neighbor] = number;
         keys.push_back(neighbor);
       });

@@ -38,6 +38,7 @@ class FrontierClusters {
 
   /// Another least size from now on. All clusters are made again.
   void set_least(std::size_t least);
+  [[nodiscard]] std::size_t least() const { return least_; }
 
   /// @param frontiers  sorted
   void update(std::span<const VoxelKey> frontiers);
@@ -46,7 +47,8 @@ class FrontierClusters {
   [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
   /// @pre there is a cluster with this id
   [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
-  /// The id of the cluster that holds a frontier; 0 if it is left out.
+  static constexpr std::uint32_t kNone = 0;  ///< no cluster's id
+  /// The id of the cluster that holds a frontier; `kNone` if it is left out.
   [[nodiscard]] std::uint32_t cluster_of(const VoxelKey& frontier) const {
     return pieces_[piece_[frontier]].cluster;
   }

@@ -379,13 +379,14 @@ void TourPlanning::note_frontiers(const Query& query) {
         whose[id] = &member;
       }
   }
-  std::vector<Member*> owners(query.frontiers.size());
-  for_each_index(owners.size(), [&](std::size_t i) {
-    const std::uint32_t id = clusters_.cluster_of(query.frontiers[i]);
-    owners[i] = id < whose.size() ? whose[id] : nullptr;
-  });
-  for (std::size_t i = 0; i < owners.size(); ++i)
-    if (owners[i] != nullptr) owners[i]->frontiers.push_back(query.frontiers[i]);
+  std::vector<std::uint32_t> ids(query.frontiers.size());
+  for_each_index(ids.size(), [&](std::size_t i) { ids[i] = clusters_.cluster_of(query.frontiers[i]); });
+  left_ = {.enough = clusters_.least()};
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (Member* owner = ids[i] < whose.size() ? whose[ids[i]] : nullptr; owner != nullptr)
+      owner->frontiers.push_back(query.frontiers[i]);
+    else
+      ++(ids[i] == FrontierClusters::kNone ? left_.small : left_.unseen);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;

@@ -74,7 +74,8 @@ class TourPlanning {
   /// The same for one robot: voxels, or cells that are closed to it from now on.
   void note_changed_voxels(std::size_t robot, std::span<const VoxelKey> changed);
 
-  /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little.
+  /// [frontiers] What a stop shows at least: `Options::least_gain`, or less for a sensor that sees little and
+  /// for a map of few voxels in which nobody sees a cluster of the usual size any more.
   [[nodiscard]] double least_gain(std::size_t robot) const;
 
   /// The robot's tour as of the last update.
@@ -104,6 +105,14 @@ class TourPlanning {
   [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
       std::size_t robot, const RayCaster& caster, const VoxelGrid& grid,
       const std::function<bool(const VoxelKey&)>& among) const;
+  /// Frontiers of the last update that are in no tour.
+  struct Left {
+    std::size_t small = 0;   ///< in clusters of too few
+    std::size_t unseen = 0;  ///< in others: no robot sees enough of them from where it can get to
+    std::size_t enough = 0;  ///< for a cluster
+  };
+  [[nodiscard]] const Left& left() const { return left_; }
+
   /// Frontiers of the clusters in a robot's tour; sorted.
   [[nodiscard]] const std::vector<VoxelKey>& frontiers_of(std::size_t robot) const {
     return members_[robot].frontiers;
@@ -174,6 +183,7 @@ class TourPlanning {
   Options options_;
   int zone_edge_;  // [voxels]
   FrontierClusters clusters_;
+  Left left_;
   // [frontiers] What is worth a stop by what is known; it counts from when nobody sees a cluster of the usual
   // size.
   double least_left_ = std::numeric_limits<double>::infinity();

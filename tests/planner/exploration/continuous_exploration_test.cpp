@@ -139,6 +139,33 @@ TEST_P(ContinuousExplorationBy, StepsAddUpToTheMap) {
   }
 }
 
+// Each frontier of the map is a robot's, or unassigned, or abandoned.
+TEST(ContinuousExploration, CountsTheFrontiersThatAreInNoTour) {
+  TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+  std::set<VoxelKey> own;
+  std::size_t most_unassigned = 0;
+  scene.explore(60.0, [&](const PlannedMotion& planned) {
+    const ExplorationStep& step = planned.step;
+    const RobotStep& robot = step.robots[0];
+    for (const VoxelKey& key : robot.reassigned)
+      if (!own.insert(key).second) own.erase(key);
+    const std::size_t others = step.unassigned + step.abandoned;
+    EXPECT_LE(others, step.frontiers);
+    EXPECT_LE(step.frontiers, others + own.size()) << "some of its own may have been mapped since";
+    if (!robot.reassigned.empty()) {
+      EXPECT_EQ(step.frontiers, others + own.size());
+    }
+    most_unassigned = std::max(most_unassigned, step.unassigned);
+  });
+  const ExplorationStep& last = scene.steps.back();
+  EXPECT_GT(most_unassigned, 0U);
+  ASSERT_TRUE(scene.exploration().end());
+  EXPECT_EQ(last.frontiers, last.unassigned + last.abandoned);
+  EXPECT_EQ(last.robots[0].goal.reason, "no goal: there is nothing to see for it; left are " +
+                                            std::to_string(last.unassigned) +
+                                            " frontiers in clusters of fewer than 17");  // 1.5 m2
+}
+
 // A robot that keeps its goal weighs none.
 TEST_P(ContinuousExplorationBy, TellsTheCandidatesAmongWhichGoalsAreChosen) {
   TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
@@ -257,16 +284,25 @@ TEST_P(ContinuousExplorationBy, GivesUpWhatEitherRobotDoesNotSee) {
   ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
   exploration.begin(team.starts, 0.0);
   std::array<std::size_t, 2> given_up{};
+  std::set<VoxelKey> all;
+  std::size_t abandoned = 0;
   for (double time = 0.0; time < 30.0 && !exploration.end(); time += 1.0) {
     for (std::size_t r = 0; r < 2; ++r) {
       const Pose pose = exploration.at(r, time).pose;
       exploration.insert(r, pose, empty_scan(pose));
     }
-    while (const auto now = exploration.plan(time))
-      given_up.at(now->robot) += now->step.robots[now->robot].still_unknown.size();
+    while (const auto now = exploration.plan(time)) {
+      const std::vector<VoxelKey>& keys = now->step.robots[now->robot].still_unknown;
+      given_up.at(now->robot) += keys.size();
+      all.insert(keys.begin(), keys.end());
+      EXPECT_GE(now->step.abandoned, abandoned) << "nothing is mapped";
+      abandoned = now->step.abandoned;
+    }
   }
   EXPECT_GT(given_up[0], 0U);
   EXPECT_GT(given_up[1], 0U);
+  EXPECT_GT(abandoned, 0U);
+  EXPECT_LE(abandoned, all.size());
 }
 
 // A sensor that has failed for a while shows nothing of what is in its view.

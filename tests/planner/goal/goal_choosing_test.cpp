@@ -92,7 +92,7 @@ TEST(ChoosingRobot, IsNobody) {
   const auto before = cells(scene.selection, 1);
   const VoxelGrid old = scene.grow();
   static_cast<void>(all.grow());
-  scene.selection.keep_goal({scene.room.grid, changed_keys(old, scene.room.grid)}, 0, scene.poses[0]);
+  scene.selection.update_corridor({scene.room.grid, changed_keys(old, scene.room.grid)}, 0, scene.poses[0]);
   GoalSelection fresh(all.team, all.room.grid.lattice(), all.room.bounds());
   const TeamGoals wanted = all.first(fresh);
   EXPECT_EQ(cells(scene.selection, 0), cells(fresh, 0));

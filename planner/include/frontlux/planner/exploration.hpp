@@ -129,10 +129,11 @@ inline constexpr std::size_t kPhases = 6;
 
 /// What a team planned, did and mapped between two moments.
 struct FRONTLUX_EXPORT ExplorationStep {
-  std::uint64_t number = 0;       ///< 0: the start, where robots only look around
-  double time = 0.0;              ///< [s] of the clock, at its end
-  std::size_t frontiers = 0;      ///< in the map when the step was planned
-  std::size_t unassigned = 0;     ///< of them, those that no robot can see
+  std::uint64_t number = 0;   ///< 0: the start, where robots only look around
+  double time = 0.0;          ///< [s] of the clock, at its end
+  std::size_t frontiers = 0;  ///< in the map when the step was planned
+  /// Of them, those that are no robot's: none can see them, or with tours their cluster has no stop.
+  std::size_t unassigned = 0;
   std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
   std::uint64_t rays = 0;         ///< cast to plan the step
   std::vector<RobotStep> robots;  ///< in the team's order

@@ -179,8 +179,8 @@ class FRONTLUX_EXPORT GoalSelection {
 
   /// In the place of a step: takes the change, and brings up to date no more than one robot's corridor. All
   /// robots keep their goals. @pre robot < team().size()
-  void keep_goal(const MapChange& change, std::size_t robot, const Pose& pose,
-                 CorridorExtent extent = CorridorExtent::kAllCells);
+  void update_corridor(const MapChange& change, std::size_t robot, const Pose& pose,
+                       CorridorExtent extent = CorridorExtent::kAllCells);
 
   /// See `TravelCorridor::find_path`. @pre robot < team().size()
   bool find_path(std::size_t robot, const VoxelKey& cell,
