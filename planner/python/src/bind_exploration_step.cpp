@@ -61,7 +61,7 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
       .def_property_readonly(
           "frontiers", [](const Self& self) { return self->frontiers; }, "In the map when it was planned.")
       .def_property_readonly(
-          "unassigned", [](const Self& self) { return self->unassigned; }, "Frontiers that no robot can see.")
+          "unassigned", [](const Self& self) { return self->unassigned; }, "Frontiers that are no robot's.")
       .def_property_readonly(
           "abandoned", [](const Self& self) { return self->abandoned; },
           "Frontiers no longer tried, since they stay unknown when looked at.")
