@@ -2,11 +2,13 @@
 
 #include <frontlux/caster_kind.hpp>
 #include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/goal_search.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
 #include <array>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 namespace frontlux::app {
 
@@ -16,6 +18,15 @@ struct Choice {
   std::string_view name;
   Value value;
 };
+
+/// Of a table of names and values.
+template <class Value, std::size_t kSize>
+constexpr std::array<Choice<Value>, kSize> choices_of(
+    const std::array<std::pair<std::string_view, Value>, kSize>& names) {
+  std::array<Choice<Value>, kSize> choices{};
+  for (std::size_t i = 0; i < kSize; ++i) choices[i] = {names[i].first, names[i].second};
+  return choices;
+}
 
 /// The values that an option of this type takes.
 template <class Value>
@@ -40,13 +51,8 @@ template <>
 inline constexpr std::array<Choice<planner::Method>, 2> kChoices<planner::Method>{
     {{"default", planner::Method::kDefault}, {"paper", planner::Method::kPaper}}};
 
-/// How robots find their goals: by tours for the whole team, or one goal after the other.
-enum class GoalSearch { kTour, kRender, kCluster, kNearest };
 template <>
-inline constexpr std::array<Choice<GoalSearch>, 4> kChoices<GoalSearch>{{{"tour", GoalSearch::kTour},
-                                                                         {"render", GoalSearch::kRender},
-                                                                         {"cluster", GoalSearch::kCluster},
-                                                                         {"nearest", GoalSearch::kNearest}}};
+inline constexpr auto kChoices<planner::GoalSearch> = choices_of(planner::kGoalSearchNames);
 
 template <>
 inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::PathSearch>{
@@ -56,12 +62,7 @@ inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::Pa
      {"rrt-star", planner::PathSearch::kRrtStar}}};
 
 template <>
-inline constexpr auto kChoices<CasterKind> = [] {
-  std::array<Choice<CasterKind>, kCasterNames.size()> choices{};
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    choices[i] = {kCasterNames[i].first, kCasterNames[i].second};
-  return choices;
-}();
+inline constexpr auto kChoices<CasterKind> = choices_of(kCasterNames);
 
 /// The paper's robots.
 enum class RobotKind { kUgv, kUav };

@@ -53,7 +53,7 @@ TEST_F(TaskFile, ReadsAllMembers) {
   EXPECT_EQ(task.seed, 7U);
   EXPECT_EQ(task.latency, 0.25);
   EXPECT_EQ(task.lockstep, true);
-  EXPECT_EQ(task.method, TaskMethod::kNearest);
+  EXPECT_EQ(task.method, TaskMethod{planner::GoalSearch::kNearest});
   EXPECT_EQ(task.end_coverage, 0.99);
   EXPECT_EQ(task.end_time, 1200.0);
   EXPECT_EQ(task.team, std::nullopt);
@@ -108,7 +108,7 @@ TEST_F(TaskFile, IsReadAsItWasWritten) {
   built_in.name = "a \"name\" ";
   built_in.world = "maze";
   built_in.world_seed = 3;
-  built_in.method = TaskMethod::kPaper;
+  built_in.method = TaskMethod{};
   for (const auto& description : {planner::ugv_description(), planner::uav_description(),
                                   planner::uav_description(planner::Method::kPaper)})
     built_in.robots.push_back({description, planner::Pose{{0.1, 1.0 / 3.0, -7e-9}, -1.2345}});
@@ -184,7 +184,7 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {with("0.25", "null"), "latency_s is null; give"},
       {with("true, \"method\"", "1, \"method\""), "lockstep is 1; give true or false"},
       {with("nearest", "greedy"),
-       R"(method is 'greedy'; give "tour", "render", "paper", "cluster" or "nearest")"},
+       R"(method is 'greedy'; give "tour", "render", "cluster", "nearest" or "paper")"},
       {with(R"("nearest")", "[]"), "method is an array of 0; give \"tour\""},
       {with("0.99", "1.01"), "end.coverage is 1.01; give a number from 0 to 1 of the observable space"},
       {with("1200", "-1"), "end.time_s is -1; give a number of at least 0 s"},

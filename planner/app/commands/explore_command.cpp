@@ -41,7 +41,7 @@ std::string default_folder(const ExploreOptions& options) {
 // Of what a task gives, an option replaces all that it stands for.
 void replace_in_task(ExploreOptions& options, bool team, bool mode, bool lockstep, bool goal) {
   if (team) options.robots.clear();
-  if (!goal && (mode || (lockstep && options.goal == GoalSearch::kTour))) options.goal.reset();
+  if (!goal && (mode || (lockstep && options.goal == planner::GoalSearch::kTour))) options.goal.reset();
 }
 
 void run(Options given) {

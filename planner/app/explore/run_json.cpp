@@ -6,6 +6,7 @@
 
 #include <frontlux/file.hpp>
 #include <frontlux/machine.hpp>
+#include <frontlux/planner/goal_search.hpp>
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -21,16 +22,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// "tour", or the rules of all robots with + between them.
+// Those of all robots, with + between them.
 std::string goal_searches(const planner::ExplorationOptions& exploration) {
-  if (exploration.tours) return "tour";
-  using planner::GoalRule;
+  if (exploration.tours) return std::string(name_of(planner::GoalSearch::kTour));
   std::string names;
-  for (const auto& [name, rule] : {std::pair{"render", GoalRule::kViewQuality},
-                                   {"cluster", GoalRule::kClusters},
-                                   {"nearest", GoalRule::kNearest}})
-    if (std::ranges::any_of(exploration.team, [searched = rule](const planner::TeamMember& member) {
-          return member.options.rule == searched;
+  for (const auto& [name, search] : planner::kGoalSearchNames)
+    if (std::ranges::any_of(exploration.team, [rule = rule_of(search)](const planner::TeamMember& member) {
+          return member.options.rule == rule;
         }))
       names.append(names.empty() ? "" : "+").append(name);
   return names;

@@ -204,7 +204,7 @@ void read(std::string_view word, RobotFailures& failures) {
 
 bool makes_tours(const ExploreOptions& options) {
   return !options.lockstep && options.mode == planner::Method::kDefault &&
-         options.goal.value_or(GoalSearch::kTour) == GoalSearch::kTour;
+         options.goal.value_or(planner::GoalSearch::kTour) == planner::GoalSearch::kTour;
 }
 
 std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {

@@ -57,7 +57,7 @@ struct ExploreOptions {
   std::vector<AbsolutePath> robot_paths;
   std::vector<StartPose> poses;
   planner::Method mode = planner::Method::kDefault;
-  std::optional<GoalSearch> goal;
+  std::optional<planner::GoalSearch> goal;
   std::optional<planner::PathSearch> search;
   std::optional<ViewQualityOptions::Renderer> renderer;
   bool assign = true, optimize = true;

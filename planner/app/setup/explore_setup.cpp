@@ -20,7 +20,7 @@
 namespace frontlux::app {
 namespace {
 
-using planner::Method, planner::Motion, planner::Pose, planner::RobotDescription;
+using planner::GoalSearch, planner::Method, planner::Motion, planner::Pose, planner::RobotDescription;
 
 constexpr std::size_t kMaxRobots = io::kMostRobots;
 
@@ -208,15 +208,10 @@ void check_travel(const RobotDescription& robot, const sim::GroundTruth& truth) 
   }
 }
 
-planner::GoalRule rule_of(GoalSearch search) {
-  if (search == GoalSearch::kCluster) return planner::GoalRule::kClusters;
-  return search == GoalSearch::kNearest ? planner::GoalRule::kNearest : planner::GoalRule::kViewQuality;
-}
-
 planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot) {
   planner::GoalOptions goal = options.lockstep ? planner::goal_options(robot, options.mode)
                                                : planner::motion_goal_options(robot, options.mode);
-  goal.rule = options.goal ? rule_of(*options.goal) : goal.rule;
+  if (options.goal) goal.rule = planner::rule_of(*options.goal).value_or(goal.rule);
   goal.lambda = options.lambda.value_or(goal.lambda);
   goal.advance = options.advance.value_or(goal.advance);
   goal.min_distance = options.min_distance.value_or(goal.min_distance);

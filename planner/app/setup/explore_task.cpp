@@ -17,7 +17,7 @@ namespace frontlux::app {
 namespace {
 
 namespace fs = std::filesystem;
-using io::TaskMethod, planner::Method;
+using io::TaskMethod, planner::GoalSearch, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
 constexpr std::array<std::string_view, 24> kFurther = {
@@ -25,22 +25,16 @@ constexpr std::array<std::string_view, 24> kFurther = {
     "assign", "optimize", "caster",  "lambda", "advance",   "epsilon",    "min-distance", "max-steps",
     "bumper", "noise",    "dropout", "drift",  "fix-every", "scan-delay", "scan-loss",    "fail"};
 
-void set_method(TaskMethod method, ExploreOptions& options) {
-  options.mode = method == TaskMethod::kPaper ? Method::kPaper : Method::kDefault;
-  options.goal.reset();
-  if (method == TaskMethod::kTour) options.goal = GoalSearch::kTour;
-  if (method == TaskMethod::kRender) options.goal = GoalSearch::kRender;
-  if (method == TaskMethod::kCluster) options.goal = GoalSearch::kCluster;
-  if (method == TaskMethod::kNearest) options.goal = GoalSearch::kNearest;
+void set_method(const TaskMethod& method, ExploreOptions& options) {
+  options.mode = method.goal ? Method::kDefault : Method::kPaper;
+  options.goal = method.goal;
 }
 
 // The method, and the search for goals if that does not tell it.
 std::pair<TaskMethod, std::optional<GoalSearch>> method_of(const ExploreOptions& options) {
-  if (options.mode == Method::kPaper) return {TaskMethod::kPaper, options.goal};
-  if (makes_tours(options)) return {TaskMethod::kTour, std::nullopt};
-  if (options.goal == GoalSearch::kCluster) return {TaskMethod::kCluster, std::nullopt};
-  if (options.goal == GoalSearch::kNearest) return {TaskMethod::kNearest, std::nullopt};
-  return {TaskMethod::kRender, std::nullopt};
+  if (options.mode == Method::kPaper) return {{}, options.goal};
+  if (makes_tours(options)) return {{GoalSearch::kTour}, std::nullopt};
+  return {{options.goal.value_or(GoalSearch::kRender)}, std::nullopt};
 }
 
 std::string world_of(const std::string& file, const std::string& name) {
@@ -78,8 +72,7 @@ void check_members(const std::string& file, const io::Task& task, const ExploreO
   const bool has_goal = goal != task.options.end();
   // Only the paper's method leaves the goal open.
   const auto agrees = [&] {
-    return *task.method == TaskMethod::kPaper ? options.goal != GoalSearch::kTour
-                                              : goal->second == name_of(*task.method);
+    return task.method->goal ? goal->second == name_of(*task.method) : options.goal != GoalSearch::kTour;
   };
   if (task.method && has_goal && !agrees())
     fail(file,

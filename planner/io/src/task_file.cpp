@@ -21,8 +21,6 @@ using planner::Pose;
 constexpr std::size_t kTaskDepth = 5;  // task, robots, robot, body, size
 constexpr std::size_t kLongestName = 255;
 constexpr JsonContent kTask{"a task", "docs/tasks.md", kTaskDepth};
-constexpr std::array kMethods{TaskMethod::kTour, TaskMethod::kRender, TaskMethod::kPaper,
-                              TaskMethod::kCluster, TaskMethod::kNearest};
 
 const std::string kSeeTasks = "an object, see docs/tasks.md";
 
@@ -54,16 +52,13 @@ Eigen::AlignedBox3d read_box(const Members& members, const json& value) {
 }
 
 TaskMethod read_method(const Members& members, const json& value) {
+  const std::string word = value.is_string() ? value.get<std::string>() : "";
+  if (word == name_of(TaskMethod{})) return {};
+  if (const auto search = planner::goal_search(word)) return {search};
   std::string wanted;
-  for (const TaskMethod method : kMethods) {
-    if (value.is_string() && value.get_ref<const std::string&>() == name_of(method)) return method;
-    wanted.append(wanted.empty()              ? "\""
-                  : method == kMethods.back() ? " or \""
-                                              : ", \"")
-        .append(name_of(method))
-        .append("\"");
-  }
-  members.refuse_value("method", value, wanted);
+  for (const auto& [name, search] : planner::kGoalSearchNames)
+    wanted.append(wanted.empty() ? "\"" : "\", \"").append(name);
+  members.refuse_value("method", value, wanted.append("\" or \"").append(name_of(TaskMethod{})).append("\""));
 }
 
 void read_end(Members members, Task& task) {
@@ -151,20 +146,8 @@ std::string dumped(const ordered_json& object) {
 
 }  // namespace
 
-std::string_view name_of(TaskMethod method) {
-  switch (method) {
-    case TaskMethod::kTour:
-      return "tour";
-    case TaskMethod::kRender:
-      return "render";
-    case TaskMethod::kPaper:
-      return "paper";
-    case TaskMethod::kCluster:
-      return "cluster";
-    case TaskMethod::kNearest:
-      return "nearest";
-  }
-  return {};
+std::string_view name_of(const TaskMethod& method) {
+  return method.goal ? planner::name_of(*method.goal) : "paper";
 }
 
 Task read_task(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 #include "team.hpp"
 
 #include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/goal_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,8 @@
 namespace frontlux::python {
 namespace {
 
-using planner::ExplorationOptions, planner::ExplorationStart, planner::GoalRule, planner::Method;
+using planner::ExplorationOptions, planner::ExplorationStart, planner::GoalRule, planner::GoalSearch,
+    planner::Method;
 using planner::Motion, planner::Robot, planner::TravelOptions;
 
 KeyBox given_bounds(const Lattice& lattice, const py::object& object) {
@@ -26,10 +28,9 @@ KeyBox given_bounds(const Lattice& lattice, const py::object& object) {
 
 // Nothing for tours, which only robots in motion make, and for what the method says.
 std::optional<GoalRule> rule_of(const std::optional<std::string>& goal, bool lockstep) {
-  if (!goal || (!lockstep && goal == "tour")) return std::nullopt;
-  if (goal == "render") return GoalRule::kViewQuality;
-  if (goal == "cluster") return GoalRule::kClusters;
-  if (goal == "nearest") return GoalRule::kNearest;
+  if (!goal) return std::nullopt;
+  if (const auto search = planner::goal_search(*goal); search && !(lockstep && search == GoalSearch::kTour))
+    return planner::rule_of(*search);
   throw py::value_error("goal: '" + *goal + "', but has to be " + (lockstep ? "" : "'tour', ") +
                         "'render', 'cluster' or 'nearest'");
 }

@@ -14,7 +14,8 @@
 
 namespace frontlux::io {
 
-/// Both readers pass over a first line of names, empty lines and lines that begin with a #. Commas separate fields.
+/// Both readers pass over a first line of names, empty lines and lines that begin with a #. Commas separate
+/// fields.
 
 /// Where the sensor was when a file was recorded.
 struct RecordedPose {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <frontlux/export.hpp>
+#include <frontlux/planner/goal_search.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
 
@@ -22,9 +23,12 @@ inline constexpr std::size_t kMostRobots = 32;  ///< in a task
 inline constexpr double kMostLatency = 60.0;    ///< [s]
 
 /// How robots choose where to go.
-enum class TaskMethod : std::uint8_t { kTour, kRender, kPaper, kCluster, kNearest };
-/// One of the words "tour", "render", "paper", "cluster", "nearest".
-[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(TaskMethod method);
+struct FRONTLUX_EXPORT TaskMethod {
+  std::optional<planner::GoalSearch> goal;  ///< none: as the paper prints it
+  friend bool operator==(const TaskMethod&, const TaskMethod&) = default;
+};
+/// As files call it: that of its search, or "paper".
+[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(const TaskMethod& method);
 
 /// A robot of a task.
 struct TaskRobot {
