@@ -46,8 +46,8 @@ planner::Recording explored_run(const std::string& world_name, int steps, bool u
   std::uint64_t collisions = 0;
   const auto record = [&](ExplorationStep step) {
     const auto& known = knowledge.after(step);
-    recording.steps.push_back({std::move(step), known, simulated.total().physical - collisions});
-    collisions = simulated.total().physical;
+    recording.steps.push_back({std::move(step), known, simulated.contacts() - collisions});
+    collisions = simulated.contacts();
   };
   const planner::Drive drive = drive_by(simulated);
   Exploration exploration(team.options(), team.empty_map());

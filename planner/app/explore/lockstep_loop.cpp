@@ -66,7 +66,7 @@ void LockstepLoop::note(const ExplorationStep& step) {
     }
   }
   numbers_.mapped.push_back(mapped);
-  numbers_.contacts = robots_.total().physical;
+  numbers_.contacts = robots_.contacts();
 }
 
 std::optional<RunEnd> LockstepLoop::end() const {

@@ -48,7 +48,7 @@ TEST_F(ExploreRecorded, ExploresWithFilesAndAgainWithoutARobot) {
   const std::string told = content_of(folder_ / "out"), map = content_of(folder_ / "scans/map.bt");
   EXPECT_NE(told.find("\nend: "), std::string::npos) << told;
   EXPECT_GT(scans_, 10);
-  EXPECT_EQ(robots.total().physical, 0U);
+  EXPECT_EQ(robots.contacts(), 0U);
 
   // What it mapped is the room: nearly all of it, and free space where there is free space.
   const auto grid = make_voxel_grid(

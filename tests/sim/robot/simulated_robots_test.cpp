@@ -1,5 +1,4 @@
 #include "mesh/triangle_overlap.hpp"
-#include "sim/world/place.hpp"
 #include "support/complaint.hpp"
 #include "support/random.hpp"
 
@@ -95,39 +94,39 @@ struct BesideThePane {
 };
 
 // Drives, and tells what the robot ran into.
-Collisions collisions_of(SimulatedRobots& robots, std::size_t robot, const Pose& viewpoint) {
-  const Collisions before = robots.total();
+std::uint64_t contacts_of(SimulatedRobots& robots, std::size_t robot, const Pose& viewpoint) {
+  const std::uint64_t before = robots.contacts();
   EXPECT_TRUE(robots.drive(robot, viewpoint).has_value());
-  return {robots.total().lattice - before.lattice, robots.total().physical - before.physical};
+  return robots.contacts() - before;
 }
 
 TEST(SimulatedRobots, CountWhatTheyRunInto) {
   const BesideThePane scene;
   SimulatedRobots robots = scene.robots({planner::ugv_description(), planner::uav_description()});
   const auto drive = [&](std::size_t robot, double x, double y, double z) {
-    return collisions_of(robots, robot, {{x, y, z}});
+    return contacts_of(robots, robot, {{x, y, z}});
   };
   // Appears, turns, and goes beside the pane: nothing. The pane lies on a face, x = 10 voxels.
-  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), Collisions());
-  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), Collisions());
-  EXPECT_EQ(drive(0, 2.25, 3.15, 0.75), Collisions());
-  // 0.5 m to each side: at 2.55 it is 5 cm into the pane. Seen on the lattice the pane is in no voxel.
-  EXPECT_EQ(drive(0, 2.55, 3.15, 0.75), (Collisions{0, 1}));
-  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), (Collisions{0, 1}));
-  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), Collisions());
+  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), 0U);
+  EXPECT_EQ(drive(0, 1.05, 3.15, 0.75), 0U);
+  EXPECT_EQ(drive(0, 2.25, 3.15, 0.75), 0U);
+  // 0.5 m to each side: at 2.55 it is 5 cm into the pane.
+  EXPECT_EQ(drive(0, 2.55, 3.15, 0.75), 1U);
+  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), 1U);
+  EXPECT_EQ(drive(0, 2.49, 3.15, 0.75), 0U);
   // Right through, and back around the end.
-  EXPECT_EQ(drive(0, 4.05, 3.15, 0.75), (Collisions{0, 1}));
-  EXPECT_EQ(drive(0, 4.05, 1.05, 0.75), Collisions());
-  EXPECT_EQ(drive(0, 1.05, 1.05, 0.75), Collisions());
-  EXPECT_EQ(robots.total(), (Collisions{0, 3}));
+  EXPECT_EQ(drive(0, 4.05, 3.15, 0.75), 1U);
+  EXPECT_EQ(drive(0, 4.05, 1.05, 0.75), 0U);
+  EXPECT_EQ(drive(0, 1.05, 1.05, 0.75), 0U);
+  EXPECT_EQ(robots.contacts(), 3U);
   // The aerial one: 0.4 m to each side, and down to the floor.
-  EXPECT_EQ(drive(1, 1.05, 3.15, 1.35), Collisions());
-  EXPECT_EQ(drive(1, 2.59, 3.15, 1.35), Collisions());
-  EXPECT_EQ(drive(1, 2.61, 3.15, 1.35), (Collisions{0, 1}));
-  EXPECT_EQ(drive(1, 1.05, 3.15, 0.45), (Collisions{0, 1}));  // away from the pane
+  EXPECT_EQ(drive(1, 1.05, 3.15, 1.35), 0U);
+  EXPECT_EQ(drive(1, 2.59, 3.15, 1.35), 0U);
+  EXPECT_EQ(drive(1, 2.61, 3.15, 1.35), 1U);
+  EXPECT_EQ(drive(1, 1.05, 3.15, 0.45), 1U);  // away from the pane
   // Both triangles of the floor meet where x + y = 6, away from here.
-  EXPECT_EQ(drive(1, 1.05, 3.15, 0.3).physical, 1U);
-  EXPECT_EQ(robots.total().physical, 6U);
+  EXPECT_EQ(drive(1, 1.05, 3.15, 0.3), 1U);
+  EXPECT_EQ(robots.contacts(), 6U);
 }
 
 // Half a metre from the upright edge of the pane, where only a corner of the box around it meets something.
@@ -139,49 +138,10 @@ TEST(SimulatedRobots, CountContactsOfTheTrueShape) {
     round.robot.travel.shape = shape;
     SimulatedRobots robots = scene.robots({round});
     const double off = 0.5 / std::numbers::sqrt2, x = 3 + off, y = 2 - off;
-    EXPECT_EQ(collisions_of(robots, 0, {{x - 1, y - 1, 1.35}}).physical, 0U);
-    EXPECT_EQ(collisions_of(robots, 0, {{x + 1, y + 1, 1.35}}).physical > 0,
-              shape == planner::BodyShape::kBox);
-    EXPECT_GT(collisions_of(robots, 0, {{3 - off, y + 1, 1.35}}).physical, 0U) << "through the pane";
+    EXPECT_EQ(contacts_of(robots, 0, {{x - 1, y - 1, 1.35}}), 0U);
+    EXPECT_EQ(contacts_of(robots, 0, {{x + 1, y + 1, 1.35}}) > 0, shape == planner::BodyShape::kBox);
+    EXPECT_GT(contacts_of(robots, 0, {{3 - off, y + 1, 1.35}}), 0U) << "through the pane";
   }
-}
-
-TEST(SimulatedRobots, CountVoxelsOfTheLatticeAsABruteForceDoes) {
-  const test::Place place("storage", 2);
-  const Eigen::Vector3d& start = place.start;
-  const auto& bounds = place.world.bounds;
-  SimulatedRobots robots(place.world, place.truth, {planner::ugv_description(), planner::uav_description()},
-                         {}, 1);
-  frontlux::test::Random random(9);
-  std::array<Eigen::Vector3d, 2> at{Eigen::Vector3d(start.x(), start.y(), 0.75),
-                                    Eigen::Vector3d(start.x(), start.y(), 1.35)};
-  for (std::size_t robot = 0; robot < 2; ++robot) robots.drive(robot, {at[robot]});
-  std::uint64_t total = 0;
-  for (int i = 0; i < 60; ++i) {
-    const std::size_t robot = static_cast<std::size_t>(i % 2);
-    // Along one axis, so that it is clear which voxels it passes.
-    Eigen::Vector3d to = at[robot];
-    const int axis = random.below(robot == 0 ? 2 : 3);
-    to[axis] =
-        std::clamp(to[axis] + random.uniform(-3.0, 3.0), bounds.min()[axis] + 1.0, bounds.max()[axis] - 1.0);
-    const int half = robot == 0 ? 2 : 1, below = robot == 0 ? 2 : 1, above = robot == 0 ? 0 : 1;
-    const auto index = [](double x) { return static_cast<int>(std::floor(x / 0.3)) + Lattice::kOrigin; };
-    std::uint64_t expected = 0;
-    for (int k = std::min(index(at[robot][axis]), index(to[axis]));
-         k <= std::max(index(at[robot][axis]), index(to[axis])); ++k) {
-      Eigen::Vector3i c(index(to.x()), index(to.y()), index(to.z()));
-      c[axis] = k;
-      const KeyBox box{make_key(c.x() - half, c.y() - half, c.z() - below),
-                       make_key(c.x() + half, c.y() + half, c.z() + above)};
-      const bool hit = !all_of(box, [&](const VoxelKey& key) { return !place.truth.holds_surface(key); });
-      expected += static_cast<std::uint64_t>(hit);
-    }
-    EXPECT_EQ(collisions_of(robots, robot, {to}).lattice, expected) << i;
-    total += expected;
-    at[robot] = to;
-  }
-  EXPECT_GT(total, 20U);
-  EXPECT_EQ(robots.total().lattice, total);
 }
 
 TEST(SimulatedRobots, ErrorsDependOnSeedRobotAndNumberOfItsScans) {
@@ -212,7 +172,7 @@ TEST(SimulatedRobots, StayWhereABumperStopsThem) {
   EXPECT_FALSE(robots.drive(0, {{4.05, 3.15, 0.75}}).has_value());
   // It is still on this side of the pane.
   EXPECT_TRUE(robots.drive(0, {{1.05, 3.15, 0.75}}).has_value());
-  EXPECT_EQ(robots.total(), Collisions());
+  EXPECT_EQ(robots.contacts(), 0U);
 }
 
 TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
@@ -222,7 +182,7 @@ TEST(SimulatedRobots, RefuseWhatIsNoViewpointOrNoRobot) {
   EXPECT_REFUSED(robots.drive(1, {{1, 1, 0.75}}));
   for (const Pose& bad : {Pose{{1, nan, 0.75}}, Pose{{1, 1, 1e9}}, Pose{{1, 1, 0.75}, nan}})
     EXPECT_REFUSED(robots.drive(0, bad));
-  EXPECT_EQ(robots.total(), Collisions());
+  EXPECT_EQ(robots.contacts(), 0U);
 }
 
 }  // namespace

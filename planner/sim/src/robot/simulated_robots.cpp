@@ -1,8 +1,5 @@
 #include "sensing/keyed_random.hpp"
 
-#include <frontlux/key_box.hpp>
-#include <frontlux/planner/body_stencil.hpp>
-#include <frontlux/planner/segment_voxels.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 #include <frontlux/sim/swept_body.hpp>
 
@@ -57,21 +54,13 @@ SimulatedRobots::SimulatedRobots(const World& world, const GroundTruth& truth,
   for (const planner::RobotDescription& robot : robots_) sensors_.push_back(sensor_of(robot, errors));
 }
 
-Collisions SimulatedRobots::collisions_between(const TravelOptions& travel, const Eigen::Vector3d& from,
-                                               const Eigen::Vector3d& to) const {
+std::uint64_t SimulatedRobots::contacts_between(const TravelOptions& travel, const Eigen::Vector3d& from,
+                                                const Eigen::Vector3d& to) const {
+  TravelOptions body = travel;
+  body.node_edge = 0.0;  // it has its own size, whatever it is planned with
   const Lattice& lattice = truth_->lattice();
-  TravelOptions box = travel;
-  box.node_edge = 0.0;  // if the robot plans with nodes, its box counts here
-  const planner::BodyStencil stencil(box, lattice.resolution());
-  Collisions met;
-  static_cast<void>(planner::SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
-    const auto is_open = [&](const VoxelKey& k) { return !truth_->holds_surface(k); };
-    met.lattice += stencil.all_of(key, is_open) ? 0 : 1;
-    return true;
-  }));
-  const Eigen::AlignedBox3d first = body_at(box, lattice, from), last = body_at(box, lattice, to);
-  met.physical = solids_.count(SweptBody(box.planned_shape(), first, last.min() - first.min()));
-  return met;
+  const Eigen::AlignedBox3d first = body_at(body, lattice, from), last = body_at(body, lattice, to);
+  return solids_.count(SweptBody(body.planned_shape(), first, last.min() - first.min()));
 }
 
 std::optional<planner::Scan> SimulatedRobots::drive(std::size_t robot, const planner::Pose& viewpoint) {
@@ -82,9 +71,9 @@ std::optional<planner::Scan> SimulatedRobots::drive(std::size_t robot, const pla
   if (!std::isfinite(viewpoint.yaw)) refuse("the viewpoint's yaw is not finite");
   Progress& now = progress_[robot];
   const Eigen::Vector3d from = now.pose ? now.pose->position : viewpoint.position;
-  const Collisions met = collisions_between(robots_[robot].robot.travel, from, viewpoint.position);
-  if (at_contact_ == AtContact::kStay && now.pose && met.physical > 0) return std::nullopt;
-  total_ += met;
+  const std::uint64_t met = contacts_between(robots_[robot].robot.travel, from, viewpoint.position);
+  if (at_contact_ == AtContact::kStay && now.pose && met > 0) return std::nullopt;
+  contacts_ += met;
   now.pose = viewpoint;
   const std::uint64_t errors = random_of(random_of(seed_, robot).bits(), now.scans++).bits();
   return sense(surface_, sensors_[robot], viewpoint, errors);

@@ -18,33 +18,15 @@
 
 namespace frontlux::sim {
 
-/// Collisions, counted in two ways. Both ignore a depth of `GroundTruth::kMargin`, as the ground truth does,
-/// so a body may touch a surface that lies on a voxel's face.
-struct Collisions {
-  /// Voxels that the sensor passed with a surface in the stencil around them, the whole voxels that planning
-  /// uses. They are a little more than the body, so a count here need not be a body that hit something.
-  std::uint64_t lattice = 0;
-  /// Triangles that the body itself met on its straight motions: its shape, of exactly its extents around the
-  /// sensor, for a robot on a plane from the lower face of the layer that it stands on.
-  std::uint64_t physical = 0;
-
-  Collisions& operator+=(const Collisions& more) {
-    lattice += more.lattice;
-    physical += more.physical;
-    return *this;
-  }
-  friend constexpr bool operator==(const Collisions&, const Collisions&) = default;
-};
-
 /// What a robot does if its body would meet something.
 enum class AtContact : std::uint8_t {
-  kGoOn,  ///< it moves, and the collision is counted
+  kGoOn,  ///< it moves, and the contact is counted
   kStay,  ///< its bumper stops it: it does not move
 };
 
 /// Robots that move and sense in a simulated world. `drive` is the `planner::Drive` of an exploration.
 ///
-/// Robots neither see nor touch each other, and collisions between them are not counted. Thread safety: as a
+/// Robots neither see nor touch each other, and contacts between them are not counted. Thread safety: as a
 /// standard container.
 class SimulatedRobots {
  public:
@@ -62,8 +44,11 @@ class SimulatedRobots {
   /// @throws std::invalid_argument if there is no such robot, or a viewpoint is not finite or beyond the keys
   std::optional<planner::Scan> drive(std::size_t robot, const planner::Pose& viewpoint);
 
-  /// Of all robots since they appeared.
-  [[nodiscard]] const Collisions& total() const { return total_; }
+  /// Of all robots since they appeared: triangles that a body met on its straight motions: its shape, of
+  /// exactly its extents around the sensor, for a robot that drives from the lower face of the layer that it
+  /// stands on. A depth of `GroundTruth::kMargin` does not count, so a body may touch a surface that lies on
+  /// a voxel's face.
+  [[nodiscard]] std::uint64_t contacts() const { return contacts_; }
 
  private:
   struct Progress {
@@ -71,8 +56,8 @@ class SimulatedRobots {
     std::uint64_t scans = 0;
   };
 
-  [[nodiscard]] Collisions collisions_between(const planner::TravelOptions& travel,
-                                              const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  [[nodiscard]] std::uint64_t contacts_between(const planner::TravelOptions& travel,
+                                               const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   const GroundTruth* truth_;
   Surface surface_;
@@ -82,7 +67,7 @@ class SimulatedRobots {
   std::vector<Progress> progress_;
   std::uint64_t seed_;
   AtContact at_contact_;
-  Collisions total_;
+  std::uint64_t contacts_ = 0;
 };
 
 }  // namespace frontlux::sim
