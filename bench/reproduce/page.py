@@ -84,8 +84,8 @@ def in_short(results):
     lines = [
         *against("Until 99 % is mapped, tours take {} the time of view quality ({}).", built_in, "tour", "render",
                  seconds_mapped),
-        *against("They take {} the time of the paper's method in motion ({}).", built_in, "tour", "paper", seconds_mapped),
-        *against("UAV and UGV take {} the time of the UAV alone ({}).", built_in, "tour", "tour_uav", seconds_mapped)]
+        *against("Tours take {} the time of the paper's method in motion ({}).", built_in, "tour", "paper", seconds_mapped),
+        *against("With tours, UAV and UGV take {} the time of the UAV alone ({}).", built_in, "tour", "tour_uav", seconds_mapped)]
     of_tours = [r for m in teams(results) for t in results.tasks() for r in results.of(t, m) if not r.crashed]
     touched = mean(float(r.facts["contacts"] > 0) for r in of_tours)
     if touched and 0 < touched.value < 1 and touched.low is not None:
