@@ -17,6 +17,8 @@ MOST_LOST = 10  # runs in a row that machines may lose: one that cannot make any
 def connect(scheduler, workers, folder):
     """A client; without a scheduler's address of so many single-threaded workers on this machine."""
     dask.config.set({"distributed.scheduler.allowed-failures": LOST_WORKERS,
+                     # A busy machine takes a while to start another worker, and none would come after the usual 15 s.
+                     "distributed.deploy.lost-worker-timeout": "10 minutes",
                      "distributed.comm.timeouts.connect": "10s"})
     for name in ("distributed", "tornado.application"):  # they report lost workers, and so do we
         logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 from made_up_runs import FAILURE
@@ -79,8 +80,10 @@ class Cluster(unittest.TestCase):
         return {name: json.dumps({**result, "measured": None}, sort_keys=True) for name, result in read.items()}
 
     def number_of_workers(self, address):
-        with Client(address) as client:
-            return len(client.nthreads())
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of Dask, about its own use of Tornado
+            with Client(address) as client:
+                return len(client.nthreads())
 
     def workers(self, number, scheduler=True, **environment):
         """A scheduler, unless it is there, and workers in processes of their own; its address."""
