@@ -9,13 +9,16 @@ import explore
 from distributed import CancelledError, Client, KilledWorker, LocalCluster, TimeoutError, wait
 
 WAIT_FOR_WORKERS = 60  # [s]
-LOST_WORKERS = 3  # a run whose worker has died more often has failed
+LOST_WORKERS = 3  # a run whose worker has died more often is lost
+MOST_LOST = 10  # runs in a row that machines may lose: one that cannot make any would soon lose all
 
 
 @contextmanager
 def connect(scheduler, workers, folder):
     """A client; without a scheduler's address of so many single-threaded workers on this machine."""
     dask.config.set({"distributed.scheduler.allowed-failures": LOST_WORKERS,
+                     # A busy machine takes a while to start another worker, and none would come after the usual 15 s.
+                     "distributed.deploy.lost-worker-timeout": "10 minutes",
                      "distributed.comm.timeouts.connect": "10s"})
     for name in ("distributed", "tornado.application"):  # they report lost workers, and so do we
         logging.getLogger(name).setLevel(logging.CRITICAL)
@@ -41,10 +44,11 @@ def connect(scheduler, workers, folder):
 
 
 def run_all(client, calls, until=None):
-    """Yields (key, what explore() returns) as runs end, in any order. `calls`: {key: arguments of explore()}, begun
-    in this order; none is begun after `until` (of time.monotonic()). No more runs are handed out than there are
-    threads: a worker that dies takes none with it that it has not begun."""
-    waiting, begun = list(calls.items()), {}
+    """Yields (key, what explore() returns) as runs end, in any order; {"lost": why} is of a run that its machine could
+    not make, which says nothing of the run. `calls`: {key: arguments of explore()}, begun in this order; none is begun
+    after `until` (of time.monotonic()). No more runs are handed out than there are threads: a worker that dies takes
+    none with it that it has not begun. Raises OSError if the machines lose run after run."""
+    waiting, begun, lost = list(calls.items()), {}, 0
     while waiting or begun:
         threads = sum(client.nthreads().values())
         late = until is not None and time.monotonic() >= until
@@ -61,8 +65,14 @@ def run_all(client, calls, until=None):
         for future in done:
             key = begun.pop(future)
             try:
-                yield key, future.result()
+                result = future.result()
             except KilledWorker:
-                yield key, {"failure": "its worker died again and again", "measured": {}}
+                result = {"lost": "its worker died again and again"}
             except CancelledError as error:
                 raise OSError("the scheduler is gone; the same command goes on") from error
+            except OSError as error:
+                result = {"lost": str(error)}
+            yield key, result
+            lost = lost + 1 if "lost" in result else 0
+            if lost == MOST_LOST:
+                raise OSError(f"{lost} runs in a row were lost: {result['lost']}")

@@ -6,8 +6,9 @@ import io
 from results import LEVELS
 
 FACTS = ("end", "coverage_observable", "auc", "contacts", "contacts_in_free", "held_back", "clearance_min_m", "separation_min_m")
+MAP = ("false_free", "false_occupied", "surface_found")
 HEADER = ("task", "method", "seed", "failure", *(f"s_to_{level}" for level in LEVELS), "m_ugv", "m_uav",
-          "revisited_ugv", "revisited_uav", "share_uav", "steps", "steps_to_90", *FACTS)
+          "revisited_ugv", "revisited_uav", "share_uav", "steps", "steps_to_90", *FACTS, *MAP)
 
 
 def rounded(value):
@@ -18,7 +19,8 @@ def row_of(run):
     row = [run.run.task, run.run.method, run.run.seed, run.failure or ""]
     if run.facts:
         row += [*map(run.seconds, LEVELS), run.metres("ugv"), run.metres("uav"), run.revisited("ugv"),
-                run.revisited("uav"), run.share("uav"), run.steps(), run.steps(0.9), *map(run.facts.get, FACTS)]
+                run.revisited("uav"), run.share("uav"), run.steps(), run.steps(0.9), *map(run.facts.get, FACTS),
+                *map(run.map_error, MAP)]
     return [rounded(value) for value in row] + [""] * (len(HEADER) - len(row))
 
 

@@ -7,6 +7,10 @@ from typing import NamedTuple
 DECLARED = Path(__file__).resolve().parent / "experiments.json"
 FIRST_SEED = 6  # parameters were fixed on seeds 1 to 5
 COMPLETE = 0.99  # of the observable space, unless the task says otherwise
+COMPLETES = (0.9, 0.95, 0.99)  # parts for which runs say when they had mapped them
+FIRST_PASS = 2  # seeds of each block that come before all others, unless it says otherwise
+# What shows a method, and whether it is shown against another one.
+TABLES = {"main": False, "lock-step": False, "why": True, "reality": True, "bumpers": True, "caster": True}
 
 
 class Run(NamedTuple):
@@ -47,18 +51,33 @@ class Experiments:
             raise ValueError(f"{file}: the member {error} is missing; add it") from error
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from error
+        self.check_methods()
         for name in self.sets:
             for run in self.runs(name):
                 self.task_file(run)
+                if self.complete(run) not in COMPLETES:
+                    raise self.wrong(f"{run.task} or {run.method} is complete at {self.complete(run)}",
+                                     f"give one of {', '.join(map(str, COMPLETES))}")
+        self.rows = {run[:2] for name in self.sets for run in self.runs(name) if not run.timed}
 
     def wrong(self, what, do):
         return ValueError(f"{self.file}: {what}; {do}")
 
+    def check_methods(self):
+        for name, method in self.methods.items():
+            if method.get("table") not in TABLES:
+                raise self.wrong(f"method {name!r} is in table {method.get('table')!r}",
+                                 f"give one that the page has: {', '.join(TABLES)}")
+            if TABLES[method["table"]] != ("against" in method) or method.get("against", name) not in self.methods:
+                raise self.wrong(f"method {name!r} is in table {method['table']!r} against {method.get('against')!r}",
+                                 "give the method that it changes, or leave it out for main and lock-step")
+
     def runs(self, set_name):
-        """In the order of the blocks, and in each seed by seed, so that an early end leaves pairs to compare."""
+        """Of each block the `first` few seeds, then the others; in each block seed by seed, so that an early end leaves
+        pairs to compare."""
         if set_name not in self.sets:
             raise self.wrong(f"there is no set {set_name!r}", f"there are {', '.join(self.sets)}")
-        runs = []
+        passes = [], []
         for block in self.sets[set_name]:
             for kind, known in (("tasks", self.tasks), ("methods", self.methods)):
                 for name in block[kind]:
@@ -69,9 +88,26 @@ class Experiments:
             if not FIRST_SEED <= first <= last:
                 raise self.wrong(f"seeds of set {set_name!r} are {first} to {last}",
                                  f"give a first one from {FIRST_SEED} on and a last one that is not before it")
-            runs += [Run(t, m, s, set_name == "timed") for s in range(first, last + 1) for t in block["tasks"]
-                     for m in block["methods"]]
-        return list(dict.fromkeys(runs))
+            for seed in range(first, last + 1):
+                passes[seed >= first + block.get("first", FIRST_PASS)].extend(
+                    Run(task, method, seed, set_name == "timed") for task in block["tasks"] for method in block["methods"])
+        return list(dict.fromkeys(passes[0] + passes[1]))
+
+    def tasks_of(self, of_files=None):
+        """In the declaration's order: all, or those with built-in worlds, or those with worlds from files."""
+        return [t for t in self.tasks if of_files in (None, self.file_of(t) is not None)]
+
+    def methods_of(self, table=None, against=None):
+        return [name for name, method in self.methods.items()
+                if table in (None, method["table"]) and against in (None, method.get("against"))]
+
+    def bases(self, table):
+        """The methods that those of a table are shown against."""
+        return list(dict.fromkeys(self.methods[m]["against"] for m in self.methods_of(table)))
+
+    def declared_tasks(self, *methods):
+        """Those that all of the methods are run on."""
+        return [t for t in self.tasks if all((t, m) in self.rows for m in methods)]
 
     def file_of(self, task):
         """The name of the world's file; None for built-in worlds."""
@@ -80,6 +116,13 @@ class Experiments:
     def complete(self, run):
         """How much of the observable space the run has to map, or it has failed."""
         return min(self.tasks[run.task].get("complete", COMPLETE), self.methods[run.method].get("complete", COMPLETE))
+
+    def level(self, task):
+        """complete() in percent, of what is in motion."""
+        return f"{100 * self.tasks[task].get('complete', COMPLETE):.0f}"
+
+    def task_title(self, task):
+        return self.tasks[task]["title"]
 
     def title(self, method):
         return self.methods[method]["title"]

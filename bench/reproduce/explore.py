@@ -9,9 +9,11 @@ import signal
 import socket
 import subprocess
 import tempfile
+from datetime import datetime, timezone
 from pathlib import Path
+from typing import NamedTuple
 
-LONGEST = 3600  # [s], after which a run counts as hanging
+LONGEST = 3600  # [s] of the machine's time, after which a run counts as hanging
 # Of run.json: what is the same on every machine, and what is not.
 FACTS = ("version", "end", "steps", "coverage_observable", "coverage_box", "unseen", "time_s", "auc", "explored_m3",
          "clearance_min_m", "contacts", "contacts_in_free", "collisions", "held_back", "separation_min_m", "by_robot", "path_length_m", "map",
@@ -30,10 +32,18 @@ def find_program(command):
     return found
 
 
-def version_of(command):
-    """The version that `frontlux --version` prints."""
-    said = subprocess.run([find_program(command), "--version"], capture_output=True, text=True, timeout=60, check=True)
-    return said.stdout.split(",")[0].strip().removeprefix("frontlux ")
+class Program(NamedTuple):
+    """What made a run: programs of one version differ, so the file itself counts."""
+    version: str
+    sha256: str  # its first 12 digits
+
+
+def program_of(command):
+    """The version that `frontlux --version` prints, and the hash of its file."""
+    file = find_program(command)
+    said = subprocess.run([file, "--version"], capture_output=True, text=True, timeout=60, check=True)
+    return Program(said.stdout.split(",")[0].strip().removeprefix("frontlux "),
+                   hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12])
 
 
 def kind_of(robot):
@@ -96,51 +106,56 @@ def worst_of_limits(file, robots):
     return None if worst is None else round(worst, 6)
 
 
-def explore(command, version, task, world, threads=1, folder=None):
+def explore(command, program, task, world, threads=1, folder=None):
     """Runs a task: what came of it, either "facts", "gains" and "curve", or why it failed, "failure"; "measured"
     depends on the machine, nothing else does. The world's file is given apart, or empty. Files go to a new folder in
-    `folder`, which is removed. Raises OSError if this machine does not have the program, its version or the file."""
-    program = find_program(command)
-    found = version_of(program)
-    if found != version:
-        raise OSError(f"{program} on {socket.gethostname()} is version {found} instead of {version}: install that")
+    `folder`, which is removed. Raises OSError if this machine does not have that very program or the file."""
+    file, found = find_program(command), program_of(command)
+    if found != program:
+        raise OSError(f"{file} on {socket.gethostname()} is {found.version} ({found.sha256}) instead of "
+                      f"{program.version} ({program.sha256}): install that")
     if world and not Path(world).is_file():
         raise OSError(f"there is no {world} on {socket.gethostname()}: copy it there")
     with tempfile.TemporaryDirectory(prefix="frontlux-", dir=folder) as temporary:
-        run = Path(temporary) / "run"
-        file = Path(temporary) / "task.json"
-        file.write_text(json.dumps({**task, "world": world} if world else task), encoding="utf-8")
-        arguments = [program, "explore", "--task", str(file), "--threads", str(threads), "--report", "off", "--quiet",
-                     "-o", str(run)]
-        if setpriv := shutil.which("setpriv"):  # it ends with the worker, even if that is killed
-            arguments = [setpriv, "--pdeathsig", "KILL", *arguments]
-        log = Path(temporary) / "log"
-        with open(log, "w", encoding="utf-8") as output:
-            # In a session of its own, so that Ctrl-C reaches the client alone.
-            process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
-                                       start_new_session=True)
-            try:
-                code = process.wait(LONGEST)
-            except subprocess.TimeoutExpired:
-                return {"failure": f"not done after {LONGEST} s", "measured": {}}
-            finally:
-                process.kill()
-                process.wait()
-        if code != 0:
-            said = last_line(log.read_text(encoding="utf-8", errors="replace")).replace(temporary, "")
-            ended = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
-            return {"failure": f"{ended}: {said}", "measured": {}}
+        outcome = run_in(Path(temporary), file, {**task, "world": world} if world else task, threads)
+    if "failure" in outcome:
+        outcome["failure"] = outcome["failure"].replace(temporary, "")
+    outcome["measured"].update(program=program.sha256, date=datetime.now(timezone.utc).date().isoformat())
+    return outcome
+
+
+def run_in(folder, program, task, threads):
+    """explore() with its files in this folder."""
+    file, run, log = folder / "task.json", folder / "run", folder / "log"
+    file.write_text(json.dumps(task), encoding="utf-8")
+    arguments = [program, "explore", "--task", str(file), "--threads", str(threads), "--report", "off", "--quiet",
+                 "-o", str(run)]
+    if setpriv := shutil.which("setpriv"):  # it ends with the worker, even if that is killed
+        arguments = [setpriv, "--pdeathsig", "KILL", *arguments]
+    with open(log, "w", encoding="utf-8") as output:
+        # In a session of its own, so that Ctrl-C reaches the client alone.
+        process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
+                                   start_new_session=True)
         try:
-            facts = json.loads((run / "run.json").read_text(encoding="utf-8"))
-            curve, gains = read_steps(run / "steps.csv")
-            if (run / "motion.csv").exists():
-                facts["worst_of_limits"] = worst_of_limits(run / "motion.csv", facts["task"]["robots"])
-            measured = {key: facts.get(key) for key in MEASURED}
-            measured["program"] = hashlib.sha256(Path(program).read_bytes()).hexdigest()[:12]
-            return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,
-                    "measured": measured}
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            return {"failure": f"what it left cannot be read: {error}".replace(temporary, ""), "measured": {}}
+            code = process.wait(LONGEST)
+        except subprocess.TimeoutExpired:
+            return {"failure": f"not done after {LONGEST} s", "measured": {}}
+        finally:
+            process.kill()
+            process.wait()
+    if code != 0:
+        said = last_line(log.read_text(encoding="utf-8", errors="replace"))
+        ended = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
+        return {"failure": f"{ended}: {said}", "measured": {}}
+    try:
+        facts = json.loads((run / "run.json").read_text(encoding="utf-8"))
+        curve, gains = read_steps(run / "steps.csv")
+        if (run / "motion.csv").exists():
+            facts["worst_of_limits"] = worst_of_limits(run / "motion.csv", facts["task"]["robots"])
+        return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,
+                "measured": {key: facts.get(key) for key in MEASURED}}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        return {"failure": f"what it left cannot be read: {error}", "measured": {}}
 
 
 def explore_on_worker(*arguments):

@@ -3,19 +3,30 @@
 import math
 
 import paper
-from claims import end_of
-from intervals import ratio
-from palette import PALETTE, TEAM, UAV, UGV, colours
+from claims import at_the_end, end_of, seconds_mapped, to_a_level
+from palette import PALETTE, UAV, UGV
 from svg_chart import MARGIN, WIDTH, Drawing, svg
-
-RUNS = [tuple(pair) for pair in PALETTE["runs"]]
-COLOURS = {"tour": TEAM, "tour_uav": UAV, "render": RUNS[0], "paper": RUNS[1], **colours("goals"),
-           "steps": TEAM, "steps_uav": UAV, "steps_ugv": UGV, "uav": UAV, "ugv": UGV}
-DASHES = {"tour": "", "tour_uav": "2 3", "render": "7 3", "paper": "9 3 2 3", "cluster": "4 4", "nearest": "12 4",
-          "steps": "", "steps_uav": "7 3", "steps_ugv": "2 3"}
 
 AXIS, GAP, PANEL_HEIGHT, TOP = 40, 24, 210, 142
 SAMPLES = 200  # along a curve
+
+
+def line_of(results, method):
+    """How a method is drawn, if it is: its colours, on light and on dark background, and its dashes."""
+    line = results.experiments.methods[method].get("line")
+    if line is None:
+        return None
+    section, _, which = line["colour"].partition(" ")
+    colours = PALETTE[section]
+    return tuple(colours[int(which) if which.isdigit() else which] if which else colours), line["dash"]
+
+
+def drawn_methods(results, table):
+    return [m for m in results.experiments.methods_of(table) if line_of(results, m)]
+
+
+def colours_of(results, methods):
+    return {m: line_of(results, m)[0] for m in methods}
 
 
 def round_step(largest, most):
@@ -55,9 +66,10 @@ class Panel:
         outline = self.path(upper) + "L" + self.path(reversed(lower))
         self.drawing.lines.append(f'<path d="M{outline}z" class="fill-{name}" opacity="0.85"/>')
 
-    def curve(self, name, points, mean):
+    def curve(self, name, points, dash=None):
+        """A thick one with dashes, or a thin one."""
         path = self.path(points)
-        style = f'stroke-width="2.2" stroke-dasharray="{DASHES[name]}"' if mean else 'stroke-width="0.8" opacity="0.22"'
+        style = 'stroke-width="0.8" opacity="0.22"' if dash is None else f'stroke-width="2.2" stroke-dasharray="{dash}"'
         self.drawing.lines.append(f'<path d="M{path}" class="line-{name}" fill="none" stroke-linejoin="round" {style}/>')
 
 
@@ -79,16 +91,16 @@ def mean_curve(curves):
     return [(points[0][0], sum(y for _, y in points) / len(points)) for points in zip(*curves)]
 
 
-def chart(title, note, names, titles):
+def chart(title, note, titles, dashes):
     """With its head and a legend: of lines, and of areas where a name has no dashes."""
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
     drawing.text(MARGIN, 61, note, "faint")
     x = MARGIN + 6
-    for name in names:
-        if name in DASHES:
+    for name in titles:
+        if name in dashes:
             drawing.lines.append(f'<path d="M{x} 78h26" class="line-{name}" stroke-width="2.2" '
-                                 f'stroke-dasharray="{DASHES[name]}"/>')
+                                 f'stroke-dasharray="{dashes[name]}"/>')
         else:
             drawing.bar(x, 72, 26, 11, name)
         drawing.text(x + 33, 82, titles[name])
@@ -100,9 +112,9 @@ def progress(results, tasks, names, title, of_curve, x_title):
     """Coverage against `of_curve`: thin lines by seed, a thick one for their mean. Failed runs are drawn as well."""
     tasks = [t for t in tasks if any(r.curve for name in names for r in results.of(t, name))]
     names = [n for n in names if any(r.curve for t in tasks for r in results.of(t, n))]
-    titles = {n: results.experiments.title(n) for n in names}
+    dashes = {n: line_of(results, n)[1] for n in names}
     drawing = chart(title, "Thin: each seed; thick: their mean, where a run that has ended keeps its last value; with "
-                    "failed runs", names, titles)
+                    "failed runs", {n: results.experiments.title(n) for n in names}, dashes)
     for column, task in enumerate(tasks):
         runs = {name: [r for r in results.of(task, name) if r.curve] for name in names}
         ends = {name: max((of_curve(r)[-1] for r in runs[name]), default=0) for name in names}
@@ -111,17 +123,17 @@ def progress(results, tasks, names, title, of_curve, x_title):
         for name in reversed(names):
             curves = [sampled(of_curve(r), [100 * row["coverage"] for row in r.curve], x_end) for r in runs[name]]
             for points, run in zip(curves, runs[name]):
-                panel.curve(name, [p for p in points if p[0] <= of_curve(run)[-1]] or points[:1], False)
+                panel.curve(name, [p for p in points if p[0] <= of_curve(run)[-1]] or points[:1])
             if curves:
-                panel.curve(name, mean_curve(curves), True)
-    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {name: COLOURS[name] for name in names}, drawing)
+                panel.curve(name, mean_curve(curves), dashes[name])
+    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, colours_of(results, names), drawing)
 
 
 def contributions(results, method="steps"):
     """What each kind of robot mapped first, stacked, by step: means over seeds."""
     title, kinds = "What each robot mapped first, the paper's method", ("ugv", "uav")
-    drawing = chart(title, "Means over seeds, where a run that has ended keeps its last value; with failed runs", kinds,
-                    {"ugv": "UGV", "uav": "UAV"})
+    drawing = chart(title, "Means over seeds, where a run that has ended keeps its last value; with failed runs",
+                    {"ugv": "UGV", "uav": "UAV"}, {})
     tasks = [t for t in paper.WORLDS if any(r.curve for r in results.of(t, method))]
     for column, task in enumerate(tasks):
         runs = [r for r in results.of(task, method) if r.curve]
@@ -134,28 +146,32 @@ def contributions(results, method="steps"):
             upper = [(x, below + y) for (x, below), (_, y) in zip(lower, own)]
             panel.area(kind, lower, upper)
             lower = upper
-    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {kind: COLOURS[kind] for kind in kinds}, drawing)
+    return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, {"ugv": UGV, "uav": UAV}, drawing)
 
 
-def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper", "tour_uav")):
-    """A mark for each task and method with its interval, on a logarithmic axis about 1."""
-    title, row_height, left = "Time to the end: tours divided by each other method", 22, 330
+def ratios(results, first="tour"):
+    """For each task and method two marks with their intervals, on a logarithmic axis about 1: until the world was mapped,
+    full, and to the end, hollow."""
+    title, row_height, left = "Time until the world was mapped: tours by each other method", 28, 330
+    others = [m for m in drawn_methods(results, "main") if m != first]
     rows = []
     for task in results.tasks():
         for other in others:
-            pairs, ours, theirs = results.pairs(task, first, other)
-            found = ratio([pairs], end_of)
-            if found:
-                rows.append((task, other, found, ours, theirs))
+            mapped = to_a_level(results, [task], first, other, seconds_mapped).found
+            if mapped:
+                rows.append((task, other, mapped, at_the_end(results, [task], first, other, end_of).found))
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
-    drawing.text(MARGIN, 61, "Ratio of the means, by pairs with the same seed, and its 95 % interval; left of 1 tours end "
-                 "earlier", "faint")
-    right, top = WIDTH - MARGIN - 90, 92
-    values = [v for _, _, f, _, _ in rows for v in f[:3] if v] or [1]
-    low, high = min(min(values), 0.5) / 1.05, max(max(values), 1.1) * 1.05
+    drawing.text(MARGIN, 61, "By pairs with the same seed, with 95 % intervals; left of 1 tours are earlier. Full: median of "
+                 "ratios until mapped", "faint")
+    drawing.text(MARGIN, 78, "(99 %, hospital 90 %); hollow: ratio of means to the end, which each method chooses by its "
+                 "own rule", "faint")
+    right, top = WIDTH - MARGIN - 90, 108
+    values = [v for row in rows for found in row[2:] if found for v in found[:3] if v and math.isfinite(v)] or [1]
+    low, high = max(min(*values, 0.5), 0.05) / 1.05, min(max(*values, 1.1), 5) * 1.05
 
     def at(x):
+        x = min(max(x, low), high)  # an infinite one lies at the edge
         return left + (math.log(x) - math.log(low)) / (math.log(high) - math.log(low)) * (right - left)
 
     bottom = top + row_height * len(rows)
@@ -164,18 +180,22 @@ def ratios(results, first="tour", others=("render", "cluster", "nearest", "paper
             drawing.line(at(tick), top - 8, at(tick), bottom, "base" if tick == 1 else "rule")
             drawing.text(at(tick), bottom + 16, f"{tick:g}", "faint", "middle")
     previous = None
-    for i, (task, other, found, ours, theirs) in enumerate(rows):
+    for i, (task, other, *both) in enumerate(rows):
         y = top + row_height * (i + 0.5)
         if task != previous:
             drawing.text(MARGIN, y + 4, task, "strong")
         previous = task
         drawing.text(left - 12, y + 4, results.experiments.title(other), "", "end")
-        name = f'class="line-{other}" stroke-width="2.2"'
-        if found.low is not None:
-            drawing.lines.append(f'<path d="M{at(found.low):.1f} {y:.1f}H{at(found.high):.1f}" {name}/>')
-        drawing.lines.append(f'<circle cx="{at(found.value):.1f}" cy="{y:.1f}" r="4.2" class="fill-{other}"/>')
-        drawing.text(WIDTH - MARGIN, y + 4, f"{found.count} pairs", "faint", "end")
-    return svg(title, bottom + 30 + MARGIN - 8, {name: COLOURS[name] for name in others}, drawing)
+        for found, down, width, mark in ((both[0], -5, 2.2, f'r="4.2" class="fill-{other}"'),
+                                         (both[1], 6, 1, f'r="3" class="line-{other}" fill="none"')):
+            if found is None:
+                continue
+            if found.low is not None:
+                drawing.lines.append(f'<path d="M{at(found.low):.1f} {y + down:.1f}H{at(found.high):.1f}" '
+                                     f'class="line-{other}" stroke-width="{width}"/>')
+            drawing.lines.append(f'<circle cx="{at(found.value):.1f}" cy="{y + down:.1f}" {mark}/>')
+        drawing.text(WIDTH - MARGIN, y + 4, f"{both[0].count} pairs", "faint", "end")
+    return svg(title, bottom + 30 + MARGIN - 8, colours_of(results, others), drawing)
 
 
 def seconds_of(run):
@@ -188,12 +208,11 @@ def steps_of(run):
 
 def figures(results):
     """{name: SVG}"""
-    methods = ("tour", "render", "cluster", "nearest", "paper", "tour_uav")
     return {
-        "coverage_by_time": progress(results, results.tasks(of_files=False), methods, "Coverage by time", seconds_of,
-                                     "time on the clock [s]"),
+        "coverage_by_time": progress(results, results.tasks(of_files=False), drawn_methods(results, "main"),
+                                     "Coverage by time", seconds_of, "time on the clock [s]"),
         "ratios": ratios(results),
-        "coverage_by_step": progress(results, paper.WORLDS, ("steps", "steps_uav", "steps_ugv"),
+        "coverage_by_step": progress(results, paper.WORLDS, drawn_methods(results, "lock-step"),
                                      "Coverage by step, the paper's method", steps_of, "steps"),
         "contributions": contributions(results),
     }

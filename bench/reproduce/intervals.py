@@ -1,7 +1,8 @@
 """Means with bootstrap intervals; the same values give the same interval."""
 
+import math
 import random
-from statistics import fmean
+from statistics import fmean, median
 from typing import NamedTuple, Optional
 
 RESAMPLES, SEED, LEVEL = 2000, 24, 0.95
@@ -17,9 +18,9 @@ class Interval(NamedTuple):
 
 def bootstrap(groups, statistic):
     """The statistic of several groups of values, with its percentile interval when each group is drawn from itself with
-    replacement. None without values."""
-    groups = [list(group) for group in groups if group]
-    if not groups:
+    replacement. None if a group has no values."""
+    groups = [list(group) for group in groups]
+    if not groups or not all(groups):
         return None
     count, value = sum(map(len, groups)), statistic(groups)
     if min(map(len, groups)) < FEWEST:
@@ -44,9 +45,10 @@ def both(pairs, measure):
     return [(a, b) for a, b in values if a is not None and b is not None]
 
 
-def difference(pairs, measure):
-    """Of the pairs' means: the first run's less the second's."""
-    return bootstrap([both(pairs, measure)], lambda groups: fmean(a - b for a, b in groups[0]))
+def difference(groups_of_pairs, measure):
+    """The first run's less the second's, in each group the mean; of several groups the mean of that."""
+    return bootstrap([both(pairs, measure) for pairs in groups_of_pairs],
+                     lambda groups: fmean(fmean(a - b for a, b in pairs) for pairs in groups))
 
 
 def ratio(groups_of_pairs, measure):
@@ -55,3 +57,12 @@ def ratio(groups_of_pairs, measure):
         below = sum(b for _, b in pairs)
         return sum(a for a, _ in pairs) / below if below else 0.0
     return bootstrap([both(pairs, measure) for pairs in groups_of_pairs], lambda groups: fmean(map(of, groups)))
+
+
+def median_ratio(groups_of_pairs, measure):
+    """The median of the pairs' ratios, in each group; of several groups the mean of that. A run that never got there has
+    an infinite value and is later than any that did; two that never did are alike."""
+    def of(a, b):
+        return 1.0 if a == b else a / b if b else math.inf
+    return bootstrap([[of(a, b) for a, b in both(pairs, measure)] for pairs in groups_of_pairs],
+                     lambda groups: fmean(map(median, groups)))

@@ -38,5 +38,5 @@ def interval(found, digits=0, scale=1.0, unit="", sign=False):
     if found is None:
         return NOTHING
     mark = "+" if sign else ""
-    middle, *ends = (None if v is None else f"{scale * v:{mark},.{digits}f}" for v in found[:3])
+    middle, *ends = (None if v is None else f"{scale * v:{mark},.{digits}f}".replace("inf", "∞") for v in found[:3])
     return middle + unit + (f" ({ends[0]} to {ends[1]})" if ends[0] is not None else "")

@@ -1,22 +1,31 @@
-"""docs/results.md: what is compared, the main table, why, the paper, limits."""
+"""docs/results.md: the results in short, what is compared, the main tables, why, the paper, limits."""
 
-from claims import our_lines, paper_lines
+from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, our_lines, paper_lines, relative, seconds_mapped, teams,
+                    to_a_level)
 from explore import LONGEST
-from intervals import FEWEST, LEVEL, RESAMPLES
-from markdown import plain
-from tables import (bumpers_table, failures_list, lines_table, main_table, maps_table, missing_table,
-                    optimisation_table, pairs_table, planning_table, steps_table, variants_table)
+from intervals import FEWEST, LEVEL, RESAMPLES, mean
+from markdown import counted, interval, percent, plain
+from tables import (bumpers_table, failures_list, lines_table, maps_table, missing_table, optimisation_table, pairs_table,
+                    planning_table, published_list, safety_table, steps_table, times_table, unseen_table, variants_table)
 
 METHODS = """\
-- **tours** (`--goal tour`, the default): tours over all that is left to see, shared out to the robots.
-- **view quality** (`--goal render`): one goal after the other, by eq. 1 and exact view quality.
-- **clusters** and **nearest frontier** (`--goal cluster`, `--goal nearest`): the same with other goals; the nearest is
-  Yamauchi's, the nearest cluster of frontiers.
-- **as printed, in motion** (`--mode paper`): the paper's method under the same clock; it ends by its own rule, with a
-  gain below 1 frontier summed over viewpoints, so that it does not end by our choice.
+- **tours** (`--goal tour`, the default): tours over all that is left to see, shared out to the robots. They end when
+  nothing is left to see: no cluster of 1.5 m2 and more of which enough frontiers would be in view (10, but 0.3 to 0.9 m2).
+- **view quality** (`--goal render`): one goal after the other, by eq. 1 and exact view quality. It ends when the gain
+  that each robot expected of its last three goals was below 10 frontiers.
+- **clusters** (`--goal cluster`): the same with other goals, and the same end.
+- **nearest frontier** (`--goal nearest`): Yamauchi's, the nearest cluster of frontiers. It ends below 1 frontier instead
+  of 10, since its goal is often a single one.
+- **as printed, in motion** (`--mode paper`): the paper's method under the same clock. It ends below 1 frontier summed over
+  viewpoints, so that it does not end by our choice.
+
+Any of them also ends when no robot finds a goal. **Since each ends by its own rule, methods are judged by the time until the world
+counts as mapped**: 99 % of the observable space, 90 % of the hospital's. The time to the end stands beside it.
 
 All have the same map, sensors, robots, limits and clock. The paper's tables further down are in lock-step, Alg. 1 as
-printed (`--mode paper --lockstep`)."""
+printed (`--mode paper --lockstep`). There view quality differs from that in motion by more than the clock: sensors measure
+only at viewpoints, with more rays, robots stop at each viewpoint and wait for each other, and goals nearer than 4 m
+(2 m in motion) lose value."""
 
 LIMITS = f"""\
 - Worlds are simulated: nothing moves in them, sensors, poses and messages have no errors unless a row says so. All
@@ -31,7 +40,8 @@ LIMITS = f"""\
 
 
 def summary(lines):
-    words = ("reproduced", "holds", "**not reproduced", "**does not hold", "open", "not comparable", "not measured")
+    words = ("reproduced", "holds", "**not reproduced", "**does not hold", "open", NOT_JUDGED, "not comparable",
+             "not measured")
     counts = [(word.strip("*"), sum(line.verdict.startswith(word) for line in lines)) for word in words]
     return f"Of {len(lines)} lines: " + ", ".join(f"{n} {word}" for word, n in counts if n) + "."
 
@@ -39,10 +49,58 @@ def summary(lines):
 def origin(results):
     runs = results.all.values()
     versions = ", ".join(sorted({plain(r.content["version"]) for r in runs}))
-    builds = len({r.measured.get("program") for r in runs} - {None})
     seeds = [run.seed for run in results.all]
-    return (f"{len(runs)} of {len(results.wanted)} runs, seeds {min(seeds)} to {max(seeds)}, version {versions}" +
-            (f" ({builds} builds of it)" if builds > 1 else ""))
+    dates = sorted({r.measured["date"] for r in runs if r.measured.get("date")})
+    return (f"{len(runs)} of {len(results.wanted)} runs, seeds {min(seeds)} to {max(seeds)}, by version {versions}, "
+            f"program {plain(results.program)}" +
+            (f", {plain(dates[0])}" + (f" to {plain(dates[-1])}" if len(dates) > 1 else "") if dates else ""))
+
+
+def others_left_out(results):
+    return (f" Of other programs than {plain(results.program)} there are {counted(results.of_others, 'run')}, which are left out "
+            "everywhere: the next `./dev reproduce` makes them again.") if results.of_others else ""
+
+
+def duration(results):
+    """How long the runs took: with more workers the command took less."""
+    seconds = [r.measured["wall_s"] for r in results.all.values() if r.measured.get("wall_s") is not None]
+    return f"{counted(len(seconds), 'run')} took {sum(seconds) / 3600:.1f} hours in all, one after the other"
+
+
+def in_short(results):
+    """Sentences of what has an interval."""
+    experiments = results.experiments
+
+    def where(tasks):
+        return ("mean of " if len(tasks) > 1 else "") + ", ".join(experiments.task_title(t) for t in tasks)
+
+    def against(said, tasks, method, other, measure):
+        tasks = [t for t in tasks if len(results.pairs(t, method, other)) >= FEWEST]
+        found = to_a_level(results, tasks, method, other, measure)
+        return [said.format(interval(found.found, 2, unit="×"), f"{where(tasks)}, {found.said}",
+                            interval(relative(found, -1).found, 0, 100, " %"))] if found.found else []
+
+    built_in = experiments.tasks_of(of_files=False)
+    lines = [
+        *against("Until 99 % is mapped, tours take {} the time of view quality ({}).", built_in, "tour", "render",
+                 seconds_mapped),
+        *against("Tours take {} the time of the paper's method in motion ({}).", built_in, "tour", "paper", seconds_mapped),
+        *against("With tours, UAV and UGV take {} the time of the UAV alone ({}).", built_in, "tour", "tour_uav", seconds_mapped)]
+    of_tours = [r for m in teams(results) for t in results.tasks() for r in results.of(t, m) if not r.crashed]
+    touched = mean(float(r.facts["contacts"] > 0) for r in of_tours)
+    if touched and 0 < touched.value < 1 and touched.low is not None:
+        lines.append(f"In {interval(touched, 1, 100, ' %')} of {counted(len(of_tours), 'run')} of tours a body touched a "
+                     "surface, without bumpers.")
+    lines += against("As printed, in lock-step, the team takes {2} fewer steps to 90 % than the UAV alone ({1}).",
+                     built_in, "steps", "steps_uav", lambda r: r.steps_until(0.9))
+    for task in experiments.tasks_of(of_files=True):
+        if published := experiments.tasks[task].get("published"):
+            found = mean(r.seconds_mapped for r in results.of(task, "tour"))
+            if found and found.low is not None:
+                lines.append(f"{plain(experiments.task_title(task))}: 99 % after {interval(found, 0, unit=' s')}, with tours; "
+                             "published to the end: " + ", ".join(f"{name} {low} to {high} s" for name, (low, high) in
+                                                      published["seconds"].items()) + ".")
+    return "".join(f"- {line}\n" for line in lines) or "Too few runs for an interval.\n"
 
 
 def page(results, images, runs):
@@ -53,13 +111,21 @@ def page(results, images, runs):
     def figure(name, title):
         return f"![{title}]({images}/{name}.svg)\n"
 
+    def of_each(kind, table):
+        """A table for each method that has others against it."""
+        return "\n".join(f"{results.experiments.title(base).capitalize()}:\n\n{table(results, kind, base)}"
+                         for base in results.experiments.bases(kind))
+
     return f"""\
 # Results
 
 Written by `./dev reproduce` from {origin(results)}.
-[{runs}]({runs}) has a row for each run; [reproducing.md](reproducing.md) says how to make them. What is missing stands at
-the end of the page.
+{duration(results)}. [{runs}]({runs}) has a row for each; [reproducing.md](reproducing.md) says how to make
+them. What is missing stands at the end of the page.
 
+## Results in short
+
+{in_short(results)}
 ## What is compared
 
 {METHODS}
@@ -71,44 +137,54 @@ lock-step they are the built-in robots, with 720 x 32 and 160 x 120 rays. The of
 `bench/reproduce/experiments.json` declares all of it.
 
 Parameters were fixed on seeds 1 to 5. Seed n is layout n with {results.experiments.seed_offset:,} + n for planner and sensors. Methods are compared
-by pairs with the same seed; in brackets are {100 * LEVEL:.0f} % bootstrap intervals ({RESAMPLES:,} resamples), none for fewer than {FEWEST} values. A run
-has **failed** if it crashed, hung ({LONGEST:,} s of computing), was cut off, reached a limit, or ended with less than 99 % of the
-observable space mapped (hospital 90 %, the paper's steps 90 %). A failed run enters no mean; its pair is lost, and that is counted.
+by pairs with the same seed; in brackets are {100 * LEVEL:.0f} % bootstrap intervals ({RESAMPLES:,} resamples), none for fewer than {FEWEST} values.
 
-## Main table
+A run has **failed** if it crashed, hung ({LONGEST:,} s of the machine's time, so a far slower machine could fail it), reached a limit, or
+ended with less than 99 % of the observable space mapped (hospital 90 %, the paper's steps 90 %). A robot that was cut off from
+what is left to see is no failure once so much is mapped. A run that its machine lost is missing, not failed.
 
-Means of the runs that did not fail; contacts, and those at which the map had all voxels around the body as free, since
-beams had passed the surface that is in them; least clearance of a body to a surface and least distance of two bodies
-of all runs. What was not mapped is in view only of smaller robots (narrow), of none (hidden), or of these (in view), by
-estimates.
+Times, steps and metres **to a level** are compared by the median of the pairs' ratios, of all runs: one that never got
+there, whatever ended it, counts as later than any that did, and two that never did as alike (1). What is measured **at the end** is
+compared by the ratio of means, of pairs of which neither run failed. Several worlds count by the mean of their ratios.
 
-{main_table(results, built_in)}
+## Main tables
+
+Means of the runs that did not fail; "; 3 of 10" says that only these got to that level, and that it is their mean.
+
+{times_table(results, built_in)}
 {figure("coverage_by_time", "Mapped part of the observable space against seconds, by method")}
-By pairs; below 0, or with a ratio below 1, tours are better.
+By pairs; with a ratio below 1, or below 0, tours are better.
 
 {pairs_table(results)}
-{figure("ratios", "Time to the end of tours by that of the others, with intervals")}
+{figure("ratios", "Time until mapped of tours by that of the others, with intervals, and time to the end")}
+Way and safety: contacts, and those at which the map had all voxels around the body as free, since beams had passed the
+surface that is in them; least clearance of a body to a surface and least distance of two bodies, of all runs; runs that ended with a
+robot cut off.
+
+{safety_table(results, built_in)}
+What was not mapped is in view only of smaller robots (narrow), of none (hidden), or of these (in view), by estimates.
+
+{unseen_table(results, built_in)}
 ## What must hold
 
-{summary(ours)} *Open* is what these runs do not decide.
+{summary(ours)} *Open* is what these runs do not decide: a verdict needs
+{NEEDED} pairs ({NEEDED_OF_FILES} in worlds of others, where only the start differs), as many as are declared for each line, and of what is
+measured at the end at most a tenth of a method's runs failed. *Not judged* is the time to the end.
 
 {lines_table(ours)}
 ## Why
 
-One thing changed at a time, by pairs with the method unchanged; above 1 the change costs. Tours:
+One thing changed at a time, by pairs with the method unchanged (failed: of both); above 1 the change costs.
 
-{variants_table(results, "tour")}
-View quality:
-
-{variants_table(results, "render")}
+{of_each("why", variants_table)}
 ## What reality adds
 
-Errors of sensors, poses and messages, and a robot that fails, otherwise as above; tours:
+Errors of sensors, poses and messages, and a robot that fails, otherwise as above.
 
-{variants_table(results, "tour", of_reality=True)}
-What that does to the map:
+{of_each("reality", variants_table)}
+What that does to the map, in points, by pairs with the same world and seed without errors.
 
-{maps_table(results, "tour")}
+{of_each("reality", maps_table)}
 ## Contacts and bumpers
 
 Without bumpers contacts are counted. With them, the default of `explore`, a robot that would touch a surface rests, and
@@ -117,14 +193,20 @@ that is counted as held back.
 {bumpers_table(results)}
 ## Worlds of others
 
-{main_table(results, others)}
+{times_table(results, others)}
+{safety_table(results, others)}
+{unseen_table(results, others)}
+Published times to the end of others' planners, by their own clocks and rules:
+
+{published_list(results.experiments)}
 ## The paper, line by line
 
 {summary(papers)}
 
-In lock-step, once as printed, once with what replaces it by default (`--goal render --lockstep`). A change that the paper prints is *reproduced* if there is one beyond chance, and the interval does not
-exclude one as large as the paper's; a limit, if the whole interval keeps it; *open*, if failures took more than a tenth
-of the pairs. The paper prints one run of each kind.
+In lock-step, once as printed, once with what replaces it by default (`--goal render --lockstep`). A change that the
+paper prints is *reproduced* if there is one beyond chance, and at least half as large; *not reproduced* if there is none, or a
+smaller one, and the interval excludes one as large; else *open*. A limit is reproduced if the whole interval keeps it. *Open*
+is also what has too few pairs or too many failures, as above. The paper prints one run of each kind.
 
 {lines_table(papers)}
 ## The paper's tables
@@ -147,6 +229,6 @@ In lock-step; a voxel belongs to the robot that observed it first.
 {failures_list(results)}
 ## Missing runs
 
-Worlds of others are no part of this project, and are run where `--worlds` names their folder.
+Worlds of others are no part of this project, and are run where `--worlds` names their folder.{others_left_out(results)}
 
 {missing_table(results)}"""

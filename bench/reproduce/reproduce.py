@@ -10,8 +10,8 @@ import time
 from pathlib import Path
 
 from experiments import Experiments
-from explore import version_of
-from results import Results, is_kept, write_result
+from explore import program_of
+from results import Results, is_kept, unlike, write_result
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(1, str(ROOT / "bench"))  # of all plots
@@ -40,6 +40,8 @@ def read_options():
     parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
     which.add_argument("--tables-only", action="store_true", help="run nothing; write the page from the runs "
                        "that are there")
+    which.add_argument("--compare", nargs=2, type=Path, metavar=("FOLDER", "OTHER"), help="run nothing; say whether the "
+                       "results in two folders are the same, but for what depends on the machine")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster whose workers have the program "
                         "[a local cluster of one worker a core]")
     parser.add_argument("--workers", type=number(1, 1000), default=os.cpu_count() or 1, metavar="N",
@@ -114,34 +116,40 @@ def describe(result):
 
 
 def execute(experiments, runs, options):
-    """Runs those that have no result yet."""
+    """Runs those that have no result of this program yet; how many of them were lost."""
     from cluster import connect, run_all  # only here: tables need no Dask
-    version = version_of(options.command) if not options.scheduler else None
     folder = options.runs
     folder.mkdir(parents=True, exist_ok=True)
     workers = 1 if options.set == "timed" else options.workers
+    lost = 0
     with connect(options.scheduler, workers, folder.parent / "workers") as client:
-        if version is None:
-            versions = set(client.run(version_of, options.command).values())
-            if len(versions) > 1:
-                raise ValueError(f"the workers have different versions of {options.command}: "
-                                 f"{', '.join(sorted(versions))}; install the same everywhere")
-            version = versions.pop()
+        programs = sorted(set(client.run(program_of, options.command).values()))
+        if len(programs) > 1:
+            raise ValueError(f"the workers have different programs {options.command}: " + ", ".join(
+                f"{p.version} ({p.sha256})" for p in programs) + "; install the same file everywhere")
+        program = programs[0]
         tasks = {run: experiments.task_file(run) for run in runs}
-        left = [run for run in runs if not is_kept(folder, run, tasks[run], version)]
+        left = [run for run in runs if not is_kept(folder, run, tasks[run], program)]
         say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
-        calls = {run.name: (options.command, version, tasks[run], world_file(experiments.file_of(run.task), options),
+        calls = {run.name: (options.command, program, tasks[run], world_file(experiments.file_of(run.task), options),
                             2 if run.timed else 1) for run in left}
         by_name = {run.name: run for run in left}
         begin = time.monotonic()
         until = begin + 3600 * options.hours if options.hours is not None else None
         for number_done, (name, result) in enumerate(run_all(client, calls, until), 1):
+            if "lost" in result:
+                lost += 1
+                say(f"[{number_done}/{len(left)}] {name}: LOST: {result['lost']}")
+                continue
             run = by_name[name]
-            write_result(folder, run, tasks[run], version, result)
+            write_result(folder, run, tasks[run], program.version, result)
             minutes = (time.monotonic() - begin) / number_done * (len(left) - number_done) / 60
             took = result["measured"].get("wall_s")
             say(f"[{number_done}/{len(left)}] {name}: {describe(result)}" + (f"; took {took:.0f} s" if took else "") +
                 f"; about {minutes:.0f} min left")
+    if lost:
+        say(f"{lost} runs were lost by their machines and are missing; the same command makes them")
+    return lost
 
 
 def write_page(experiments, runs, options):
@@ -164,8 +172,17 @@ def write_page(experiments, runs, options):
     for name, reason in results.broken.items():
         print(f"reproduce: {name}: {reason}", file=sys.stderr)
     failed = sum(bool(r.failure) for r in results.all.values())
-    say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed; figures in {images}")
+    others = f"; {results.of_others} of other programs are left out" if results.of_others else ""
+    say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed{others}; figures in {images}")
     return 1 if results.broken or any("failure" in r.content for r in results.all.values()) else 0
+
+
+def compare(folder, other):
+    count, lines = unlike(folder, other)
+    if not count:
+        raise ValueError(f"there is no result in {folder} nor in {other}")
+    say("\n".join([*lines, f"{count - len(lines)} of {count} runs are the same in {folder} and {other}"]))
+    return 1 if lines else 0
 
 
 def main():
@@ -177,13 +194,16 @@ def main():
         if options.list:
             say("\n".join(run.name for run in runs))
             return 0
+        if options.compare:
+            return compare(*options.compare)
+        lost = 0
         if not options.tables_only:
             for file in absent:
                 say(f"left out: {file} is in none of the folders given by --worlds")
-            execute(experiments, runs, options)
+            lost = execute(experiments, runs, options)
         # The page is about all that is declared.
         sets = ("quick",) if options.set == "quick" else ("full", "timed")
-        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options)
+        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options) or int(lost > 0)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130

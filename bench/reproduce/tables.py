@@ -1,16 +1,10 @@
 """The tables of the page of results."""
 
 import paper
-from claims import compared, end_of
-from intervals import difference, mean, ratio
+from claims import at_the_end, end_of, seconds_mapped, to_a_level
+from intervals import difference, mean
 from markdown import NOTHING, interval, percent, plain, table, value
 from results import LEVELS
-
-# In motion, of the main table. Methods of the name "steps..." are in lock-step and have tables of their own.
-MAIN = ("tour", "render", "cluster", "nearest", "paper", "tour_uav", "render_uav", "tour_2uav", "tour_3uav",
-        "tour_4uav")
-BUMPERS = {"tour_bumper": "tour", "render_bumper": "render"}  # with bumpers: the same without
-REALITY = ("tour_noise", "tour_dropout", "tour_drift", "tour_lost_place", "tour_late", "tour_lost_scans", "tour_fail")
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):
@@ -32,7 +26,7 @@ def least(runs, fact):
 
 
 def with_facts(runs):
-    return [r for r in runs if r.facts]
+    return [r for r in runs if not r.crashed]
 
 
 def total(runs, fact):
@@ -53,82 +47,111 @@ def why_unseen(runs):
     return " / ".join(f"{100 * sum(u[p] for u in unseen) / len(unseen):.1f}" for p in ("narrow", "hidden", "in_view"))
 
 
-def main_table(results, tasks):
-    rows = []
-    for task in tasks:
-        for method in (m for m in results.methods(task) if m in MAIN):
-            runs, done = results.of(task, method), results.done(task, method)
-            moved = with_facts(runs)
-            rows.append([
-                task, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
-                *(means(done, lambda r, k=level: r.seconds(k)) for level in LEVELS[:-1]), mean_interval(done, end_of),
-                parts(done, lambda r: r.coverage), means(done, lambda r: r.metres()),
-                means(done, lambda r: r.metres("uav")), parts(done, lambda r: r.revisited("uav")),
-                contacts_of(moved), least(moved, "clearance_min_m"), least(moved, "separation_min_m"),
-                why_unseen(done)])
-    return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end", "mapped", "metres",
-                  "UAVs' metres", "revisited", "contacts / in free voxels", "clearance [m]", "bodies apart [m]",
-                  "unseen [%]: narrow / hidden / in view"], rows, texts=2)
+def level(runs, measure, mean_of):
+    """A mean to a level; if not all runs got there it says how many did, since theirs is the mean of the best."""
+    there = [r for r in runs if measure(r) is not None]
+    cell = mean_of(there, measure)
+    return cell if len(there) in (0, len(runs)) else f"{cell}; {len(there)} of {len(runs)}"
+
+
+def rows_of(results, tasks, cells):
+    """A row for each task and method of the main table."""
+    return [[plain(results.experiments.task_title(task)), results.experiments.title(method),
+             *cells(results.of(task, method), results.done(task, method))]
+            for task in tasks for method in results.methods(task, "main")]
+
+
+def times_table(results, tasks):
+    return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end"],
+                 rows_of(results, tasks, lambda runs, done: [
+                     str(len(runs)), str(len(runs) - len(done)),
+                     *(level(done, lambda r, k=k: r.seconds(k), mean_interval if k == "99" else means)
+                       for k in LEVELS[:-1]), mean_interval(done, end_of)]), texts=2)
+
+
+def safety_table(results, tasks):
+    return table(["task", "method", "metres", "UAVs' metres", "revisited", "cut off", "contacts / in free voxels",
+                  "clearance [m]", "bodies apart [m]"],
+                 rows_of(results, tasks, lambda runs, done: [
+                     means(done, lambda r: r.metres()), means(done, lambda r: r.metres("uav")),
+                     parts(done, lambda r: r.revisited("uav")),
+                     str(sum(r.facts.get("end") == "cut_off" for r in runs)), contacts_of(with_facts(runs)),
+                     least(with_facts(runs), "clearance_min_m"), least(with_facts(runs), "separation_min_m")]), texts=2)
+
+
+def unseen_table(results, tasks):
+    return table(["task", "method", "mapped", "unseen [%]: narrow / hidden / in view"],
+                 rows_of(results, tasks, lambda runs, done: [parts(done, lambda r: r.coverage), why_unseen(done)]), texts=2)
+
+
+def failed_of(results, tasks, *methods):
+    return " / ".join(str(sum(len(results.failed(task, m)) for task in tasks)) for m in methods)
 
 
 def pairs_table(results, first="tour"):
-    """The first method less the others."""
+    """The first method by the others."""
     rows = []
     for task in results.tasks():
-        for other in (m for m in MAIN if m != first):
-            pairs, ours, theirs = results.pairs(task, first, other)
-            if pairs or ours or theirs:
+        for other in (m for m in results.methods(task, "main") if m != first):
+            if pairs := results.pairs(task, first, other):
+                done = results.done_pairs(task, first, other)
                 rows.append([
-                    task, results.experiments.title(other), str(len(pairs)), f"{ours} / {theirs}",
-                    *(interval(difference(pairs, lambda r, k=level: r.seconds(k)), sign=True) for level in ("95", "99")),
-                    interval(difference(pairs, end_of), sign=True),
-                    interval(difference(pairs, lambda r: r.metres()), sign=True),
-                    interval(ratio([pairs], end_of), 2, unit="×")])
-    return table(["task", f"{results.experiments.title(first)} less", "pairs", "pairs lost, failures of first / second",
-                  "to 95 % [s]", "to 99 % [s]", "to the end [s]", "metres", "ratio of times to the end"], rows, texts=2)
+                    plain(results.experiments.task_title(task)), results.experiments.title(other), str(len(pairs)),
+                    failed_of(results, [task], first, other),
+                    *(interval(to_a_level(results, [task], first, other, measure).found, 2, unit="×") for measure in
+                      (seconds_mapped, lambda r: r.metres_mapped)),
+                    interval(difference([done], seconds_mapped), sign=True),
+                    interval(difference([done], end_of), sign=True),
+                    interval(at_the_end(results, [task], first, other, end_of).found, 2, unit="×")])
+    return table(["task", f"{results.experiments.title(first)} by", "pairs", "failed", "time until mapped",
+                  "metres until mapped", "difference until mapped [s]", "difference to the end [s]", "time to the end"],
+                 rows, texts=2)
 
 
-def variants_table(results, base, of_reality=False):
-    """Each variant against its base, by pairs; built-in tasks together."""
+def variants_table(results, kind, base):
+    """Each variant against its base, by pairs; the tasks together that both have runs of."""
     rows = []
-    tasks = results.tasks(of_files=False)
-    for method in results.experiments.methods:
-        if not method.startswith(f"{base}_") or method in MAIN or method in BUMPERS or method == "tour_grid_caster" \
-                or (method in REALITY) != of_reality:
-            continue
-        found, said, failures = compared(results, tasks, method, base, end_of)
-        if found or said:
-            pairs = [results.pairs(task, method, base)[0] for task in tasks]
-            ratios = [interval(ratio(pairs, measure), 2, unit="×") for measure in
-                      (lambda r: r.seconds("90"), lambda r: r.seconds("99"), end_of, lambda r: r.metres())]
+    for method in results.experiments.methods_of(kind, base):
+        tasks = [t for t in results.tasks() if results.pairs(t, method, base)]
+        if tasks:
             contacts = sum(total(with_facts(results.of(t, method)), "contacts") for t in tasks)
-            rows.append([results.experiments.title(method), str(found.count if found else 0), str(failures), *ratios,
-                         str(contacts)])
-    return table(["changed", "pairs", "failed", "time to 90 %", "to 99 %", "to the end", "metres", "contacts"], rows)
+            rows.append([results.experiments.title(method), str(sum(len(results.pairs(t, method, base)) for t in tasks)),
+                         failed_of(results, tasks, method, base),
+                         *(interval(to_a_level(results, tasks, method, base, measure).found, 2, unit="×") for measure in
+                           (lambda r: r.until("90"), seconds_mapped, lambda r: r.metres_mapped)),
+                         interval(at_the_end(results, tasks, method, base, end_of).found, 2, unit="×"), str(contacts)])
+    return table(["changed", "pairs", "failed", "time to 90 %", "time until mapped", "metres until mapped",
+                  "time to the end", "contacts"], rows)
 
 
-def maps_table(results, base):
-    """How right maps are by the true world, with and without the errors of reality; built-in tasks together."""
-    rows = []
-    tasks = results.tasks(of_files=False)
-    for method in (base, *REALITY):
-        runs = [r for task in tasks for r in with_facts(results.of(task, method)) if r.facts.get("map")]
-        if runs:
-            rows.append([results.experiments.title(method), str(len(runs)),
-                         *(parts(runs, lambda r, k=kind: r.facts["map"][k])
-                           for kind in ("false_free", "false_occupied", "surface_found"))])
-    return table(["", "runs", "free voxels that hold a surface", "occupied ones in free space",
+def maps_table(results, kind, base):
+    """How right maps are by the true world: with errors of reality less without, by pairs of the same world and seed."""
+    facts = ("false_free", "false_occupied", "surface_found")
+    methods = results.experiments.methods_of(kind, base)
+    tasks = [t for t in results.tasks() if any(results.pairs(t, m, base) for m in methods)]
+    runs = [r for task in tasks for r in results.of(task, base) if r.map_error(facts[0]) is not None]
+    rows = [[results.experiments.title(base), str(len(runs)),
+             *(parts(runs, lambda r, f=fact: r.map_error(f)) for fact in facts)]] if runs else []
+    for method in methods:
+        groups = [pairs for task in tasks if (pairs := results.pairs(task, method, base))]
+        found = [difference(groups, lambda r, f=fact: r.map_error(f)) for fact in facts]
+        if any(found):
+            rows.append([results.experiments.title(method), str(max(f.count for f in found if f)),
+                         *(interval(f, 2, 100, sign=True) for f in found)])
+    return table(["", "runs or pairs", "free voxels that hold a surface", "occupied ones in free space",
                   "surface voxels found"], rows)
 
 
 def bumpers_table(results):
     rows = []
     for task in results.tasks():
-        for method, without in BUMPERS.items():
+        for method in results.methods(task, "bumpers"):
+            without = results.experiments.methods[method]["against"]
             runs, bare = with_facts(results.of(task, method)), with_facts(results.of(task, without))
             if runs:
-                rows.append([task, results.experiments.title(without), str(len(runs)), str(total(runs, "held_back")),
-                             str(len(bare)), str(total(bare, "contacts"))])
+                rows.append([plain(results.experiments.task_title(task)), results.experiments.title(without),
+                             str(len(runs)), str(total(runs, "held_back")), str(len(bare)),
+                             str(total(bare, "contacts"))])
     return table(["task", "method", "runs with bumpers", "times held back", "runs without", "contacts"], rows, texts=2)
 
 
@@ -140,13 +163,13 @@ def lines_table(lines):
 def steps_table(results):
     rows = []
     for world in paper.WORLDS:
-        for method in results.methods(world, "steps"):
+        for method in results.methods(world, "lock-step"):
             runs, done = results.of(world, method), results.done(world, method)
             rows.append([
                 world, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
                 parts(with_facts(runs), lambda r: r.coverage),
                 f"{percent(paper.COVERAGE[world])} in {paper.STEPS[world]}" if method == "steps" else NOTHING,
-                mean_interval(done, lambda r: r.steps()), mean_interval(done, lambda r: r.steps(0.9)),
+                mean_interval(done, lambda r: r.steps()), level(done, lambda r: r.steps(0.9), mean_interval),
                 means(done, lambda r: r.metres("uav")), parts(done, lambda r: r.revisited("uav")),
                 means(done, lambda r: r.share("uav"), 0, " %", 100),
                 means(done, lambda r: r.efficiency("uav"), 1)])
@@ -173,11 +196,11 @@ def optimisation_table(results):
 def planning_table(results):
     rows = []
     for run, result in results.all.items():
-        if run.timed and result.facts:
+        if run.timed and not result.crashed:
             lockstep = result.content["task"].get("lockstep")
             printed = paper.UAV_PLANNING[run.task] + paper.UGV_PLANNING[run.task]
             rows.append([run.task, results.experiments.title(run.method) + (", lock-step" if lockstep else ""),
-                         *(value(result.measured[key], 3, " s") for key in
+                         *(value(result.measured.get(key), 3, " s") for key in
                            ("planning_mean_s", "planning_p99_s", "planning_max_s")),
                          NOTHING if lockstep else f"{result.content['task']['latency_s']} s",
                          f"{printed:.2f} s" if lockstep else NOTHING])
@@ -187,20 +210,32 @@ def planning_table(results):
     return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV"], rows, texts=2)
 
 
+def published_list(experiments):
+    """What others have published of the same tasks."""
+    lines = []
+    for task in experiments.tasks:
+        if published := experiments.tasks[task].get("published"):
+            lines.append(f"- {plain(experiments.task_title(task))}: " + ", ".join(
+                f"{name} {low} to {high} s" for name, (low, high) in published["seconds"].items()) +
+                f" ({published['source']}).\n")
+    return "".join(lines) or "None.\n"
+
+
 def missing_table(results):
+    """By task: rows are a method's runs there."""
     rows = {}
     for run in results.wanted:
-        name = run.method + (" (timed)" if run.timed else "")
-        counts = rows.setdefault(run.task, {}).setdefault(name, [0, 0])
-        counts[0] += run not in results.all
+        counts = rows.setdefault(run.task, {}).setdefault((run.method, run.timed), [0, 0])
+        counts[0] += run in results.all
         counts[1] += 1
-    cells = [[task, ", ".join(f"{name} {missing} of {wanted}" for name, (missing, wanted) in methods.items()
-                              if 0 < missing < wanted),
-              ", ".join(name for name, (missing, wanted) in methods.items() if missing == wanted)]
-             for task, methods in rows.items()]
-    return table(["task", "missing in part", "without any run"],
-                 [[task, plain(part) or NOTHING, plain(whole) or NOTHING] for task, part, whole in cells if part or whole],
-                 texts=3, none="None.")
+    cells = []
+    for task, counts in rows.items():
+        there, wanted = (sum(n) for n in zip(*counts.values()))
+        if there < wanted:
+            kinds = [(n > 0) + (n == all_of_them) for n, all_of_them in counts.values()]
+            cells.append([plain(results.experiments.task_title(task)), f"{wanted - there} of {wanted}",
+                          *(str(kinds.count(kind)) for kind in (2, 1, 0))])
+    return table(["task", "runs missing", "methods with all runs", "with some", "with none"], cells, none="None.")
 
 
 def failures_list(results):

@@ -3,6 +3,7 @@
 cluster_test.py FOLDER, that of bench/reproduce; runs are made up.
 """
 
+import hashlib
 import json
 import os
 import signal
@@ -11,6 +12,7 @@ import sys
 import tempfile
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 from made_up_runs import FAILURE
@@ -18,6 +20,7 @@ from made_up_runs import FAILURE
 REPRODUCE = Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(REPRODUCE))
 
+from distributed import Client
 from experiments import Experiments
 
 PATIENCE = 60  # [s]
@@ -76,15 +79,22 @@ class Cluster(unittest.TestCase):
         read = {file.stem: json.loads(file.read_text()) for file in (self.folder / runs).glob("*.json")}
         return {name: json.dumps({**result, "measured": None}, sort_keys=True) for name, result in read.items()}
 
-    def workers(self, number, **environment):
-        """A scheduler and workers in processes of their own; its address."""
+    def number_of_workers(self, address):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of Dask, about its own use of Tornado
+            with Client(address) as client:
+                return len(client.nthreads())
+
+    def workers(self, number, scheduler=True, **environment):
+        """A scheduler, unless it is there, and workers in processes of their own; its address."""
         file = self.folder / "scheduler.json"
-        self.start(["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-                    "--scheduler-file", file])
+        if scheduler:
+            self.start(["-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                        "--scheduler-file", file])
         until(lambda: file.exists() and file.read_text().rstrip().endswith("}"), "a scheduler")
-        for i in range(number):
+        for _ in range(number):
             self.start(["-m", "distributed.cli.dask_worker", "--scheduler-file", file, "--nthreads", "1", "--no-nanny",
-                        "--no-dashboard", "--local-directory", self.folder / f"worker{i}"], **environment)
+                        "--no-dashboard", "--local-directory", tempfile.mkdtemp(dir=self.folder)], **environment)
         return json.loads(file.read_text())["address"]
 
     def test_a_killed_worker_loses_its_run_only(self):
@@ -109,6 +119,43 @@ class Cluster(unittest.TestCase):
         self.assertEqual({run for run, *_ in self.calls()}, set(ALL))
         self.assertLessEqual(len(self.calls()), len(ALL) + 2)
         return died, other
+
+    def test_what_a_machine_loses_is_missing_and_no_failure(self):
+        self.finish(self.reproduce("--workers", "1", MADE_UP_DIES="factory-tour-6"), 1)
+        self.assertEqual(sorted(self.results()), sorted(set(ALL) - {"factory-tour-6"}))
+        self.assertIn("factory-tour-6: LOST: its worker died again and again", self.output)
+        self.assertIn("1 runs were lost by their machines", self.output)
+        self.finish(self.reproduce("--workers", "1"), 0)
+        self.assertEqual(sorted(self.results()), sorted(ALL))
+
+    def test_a_program_that_changes_meanwhile_makes_no_more_runs(self):
+        script = self.command.read_text()
+        self.command.write_text(script.replace("exec", '[ "$1" = --version ] || echo "# built anew" >> "$0"\nexec'))
+        self.finish(self.reproduce("--workers", "1"), 1)
+        self.assertEqual(len(self.results()), 1)
+        self.assertIn(f"{len(ALL) - 1} runs were lost by their machines", self.output)
+        self.assertRegex(self.output, r"LOST: .* is 9.9 \(.*\) instead of 9.9 \(")
+
+    def test_another_program_of_the_same_version_makes_all_runs_again(self):
+        self.finish(self.reproduce("--workers", "2"), 0)
+        self.log.unlink()
+        self.command.write_text(self.command.read_text() + "# built anew\n")
+        self.finish(self.reproduce("--workers", "2"), 0)
+        self.assertEqual(sorted(name for name, *_ in self.calls()), sorted(ALL))
+        programs = {json.loads(file.read_text())["measured"]["program"] for file in (self.folder / "runs").glob("*.json")}
+        self.assertEqual(programs, {hashlib.sha256(self.command.read_bytes()).hexdigest()[:12]})
+
+    def test_all_workers_need_the_same_program(self):
+        other = self.folder / "other"
+        other.mkdir()
+        (other / "frontlux").write_text(self.command.read_text() + "# built anew\n")
+        (other / "frontlux").chmod(0o755)
+        address = self.workers(1, PATH=f"{self.folder}:{os.environ['PATH']}")
+        self.workers(1, PATH=f"{other}:{os.environ['PATH']}", scheduler=False)
+        until(lambda: self.number_of_workers(address) == 2, "two workers")
+        self.finish(self.reproduce("--scheduler", address, "--command", "frontlux"), 2)
+        self.assertIn("the workers have different programs frontlux: 9.9 (", self.errors)
+        self.assertEqual(self.calls(), [])
 
     def test_a_worker_of_the_local_cluster_is_replaced(self):
         self.finish(self.reproduce("--workers", "2", MADE_UP_DIES_ONCE="factory-tour-6"), 0)

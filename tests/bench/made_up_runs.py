@@ -1,7 +1,7 @@
 """Runs as `frontlux explore` leaves them, made up; started as a program it stands in for the command.
 
 The environment tells it what to do to runs by their name: MADE_UP_FAILS ends with exit code 3, MADE_UP_SLEEPS
-waits until it is killed, MADE_UP_DIES_ONCE kills its parent, the worker, the first time. MADE_UP_LOG is a file that
+waits until it is killed, MADE_UP_DIES_ONCE kills its parent, the worker, the first time, MADE_UP_DIES each time. MADE_UP_LOG is a file that
 gets a line for every call: name, parent's and own process.
 """
 
@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-VERSION = "9.9"
+VERSION, PROGRAM = "9.9", "0123456789ab"
 FAILURE = 'no "maze" <script>alert(1)</script> | [here](x) `x`'
 COLUMNS = ("step", "time_s", "robot", "coverage_observable", "robot_observable", "viewpoints", "travelled_m",
            "gain_tangent", "gain_predicted", "gained")
@@ -44,6 +44,7 @@ def made_up(task, seconds=None, coverage=0.999, uav_part=0.75, speeds=(0.5, 1.0)
            "worst_of_limits": 1.0, "separation_min_m": 0.4 if len(robots) > 1 else None,
            "by_robot": {r: {"length_m": seconds * speed[r], "revisited": 0.1 if r == "uav" else 0.3, "idle_s": 1.0,
                           "held_back": 0} for r in robots},
+           "map": {"false_free": 0.02, "false_occupied": 0.0, "surface_found": 0.9},
            "path_length_m": {r: seconds * speed[r] for r in robots},
            "planning_mean_s": 0.02, "planning_p99_s": 0.1, "planning_max_s": 0.2,
            "phases_s": {"frontiers": 1.0, "caster": 1.0, "goals": 1.0, "paths": 1.0, "optimization": 1.0, "moving": 1.0},
@@ -77,12 +78,11 @@ def main(arguments):
         return 3
     if named("MADE_UP_SLEEPS", task["name"]):
         time.sleep(600)
-    if named("MADE_UP_DIES_ONCE", task["name"]):
-        mark = Path(os.environ["MADE_UP_LOG"] + ".died")
-        if not mark.exists():
-            mark.touch()
-            os.kill(os.getppid(), signal.SIGKILL)
-            time.sleep(600)
+    mark = Path(os.environ["MADE_UP_LOG"] + ".died")
+    if named("MADE_UP_DIES", task["name"]) or named("MADE_UP_DIES_ONCE", task["name"]) and not mark.exists():
+        mark.touch()
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(600)
     write_files(Path(given["-o"]), *made_up(task))
     return 0
 
