@@ -15,7 +15,7 @@ namespace {
 
 using planner::ExplorationStep, planner::Pose;
 
-constexpr double kPatience = 2.0;  // [s] for the end of a step, when the run is to stop
+constexpr double kLongestStop = 2.0;  // [s] for the end of a step, when the run is to stop
 
 std::vector<Pose> start_poses(const ExploreSetup& setup) {
   std::vector<Pose> poses;
@@ -65,7 +65,7 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
   for (;;) {
     if (InterruptNote::taken()) {
       if (!waiting) waiting.emplace();
-      if (waiting->seconds() > kPatience) throw Interrupted();
+      if (waiting->seconds() > kLongestStop) throw Interrupted();
     }
     // All scans of one moment come before the plannings.
     if (robots_.next_time() > time_)

@@ -20,7 +20,7 @@ using detail::sort_once;
 using Keys = std::vector<VoxelKey>;
 
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
-constexpr int kPatience = 10;     // plannings, about a second each, for which a robot waits for others
+constexpr int kMostWaits = 10;    // plannings in a row, one in a period, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
 
 // Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
@@ -317,13 +317,13 @@ void ContinuousExploration::State::count_low_gain(std::size_t robot, const Robot
       step.goal.pose ? !team.tours && step.goal.gain < team.options.epsilon : !member.is_going() && !waits;
   if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
   member.waits = waits ? member.waits + 1 : 0;
-  if (member.waits > kPatience && member.request) end_request(robot);
+  if (member.waits > kMostWaits && member.request) end_request(robot);
 }
 
 bool ContinuousExploration::State::has_nothing_to_do(const Member& member) {
   if (member.is_lost()) return true;
   return member.planned && !member.is_going() && !member.others_rest &&
-         (member.waits == 0 || member.waits > kPatience);
+         (member.waits == 0 || member.waits > kMostWaits);
 }
 
 }  // namespace frontlux::planner

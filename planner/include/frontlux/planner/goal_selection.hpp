@@ -75,9 +75,9 @@ struct FRONTLUX_EXPORT GoalOptions {
   void check() const;
 };
 
-/// By default, view quality for all robots: on a plane counted exactly; in space drawn from buckets at every
-/// second voxel, pruned, and counted for the best cells. As printed: on a plane by hits among the drawn
-/// frontiers, in space by clusters.
+/// By default, view quality for all robots: of those that drive counted exactly; in space drawn from buckets
+/// at every second voxel, pruned, and counted for the best cells. As printed: of those that drive by hits
+/// among the drawn frontiers, in space by clusters.
 [[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 /// The same for a robot in motion: by default near goals cost it less, since it plans again before it
 /// arrives.

@@ -17,8 +17,8 @@ enum class Method : std::uint8_t {
   kPaper,    ///< the paper's, as printed
 };
 
-/// A robot as planning sees it. Its pose is that of its sensor: on a plane above the floor, in space the
-/// middle of its body.
+/// A robot as planning sees it. Its pose is that of its sensor: above the floor if it drives, in space
+/// the middle of its body.
 struct FRONTLUX_EXPORT Robot {
   std::string name;      ///< in messages
   TravelOptions travel;  ///< where it fits

@@ -15,7 +15,7 @@
 
 namespace frontlux::sim {
 
-/// The voxels that the box around a robot's body occupies if its sensor is here; of a robot on a plane, from
+/// The voxels that the box around a robot's body occupies if its sensor is here; of a robot that drives, from
 /// the floor that it stands on, without the voxel of the sensor. Bodies are axis-aligned whatever the yaw,
 /// and take whole voxels. A round body occupies those that it meets at its true shape.
 /// @throws std::invalid_argument if the pose is not finite or the body leaves the lattice's keys
@@ -23,7 +23,7 @@ namespace frontlux::sim {
                                  const planner::Pose& sensor_pose);
 
 /// Why a robot cannot be here, in words; nothing if it can: all voxels of body and sensor are free, no wall
-/// runs through the body, and a robot on a plane has floor under each of its voxels. A free voxel can be
+/// runs through the body, and a robot that drives has floor under each of its voxels. A free voxel can be
 /// reached from the start of the ground truth by something small, perhaps not by the robot.
 /// @throws std::invalid_argument if the pose is not finite
 [[nodiscard]] std::optional<std::string> obstacle_at(const GroundTruth& truth, const planner::Robot& robot,
@@ -54,7 +54,7 @@ namespace frontlux::sim {
 [[nodiscard]] double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around);
 
 /// The voxels that a robot knows to be free at its start without having seen them, sorted: its body; around
-/// it, for a robot on a plane, a disc of 2.3 m radius from the ground to the sensor's height, otherwise a
+/// it, for a robot that drives, a disc of 2.3 m radius from the ground to the sensor's height, otherwise a
 /// ball of 1 m radius; and its node if that is completely free. They are free and reached from the body
 /// within this shape, so none lies beyond a wall.
 /// @pre the robot can be here
