@@ -25,8 +25,8 @@ enum class PlanReason : std::uint8_t {
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PlanReason reason);
 
-/// [m] What robots in motion keep between the boxes around their bodies. Those that are nearer already may
-/// stay so, but come no nearer.
+/// [m] What robots in motion keep between the boxes around their bodies, along that of the axes on which they
+/// are farthest apart. Those that are nearer already may stay so, but come no nearer.
 inline constexpr double kSeparation = 0.32;
 
 /// One robot's planning, and what all robots have done since the planning before.

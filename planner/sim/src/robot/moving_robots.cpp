@@ -34,10 +34,6 @@ std::vector<VoxelKey> cells_ahead(const Lattice& lattice, const Eigen::Vector3d&
   return cells;
 }
 
-double distance_between(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
-  return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).norm();
-}
-
 }  // namespace
 
 MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
@@ -171,7 +167,7 @@ void MovingRobots::measure_separation() {
       const auto box = [&](std::size_t r) {
         return planner::body_of(robots_[r].robot.travel).translated(progress_[r].pose.position);
       };
-      separation_ = std::min(separation_, distance_between(box(a), box(b)));
+      separation_ = std::min(separation_, box(a).exteriorDistance(box(b)));
     }
 }
 
