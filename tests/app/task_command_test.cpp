@@ -115,6 +115,44 @@ TEST_F(TaskCommand, GivesWayToTheCommandLine) {
   EXPECT_EQ(task.at("robots")[0].at("name"), "uav");
 }
 
+// The command's words, which are others than by default, of all options that a task may hold.
+TEST_F(TaskCommand, PublishesEveryOption) {
+  write_court();
+  const std::vector<std::string> in_motion = {
+      "--goal",      "render", "--planner",      "rrt",  "--renderer",  "rays", "--samples",   "16",
+      "--assign",    "off",    "--optimize",     "off",  "--caster",    "grid", "--lambda",    "0.2",
+      "--advance",   "1",      "--min-distance", "0.5",  "--epsilon",   "5",    "--max-steps", "2",
+      "--bumper",    "off",    "--noise",        "0.01", "--dropout",   "0.1",  "--drift",     "0.01",
+      "--fix-every", "5",      "--scan-delay",   "0.2",  "--scan-loss", "0.1",  "--fail",      "uav=500"};
+  const std::vector<std::string> of_world = {
+      "--mode", "paper", "--goal",  "nearest",   "--ground",    "0", "--scale", "0.9",
+      "--up",   "z",     "--start", "1.5,1.5,1", "--max-steps", "2", "--team",  "uav"};
+  const auto expect_published = [&](const std::string& run, const std::vector<std::string>& words) {
+    expect_answer(joined(words, {"--report", "off", "-o", path(run)}));
+    expect_done(task_of(run), run + "_again");
+    expect_same_runs(run, run + "_again");
+    const nlohmann::json task = json_in(run).at("task");
+    EXPECT_EQ(task, json_in(run + "_again").at("task"));
+    return task;
+  };
+  const nlohmann::json motion = expect_published("motion", joined({"room"}, in_motion));
+  const nlohmann::json world = expect_published("world", joined({path("court.ply")}, of_world));
+  EXPECT_EQ(motion.at("method"), "render");
+  EXPECT_EQ(world.at("method"), "paper");
+  // What the command says it knows; members of their own stand for the start and the search.
+  const std::string unknown = write("unknown.json", R"({"world": "room", "options": {"": 1}})");
+  const std::string said = run({"--task", unknown, "-o", path("none")}).err;
+  const std::size_t begin = said.find("known here: ") + 12;
+  std::istringstream list(said.substr(begin, said.find(';', begin) - begin));
+  int known = 0;
+  for (std::string name; std::getline(list >> std::ws, name, ',');) {
+    ++known;
+    if (name == "start") continue;
+    EXPECT_TRUE(motion.at("options").contains(name) || world.at("options").contains(name)) << name;
+  }
+  EXPECT_EQ(known, 24);
+}
+
 TEST_F(TaskCommand, ExploresABoxOfAWorld) {
   write_court();
   expect_done(court(), "run");
