@@ -262,7 +262,7 @@ def faster(results, tasks, method, other, limit=None):
     yield less_than(results, f"Time to {results.experiments.level(tasks[0])} %", tasks, method, other, seconds_mapped, limit)
     found = at_the_end(results, tasks, method, other, end_of)
     first, second = map(results.experiments.title, (method, other))
-    yield Line(f"Time to the end, by their own rules: {first} by {second}, {where(results, tasks)}", times(found),
+    yield Line(f"Time to the end, each by its own rule: {first} against {second}, {where(results, tasks)}", times(found),
                NOT_JUDGED if found.found else found.open)
 
 

@@ -4,6 +4,7 @@ import math
 
 import paper
 from claims import at_the_end, end_of, seconds_mapped, to_a_level
+from markdown import counted
 from palette import PALETTE, UAV, UGV
 from svg_chart import MARGIN, WIDTH, Drawing, svg
 
@@ -183,7 +184,7 @@ def ratios(results, first="tour"):
     for i, (task, other, *both) in enumerate(rows):
         y = top + row_height * (i + 0.5)
         if task != previous:
-            drawing.text(MARGIN, y + 4, task, "strong")
+            drawing.text(MARGIN, y + 4, task.replace("_", " "), "strong")
         previous = task
         drawing.text(left - 12, y + 4, results.experiments.title(other), "", "end")
         for found, down, width, mark in ((both[0], -5, 2.2, f'r="4.2" class="fill-{other}"'),
@@ -194,7 +195,7 @@ def ratios(results, first="tour"):
                 drawing.lines.append(f'<path d="M{at(found.low):.1f} {y + down:.1f}H{at(found.high):.1f}" '
                                      f'class="line-{other}" stroke-width="{width}"/>')
             drawing.lines.append(f'<circle cx="{at(found.value):.1f}" cy="{y + down:.1f}" {mark}/>')
-        drawing.text(WIDTH - MARGIN, y + 4, f"{both[0].count} pairs", "faint", "end")
+        drawing.text(WIDTH - MARGIN, y + 4, counted(both[0].count, "pair"), "faint", "end")
     return svg(title, bottom + 30 + MARGIN - 8, colours_of(results, others), drawing)
 
 

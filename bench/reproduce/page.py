@@ -28,8 +28,8 @@ only at viewpoints, with more rays, robots stop at each viewpoint and wait for e
 (2 m in motion) lose value."""
 
 LIMITS = f"""\
-- Worlds are simulated: nothing moves in them, sensors, poses and messages have no errors unless a row says so. All
-  robots plan with one map; maps that differ from robot to robot, and radios with a radius, are not simulated.
+- Worlds are simulated: nothing moves in them, sensors, poses and messages have no errors unless a row says so, and
+  robots follow their trajectories exactly. All robots plan with one map; maps that differ from robot to robot, and radios with a radius, are not simulated.
 - In worlds of others nothing is random but the start, which is moved by up to 0.6 m: their intervals say how far
   that moves a result, not how other worlds would do.
 - Percentile intervals of few values are too narrow: of normal values they hold the mean in about 87 % of cases for six,
@@ -115,6 +115,11 @@ def page(results, images, runs):
         """A table for each method that has others against it."""
         return "\n".join(f"{results.experiments.title(base).capitalize()}:\n\n{table(results, kind, base)}"
                          for base in results.experiments.bases(kind))
+
+    in_lockstep = "\n".join((
+        steps_table(results), figure("coverage_by_step", "Mapped part against steps: team, UAV alone, UGV alone"),
+        figure("contributions", "What each robot mapped first, against steps"),
+        optimisation_table(results))) if any(results.methods(t, "lock-step") for t in built_in) else "No runs.\n"
 
     return f"""\
 # Results
@@ -213,10 +218,7 @@ is also what has too few pairs or too many failures, as above. The paper prints 
 
 In lock-step; a voxel belongs to the robot that observed it first.
 
-{steps_table(results)}
-{figure("coverage_by_step", "Mapped part against steps: team, UAV alone, UGV alone")}
-{figure("contributions", "What each robot mapped first, against steps")}
-{optimisation_table(results)}
+{in_lockstep}
 ## Planning times
 
 {planning_table(results)}

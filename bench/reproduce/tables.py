@@ -1,9 +1,9 @@
 """The tables of the page of results."""
 
 import paper
-from claims import at_the_end, end_of, seconds_mapped, to_a_level
+from claims import NOT_MEASURED, at_the_end, end_of, seconds_mapped, to_a_level
 from intervals import difference, mean
-from markdown import NOTHING, interval, percent, plain, table, value
+from markdown import NOTHING, counted, interval, percent, plain, table, value
 from results import LEVELS
 
 
@@ -156,8 +156,13 @@ def bumpers_table(results):
 
 
 def lines_table(lines):
-    return table(["claim", "measured", ""],
-                 [[plain(x.claim), plain(x.measured) or NOTHING, x.verdict] for x in lines], texts=3)
+    """Those that are not measured are named below it."""
+    rows = [[plain(x.claim), plain(x.measured) or NOTHING, x.verdict] for x in lines if x.verdict != NOT_MEASURED]
+    missing = [f"- {plain(x.claim)}\n" for x in lines if x.verdict == NOT_MEASURED]
+    text = table(["claim", "measured", "verdict"], rows, texts=3)
+    if missing:
+        text += f"\n<details><summary>{counted(len(missing), 'line')} not measured</summary>\n\n{''.join(missing)}\n</details>\n"
+    return text
 
 
 def steps_table(results):

@@ -590,7 +590,7 @@ class Lines(Made):
                          "open: 1 of 8 runs crashed")
 
     def test_the_end_is_shown_and_not_judged(self):
-        lines = [line for line in self.lines(all_hold) if "to the end, by" in line.claim]
+        lines = [line for line in self.lines(all_hold) if "to the end, each by" in line.claim]
         self.assertGreater(len(lines), 10)
         self.assertEqual({line.verdict for line in lines}, {"not judged"})
 
