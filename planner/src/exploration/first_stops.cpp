@@ -19,9 +19,10 @@ namespace {
 std::string describe(const TourPlanning::Left& left, double gain) {
   std::string text;
   const auto add = [&](std::size_t count, const std::string& where) {
-    if (count > 0) text += (text.empty() ? "; left are " : " and ") + std::to_string(count) + where;
+    if (count > 0)
+      text.append(text.empty() ? "; frontiers that are left: " : ", ").append(std::to_string(count)) += where;
   };
-  add(left.small, " frontiers in clusters of fewer than " + std::to_string(left.enough));
+  add(left.small, " in clusters of fewer than " + std::to_string(left.enough));
   add(left.unseen, " in clusters of which no robot sees " +
                        std::to_string(static_cast<int>(std::ceil(gain))) + " from where it can get to");
   return text;

@@ -161,9 +161,9 @@ TEST(ContinuousExploration, CountsTheFrontiersThatAreInNoTour) {
   EXPECT_GT(most_unassigned, 0U);
   ASSERT_TRUE(scene.exploration().end());
   EXPECT_EQ(last.frontiers, last.unassigned + last.abandoned);
-  EXPECT_EQ(last.robots[0].goal.reason, "no goal: there is nothing to see for it; left are " +
-                                            std::to_string(last.unassigned) +
-                                            " frontiers in clusters of fewer than 17");  // 1.5 m2
+  EXPECT_EQ(last.robots[0].goal.reason,
+            "no goal: there is nothing to see for it; frontiers that are left: " +
+                std::to_string(last.unassigned) + " in clusters of fewer than 17");  // 1.5 m2
 }
 
 // A robot that keeps its goal weighs none.

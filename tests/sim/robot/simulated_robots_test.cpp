@@ -2,6 +2,7 @@
 #include "support/complaint.hpp"
 #include "support/random.hpp"
 
+#include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/simulated_robots.hpp>
 
 namespace frontlux::sim {

@@ -36,8 +36,8 @@ struct MotionRecord {
   double length = 0.0;            ///< [m] travelled
   double revisited = 0.0;  ///< the part of that, 0 to 1, which led to where it had been: `PathRevisits`
   double idle = 0.0;       ///< [s] at rest, not turning
-  /// [m] The least by which its body could have grown on all sides, if it drives sideways, without touching a
-  /// surface; up to a metre. A cylinder grows by it in radius and on both ends.
+  /// [m] The least by which its body could have grown, on all sides or, if it drives, sideways, without
+  /// touching a surface; up to a metre. A cylinder grows by it in radius and on both ends.
   double clearance = 1.0;
 };
 
