@@ -208,12 +208,16 @@ def steps_of(run):
 
 
 def figures(results):
-    """{name: SVG}"""
-    return {
+    """{name: SVG}; those of runs in lock-step if there are some."""
+    drawn = {
         "coverage_by_time": progress(results, results.tasks(of_files=False), drawn_methods(results, "main"),
                                      "Coverage by time", seconds_of, "time on the clock [s]"),
         "ratios": ratios(results),
-        "coverage_by_step": progress(results, paper.WORLDS, drawn_methods(results, "lock-step"),
-                                     "Coverage by step, the paper's method", steps_of, "steps"),
-        "contributions": contributions(results),
     }
+    if any(results.methods(world, "lock-step") for world in paper.WORLDS):
+        drawn |= {
+            "coverage_by_step": progress(results, paper.WORLDS, drawn_methods(results, "lock-step"),
+                                         "Coverage by step, the paper's method", steps_of, "steps"),
+            "contributions": contributions(results),
+        }
+    return drawn
