@@ -139,7 +139,7 @@ TEST_F(TaskCommand, PublishesEveryOption) {
   const nlohmann::json world = expect_published("world", joined({path("court.ply")}, of_world));
   EXPECT_EQ(motion.at("method"), "render");
   EXPECT_EQ(world.at("method"), "paper");
-  // What the command says it knows; members of their own stand for the start and the search.
+  // What the command says it knows; the start is a member of its robot.
   const std::string unknown = write("unknown.json", R"({"world": "room", "options": {"": 1}})");
   const std::string said = run({"--task", unknown, "-o", path("none")}).err;
   const std::size_t begin = said.find("known here: ") + 12;

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Those of all robots, with + between them.
+// The names of all robots' searches, with + between them.
 std::string goal_searches(const planner::ExplorationOptions& exploration) {
   if (exploration.tours) return std::string(name_of(planner::GoalSearch::kTour));
   std::string names;

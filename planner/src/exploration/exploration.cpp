@@ -48,7 +48,8 @@ ExplorationStep Exploration::step(const Drive& drive) {
 
   ExplorationStep step = state.new_step();
   state.update_views(step);
-  state.select_goals(step);                               // Alg. 1, lines 4 and 5
+  state.select_goals(step);  // Alg. 1, lines 4 and 5
+  state.count_frontiers(step);
   state.plan_paths(step);                                 // Alg. 1, line 6
   const State::Gains gains = state.optimize_paths(step);  // Alg. 1, line 7
   state.execute_paths(gains, drive, step);                // Alg. 1, lines 8 to 11

@@ -141,7 +141,6 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
     }
   }
   unassigned = goals.unassigned;
-  count_frontiers(step);
   for (std::size_t r = 0; r < size(); ++r) {
     targets[r].assign(selection->targets(r).begin(), selection->targets(r).end());
     step.robots[r].goal = std::move(goals.goals[r]);
@@ -170,6 +169,7 @@ void ExplorationState::update_corridor(std::size_t robot, ExplorationStep& step,
 }
 
 void ExplorationState::count_frontiers(ExplorationStep& step) const {
+  const PhaseClock clock(step, Phase::kFrontiers);
   const Keys left = abandoned.without_abandoned(frontiers.keys());
   step.frontiers = frontiers.size();
   step.abandoned = step.frontiers - left.size();
