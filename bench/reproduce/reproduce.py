@@ -178,9 +178,10 @@ def write_page(experiments, runs, options):
 
 
 def compare(folder, other):
+    for one in (folder, other):
+        if not any(one.glob("*.json")):
+            raise ValueError(f"there is no result in {one}; give two folders of runs")
     count, lines = unlike(folder, other)
-    if not count:
-        raise ValueError(f"there is no result in {folder} nor in {other}")
     say("\n".join([*lines, f"{count - len(lines)} of {count} runs are the same in {folder} and {other}"]))
     return 1 if lines else 0
 

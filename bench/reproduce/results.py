@@ -119,6 +119,9 @@ def unlike(folder, other):
     for name in names:
         try:
             one, two = (read_result(where / name) for where in (folder, other))
+        except FileNotFoundError as error:
+            lines.append(f"{name}: not in {Path(error.filename).parent}")
+            continue
         except (OSError, ValueError) as error:
             lines.append(str(error))
             continue

@@ -418,7 +418,7 @@ class OneRun(Made):
         (one / f"{runs[1].name}.json").unlink()
         count, lines = unlike(one, two)
         self.assertEqual((count, lines[0]), (2, "maze-tour-6.json: not the same facts"))
-        self.assertIn("No such file", lines[1])
+        self.assertEqual(lines[1], f"maze-tour-7.json: not in {one}")
         for other, code in ((two, 1), (one, 0)):
             done = subprocess.run([sys.executable, "-B", REPRODUCE / "reproduce.py", "--compare", one, other],
                                   capture_output=True, text=True)
@@ -777,7 +777,7 @@ class Calls(unittest.TestCase):
                                 (["--timed", "--scheduler", "tcp://x:1"], "--scheduler"),
                                 (["--tables-only", "--runs", "/nonexistent"], "no result in /nonexistent"),
                                 (["--compare", "/nonexistent"], "expected 2 arguments"),
-                                (["--compare", "/nonexistent", "/none"], "no result in /nonexistent nor in /none")):
+                                (["--compare", "/nonexistent", "/none"], "no result in /nonexistent; give two")):
             done = subprocess.run([sys.executable, "-B", REPRODUCE / "reproduce.py", *arguments], capture_output=True,
                                   text=True)
             self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
