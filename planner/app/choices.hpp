@@ -3,11 +3,11 @@
 #include <frontlux/caster_kind.hpp>
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/goal_search.hpp>
+#include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
 #include <array>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 namespace frontlux::app {
@@ -64,15 +64,18 @@ inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::Pa
 template <>
 inline constexpr auto kChoices<CasterKind> = choices_of(kCasterNames);
 
+template <>
+inline constexpr auto kChoices<planner::SensorModel> = choices_of(planner::kSensorModelNames);
+
 /// The paper's robots.
 enum class RobotKind { kUgv, kUav };
 template <>
 inline constexpr std::array<Choice<RobotKind>, 2> kChoices<RobotKind>{
     {{"ugv", RobotKind::kUgv}, {"uav", RobotKind::kUav}}};
 
-/// Has a table of choices: an enumeration, or bool.
+/// Has a table of choices.
 template <class Value>
-concept Chosen = std::is_enum_v<Value> || std::is_same_v<Value, bool>;
+concept Chosen = !kChoices<Value>.empty();
 
 template <Chosen Value>
 [[nodiscard]] constexpr std::string_view choice_name(Value value) {

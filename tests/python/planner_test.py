@@ -157,6 +157,15 @@ class Scans(unittest.TestCase):
         self.assertEqual(exploration.grid, before)
         self.assertGreater(len(exploration.insert(0, room().start, directions, np.full((10, 10), INF)).keys), 100)
 
+    def test_a_hit_stays_by_the_sensor_model(self):
+        for options, state in (({}, Occupancy.OCCUPIED), ({"sensor_model": "cautious"}, Occupancy.OCCUPIED),
+                               ({"sensor_model": "octomap"}, Occupancy.FREE)):
+            exploration = in_motion(**options)
+            for ahead in (0.7, 1.3, 1.3, 1.3):
+                exploration.insert_points(0, (*room().start[:3], 0.0), np.array([[ahead, 0.0, 0.0]]))
+            grid = exploration.grid
+            self.assertEqual(grid.at(grid.keys_of(np.add(room().start[:3], (0.7, 0.0, 0.0)))), state, options)
+
 
 class InMotion(unittest.TestCase):
     def test_a_run_explores_the_room_and_repeats(self):
@@ -340,6 +349,7 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "robot 'drone': .*extents", make, [drone()], ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1)), 0.0001)
         self.refuses(ValueError, "goal: 'best', but has to be 'tour'", make, [drone()], bounds, goal="best")
         self.refuses(ValueError, "latency", make, [drone()], bounds, latency=0.0)
+        self.refuses(ValueError, "sensor_model: 'bold'", make, [drone()], bounds, sensor_model="bold")
         self.refuses(ValueError, "epsilon", make, [drone()], bounds, epsilon=NAN)
         self.refuses(ValueError, "max_steps", make, [drone()], bounds, max_steps=-1)
         self.refuses(TypeError, "incompatible", make, [drone()], bounds, seed=-1)

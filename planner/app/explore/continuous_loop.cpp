@@ -38,8 +38,9 @@ ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
       robots_(setup.sourced.world, *setup.truth, setup.head.robots, start_poses(setup), setup.errors,
               setup.exploration.seed, setup.at_contact, setup.pose_errors),
       scans_(setup.message_errors, setup.exploration.seed),
-      exploration_(setup.exploration,
-                   planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})),
+      exploration_(setup.exploration, planner::Mapping({.resolution = setup.head.resolution,
+                                                        .bounds = setup.head.bounds,
+                                                        .sensor = setup.sensor_model})),
       known_(setup.head.resolution),
       judged_(setup.head.robots.size()) {
   numbers_.mapped.emplace_back();

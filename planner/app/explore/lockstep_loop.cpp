@@ -12,8 +12,9 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
     : setup_(setup),
       robots_(setup.sourced.world, *setup.truth, setup.head.robots, setup.errors, setup.exploration.seed,
               setup.at_contact),
-      exploration_(setup.exploration,
-                   planner::Mapping({.resolution = setup.head.resolution, .bounds = setup.head.bounds})) {
+      exploration_(setup.exploration, planner::Mapping({.resolution = setup.head.resolution,
+                                                        .bounds = setup.head.bounds,
+                                                        .sensor = setup.sensor_model})) {
   numbers_.mapped.emplace_back();
   numbers_.robots.resize(setup.head.robots.size());
   for (const planner::ExplorationStart& start : setup.head.starts) paths_.emplace_back(start.pose.position);

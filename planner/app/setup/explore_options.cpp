@@ -39,6 +39,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("assign", options.assign);
   visit("optimize", options.optimize);
   visit("caster", options.caster);
+  visit("sensor_model", options.sensor_model);
   visit("seed", options.seed);
   visit("max_steps", options.max_steps);
   visit("epsilon", options.epsilon);
@@ -84,6 +85,7 @@ Json json_of(const Value& value) {
   else
     return value;
 }
+Json json_of(const planner::SensorModel& model) { return choice_name(model); }
 Json json_of(const StartPose& start) { return start.word; }
 Json json_of(const RobotFailures& failures) { return failures.each.empty() ? Json() : Json(failures.word); }
 Json json_of(const Eigen::Vector3f& point) {
@@ -123,6 +125,7 @@ void take(const Json& json, Value& value) {
   else
     json.get_to(value);
 }
+void take(const Json& json, planner::SensorModel& model) { read(json.get<std::string>(), model); }
 void take(const Json& json, StartPose& start) { read(json.get<std::string>(), start); }
 void take(const Json& json, RobotFailures& failures) { read(json.get<std::string>(), failures); }
 void take(const Json& json, Eigen::Vector3f& point) {
@@ -200,6 +203,10 @@ void read(std::string_view word, RobotFailures& failures) {
     }
     if (rest.find(',') == std::string_view::npos) return;
   }
+}
+
+planner::SensorModel sensor_model_of(const ExploreOptions& options) {
+  return options.sensor_model.value_or(options.lockstep ? planner::kOctomapSensor : planner::kCautiousSensor);
 }
 
 bool makes_tours(const ExploreOptions& options) {

@@ -20,10 +20,11 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::GoalSearch, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 24> kFurther = {
-    "start",  "ground",   "scale",   "up",     "goal",      "planner",    "renderer",     "samples",
-    "assign", "optimize", "caster",  "lambda", "advance",   "epsilon",    "min-distance", "max-steps",
-    "bumper", "noise",    "dropout", "drift",  "fix-every", "scan-delay", "scan-loss",    "fail"};
+constexpr std::array<std::string_view, 25> kFurther = {
+    "start",        "ground",    "scale",    "up",          "goal",    "planner", "renderer",
+    "samples",      "assign",    "optimize", "caster",      "lambda",  "advance", "epsilon",
+    "min-distance", "max-steps", "bumper",   "noise",       "dropout", "drift",   "fix-every",
+    "scan-delay",   "scan-loss", "fail",     "sensor-model"};
 
 void set_method(const TaskMethod& method, ExploreOptions& options) {
   options.mode = method.goal ? Method::kDefault : Method::kPaper;
@@ -123,6 +124,7 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add("min-distance", options.min_distance);
   add("epsilon", options.epsilon);
   add("max-steps", options.max_steps);
+  add("sensor-model", options.sensor_model);
   add_choice("bumper", options.bumper, other.bumper);
   add_number("noise", options.errors.sigma, other.errors.sigma);
   add_number("dropout", options.errors.dropout, other.errors.dropout);

@@ -3,6 +3,7 @@
 #include "poses.hpp"
 
 #include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/mapping.hpp>
 #include <frontlux/planner/robot.hpp>
 
 #include <cstdint>
@@ -33,6 +34,7 @@ struct TeamArguments {
   std::uint64_t seed = 1;
   std::optional<double> epsilon;
   std::optional<int> max_steps;
+  std::optional<std::string> sensor_model;
 };
 
 /// Of robots in motion.

@@ -29,6 +29,15 @@ void check(const Scan& scan) {
   }
 }
 
+void check(const SensorModel& sensor) {
+  const auto& [hit, miss, least, most] = sensor;
+  if (0.0 < least && least < miss && miss < 0.5 && 0.5 < hit && hit < most && most < 1.0) return;
+  throw std::invalid_argument("the sensor model has hit " + std::to_string(hit) + ", miss " +
+                              std::to_string(miss) + ", least " + std::to_string(least) + " and most " +
+                              std::to_string(most) +
+                              ", but 0 < least < miss < 0.5 < hit < most < 1 has to hold");
+}
+
 KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box) {
   constexpr double kOnFace = 1e-6;  // [voxels]
   const Eigen::Array3d low = box.min().array() / lattice.resolution() + Lattice::kOrigin,
@@ -59,7 +68,7 @@ struct Mapping::State {
   std::vector<VoxelKey> keys{};  // of the last change
 
   explicit State(const MappingOptions& options)
-      : tree(options.resolution),
+      : tree(options.resolution, options.sensor),
         grid(options.resolution),
         bounds(options.bounds),
         surface_depth(options.surface_depth) {}
@@ -99,6 +108,7 @@ Mapping::Mapping(const MappingOptions& options) {
   if (!options.bounds.contains(options.bounds.min) || !options.bounds.contains(options.bounds.max))
     throw std::invalid_argument(
         "the bounds of the map hold no voxel: their lowest key lies above their highest");
+  check(options.sensor);
   static_cast<void>(Lattice(options.resolution));  // refuses what is no length before OctoMap sees it
   state_ = std::make_unique<State>(options);
 }

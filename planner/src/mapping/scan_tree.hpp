@@ -2,6 +2,8 @@
 
 #include "mapping/scan_voxels.hpp"
 
+#include <frontlux/planner/mapping.hpp>
+
 #include <octomap/OcTree.h>
 
 #include <algorithm>
@@ -46,7 +48,12 @@ struct StateChange {
 /// for each voxel below. What it leaves behind is what `updateNode` for each voxel would, pruning included.
 class ScanTree : public octomap::OcTree {
  public:
-  explicit ScanTree(double in_resolution) : octomap::OcTree(in_resolution) {}
+  ScanTree(double in_resolution, const SensorModel& sensor) : octomap::OcTree(in_resolution) {
+    setProbHit(sensor.hit);
+    setProbMiss(sensor.miss);
+    setClampingThresMin(sensor.least);
+    setClampingThresMax(sensor.most);
+  }
 
   /// @param bricks   in octree order
   /// @param changes  to which changes are appended; each voxel once

@@ -99,12 +99,54 @@ void insert_by_octomap(OcTree& tree, const Eigen::Vector3f& origin, const Points
   tree.insertPointCloud(cloud, to_octomap(origin), std::isfinite(max_range) ? max_range : -1.0, false, false);
 }
 
+// As a user of OctoMap would set it.
+OcTree tree_with(double resolution, const SensorModel& sensor) {
+  OcTree tree(resolution);
+  tree.setProbHit(sensor.hit);
+  tree.setProbMiss(sensor.miss);
+  tree.setClampingThresMin(sensor.least);
+  tree.setClampingThresMax(sensor.most);
+  return tree;
+}
+
+// How many scans without a ray that ends in it it takes after one with such a ray, until a voxel is free.
+int misses_to_clear(const SensorModel& sensor, int misses_before) {
+  Mapping mapping({.resolution = 0.3, .sensor = sensor});
+  const Eigen::Vector3f origin(0.15F, 0.15F, 0.15F);
+  const auto state = [&] {
+    return mapping.grid().at(mapping.grid().lattice().key(Eigen::Vector3f(3.15F, 0.15F, 0.15F)).value());
+  };
+  const Points hit{{3.15F, 0.15F, 0.15F}}, pass{{6.15F, 0.15F, 0.15F}};
+  for (int i = 0; i < misses_before; ++i) mapping.insert(origin, pass);
+  mapping.insert(origin, hit);
+  int misses = 0;
+  for (; state() != Occupancy::kFree && misses < 100; ++misses) mapping.insert(origin, pass);
+  return misses;
+}
+
+TEST(Mapping, SensorModelsSayHowManyMissesAHitOutweighs) {
+  EXPECT_EQ(misses_to_clear(kOctomapSensor, 0), 3);
+  EXPECT_EQ(misses_to_clear(kOctomapSensor, 100), 0);
+  EXPECT_EQ(misses_to_clear(kCautiousSensor, 0), 6);
+  EXPECT_EQ(misses_to_clear(kCautiousSensor, 100), 1);
+}
+
+TEST(Mapping, DefaultSensorIsOctomaps) {
+  const OcTree theirs(0.3);
+  const Mapping ours({.resolution = 0.3});
+  EXPECT_EQ(ours.tree().getProbHitLog(), theirs.getProbHitLog());
+  EXPECT_EQ(ours.tree().getProbMissLog(), theirs.getProbMissLog());
+  EXPECT_EQ(ours.tree().getClampingThresMinLog(), theirs.getClampingThresMinLog());
+  EXPECT_EQ(ours.tree().getClampingThresMaxLog(), theirs.getClampingThresMaxLog());
+}
+
 TEST(Mapping, PointsEqualInsertPointCloud) {
   Random random(1);
   for (const double resolution : {0.3, 0.1, 0.25, 0.07}) {
     for (const double max_range : {4.0, std::numeric_limits<double>::infinity()}) {
-      Mapping mapping({.resolution = resolution});
-      OcTree oracle(resolution);
+      const SensorModel& sensor = resolution == 0.25 ? kCautiousSensor : kOctomapSensor;
+      Mapping mapping({.resolution = resolution, .sensor = sensor});
+      OcTree oracle = tree_with(resolution, sensor);
       for (int scan = 0; scan < 25; ++scan) {
         const auto origin = random_origin(random, resolution);
         auto points = adversarial_points(random, origin, resolution, 6.0, 1 + random.below(600));
@@ -120,9 +162,9 @@ TEST(Mapping, PointsEqualInsertPointCloud) {
 }
 
 // The same scan again and again: nodes are clamped, pruned, and opened once more when something moves.
-TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
-  Mapping mapping({.resolution = 0.2});
-  OcTree oracle(0.2);
+void expect_repeated_scans_equal_octomaps(const SensorModel& sensor) {
+  Mapping mapping({.resolution = 0.2, .sensor = sensor});
+  OcTree oracle = tree_with(0.2, sensor);
   const Eigen::Vector3f origin(0.3F, -0.2F, 1.1F);
   const auto wall = [&](float distance) {
     Points points;
@@ -137,8 +179,13 @@ TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
     mapping.insert(origin, points);
     insert_by_octomap(oracle, origin, points, -1.0);
     expect_same_nodes(mapping.tree(), oracle, "scan " + std::to_string(scan));
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
   }
+}
+
+TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
+  expect_repeated_scans_equal_octomaps(kOctomapSensor);
+  expect_repeated_scans_equal_octomaps(kCautiousSensor);
 }
 
 // A box of rays too large for a bitmap, out to the ends of the key range.
@@ -368,6 +415,10 @@ TEST(Mapping, RefusesWrongCalls) {
   EXPECT_REFUSED(Mapping({.resolution = std::nan("")}));
   EXPECT_REFUSED(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}));
   EXPECT_REFUSED(Mapping({.surface_depth = -0.1}));
+  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.5, .miss = 0.4, .least = 0.1, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = 0.4, .least = 0.0, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = std::nan(""), .least = 0.1, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 1.0}}));
   Mapping mapping({.resolution = 0.3});
   const Points points = {{1.F, 0.F, 0.F}};
   EXPECT_REFUSED(mapping.insert({kNan, 0.F, 0.F}, points));

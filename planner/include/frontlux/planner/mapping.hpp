@@ -8,10 +8,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <utility>
 
 namespace octomap {
 class OcTree;
@@ -24,12 +27,33 @@ namespace frontlux::planner {
 /// @throws std::invalid_argument if the box is empty, not a number, or outside the key range
 [[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
 
+/// What a scan says of a voxel, as probabilities that it is occupied: `hit` if a ray ended in it, else
+/// `miss`. What scans say adds up as log-odds, no further than to `least` and `most`; from one half a voxel
+/// is occupied.
+struct SensorModel {
+  double hit, miss, least, most;
+  friend bool operator==(const SensorModel&, const SensorModel&) = default;
+};
+
+/// OctoMap's own. One hit outweighs two misses: a wall that is seen at a grazing angle, and stands within its
+/// voxels, is soon called free by rays that pass in front of it.
+inline constexpr SensorModel kOctomapSensor{.hit = 0.7, .miss = 0.4, .least = 0.1192, .most = 0.971};
+
+/// For robots that keep away from all they saw: one hit makes any voxel occupied and outweighs five misses.
+/// As with OctoMap's, five misses are as much as any more.
+inline constexpr SensorModel kCautiousSensor{.hit = 0.7, .miss = 0.46, .least = 0.32, .most = 0.971};
+
+/// As options and files call them.
+inline constexpr std::array<std::pair<std::string_view, SensorModel>, 2> kSensorModelNames = {
+    {{"octomap", kOctomapSensor}, {"cautious", kCautiousSensor}}};
+
 /// The map that scans go into.
 struct MappingOptions {
   double resolution = 0.3;       ///< [m] edge of a voxel
   KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched; rays are followed no further than that
   double surface_depth = 0.001;  ///< [m] how far behind a measured surface a scan's end point is put, so that
                                  ///< a surface that lies on a voxel face falls into the voxel behind it
+  SensorModel sensor = kOctomapSensor;
 };
 
 /// What the last insertion spent [s], by part.
@@ -39,8 +63,7 @@ struct InsertionTime {
   double mirror = 0.0;  ///< sorting the changes and writing them to the grid
 };
 
-/// The probabilistic map that robots fill: an octomap::OcTree with OctoMap's default sensor model, and the
-/// ternary grid that mirrors it.
+/// The probabilistic map that robots fill: an octomap::OcTree and the ternary grid that mirrors it.
 ///
 /// A scan updates the tree exactly as OctoMap's `insertPointCloud` does without discretisation and lazy
 /// evaluation: every voxel that its rays pass or end in gets one update, a hit if any ray ended there, else a
@@ -53,8 +76,8 @@ struct InsertionTime {
 /// out does not depend on the number of threads.
 class FRONTLUX_EXPORT Mapping {
  public:
-  /// @throws std::invalid_argument naming the value, if the resolution is no length, the bounds are empty, or
-  /// the depth is negative or not finite
+  /// @throws std::invalid_argument naming the value, if the resolution is no length, the bounds are empty,
+  /// the depth is negative or not finite, or not 0 < least < miss < 0.5 < hit < most < 1
   explicit Mapping(const MappingOptions& options);
   ~Mapping();
   Mapping(Mapping&&) noexcept;
