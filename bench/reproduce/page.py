@@ -184,10 +184,10 @@ One thing changed at a time, by pairs with the method unchanged (failed: of both
 {of_each("why", variants_table)}
 ## What reality adds
 
-Errors of sensors, poses and messages, and a robot that fails, otherwise as above.
+Errors of sensors, poses and messages, a robot that fails, and another sensor model; otherwise as above.
 
 {of_each("reality", variants_table)}
-What that does to the map, in points, by pairs with the same world and seed without errors.
+What that does to the map, in points, by pairs with the same world and seed without it.
 
 {of_each("reality", maps_table)}
 ## Contacts and bumpers

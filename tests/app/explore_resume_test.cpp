@@ -52,6 +52,23 @@ TEST_F(ExploreCommand, KeepsALargerLimitThanItsOwnThatARunWentOnWith) {
   EXPECT_EQ(limit(), 1500);
 }
 
+// With the same errors of its sensors, and with what their scans say.
+TEST_F(ExploreCommand, GoesOnWithItsSensorModel) {
+  const std::vector<std::string> words = {"room",     "--stop-time", "6",  "--noise",    "0.02",
+                                          "--report", "off",         "-o", path("whole")};
+  expect_answer(test::joined(words, {"--sensor-model", "cautious"}));
+  EXPECT_EQ(json_in("whole").at("sensor_model"), "cautious");
+  const std::string bytes = content_of(path("whole/run.frontlux"));
+  fs::create_directory(path("cut"));
+  write("cut/run.frontlux", bytes.substr(0, bytes.size() / 2));
+  expect_resumed("cut");
+  expect_same_runs("whole", "cut");
+  const std::string map = content_of(path("whole/map.ot"));
+  expect_answer(test::joined(words, {"--force"}));
+  EXPECT_EQ(json_in("whole").at("sensor_model"), "octomap");
+  EXPECT_FALSE(content_of(path("whole/map.ot")) == map);
+}
+
 TEST_F(ExploreCommand, GoesOnWithARecordingThatWasCutOffAnywhere) {
   expect_explored("whole");
   const std::string bytes = content_of(path("whole/run.frontlux"));

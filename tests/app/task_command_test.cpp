@@ -119,12 +119,12 @@ TEST_F(TaskCommand, GivesWayToTheCommandLine) {
 TEST_F(TaskCommand, PublishesEveryOption) {
   write_court();
   const std::vector<std::string> in_motion = {
-      "--goal",         "render", "--planner",      "rrt",  "--renderer",  "rays", "--samples",   "16",
-      "--assign",       "off",    "--optimize",     "off",  "--caster",    "grid", "--lambda",    "0.2",
-      "--advance",      "1",      "--min-distance", "0.5",  "--epsilon",   "5",    "--max-steps", "2",
-      "--bumper",       "off",    "--noise",        "0.01", "--dropout",   "0.1",  "--drift",     "0.01",
-      "--fix-every",    "5",      "--scan-delay",   "0.2",  "--scan-loss", "0.1",  "--fail",      "uav=500",
-      "--sensor-model", "octomap"};
+      "--goal",         "render",   "--planner",      "rrt",  "--renderer",  "rays", "--samples",   "16",
+      "--assign",       "off",      "--optimize",     "off",  "--caster",    "grid", "--lambda",    "0.2",
+      "--advance",      "1",        "--min-distance", "0.5",  "--epsilon",   "5",    "--max-steps", "2",
+      "--bumper",       "off",      "--noise",        "0.01", "--dropout",   "0.1",  "--drift",     "0.01",
+      "--fix-every",    "5",        "--scan-delay",   "0.2",  "--scan-loss", "0.1",  "--fail",      "uav=500",
+      "--sensor-model", "cautious", "--stray",        "0.001"};
   const std::vector<std::string> of_world = {
       "--mode", "paper", "--goal",  "nearest",   "--ground",    "0", "--scale", "0.9",
       "--up",   "z",     "--start", "1.5,1.5,1", "--max-steps", "2", "--team",  "uav"};
@@ -151,7 +151,7 @@ TEST_F(TaskCommand, PublishesEveryOption) {
     if (name == "start") continue;
     EXPECT_TRUE(motion.at("options").contains(name) || world.at("options").contains(name)) << name;
   }
-  EXPECT_EQ(known, 25);
+  EXPECT_EQ(known, 26);
 }
 
 TEST_F(TaskCommand, ExploresABoxOfAWorld) {

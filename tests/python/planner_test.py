@@ -158,7 +158,7 @@ class Scans(unittest.TestCase):
         self.assertGreater(len(exploration.insert(0, room().start, directions, np.full((10, 10), INF)).keys), 100)
 
     def test_a_hit_stays_by_the_sensor_model(self):
-        for options, state in (({}, Occupancy.OCCUPIED), ({"sensor_model": "cautious"}, Occupancy.OCCUPIED),
+        for options, state in (({}, Occupancy.FREE), ({"sensor_model": "cautious"}, Occupancy.OCCUPIED),
                                ({"sensor_model": "octomap"}, Occupancy.FREE)):
             exploration = in_motion(**options)
             for ahead in (0.7, 1.3, 1.3, 1.3):

@@ -73,8 +73,8 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
   command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");
   command.add("--caster", options.caster, "Ray caster that answers visibility");
   command.add("--sensor-model", options.sensor_model,
-              "What scans say of a voxel: as OctoMap has it, or that a ray which ends in it\n"
-              "outweighs five scans that pass it [cautious; --lockstep: octomap]");
+              "What scans say of a voxel: octomap, its own weights; cautious, a ray that ends\n"
+              "in it outweighs five scans that pass it");
   command.add("--lambda", options.lambda, "PER_METRE",
               "Decay of a goal's value with its distance, eq. 1 [by mode]", kFromZero);
   command.add("--advance", options.advance, "METRES",
@@ -142,6 +142,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
+  command.add("--stray", options.errors.stray, "P",
+              "Probability that a ray returns from nowhere, as from dust, before any surface", kProbability);
   command.add("--drift", options.pose_errors.drift, "PART",
               "Error of where a robot believes to be, as a part of its path since it last knew, 0 to 1",
               kProbability);

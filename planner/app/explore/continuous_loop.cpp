@@ -40,7 +40,7 @@ ContinuousLoop::ContinuousLoop(const ExploreSetup& setup)
       scans_(setup.message_errors, setup.exploration.seed),
       exploration_(setup.exploration, planner::Mapping({.resolution = setup.head.resolution,
                                                         .bounds = setup.head.bounds,
-                                                        .sensor = setup.sensor_model})),
+                                                        .sensor_model = setup.sensor_model})),
       known_(setup.head.resolution),
       judged_(setup.head.robots.size()) {
   numbers_.mapped.emplace_back();

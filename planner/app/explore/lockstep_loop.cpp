@@ -14,7 +14,7 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
               setup.at_contact),
       exploration_(setup.exploration, planner::Mapping({.resolution = setup.head.resolution,
                                                         .bounds = setup.head.bounds,
-                                                        .sensor = setup.sensor_model})) {
+                                                        .sensor_model = setup.sensor_model})) {
   numbers_.mapped.emplace_back();
   numbers_.robots.resize(setup.head.robots.size());
   for (const planner::ExplorationStart& start : setup.head.starts) paths_.emplace_back(start.pose.position);

@@ -55,6 +55,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("resolution", options.source.resolution);
   visit("noise", options.errors.sigma);
   visit("dropout", options.errors.dropout);
+  visit("stray", options.errors.stray);
   visit("drift", options.pose_errors.drift);
   visit("fix_every", options.pose_errors.fix_every);
   visit("scan_delay", options.message_errors.delay);
@@ -80,12 +81,11 @@ Json json_of(const AbsolutePath& path) {
 // Enumerations and starts as the words of the command line, the rest as JSON's own types.
 template <class Value>
 Json json_of(const Value& value) {
-  if constexpr (std::is_enum_v<Value>)
+  if constexpr (Chosen<Value> && !std::is_same_v<Value, bool>)
     return choice_name(value);
   else
     return value;
 }
-Json json_of(const planner::SensorModel& model) { return choice_name(model); }
 Json json_of(const StartPose& start) { return start.word; }
 Json json_of(const RobotFailures& failures) { return failures.each.empty() ? Json() : Json(failures.word); }
 Json json_of(const Eigen::Vector3f& point) {
@@ -120,12 +120,11 @@ Json json_of(const std::optional<Value>& value) {
 
 template <class Value>
 void take(const Json& json, Value& value) {
-  if constexpr (std::is_enum_v<Value>)
+  if constexpr (Chosen<Value> && !std::is_same_v<Value, bool>)
     read(json.get<std::string>(), value);
   else
     json.get_to(value);
 }
-void take(const Json& json, planner::SensorModel& model) { read(json.get<std::string>(), model); }
 void take(const Json& json, StartPose& start) { read(json.get<std::string>(), start); }
 void take(const Json& json, RobotFailures& failures) { read(json.get<std::string>(), failures); }
 void take(const Json& json, Eigen::Vector3f& point) {
@@ -203,10 +202,6 @@ void read(std::string_view word, RobotFailures& failures) {
     }
     if (rest.find(',') == std::string_view::npos) return;
   }
-}
-
-planner::SensorModel sensor_model_of(const ExploreOptions& options) {
-  return options.sensor_model.value_or(options.lockstep ? planner::kOctomapSensor : planner::kCautiousSensor);
 }
 
 bool makes_tours(const ExploreOptions& options) {

@@ -63,7 +63,7 @@ struct ExploreOptions {
   std::optional<ViewQualityOptions::Renderer> renderer;
   bool assign = true, optimize = true;
   CasterKind caster = CasterKind::kFast;
-  std::optional<planner::SensorModel> sensor_model;
+  planner::SensorModel sensor_model = planner::kOctomapSensorModel;
   std::uint64_t seed = 1;
   std::optional<int> max_steps;
   std::optional<double> epsilon, lambda, advance, min_distance;
@@ -77,9 +77,6 @@ struct ExploreOptions {
   sim::MessageErrors message_errors;
   RobotFailures failures;
 };
-
-/// What the robots' scans say of voxels.
-[[nodiscard]] planner::SensorModel sensor_model_of(const ExploreOptions& options);
 
 /// Whether robots go on tours, the default in motion.
 [[nodiscard]] bool makes_tours(const ExploreOptions& options);

@@ -322,7 +322,7 @@ ExploreSetup make_setup(const ExploreOptions& options,
   setup.message_errors = options.message_errors;
   setup.lockstep = options.lockstep;
   setup.at_contact = options.bumper ? sim::AtContact::kStay : sim::AtContact::kGoOn;
-  setup.sensor_model = sensor_model_of(options);
+  setup.sensor_model = options.sensor_model;
   setup.stop_coverage = options.stop_coverage;
   setup.stop_time = options.stop_time;
   work_on(options.task.empty() ? options.source.world : options.task, "give a coarser --resolution", [&] {

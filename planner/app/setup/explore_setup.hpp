@@ -32,7 +32,7 @@ struct ExploreSetup {
   sim::AtContact at_contact = sim::AtContact::kStay;
   std::optional<double> stop_coverage;  // 0 to 1, of the observable voxels
   std::optional<double> stop_time;      // [s]
-  planner::SensorModel sensor_model = planner::kOctomapSensor;
+  planner::SensorModel sensor_model = planner::kOctomapSensorModel;
   planner::ExplorationOptions exploration;
   planner::RecordingHead head;  // with the robots and their starts
   std::optional<Eigen::Vector3f>

@@ -182,7 +182,7 @@ does not go back. Methods may be called from several threads; they wait for each
       .def(py::init(&make), py::arg("robots"), py::arg("bounds"), py::arg("resolution") = 0.3,
            py::arg("goal") = "tour", py::arg("seed") = 1, py::arg("latency") = 0.1, py::arg("period") = 1.0,
            py::arg("epsilon") = py::none(), py::arg("max_steps") = py::none(),
-           py::arg("sensor_model") = "cautious",
+           py::arg("sensor_model") = "octomap",
            R"(A team, in the order in which robots choose: those on the ground first.
 
 robots: list of Robot. bounds: (2, 3) [m], lower and upper corner of what is explored, bottom included; memory grows with it.
@@ -190,8 +190,8 @@ resolution: [m] edge of a voxel. goal: 'tour', through clusters of frontiers for
 quality; 'cluster'; 'nearest'. seed: of all that is random. latency: [s] from a planning to its trajectory's begin.
 period: [s] after which a robot plans anew at the latest. epsilon: frontiers that a goal has to show, else the end is near;
 None: 10, but not less than 0.3 m2 nor more than 0.9 m2 of them, with 'nearest' 1. max_steps: plannings at most; None: any number.
-sensor_model: what a scan says of a voxel: 'octomap', as OctoMap has it, or 'cautious', a ray that ends in it outweighs
-five scans that pass it.)")
+sensor_model: what a scan says of a voxel: 'octomap', its own weights; 'cautious', a ray that ends in it outweighs five scans
+that pass it: fewer walls are freed at grazing angles, but stray returns close more of the space.)")
       .def("begin", &begin, py::arg("starts"), py::arg("time") = 0.0, py::arg("free_radius") = 0.0,
            R"(All robots rest at their starts. Returns Step 0.
 

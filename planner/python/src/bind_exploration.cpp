@@ -95,8 +95,8 @@ Self make(const std::vector<std::shared_ptr<planner::RobotDescription>>& robots,
           std::uint64_t seed, std::optional<double> epsilon, std::optional<int> max_steps) {
   if (method != "default" && method != "paper")
     throw py::value_error("method: '" + method + "', but has to be 'default' or 'paper'");
-  const Team team = team_in_lockstep(
-      {robots, bounds, resolution, goal, seed, epsilon, max_steps, std::nullopt}, method == "paper");
+  const Team team =
+      team_in_lockstep({robots, bounds, resolution, goal, seed, epsilon, max_steps}, method == "paper");
   const py::gil_scoped_release others_run;
   return std::make_shared<LockStep>(team);
 }

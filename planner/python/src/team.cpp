@@ -35,11 +35,9 @@ std::optional<GoalRule> rule_of(const std::optional<std::string>& goal, bool loc
                         "'render', 'cluster' or 'nearest'");
 }
 
-planner::SensorModel sensor_model_of(const std::optional<std::string>& given, bool lockstep) {
-  if (!given) return lockstep ? planner::kOctomapSensor : planner::kCautiousSensor;
-  for (const auto& [name, model] : planner::kSensorModelNames)
-    if (name == *given) return model;
-  throw py::value_error("sensor_model: '" + *given + "', but has to be 'octomap' or 'cautious'");
+planner::SensorModel sensor_model_of(const std::string& name) {
+  if (const auto model = planner::sensor_model(name)) return *model;
+  throw py::value_error("sensor_model: '" + name + "', but has to be 'octomap' or 'cautious'");
 }
 
 // A robot whose body and height the planner accepts, above the bottom of the bounds.
@@ -63,7 +61,7 @@ Team make_team(const TeamArguments& arguments, bool lockstep, Method method) {
                      : planner::motion_options(method),
             {}};
   team.map.resolution = arguments.resolution;
-  team.map.sensor = sensor_model_of(arguments.sensor_model, lockstep);
+  team.map.sensor_model = sensor_model_of(arguments.sensor_model);
   const Lattice lattice = team.lattice();
   team.map.bounds = given_bounds(lattice, arguments.bounds);
   const std::optional<GoalRule> rule = rule_of(arguments.goal, lockstep);

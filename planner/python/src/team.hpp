@@ -34,7 +34,7 @@ struct TeamArguments {
   std::uint64_t seed = 1;
   std::optional<double> epsilon;
   std::optional<int> max_steps;
-  std::optional<std::string> sensor_model;
+  std::string sensor_model = "octomap";
 };
 
 /// Of robots in motion.

@@ -11,6 +11,19 @@
 #include <string>
 
 namespace frontlux::planner {
+namespace {
+
+void check(const SensorModel& sensor) {
+  const auto& [hit, miss, least, most] = sensor;
+  if (0.0 < least && least < miss && miss < 0.5 && 0.5 < hit && hit < most && most < 1.0) return;
+  throw std::invalid_argument("the sensor model has hit " + std::to_string(hit) + ", miss " +
+                              std::to_string(miss) + ", least " + std::to_string(least) + " and most " +
+                              std::to_string(most) +
+                              ", but 0 < least < miss < 0.5 < hit < most < 1 has to hold");
+}
+
+}  // namespace
+
 void check(const Scan& scan) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("scan: " + what); };
   if (scan.directions.size() != scan.ranges.size())
@@ -27,15 +40,6 @@ void check(const Scan& scan) {
       refuse("range " + std::to_string(i) + " is " + std::to_string(range) + " m, outside 0 to max_range, " +
              std::to_string(scan.max_range) + " m");
   }
-}
-
-void check(const SensorModel& sensor) {
-  const auto& [hit, miss, least, most] = sensor;
-  if (0.0 < least && least < miss && miss < 0.5 && 0.5 < hit && hit < most && most < 1.0) return;
-  throw std::invalid_argument("the sensor model has hit " + std::to_string(hit) + ", miss " +
-                              std::to_string(miss) + ", least " + std::to_string(least) + " and most " +
-                              std::to_string(most) +
-                              ", but 0 < least < miss < 0.5 < hit < most < 1 has to hold");
 }
 
 KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box) {
@@ -68,7 +72,7 @@ struct Mapping::State {
   std::vector<VoxelKey> keys{};  // of the last change
 
   explicit State(const MappingOptions& options)
-      : tree(options.resolution, options.sensor),
+      : tree(options.resolution, options.sensor_model),
         grid(options.resolution),
         bounds(options.bounds),
         surface_depth(options.surface_depth) {}
@@ -108,7 +112,7 @@ Mapping::Mapping(const MappingOptions& options) {
   if (!options.bounds.contains(options.bounds.min) || !options.bounds.contains(options.bounds.max))
     throw std::invalid_argument(
         "the bounds of the map hold no voxel: their lowest key lies above their highest");
-  check(options.sensor);
+  check(options.sensor_model);
   static_cast<void>(Lattice(options.resolution));  // refuses what is no length before OctoMap sees it
   state_ = std::make_unique<State>(options);
 }

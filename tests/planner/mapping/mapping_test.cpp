@@ -111,7 +111,7 @@ OcTree tree_with(double resolution, const SensorModel& sensor) {
 
 // How many scans without a ray that ends in it it takes after one with such a ray, until a voxel is free.
 int misses_to_clear(const SensorModel& sensor, int misses_before) {
-  Mapping mapping({.resolution = 0.3, .sensor = sensor});
+  Mapping mapping({.resolution = 0.3, .sensor_model = sensor});
   const Eigen::Vector3f origin(0.15F, 0.15F, 0.15F);
   const auto state = [&] {
     return mapping.grid().at(mapping.grid().lattice().key(Eigen::Vector3f(3.15F, 0.15F, 0.15F)).value());
@@ -125,10 +125,10 @@ int misses_to_clear(const SensorModel& sensor, int misses_before) {
 }
 
 TEST(Mapping, SensorModelsSayHowManyMissesAHitOutweighs) {
-  EXPECT_EQ(misses_to_clear(kOctomapSensor, 0), 3);
-  EXPECT_EQ(misses_to_clear(kOctomapSensor, 100), 0);
-  EXPECT_EQ(misses_to_clear(kCautiousSensor, 0), 6);
-  EXPECT_EQ(misses_to_clear(kCautiousSensor, 100), 1);
+  EXPECT_EQ(misses_to_clear(kOctomapSensorModel, 0), 3);
+  EXPECT_EQ(misses_to_clear(kOctomapSensorModel, 100), 0);
+  EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 0), 6);
+  EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 100), 1);
 }
 
 TEST(Mapping, DefaultSensorIsOctomaps) {
@@ -144,8 +144,8 @@ TEST(Mapping, PointsEqualInsertPointCloud) {
   Random random(1);
   for (const double resolution : {0.3, 0.1, 0.25, 0.07}) {
     for (const double max_range : {4.0, std::numeric_limits<double>::infinity()}) {
-      const SensorModel& sensor = resolution == 0.25 ? kCautiousSensor : kOctomapSensor;
-      Mapping mapping({.resolution = resolution, .sensor = sensor});
+      const SensorModel& sensor = resolution == 0.25 ? kCautiousSensorModel : kOctomapSensorModel;
+      Mapping mapping({.resolution = resolution, .sensor_model = sensor});
       OcTree oracle = tree_with(resolution, sensor);
       for (int scan = 0; scan < 25; ++scan) {
         const auto origin = random_origin(random, resolution);
@@ -163,7 +163,7 @@ TEST(Mapping, PointsEqualInsertPointCloud) {
 
 // The same scan again and again: nodes are clamped, pruned, and opened once more when something moves.
 void expect_repeated_scans_equal_octomaps(const SensorModel& sensor) {
-  Mapping mapping({.resolution = 0.2, .sensor = sensor});
+  Mapping mapping({.resolution = 0.2, .sensor_model = sensor});
   OcTree oracle = tree_with(0.2, sensor);
   const Eigen::Vector3f origin(0.3F, -0.2F, 1.1F);
   const auto wall = [&](float distance) {
@@ -184,8 +184,8 @@ void expect_repeated_scans_equal_octomaps(const SensorModel& sensor) {
 }
 
 TEST(Mapping, RepeatedScansEqualInsertPointCloud) {
-  expect_repeated_scans_equal_octomaps(kOctomapSensor);
-  expect_repeated_scans_equal_octomaps(kCautiousSensor);
+  expect_repeated_scans_equal_octomaps(kOctomapSensorModel);
+  expect_repeated_scans_equal_octomaps(kCautiousSensorModel);
 }
 
 // A box of rays too large for a bitmap, out to the ends of the key range.
@@ -415,10 +415,13 @@ TEST(Mapping, RefusesWrongCalls) {
   EXPECT_REFUSED(Mapping({.resolution = std::nan("")}));
   EXPECT_REFUSED(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}));
   EXPECT_REFUSED(Mapping({.surface_depth = -0.1}));
-  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.5, .miss = 0.4, .least = 0.1, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = 0.4, .least = 0.0, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = std::nan(""), .least = 0.1, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 1.0}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.5, .miss = 0.4, .least = 0.1, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.0, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = std::nan(""), .least = 0.1, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 1.0}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.4, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.5, .least = 0.1, .most = 0.9}}));
+  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 0.7}}));
   Mapping mapping({.resolution = 0.3});
   const Points points = {{1.F, 0.F, 0.F}};
   EXPECT_REFUSED(mapping.insert({kNan, 0.F, 0.F}, points));

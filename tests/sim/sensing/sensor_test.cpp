@@ -201,6 +201,26 @@ TEST(Sensor, DropoutsAreAsFrequentAsAsked) {
   for (const float range : sense(surface, lidar({0.0, 1.0}), kPose, 1).ranges) ASSERT_TRUE(std::isnan(range));
 }
 
+// As many as asked, spread evenly from the sensor to the surface; the others are as without.
+TEST(Sensor, StrayReturnsLieBeforeTheSurface) {
+  const Surface surface = room();
+  const auto exact = sense(surface, lidar(), kPose, 1);
+  for (const double stray : {0.01, 0.3}) {
+    const auto scan = sense(surface, lidar({.stray = stray}), kPose, 1);
+    double strays = 0, halves = 0;
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+      if (scan.ranges[i] == exact.ranges[i]) continue;
+      ASSERT_GT(scan.ranges[i], 0.0F);
+      ASSERT_LT(scan.ranges[i], std::min(exact.ranges[i], static_cast<float>(scan.max_range)));
+      ++strays;
+      if (scan.ranges[i] < 0.5F * std::min(exact.ranges[i], static_cast<float>(scan.max_range))) ++halves;
+    }
+    const auto count = static_cast<double>(scan.ranges.size());
+    EXPECT_NEAR(strays / count, stray, 5 * std::sqrt(stray * (1 - stray) / count));
+    EXPECT_NEAR(halves / strays, 0.5, 2.5 / std::sqrt(strays));
+  }
+}
+
 bool same_bytes(const planner::Scan& a, const planner::Scan& b) {
   return a.origin == b.origin && a.directions == b.directions && a.ranges.size() == b.ranges.size() &&
          std::memcmp(a.ranges.data(), b.ranges.data(), a.ranges.size() * sizeof(float)) == 0;
@@ -225,7 +245,7 @@ TEST(Sensor, RefusesWhatMakesNoSense) {
   EXPECT_REFUSED(Sensor(view, 0, 1));
   EXPECT_REFUSED(Sensor(view, 1, 0));
   EXPECT_REFUSED(Sensor(view, std::size_t{1} << 40, std::size_t{1} << 40));
-  for (const RangeErrors& bad : {RangeErrors{-0.1, 0.0}, {std::nan(""), 0.0}, {0.0, 1.1}})
+  for (const RangeErrors& bad : {RangeErrors{-0.1, 0.0}, {std::nan(""), 0.0}, {0.0, 1.1}, {.stray = -0.1}})
     EXPECT_REFUSED(Sensor(view, 1, 1, bad));
   EXPECT_REFUSED(cone(4.0, 1.0, 10));
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

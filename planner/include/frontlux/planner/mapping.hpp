@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -28,24 +29,32 @@ namespace frontlux::planner {
 [[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box);
 
 /// What a scan says of a voxel, as probabilities that it is occupied: `hit` if a ray ended in it, else
-/// `miss`. What scans say adds up as log-odds, no further than to `least` and `most`; from one half a voxel
-/// is occupied.
+/// `miss`. What scans say adds up as log-odds; from one half a voxel is occupied.
 struct SensorModel {
-  double hit, miss, least, most;
+  double hit, miss;
+  double least, most;  ///< the sum goes no further than that
   friend bool operator==(const SensorModel&, const SensorModel&) = default;
 };
 
-/// OctoMap's own. One hit outweighs two misses: a wall that is seen at a grazing angle, and stands within its
-/// voxels, is soon called free by rays that pass in front of it.
-inline constexpr SensorModel kOctomapSensor{.hit = 0.7, .miss = 0.4, .least = 0.1192, .most = 0.971};
+/// OctoMap's own. A hit outweighs two misses, and five misses are as much as any more: after them it takes
+/// three hits to make a voxel occupied. A wall that is seen at a grazing angle, and stands within its voxels,
+/// is soon called free by rays that pass in front of it.
+inline constexpr SensorModel kOctomapSensorModel{.hit = 0.7, .miss = 0.4, .least = 0.1192, .most = 0.971};
 
-/// For robots that keep away from all they saw: one hit makes any voxel occupied and outweighs five misses.
-/// As with OctoMap's, five misses are as much as any more.
-inline constexpr SensorModel kCautiousSensor{.hit = 0.7, .miss = 0.46, .least = 0.32, .most = 0.971};
+/// For robots that keep away from all they saw: a hit makes any voxel occupied at once. It outweighs five
+/// misses after it if the voxel was unknown before, and one if many misses came before.
+inline constexpr SensorModel kCautiousSensorModel{.hit = 0.7, .miss = 0.46, .least = 0.32, .most = 0.971};
 
 /// As options and files call them.
 inline constexpr std::array<std::pair<std::string_view, SensorModel>, 2> kSensorModelNames = {
-    {{"octomap", kOctomapSensor}, {"cautious", kCautiousSensor}}};
+    {{"octomap", kOctomapSensorModel}, {"cautious", kCautiousSensorModel}}};
+
+/// The model with this name; none if there is no such model.
+[[nodiscard]] constexpr std::optional<SensorModel> sensor_model(std::string_view name) {
+  for (const auto& [known, model] : kSensorModelNames)
+    if (known == name) return model;
+  return std::nullopt;
+}
 
 /// The map that scans go into.
 struct MappingOptions {
@@ -53,7 +62,7 @@ struct MappingOptions {
   KeyBox bounds = kAllVoxels;    ///< voxels outside are never touched; rays are followed no further than that
   double surface_depth = 0.001;  ///< [m] how far behind a measured surface a scan's end point is put, so that
                                  ///< a surface that lies on a voxel face falls into the voxel behind it
-  SensorModel sensor = kOctomapSensor;
+  SensorModel sensor_model = kOctomapSensorModel;  ///< what scans say of voxels
 };
 
 /// What the last insertion spent [s], by part.

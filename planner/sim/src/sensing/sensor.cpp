@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace frontlux::sim {
 namespace {
@@ -32,9 +33,10 @@ Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_
   if (!(errors.sigma >= 0.0 && std::isfinite(errors.sigma)))
     throw std::invalid_argument("sensor: sigma is " + std::to_string(errors.sigma) +
                                 " m, but has to be 0 or more");
-  if (!(errors.dropout >= 0.0 && errors.dropout <= 1.0))
-    throw std::invalid_argument("sensor: dropout is " + std::to_string(errors.dropout) +
-                                ", but has to be a probability");
+  for (const auto& [name, value] : {std::pair("dropout", errors.dropout), {"stray", errors.stray}})
+    if (!(value >= 0.0 && value <= 1.0))
+      throw std::invalid_argument(std::string("sensor: ") + name + " is " + std::to_string(value) +
+                                  ", but has to be a probability");
 }
 
 Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors) {
@@ -65,6 +67,8 @@ planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner:
     SplitMix64 random = random_of(seed, i);
     if (open_unit(random) < errors.dropout) return std::numeric_limits<double>::quiet_NaN();
     const double range = hits[i].range;
+    if (errors.stray > 0.0 && open_unit(random) < errors.stray)
+      return open_unit(random) * std::min(range, max_range);
     if (errors.sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
     return std::clamp(range + errors.sigma * normal(random), 0.0, max_range);
   };

@@ -19,6 +19,7 @@ namespace frontlux::sim {
 struct RangeErrors {
   double sigma = 0.0;    ///< [m] standard deviation of the Gaussian noise on a range
   double dropout = 0.0;  ///< probability that a ray gives no measurement
+  double stray = 0.0;    ///< probability that a ray returns from nowhere, as from dust: before any surface
 };
 
 /// A range sensor: its field of view, the rays that fill it, and its errors.
@@ -26,7 +27,7 @@ class Sensor {
  public:
   /// Rays: `sensor_directions`.
   /// @throws std::invalid_argument naming the value, if the field of view does not pass its `check`, there
-  /// are no rays or more than 2^26, sigma is negative or not finite, or dropout is not a probability
+  /// are no rays or more than 2^26, sigma is negative or not finite, or dropout or stray is not a probability
   Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors = {});
 
   [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
@@ -46,9 +47,9 @@ class Sensor {
 [[nodiscard]] Sensor sensor_of(const planner::RobotDescription& robot, RangeErrors errors = {});
 
 /// What the sensor measures from here. A hit within the sensor's range gives its range with noise, clamped to
-/// [0, max_range]; no hit gives infinity; a ray that drops out, whatever it meets, gives NaN. Errors depend
-/// on the seed and the number of the ray alone: the same arguments give the same bytes on any number of
-/// threads.
+/// [0, max_range]; no hit gives infinity; a ray that drops out, whatever it meets, gives NaN. A stray ray
+/// gives any range up to the surface, or to the sensor's, alike. Errors depend on the seed and the number of
+/// the ray alone: the same arguments give the same bytes on any number of threads.
 /// @param sensor_pose of the sensor itself, in the world frame
 /// @throws std::invalid_argument if the pose is not finite
 [[nodiscard]] planner::Scan sense(const Surface& surface, const Sensor& sensor,
