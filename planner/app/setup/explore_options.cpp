@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace frontlux::app {

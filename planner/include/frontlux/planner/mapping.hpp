@@ -86,7 +86,8 @@ struct InsertionTime {
 class FRONTLUX_EXPORT Mapping {
  public:
   /// @throws std::invalid_argument naming the value, if the resolution is no length, the bounds are empty,
-  /// the depth is negative or not finite, or not 0 < least < miss < 0.5 < hit < most < 1
+  /// the depth is negative or not finite, or the sensor model does not keep 0 < least < miss < 0.5 < hit <
+  /// most < 1
   explicit Mapping(const MappingOptions& options);
   ~Mapping();
   Mapping(Mapping&&) noexcept;
