@@ -73,8 +73,8 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
   command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");
   command.add("--caster", options.caster, "Ray caster that answers visibility");
   command.add("--sensor-model", options.sensor_model,
-              "What scans say of a voxel: octomap, its own weights; cautious, a ray that ends\n"
-              "in it outweighs five scans that pass it");
+              "What scans say of a voxel: as OctoMap has it, or that a ray which ends in it\n"
+              "outweighs five scans that pass it");
   command.add("--lambda", options.lambda, "PER_METRE",
               "Decay of a goal's value with its distance, eq. 1 [by mode]", kFromZero);
   command.add("--advance", options.advance, "METRES",

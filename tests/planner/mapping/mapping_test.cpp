@@ -109,37 +109,6 @@ OcTree tree_with(double resolution, const SensorModel& sensor) {
   return tree;
 }
 
-// How many scans without a ray that ends in it it takes after one with such a ray, until a voxel is free.
-int misses_to_clear(const SensorModel& sensor, int misses_before) {
-  Mapping mapping({.resolution = 0.3, .sensor_model = sensor});
-  const Eigen::Vector3f origin(0.15F, 0.15F, 0.15F);
-  const auto state = [&] {
-    return mapping.grid().at(mapping.grid().lattice().key(Eigen::Vector3f(3.15F, 0.15F, 0.15F)).value());
-  };
-  const Points hit{{3.15F, 0.15F, 0.15F}}, pass{{6.15F, 0.15F, 0.15F}};
-  for (int i = 0; i < misses_before; ++i) mapping.insert(origin, pass);
-  mapping.insert(origin, hit);
-  int misses = 0;
-  for (; state() != Occupancy::kFree && misses < 100; ++misses) mapping.insert(origin, pass);
-  return misses;
-}
-
-TEST(Mapping, SensorModelsSayHowManyMissesAHitOutweighs) {
-  EXPECT_EQ(misses_to_clear(kOctomapSensorModel, 0), 3);
-  EXPECT_EQ(misses_to_clear(kOctomapSensorModel, 100), 0);
-  EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 0), 6);
-  EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 100), 1);
-}
-
-TEST(Mapping, DefaultSensorIsOctomaps) {
-  const OcTree theirs(0.3);
-  const Mapping ours({.resolution = 0.3});
-  EXPECT_EQ(ours.tree().getProbHitLog(), theirs.getProbHitLog());
-  EXPECT_EQ(ours.tree().getProbMissLog(), theirs.getProbMissLog());
-  EXPECT_EQ(ours.tree().getClampingThresMinLog(), theirs.getClampingThresMinLog());
-  EXPECT_EQ(ours.tree().getClampingThresMaxLog(), theirs.getClampingThresMaxLog());
-}
-
 TEST(Mapping, PointsEqualInsertPointCloud) {
   Random random(1);
   for (const double resolution : {0.3, 0.1, 0.25, 0.07}) {
@@ -415,13 +384,6 @@ TEST(Mapping, RefusesWrongCalls) {
   EXPECT_REFUSED(Mapping({.resolution = std::nan("")}));
   EXPECT_REFUSED(Mapping({.bounds = {{2, 0, 0}, {1, 9, 9}}}));
   EXPECT_REFUSED(Mapping({.surface_depth = -0.1}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.5, .miss = 0.4, .least = 0.1, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.0, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = std::nan(""), .least = 0.1, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 1.0}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.4, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.5, .least = 0.1, .most = 0.9}}));
-  EXPECT_REFUSED(Mapping({.sensor_model = {.hit = 0.7, .miss = 0.4, .least = 0.1, .most = 0.7}}));
   Mapping mapping({.resolution = 0.3});
   const Points points = {{1.F, 0.F, 0.F}};
   EXPECT_REFUSED(mapping.insert({kNan, 0.F, 0.F}, points));
