@@ -59,7 +59,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
   check_time(time);
-  state.team.conservative_map = state.before;
+  state.team.conservative_map.emplace(state.before);
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
@@ -72,8 +72,7 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   for (std::size_t r = 0; r < starts.size(); ++r) {
     state.note_scan(r, state.team.mapping.mark_free(starts[r].known_free));
     for (const VoxelKey& key : starts[r].known_free)
-      if (state.team.mapping.grid().at(key) == Occupancy::kFree)
-        state.team.conservative_map->set(key, Occupancy::kFree);
+      if (state.team.mapping.grid().at(key) == Occupancy::kFree) state.team.conservative_map->set_free(key);
   }
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
@@ -180,7 +179,8 @@ std::optional<ExplorationEnd> ContinuousExploration::end() const {
   const auto low = [&](const auto& member) {
     return member.is_lost() || (member.low_gains >= state.team.options.low_gain_steps && !member.others_rest);
   };
-  const bool nothing_to_do = std::ranges::all_of(state.members, State::has_nothing_to_do);
+  const bool nothing_to_do = std::ranges::all_of(
+      state.members, [&](const State::Member& member) { return state.has_nothing_to_do(member); });
   if (nothing_to_do || std::ranges::all_of(state.members, low)) {
     for (std::size_t r = 0; r < state.members.size(); ++r)
       if (!state.members[r].is_lost() && state.team.is_cut_off(r, state.members[r].goal))

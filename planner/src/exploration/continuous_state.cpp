@@ -22,6 +22,9 @@ using Keys = std::vector<VoxelKey>;
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
 constexpr int kMostWaits = 10;    // plannings in a row, one in a period, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
+// Periods in which plannings find nothing to do, until there is nothing: scans free by then what a stray
+// return had closed.
+constexpr double kPatience = 1.5;
 
 // Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
 bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) {
@@ -148,11 +151,26 @@ void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vec
 
 // Takes note of what a scan has changed.
 void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange& change) {
+  Keys& also_changed = team.also_changed;
   for (const VoxelKey& key : change.keys) {
     touched.emplace_back(key, robot);
     if (change.grid.at(key) == Occupancy::kFree) continue;
+    also_changed.push_back(key);  // by the next planning the map may have it free again
     for (Member& member : members)
       member.blocked = member.blocked || std::ranges::binary_search(member.needed, key);
+  }
+  const Keys opened = team.conservative_map->update(change.grid, change.keys);
+  also_changed.insert(also_changed.end(), opened.begin(), opened.end());
+}
+
+// Where the body of a robot is nothing else can be, whatever scans say.
+void ContinuousExploration::State::free_voxels_of_robots(double time) {
+  for (std::size_t r = 0; r < members.size(); ++r) {
+    const auto own = team.lattice().key(members[r].motion.at(time).pose.position);
+    if (!own || !team.fills_its_voxel(r) || team.conservative_map->grid().at(*own) != Occupancy::kOccupied)
+      continue;
+    team.conservative_map->set_free(*own);
+    team.also_changed.push_back(*own);
   }
 }
 
@@ -170,9 +188,9 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     if (was == is) continue;
     step.robots[robot].changed.push_back({key, was, is});
     before.set(key, is);
-    if (team.conservative_map->at(key) != Occupancy::kOccupied) team.conservative_map->set(key, is);
   }
   touched.clear();
+  free_voxels_of_robots(time);
   for (std::size_t r = 0; r < members.size(); ++r) {
     RobotStep& robot = step.robots[r];
     robot.goal = members[r].goal;
@@ -313,17 +331,22 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step, bool kept) {
   Member& member = members[robot];
   const bool waits = !member.is_going() && (step.goal.pose || member.request || waits_for_room(robot));
-  const bool low =
-      step.goal.pose ? !team.tours && step.goal.gain < team.options.epsilon : !member.is_going() && !waits;
+  const bool is_idle = !member.is_going() && !waits;
+  const bool low = !team.tours && (step.goal.pose ? step.goal.gain < team.options.epsilon : is_idle);
   if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
+  if (!is_idle)
+    member.idle_since.reset();
+  else if (!member.idle_since)
+    member.idle_since = member.planned;
   member.waits = waits ? member.waits + 1 : 0;
   if (member.waits > kMostWaits && member.request) end_request(robot);
 }
 
-bool ContinuousExploration::State::has_nothing_to_do(const Member& member) {
+bool ContinuousExploration::State::has_nothing_to_do(const Member& member) const {
   if (member.is_lost()) return true;
-  return member.planned && !member.is_going() && !member.others_rest &&
-         (member.waits == 0 || member.waits > kMostWaits);
+  if (member.is_going() || member.others_rest) return false;
+  const double patience = kPatience * team.options.period;
+  return member.waits > kMostWaits || (member.idle_since && *member.planned - *member.idle_since >= patience);
 }
 
 }  // namespace frontlux::planner

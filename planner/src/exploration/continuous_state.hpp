@@ -34,9 +34,10 @@ struct ContinuousExploration::State {
   /// One robot in motion.
   struct Member {
     detail::RobotMotion motion;
-    std::optional<double> planned = {};  // [s] when it planned last
-    double chosen = 0.0;                 // [s] when it chose its goal
-    std::uint64_t gained = 0;            // frontiers that it has mapped since it planned last
+    std::optional<double> planned = {};     // [s] when it planned last
+    std::optional<double> idle_since = {};  // [s] when the first of its last plannings found nothing to do
+    double chosen = 0.0;                    // [s] when it chose its goal
+    std::uint64_t gained = 0;               // frontiers that it has mapped since it planned last
     Activity activity = Activity::kRests;
     bool stopped = false;           // by a bumper, or whatever it met
     bool blocked = false;           // its trajectory, by a voxel that has turned out not to be free
@@ -73,6 +74,7 @@ struct ContinuousExploration::State {
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
   [[nodiscard]] ExplorationStep collect(double time);
+  void free_voxels_of_robots(double time);
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
   /// A robot has come to rest. The others that rest plan again: they may ask it for room, or get to what it
@@ -82,8 +84,8 @@ struct ContinuousExploration::State {
   void tell_of_loss(std::size_t robot);
   /// A robot has stopped where none of the others knew that it would: they may not go on through it.
   void tell_of_stop(std::size_t robot, double time);
-  /// Or it has waited for others long enough.
-  [[nodiscard]] static bool has_nothing_to_do(const Member& member);
+  /// For long enough, or it has waited long enough for others.
+  [[nodiscard]] bool has_nothing_to_do(const Member& member) const;
 
  private:
   enum class Others { kAll, kThatDoNotRest };

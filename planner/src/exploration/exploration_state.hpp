@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exploration/conservative_map.hpp"
 #include "frontier/abandoned_frontiers.hpp"
 #include "tour/tour_planning.hpp"
 
@@ -23,10 +24,8 @@ struct ExplorationState {
 
   ExplorationOptions options;
   Mapping mapping;
-  /// If given: the map in motion, in which voxels that were occupied once stay so. Frontiers come from it:
-  /// beams that graze a surface free some of its voxels, until they are hit again, and what is behind them is
-  /// no frontier.
-  std::optional<VoxelGrid> conservative_map = {};
+  /// If given: the map in motion. Frontiers come from it.
+  std::optional<ConservativeMap> conservative_map = {};
   Keys also_changed = {};  // voxels that count as changed when the frontiers are updated next
   FrontierSet frontiers;
   std::unique_ptr<RayCaster> caster;
@@ -57,7 +56,9 @@ struct ExplorationState {
   /// What robots find their paths in. On tours it is `conservative_map`: a robot that does not move measures
   /// the same again and again, and if beams that graze the floor had freed it before the robot, it would
   /// never go on.
-  [[nodiscard]] const VoxelGrid& travel_map() const { return tours ? *conservative_map : mapping.grid(); }
+  [[nodiscard]] const VoxelGrid& travel_map() const {
+    return tours ? conservative_map->grid() : mapping.grid();
+  }
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }
   [[nodiscard]] ExplorationStep new_step() const;

@@ -30,7 +30,7 @@ struct Tube {
       state.changed.push_back(key);
     });
     std::ranges::sort(state.changed);
-    state.conservative_map = state.mapping.grid();
+    state.conservative_map.emplace(state.mapping.grid());
     state.frontiers.update(state.change());
     step = state.new_step();
     go_to(10);

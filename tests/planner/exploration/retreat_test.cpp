@@ -45,7 +45,7 @@ struct TwoRooms {
       state.changed.push_back(key);
     });
     std::ranges::sort(state.changed);
-    if (tours) state.conservative_map = state.mapping.grid();
+    if (tours) state.conservative_map.emplace(state.mapping.grid());
     state.frontiers.update(state.change());
     for (const Pose& place :
          {start, at(26, 15), at(34, 15), at(56, 26), at(34, 26), at(56, 4), at(34, 4), at(56, 15)})
@@ -132,7 +132,7 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   occupy(pane);
   rooms.state.trails[0].insert(rooms.state.trails[0].begin(), TwoRooms::at(-28, 15));
   rooms.state.changed = pane;
-  rooms.state.conservative_map = rooms.state.mapping.grid();
+  rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   rooms.state.update_views(rooms.step);
   const Goal goal = rooms.choose();
   ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
@@ -142,7 +142,7 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
   // With the gap closed as well it does not go through: somebody has shut a door.
   occupy(gap);
-  rooms.state.conservative_map = rooms.state.mapping.grid();
+  rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   rooms.state.retreated_to[0].clear();
   EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
 }
@@ -157,7 +157,7 @@ TEST(RetreatWithTours, IsOpenOnceAScanHasFoundItOpen) {
   };
   EXPECT_FALSE(is_beyond(rooms.choose()));
   rooms.state.mapping.mark_free(door);
-  if (rooms.state.conservative_map) rooms.state.conservative_map = rooms.state.mapping.grid();
+  if (rooms.state.conservative_map) rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   ExplorationStep seen = rooms.state.new_step();
   for (const VoxelKey& key : door)
     seen.robots[0].changed.push_back({key, Occupancy::kUnknown, Occupancy::kFree});

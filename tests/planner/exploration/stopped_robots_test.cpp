@@ -156,7 +156,7 @@ TEST(StoppedRobots, LeavesACellInWhichItIsStoppedAgain) {
 TEST(StoppedRobots, GoBackAsTheyCame) {
   double length = 0.0;
   for (const double beyond : {0.0, 1.0})            // [m] where its trajectory ends by the time
-    for (const double begin : {5.0, 16.0, 22.0}) {  // [s] soon it goes around a corner
+    for (const double begin : {5.0, 16.0, 40.0}) {  // [s] soon it goes around a corner
       TeamInMotion scene("maze", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
       scene.explore(begin);
       ContinuousExploration& exploration = scene.exploration();

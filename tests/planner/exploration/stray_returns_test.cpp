@@ -1,0 +1,70 @@
+// Rays that return from nowhere close what is free for a moment.
+
+#include "planner/exploration/team_in_motion.hpp"
+
+#include <limits>
+
+namespace frontlux::planner {
+namespace {
+
+using test::GoalChoice;
+using test::small_uav;
+using test::TeamInMotion;
+using test::TeamInWorld;
+
+constexpr double kLong = 300.0;  // [s]
+constexpr float kRange = 2.0F;   // [m]
+
+// A scan of one ray.
+Scan scan_along_x(const Pose& pose, float range) {
+  return {pose.position.cast<float>(), kRange, {Eigen::Vector3f::UnitX()}, {range}};
+}
+
+// One that ends in the voxel beside a robot, until rays have passed that.
+TEST(StrayReturns, ShutARobotInForAMomentOnly) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GoalChoice::kTours), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  const Pose pose = team.starts[0].pose;
+  for (int i = 0; i < 3; ++i) exploration.insert(0, pose, scan_along_x(pose, 0.3F));
+  auto planned = exploration.plan(0.0);
+  ASSERT_TRUE(planned);
+  EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
+  EXPECT_FALSE(exploration.end());
+  for (int i = 0; i < 9; ++i)
+    exploration.insert(0, pose, scan_along_x(pose, std::numeric_limits<float>::infinity()));
+  planned = exploration.plan(1.0);
+  ASSERT_TRUE(planned);
+  EXPECT_TRUE(planned->step.robots[0].goal.pose);
+}
+
+TEST(StrayReturns, AreNotWhereARobotIs) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GoalChoice::kTours), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  const Pose pose = team.starts[0].pose;
+  for (int i = 0; i < 3; ++i) exploration.insert(0, pose, scan_along_x(pose, 0.01F));
+  const VoxelGrid& grid = exploration.mapping().grid();
+  ASSERT_EQ(grid.at(grid.lattice().key(pose.position).value()), Occupancy::kOccupied);
+  const auto planned = exploration.plan(0.0);
+  ASSERT_TRUE(planned);
+  EXPECT_TRUE(planned->step.robots[0].goal.pose);
+}
+
+// One planning that finds nothing to do is no end, nor are two at about the same time.
+TEST(StrayReturns, EndsIfThereIsNothingToDoForAWhile) {
+  TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+  std::vector<double> idle;
+  scene.explore(kLong, [&](const PlannedMotion& now) {
+    if (now.step.robots[0].goal.pose)
+      idle.clear();
+    else
+      idle.push_back(now.step.time);
+  });
+  ASSERT_EQ(scene.exploration().end(), ExplorationEnd::kNothingToDo);
+  ASSERT_GE(idle.size(), 2U);
+  EXPECT_GE(idle.back() - idle.front(), scene.exploration().options().period);
+}
+
+}  // namespace
+}  // namespace frontlux::planner
