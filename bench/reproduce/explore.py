@@ -16,7 +16,7 @@ from typing import NamedTuple
 LONGEST = 3600  # [s] of the machine's time, after which a run counts as hanging
 # Of run.json: what is the same on every machine, and what is not.
 FACTS = ("version", "end", "steps", "coverage_observable", "coverage_box", "unseen", "time_s", "auc", "explored_m3",
-         "clearance_min_m", "contacts", "contacts_in_free", "collisions", "held_back", "separation_min_m", "by_robot", "path_length_m", "map",
+         "clearance_min_m", "contacts", "contacts_in_free", "held_back", "separation_min_m", "by_robot", "path_length_m", "map",
          "worst_of_limits")
 MEASURED = ("planning_mean_s", "planning_p99_s", "planning_max_s", "phases_s", "wall_s", "memory_mb", "machine",
             "instructions", "threads")

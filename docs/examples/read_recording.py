@@ -23,7 +23,7 @@ class Bytes:
 
 
 def step_line(step, version):
-    number, frontiers, _unassigned, _abandoned, _rays, _collisions = step.counts(6)
+    number, frontiers, _unassigned, _abandoned, _rays, _contacts = step.counts(6)
     (time,) = step.doubles(1)
     step.doubles(6)  # that each phase took
     known = [step.counts(2) for _ in range(step.count())]

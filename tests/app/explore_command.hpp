@@ -89,11 +89,11 @@ class ExploreCommand : public CommandTest {
     for (std::size_t i = 0; i < x.steps.size(); ++i) {
       expect_same(x.steps[i].step, y.steps[i].step);
       EXPECT_EQ(x.steps[i].known, y.steps[i].known);
-      EXPECT_EQ(x.steps[i].collisions, y.steps[i].collisions);
+      EXPECT_EQ(x.steps[i].contacts, y.steps[i].contacts);
     }
     const nlohmann::json p = json_in(a), q = json_in(b);
     for (const char* name :
-         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "collisions", "held_back"})
+         {"end", "steps", "coverage_observable", "coverage_box", "path_length_m", "contacts", "held_back"})
       EXPECT_EQ(p.at(name), q.at(name)) << name;
   }
 

@@ -37,7 +37,7 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
       "step,time_s,robot,coverage_observable,coverage_box,robot_observable,robot_box,frontiers,unassigned,"
       "abandoned,goal_state,assigned,released,received,uncovered,goal_x_m,goal_y_m,goal_z_m,goal_yaw_rad,"
       "goal_gain,"
-      "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,collisions,rays,"
+      "path,viewpoints,length_m,travelled_m,gain_tangent,gain_predicted,gained,still_unknown,contacts,rays,"
       "frontiers_s,caster_s,goals_s,paths_s,optimization_s,planning_s,moving_s");
   std::vector<double> travelled(2);
   std::size_t row = 1;
@@ -114,7 +114,7 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   EXPECT_EQ(json.at("robots"), (std::vector<std::string>{"ugv", "uav"}));
   EXPECT_EQ(json.at("end"), "step_limit");
   EXPECT_EQ(json.at("steps"), 4);
-  EXPECT_EQ(json.at("collisions"), 0);
+  EXPECT_EQ(json.at("contacts"), 0);
   EXPECT_EQ(json.at("resolution_m"), 0.3);
   EXPECT_EQ(json.at("coverage_observable"), std::stod(rows.back()[3]));
   EXPECT_EQ(json.at("coverage_box"), std::stod(rows.back()[4]));

@@ -40,7 +40,7 @@ def made_up(task, seconds=None, coverage=0.999, uav_part=0.75, speeds=(0.5, 1.0)
     levels = {str(level): seconds * level / 100 / coverage for level in (50, 90, 95, 99) if level / 100 <= coverage}
     run = {"version": VERSION, "end": "nothing_to_do", "steps": steps, "coverage_observable": coverage,
            "coverage_box": 0.8 * coverage, "unseen": None, "time_s": {**levels, "end": seconds}, "auc": 0.5,
-           "explored_m3": 1000.0, "clearance_min_m": 0.05, "contacts": 0, "contacts_in_free": 0, "collisions": 0, "held_back": 0,
+           "explored_m3": 1000.0, "clearance_min_m": 0.05, "contacts": 0, "contacts_in_free": 0, "held_back": 0,
            "worst_of_limits": 1.0, "separation_min_m": 0.4 if len(robots) > 1 else None,
            "by_robot": {r: {"length_m": seconds * speed[r], "revisited": 0.1 if r == "uav" else 0.3, "idle_s": 1.0,
                           "held_back": 0} for r in robots},

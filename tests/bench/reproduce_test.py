@@ -369,7 +369,7 @@ class OneRun(Made):
 
         def paths(value, path=()):
             """Of all members but the task, whose every change is noticed, and those that nothing reads."""
-            unread = ("task", "coverage_box", "collisions", "explored_m3", "path_length_m", "phases_s", "memory_mb", "machine",
+            unread = ("task", "coverage_box", "explored_m3", "path_length_m", "phases_s", "memory_mb", "machine",
                       "instructions", "threads", "idle_s", "version")
             for key, inner in value.items() if isinstance(value, dict) else enumerate(value[:1]):
                 if key not in unread:

@@ -44,7 +44,7 @@ class Recordings(unittest.TestCase):
     def test_steps_are_those_of_the_table(self):
         steps = self.recording.steps
         self.assertGreater(len(steps["number"]), 3)
-        for name in ("frontiers", "unassigned", "abandoned", "collisions", "rays"):
+        for name in ("frontiers", "unassigned", "abandoned", "contacts", "rays"):
             np.testing.assert_array_equal(steps[name], self.column(name, int)[:, 0], name)
         for name in ("gain_tangent", "gain_predicted", "gained"):
             np.testing.assert_array_equal(steps[name], self.column(name, int), name)

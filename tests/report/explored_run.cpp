@@ -43,11 +43,11 @@ planner::Recording explored_run(const std::string& world_name, int steps, bool u
                     .options = R"({"seed": 1, "mode": "default", "path": {"spacing_m": 1.2}})"};
   Knowledge knowledge(team.truth, team.robots.size());
   sim::SimulatedRobots simulated = team.bodies();
-  std::uint64_t collisions = 0;
+  std::uint64_t contacts = 0;
   const auto record = [&](ExplorationStep step) {
     const auto& known = knowledge.after(step);
-    recording.steps.push_back({std::move(step), known, simulated.contacts() - collisions});
-    collisions = simulated.contacts();
+    recording.steps.push_back({std::move(step), known, simulated.contacts() - contacts});
+    contacts = simulated.contacts();
   };
   const planner::Drive drive = drive_by(simulated);
   Exploration exploration(team.options(), team.empty_map());

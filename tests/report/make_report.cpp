@@ -26,7 +26,7 @@ void write_numbers(const std::filesystem::path& file, const Recording& recording
          "length_m,travelled_m,gain_predicted,gained,frontiers_s,caster_s,goals_s,paths_s,optimization_s,"
          "planning_s\n";
   std::vector<double> travelled(head.robots.size());
-  for (const auto& [step, known, collisions] : recording.steps) {
+  for (const auto& [step, known, contacts] : recording.steps) {
     std::uint64_t observable = 0, bounding = 0;
     for (const auto& part : known) {
       observable += part.observable;

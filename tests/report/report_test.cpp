@@ -41,7 +41,7 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
   ASSERT_EQ(facts["steps"].size(), room().steps.size());
   for (std::size_t s = 0; s < room().steps.size(); ++s) {
     const auto& reported = facts["steps"][s];
-    const auto& [step, known, collisions] = room().steps[s];
+    const auto& [step, known, contacts] = room().steps[s];
     EXPECT_EQ(reported["number"], step.number);
     EXPECT_EQ(reported["time"], step.time);
     EXPECT_GT(step.time, s > 0 ? room().steps[s - 1].step.time : 0.0);
@@ -49,7 +49,7 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
     EXPECT_EQ(reported["unassigned"], step.unassigned);
     EXPECT_EQ(reported["abandoned"], step.abandoned);
     EXPECT_EQ(reported["rays"], step.rays);
-    EXPECT_EQ(reported["collisions"], collisions);
+    EXPECT_EQ(reported["contacts"], contacts);
     EXPECT_EQ(reported["seconds"].get<std::vector<double>>(),
               std::vector(step.seconds.begin(), step.seconds.end()));
     for (std::size_t r = 0; r < 2; ++r) {

@@ -16,7 +16,7 @@ function factsOf(rows, other = {}) {
     observable: 1000, bounding: 2000, resolution: 0.5, options: '{"lockstep": false}', end: "low_gain", truncated: false,
     phases: ["frontiers", "caster", "goals", "paths", "optimization", "moving"], robots: [{ name: "a" }, { name: "b" }],
     steps: rows.map(([time, known, lengths, plans], number) => ({
-      number, time, frontiers: plans === undefined ? 0 : 7 + number, unassigned: 1, abandoned: 2, rays: 0, collisions: 0,
+      number, time, frontiers: plans === undefined ? 0 : 7 + number, unassigned: 1, abandoned: 2, rays: 0, contacts: 0,
       seconds: plans === undefined ? [0.1, 0, 0, 0, 0, 0] : [0.1, 0, 0.2, 0, 0, 9], known: known.map((voxels) => [voxels, 2 * voxels]),
       robots: lengths.map((length, r) => robot(r, length, plans === r || plans === -1)),
     })),

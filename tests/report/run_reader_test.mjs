@@ -54,7 +54,7 @@ function factsOf(steps, robots) {
     observable: 1000, bounding: 2000, options: '{"lockstep": false, "robots": {"a": [1, 2]}}', end: "low_gain", truncated: false,
     phases: ["frontiers", "goals", "moving"],
     robots: list(robots, (r) => ({ name: `robot ${r}`, plane: r === 0, extents: [1, 1, 0.5], sensor_height: 0.7, shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 16, rows: 8, colors: ["#0072b2", "#56b4e9"], start: [0, 0, 1, 0] })),
-    steps: list(steps, (s) => ({ number: s, time: s / 2, frontiers: 5, unassigned: 1, abandoned: 0, rays: 9, collisions: 0, seconds: [0.1, 0.2, 3], known: list(robots, () => [s, 2 * s]), robots: list(robots, robotStep) })),
+    steps: list(steps, (s) => ({ number: s, time: s / 2, frontiers: 5, unassigned: 1, abandoned: 0, rays: 9, contacts: 0, seconds: [0.1, 0.2, 3], known: list(robots, () => [s, 2 * s]), robots: list(robots, robotStep) })),
   };
 }
 

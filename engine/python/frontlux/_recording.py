@@ -14,7 +14,7 @@ _TITLE = b"frontlux recording, format "
 _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no assigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
 
-_STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "collisions")
+_STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "contacts")
 _ROBOT_COUNTS = ("gain_tangent", "gain_predicted", "gain_sum", "gained", "travelled")
 
 
@@ -29,7 +29,7 @@ class Recording:
     options       dict, the run's own options
     robots        r names
     starts        (r, 4) float64, poses
-    steps         dict of arrays, one row a step: number, frontiers, unassigned, abandoned, rays, collisions (n,) int64;
+    steps         dict of arrays, one row a step: number, frontiers, unassigned, abandoned, rays, contacts (n,) int64;
                   time (n,) float64 [s] at the step's end; seconds (n, 6) float64, what planning and moving took
                   [s]: frontiers, caster, goals, paths, optimization, moving; known (n, r) int64, the observable voxels that
                   each robot mapped first, and known_in_bounds, of all voxels; length (n, r) float64 [m]

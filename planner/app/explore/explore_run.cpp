@@ -180,7 +180,7 @@ class Run {
   void step() {
     const std::uint64_t before = loop_->numbers().contacts;
     last_ = with_known_voxels(loop_->step(), last_ ? &*last_ : nullptr, *setup_.truth);
-    last_->collisions = loop_->numbers().contacts - before;
+    last_->contacts = loop_->numbers().contacts - before;
     files_->add(*last_);
     files_->add(loop_->take_rows());
   }
@@ -189,7 +189,7 @@ class Run {
     if (loop_->end() || !loop_->repeat(recorded.step))
       throw BadInput("--resume: in step " + std::to_string(recorded.step.number) +
                      " the robots see another world than the recorded one; has " + setup_.head.world +
-                     " changed since?");
+                     " changed since, or frontlux?");
     last_ = recorded;
   }
 

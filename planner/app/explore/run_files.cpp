@@ -88,7 +88,7 @@ std::vector<StepColumn> step_columns() {
       {"gain_predicted", [](Row row) { return csv_cell(row.robot.gain_predicted); }},
       {"gained", [](Row row) { return csv_cell(row.robot.gained); }},
       {"still_unknown", [](Row row) { return csv_cell(row.robot.still_unknown.size()); }},
-      {"collisions", [](Row row) { return csv_cell(row.recorded.collisions); }},
+      {"contacts", [](Row row) { return csv_cell(row.recorded.contacts); }},
       {"rays", [](Row row) { return csv_cell(row.step.rays); }}};
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase) {
     if (static_cast<planner::Phase>(phase) == planner::Phase::kMoving)
@@ -150,7 +150,6 @@ void RunFiles::add(const RecordedStep& recorded) {
   }
   sums_.observable = fraction(observable, head_.observable);
   sums_.bounding = fraction(bounding, head_.bounding);
-  sums_.collisions += recorded.collisions;
   if (step.number > 0) {
     ++sums_.steps;
     sums_.planning.push_back(step.planning_seconds());

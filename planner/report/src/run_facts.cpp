@@ -60,11 +60,10 @@ json facts_of(const planner::RobotStep& robot) {
 
 json facts_of(const planner::RecordedStep& recorded) {
   const planner::ExplorationStep& step = recorded.step;
-  json facts = {{"number", step.number},       {"time", step.time},
-                {"frontiers", step.frontiers}, {"unassigned", step.unassigned},
-                {"abandoned", step.abandoned}, {"rays", step.rays},
-                {"seconds", step.seconds},     {"known", json::array()},
-                {"robots", json::array()},     {"collisions", recorded.collisions}};
+  json facts = {{"number", step.number},         {"time", step.time},           {"frontiers", step.frontiers},
+                {"unassigned", step.unassigned}, {"abandoned", step.abandoned}, {"rays", step.rays},
+                {"seconds", step.seconds},       {"known", json::array()},      {"robots", json::array()},
+                {"contacts", recorded.contacts}};
   for (const planner::KnownVoxels& known : recorded.known)
     facts["known"].push_back(json::array({known.observable, known.bounding}));
   for (const planner::RobotStep& robot : step.robots) facts["robots"].push_back(facts_of(robot));

@@ -22,9 +22,13 @@ std::vector<VoxelKey> stray_return_at(const VoxelKey& first, const VoxelGrid& gr
 
 }  // namespace
 
-std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<const VoxelKey> changed) {
-  std::vector<VoxelKey> freed, opened;
-  for (const VoxelKey& key : changed) {
+std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<const VoxelKey> changed,
+                                              std::span<const VoxelKey> occupied) {
+  std::vector<VoxelKey> all(changed.begin(), changed.end()), freed;
+  for (const VoxelKey& key : under_robots_) grid_.set(key, Occupancy::kOccupied);
+  all.insert(all.end(), under_robots_.begin(), under_robots_.end());
+  under_robots_.clear();
+  for (const VoxelKey& key : all) {
     if (grid_.at(key) != Occupancy::kOccupied)
       grid_.set(key, map.at(key));
     else if (map.at(key) == Occupancy::kFree)
@@ -34,9 +38,15 @@ std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<co
     if (grid_.at(key) == Occupancy::kFree) continue;  // with another one
     const std::vector<VoxelKey> stray = stray_return_at(key, grid_, map);
     for (const VoxelKey& voxel : stray) grid_.set(voxel, Occupancy::kFree);
-    opened.insert(opened.end(), stray.begin(), stray.end());
+    all.insert(all.end(), stray.begin(), stray.end());
   }
-  return opened;
+  for (const VoxelKey& key : occupied) {
+    if (grid_.at(key) != Occupancy::kOccupied) continue;
+    grid_.set(key, Occupancy::kFree);
+    under_robots_.push_back(key);
+    all.push_back(key);
+  }
+  return all;
 }
 
 }  // namespace frontlux::planner::detail

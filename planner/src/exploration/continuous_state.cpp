@@ -22,8 +22,8 @@ using Keys = std::vector<VoxelKey>;
 constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
 constexpr int kMostWaits = 10;    // plannings in a row, one in a period, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
-// Periods in which plannings find nothing to do, until there is nothing: scans free by then what a stray
-// return had closed.
+// Periods for which a robot rests until it has nothing to do: scans free by then what a stray return has
+// closed.
 constexpr double kPatience = 1.5;
 
 // Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
@@ -151,27 +151,22 @@ void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vec
 
 // Takes note of what a scan has changed.
 void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange& change) {
-  Keys& also_changed = team.also_changed;
   for (const VoxelKey& key : change.keys) {
     touched.emplace_back(key, robot);
     if (change.grid.at(key) == Occupancy::kFree) continue;
-    also_changed.push_back(key);  // by the next planning the map may have it free again
     for (Member& member : members)
       member.blocked = member.blocked || std::ranges::binary_search(member.needed, key);
   }
-  const Keys opened = team.conservative_map->update(change.grid, change.keys);
-  also_changed.insert(also_changed.end(), opened.begin(), opened.end());
 }
 
-// Where the body of a robot is nothing else can be, whatever scans say.
-void ContinuousExploration::State::free_voxels_of_robots(double time) {
-  for (std::size_t r = 0; r < members.size(); ++r) {
+// In which only their bodies can be, of robots on tours.
+Keys ContinuousExploration::State::voxels_of_robots(double time) const {
+  Keys keys;
+  for (std::size_t r = 0; team.tours && r < members.size(); ++r) {
     const auto own = team.lattice().key(members[r].motion.at(time).pose.position);
-    if (!own || !team.fills_its_voxel(r) || team.conservative_map->grid().at(*own) != Occupancy::kOccupied)
-      continue;
-    team.conservative_map->set_free(*own);
-    team.also_changed.push_back(*own);
+    if (own && !members[r].is_lost() && team.fills_its_voxel(r)) keys.push_back(*own);
   }
+  return keys;
 }
 
 // What the robots have done since the last planning. A voxel that several have changed counts for the first.
@@ -180,6 +175,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   step.time = time;
   std::optional<detail::PhaseClock> clock(std::in_place, step, Phase::kFrontiers);
   const VoxelGrid& grid = team.mapping.grid();
+  Keys changed;
   std::ranges::stable_sort(touched, {}, &std::pair<VoxelKey, std::size_t>::first);
   for (std::size_t i = 0; i < touched.size(); ++i) {
     const auto& [key, robot] = touched[i];
@@ -188,9 +184,11 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     if (was == is) continue;
     step.robots[robot].changed.push_back({key, was, is});
     before.set(key, is);
+    changed.push_back(key);
   }
   touched.clear();
-  free_voxels_of_robots(time);
+  const Keys further = team.conservative_map->update(grid, changed, voxels_of_robots(time));
+  team.also_changed.insert(team.also_changed.end(), further.begin(), further.end());
   for (std::size_t r = 0; r < members.size(); ++r) {
     RobotStep& robot = step.robots[r];
     robot.goal = members[r].goal;
@@ -331,10 +329,10 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
 void ContinuousExploration::State::count_low_gain(std::size_t robot, const RobotStep& step, bool kept) {
   Member& member = members[robot];
   const bool waits = !member.is_going() && (step.goal.pose || member.request || waits_for_room(robot));
-  const bool is_idle = !member.is_going() && !waits;
-  const bool low = !team.tours && (step.goal.pose ? step.goal.gain < team.options.epsilon : is_idle);
+  const bool low =
+      !team.tours && (step.goal.pose ? step.goal.gain < team.options.epsilon : !member.is_going() && !waits);
   if (!kept) member.low_gains = low ? member.low_gains + 1 : 0;
-  if (!is_idle)
+  if (member.is_going())
     member.idle_since.reset();
   else if (!member.idle_since)
     member.idle_since = member.planned;
@@ -346,7 +344,8 @@ bool ContinuousExploration::State::has_nothing_to_do(const Member& member) const
   if (member.is_lost()) return true;
   if (member.is_going() || member.others_rest) return false;
   const double patience = kPatience * team.options.period;
-  return member.waits > kMostWaits || (member.idle_since && *member.planned - *member.idle_since >= patience);
+  return member.waits > kMostWaits ||
+         (member.waits == 0 && member.idle_since && *member.planned - *member.idle_since >= patience);
 }
 
 }  // namespace frontlux::planner

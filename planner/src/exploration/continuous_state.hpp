@@ -35,7 +35,7 @@ struct ContinuousExploration::State {
   struct Member {
     detail::RobotMotion motion;
     std::optional<double> planned = {};     // [s] when it planned last
-    std::optional<double> idle_since = {};  // [s] when the first of its last plannings found nothing to do
+    std::optional<double> idle_since = {};  // [s] when it planned first without setting out, since it did
     double chosen = 0.0;                    // [s] when it chose its goal
     std::uint64_t gained = 0;               // frontiers that it has mapped since it planned last
     Activity activity = Activity::kRests;
@@ -74,7 +74,7 @@ struct ContinuousExploration::State {
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
   [[nodiscard]] ExplorationStep collect(double time);
-  void free_voxels_of_robots(double time);
+  [[nodiscard]] Keys voxels_of_robots(double time) const;
   /// A robot needs no room any more.
   void withdraw_requests(std::size_t robot);
   /// A robot has come to rest. The others that rest plan again: they may ask it for room, or get to what it

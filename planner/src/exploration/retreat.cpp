@@ -71,8 +71,8 @@ bool ExplorationState::can_reach(std::size_t robot, const VoxelKey& cell) const 
 // can have been there when it came. A larger voxel may be occupied beside it.
 bool ExplorationState::fills_its_voxel(std::size_t robot) const {
   const TravelOptions& travel = options.team[robot].robot.travel;
-  const double width = travel.drives() ? travel.extents.head<2>().minCoeff() : travel.extents.minCoeff();
-  return width / 2 >= lattice().resolution();
+  const double below = -body_of(travel).min().z();
+  return std::min(travel.extents.head<2>().minCoeff() / 2, below) >= lattice().resolution();
 }
 
 // A robot beside which a closer look has found something is in no corridor; it retreats to the last place

@@ -260,7 +260,7 @@ void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& 
   bytes.require(step.unassigned <= step.frontiers && step.abandoned <= step.frontiers,
                 "more frontiers are unassigned or abandoned than there are");
   bytes.whole(step.rays);
-  bytes.whole(recorded.collisions);
+  bytes.whole(recorded.contacts);
   code_length(bytes, step.time, "a step ends at no finite time");
   for (double& seconds : step.seconds) code_length(bytes, seconds, "a phase takes no finite time");
   bytes.part(name + ", known voxels");

@@ -63,7 +63,7 @@ TEST(StrayReturns, EndsIfThereIsNothingToDoForAWhile) {
   });
   ASSERT_EQ(scene.exploration().end(), ExplorationEnd::kNothingToDo);
   ASSERT_GE(idle.size(), 2U);
-  EXPECT_GE(idle.back() - idle.front(), scene.exploration().options().period);
+  EXPECT_GE(idle.back() - idle.front(), 1.5 * scene.exploration().options().period);
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Each, TeamOnTours,
                          test::name_of_choice);
 
 // In the middle of the corridor rests a robot with next to no sight, which never has anything to do.
-TEST_P(TeamOnTours, MakesRoomForWhoeverHasSomethingToSee) {
+test::TeamInWorld team_with_a_robot_between() {
   RobotDescription blind = ugv_description();
   blind.robot.travel.require_ground = false;
   blind.robot.view = {FieldOfView::Shape::kCone, 0.5, 0.0, 0.5};
@@ -173,7 +173,20 @@ TEST_P(TeamOnTours, MakesRoomForWhoeverHasSomethingToSee) {
   between.position.x() = (kCorridor[0] + kCorridor[1]) / 2;
   between.position = Lattice(0.3).exact_center(Lattice(0.3).key(between.position).value());
   team.starts[1] = {between, sim::start_bubble(team.truth, blind.robot, between)};
-  TeamInMotion scene(std::move(team), sim::AtContact::kGoOn, GetParam());
+  return team;
+}
+
+// It has failed, and nobody gets past it: there is more to see, but nothing to do.
+TEST_P(TeamInMotionBy, EndsWhereALostRobotIsInTheWay) {
+  TeamInMotion scene(team_with_a_robot_between(), sim::AtContact::kGoOn, GetParam());
+  scene.exploration().lose(1, scene.team().starts[1].pose, 0.0);
+  scene.explore(200.0);
+  EXPECT_TRUE(scene.exploration().end());
+  EXPECT_LT(share_mapped(scene.team(), scene.grid()), 0.9);
+}
+
+TEST_P(TeamOnTours, MakesRoomForWhoeverHasSomethingToSee) {
+  TeamInMotion scene(team_with_a_robot_between(), sim::AtContact::kGoOn, GetParam());
   std::size_t moves = 0;
   scene.explore(300.0, [&](const PlannedMotion& now) {
     if (now.robot == 1 && now.trajectory.end() > now.trajectory.begin()) ++moves;

@@ -80,7 +80,7 @@ inline planner::RecordedStep random_step(Random& random, const planner::Recordin
   step.abandoned = random.bits() % 1000;
   step.rays = random.bits();
   step.time = random.uniform(0, 1e4);
-  recorded.collisions = random.bits() % 3;
+  recorded.contacts = random.bits() % 3;
   for (double& seconds : step.seconds) seconds = random.uniform(0, 10);
   for (std::size_t r = 0; r < head.robots.size(); ++r) {
     recorded.known.push_back({random.bits() % 100'000, random.bits() % 100'000});
@@ -164,7 +164,7 @@ class Listing {
   }
 
   void add(const planner::RecordedStep& recorded) {
-    line("collisions", recorded.collisions);
+    line("contacts", recorded.contacts);
     for (const double seconds : recorded.step.seconds) line("s", seconds);
     for (const auto& known : recorded.known) line("known", known.observable, known.bounding);
     add(recorded.step);

@@ -104,9 +104,10 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// @throws std::invalid_argument before `begin`, or if there is no such robot
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
-  /// Why the exploration is over; nothing while it goes on. Of low gain is an
-  /// exploration in which each robot has chosen a goal of low gain, or found none, `low_gain_steps` times in
-  /// a row. Robots that are lost have nothing to do.
+  /// Why the exploration is over; nothing while it goes on. A robot has nothing to do if it has found no goal
+  /// and has rested for one and a half periods, in which what closed its way for a moment is seen to be free;
+  /// if it has waited for others ten times in a row; or if it is lost. Of low gain is an exploration without
+  /// tours in which each robot has chosen a goal of low gain, or found none, `low_gain_steps` times in a row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   /// As given.

@@ -45,7 +45,7 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   /// A step has low gain if its paths are expected to see fewer frontiers than this: distinct ones, or with
   /// `GainMode::kSum` summed over viewpoints. A stop of a tour shows at least so many.
   double epsilon = 10.0;
-  int low_gain_steps = 3;    ///< this many steps, in motion chosen goals, of low gain in a row end it
+  int low_gain_steps = 3;    ///< steps of low gain in a row end it; in motion chosen goals, without tours
   int max_steps = 1000;      ///< so does this number of steps, in motion plannings
   double latency = 0.1;      ///< [s] that the clock charges for a planning
   double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its path anew

@@ -42,7 +42,7 @@ struct RecordedStep {
   /// As the exploration returned it.
   ExplorationStep step;
   std::vector<KnownVoxels> known;  ///< of each robot; a voxel counts for the robot that mapped it first
-  std::uint64_t collisions = 0;    ///< of robots with the true world, in this step
+  std::uint64_t contacts = 0;      ///< of robots with the true world, in this step
 };
 
 /// A run as it was recorded.

@@ -30,7 +30,7 @@ export function numbersOf(facts) {
     unassigned: held(column((step) => (motion && !isPlanned(step) ? null : step.unassigned))),
     abandoned: held(column((step) => (motion && !isPlanned(step) ? null : step.abandoned))),
     rays: column((step) => step.rays),
-    collisions: column((step) => step.collisions),
+    contacts: column((step) => step.contacts),
     phases: facts.phases.map((_, p) => column((step) => step.seconds[p])),
     planning: column((step) => sum(step.seconds.slice(0, -1))), // moving is the last
     tangent: perRobot((step, r) => step.robots[r].gain_tangent),
@@ -58,7 +58,7 @@ export function numbersOf(facts) {
     volume: steps ? numbers.volume[last] : NaN,
     latency: motion && typeof latency === "number" ? latency : NaN,
     bumpers: bumper !== false,
-    contacts: sum(numbers.collisions),
+    contacts: sum(numbers.contacts),
     clearance: known(measured?.clearance_min_m),
     separation: known(measured?.separation_min_m),
     idle: facts.robots.map((_, r) => known(measured?.idle[r])),
