@@ -149,6 +149,8 @@ class Recording:
     poses: Arrays
     changes: Arrays
     tours: Arrays
+    trajectories: Arrays
+    reassigned: Arrays
     end: Optional[str]
     truncated: bool
     def grid(self, step: Optional[int] = None) -> VoxelGrid: ...

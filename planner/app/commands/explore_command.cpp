@@ -67,7 +67,7 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
   command.add("--planner", options.search, "Path search; corridor: shortest paths [by mode]");
   command.add("--renderer", options.renderer,
               "View quality of all frontiers, or by rays to drawn ones [by mode]");
-  command.add("--samples", options.samples, "N", "Frontiers drawn for each viewpoint with rays [64]",
+  command.add("--samples", options.samples, "N", "Frontiers drawn for each viewpoint with rays [by mode]",
               Range<int>{1});
   command.add("--assign", options.assign, "Assign each frontier to one robot, or to all that see it");
   command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");

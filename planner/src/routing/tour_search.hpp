@@ -5,7 +5,7 @@
 namespace frontlux::planner::detail {
 
 /// Puts stops that are in no tour where they cost least, and shortens the tours by 2-opt and Or-opt until no
-/// such change helps: the longest tour first, then all together. Stops that no robot can get to stay out.
+/// such change makes `cost_of` smaller. Stops that no robot can get to stay out.
 [[nodiscard]] Tours shortened_tours(const TourProblem& problem, Tours tours);
 
 /// What `shortened_tours` makes smaller [s].

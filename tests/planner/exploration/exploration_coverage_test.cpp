@@ -1,4 +1,4 @@
-// Guards what explorations come to: coverage by step, no collisions, an end of their own. The thresholds lie
+// Guards what explorations come to: coverage by step, no contacts, an end of their own. The thresholds lie
 // some percent below the least of three seeds when this was written.
 
 #include "planner/exploration/team_in_world.hpp"
