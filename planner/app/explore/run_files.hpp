@@ -16,9 +16,9 @@ namespace frontlux::app {
 struct RunSums {
   double observable = 0.0, bounding = 0.0;  ///< mapped fractions, 0 to 1, at the end of the last step
   std::uint64_t steps = 0;                  ///< without the look around at the start
-  std::vector<double> seconds;        ///< by planner::Phase
-  std::vector<double> travelled;      ///< [m] of each robot
-  std::vector<double> planning = {};  ///< [s] of each step
+  std::vector<double> seconds;              ///< by planner::Phase
+  std::vector<double> travelled;            ///< [m] of each robot
+  std::vector<double> planning = {};        ///< [s] of each step
 
   [[nodiscard]] double planning_mean() const;                   ///< [s] of a step
   [[nodiscard]] double planning_percentile(double part) const;  ///< [s] at a part of the sorted steps, 0 to 1

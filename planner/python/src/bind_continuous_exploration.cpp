@@ -225,10 +225,10 @@ nothing was met up to max_range, and all is free up to there. NaN: not measured.
 Points beyond the sensor's max_range stand for rays that met nothing. Those that are not finite, or the sensor's own position,
 were not measured.)")
       .def("plan", &plan, py::arg("time"),
-           "Plans for the robot whose turn it is, and returns a Plan; None if none has a reason to plan. "
-           "First come "
-           "who has waited for four periods, who is blocked or stopped, and who has waited for two; else the "
-           "team's order counts. Call it until it returns None, after all scans of that moment.")
+           R"(Plans for the robot whose turn it is, and returns a Plan; None if none has a reason to plan.
+
+Call it until it returns None, after all scans of that moment. First come robots that have waited for four periods, that are
+blocked or were stopped, and that have waited for two; else the team's order counts.)")
       .def("stopped", &stopped, py::arg("robot"), py::arg("pose"), py::arg("time"),
            py::arg("blocked") = py::none(),
            R"(A robot rests at a pose since it could not go on: something that no sensor saw blocks its path.
