@@ -15,38 +15,39 @@ using test::TeamInWorld;
 constexpr double kLong = 300.0;  // [s]
 constexpr float kRange = 2.0F;   // [m]
 
-// A scan of one ray.
-Scan scan_along_x(const Pose& pose, float range) {
-  return {pose.position.cast<float>(), kRange, {Eigen::Vector3f::UnitX()}, {range}};
-}
+// A robot at its start, which measures along x.
+struct AtStart {
+  TeamInWorld team{"room", 1, {small_uav()}};
+  ContinuousExploration exploration{TeamInMotion::options(team, GoalChoice::kTours), team.empty_map()};
+  const Pose pose = team.starts[0].pose;
+
+  AtStart() { exploration.begin(team.starts, 0.0); }
+  void scan(int times, float range) {
+    const Scan ray{pose.position.cast<float>(), kRange, {Eigen::Vector3f::UnitX()}, {range}};
+    for (int i = 0; i < times; ++i) exploration.insert(0, pose, ray);
+  }
+};
 
 // One that ends in the voxel beside a robot, until rays have passed that.
 TEST(StrayReturns, ShutARobotInForAMomentOnly) {
-  const TeamInWorld team("room", 1, {small_uav()});
-  ContinuousExploration exploration(TeamInMotion::options(team, GoalChoice::kTours), team.empty_map());
-  exploration.begin(team.starts, 0.0);
-  const Pose pose = team.starts[0].pose;
-  for (int i = 0; i < 3; ++i) exploration.insert(0, pose, scan_along_x(pose, 0.3F));
-  auto planned = exploration.plan(0.0);
+  AtStart robot;
+  robot.scan(3, 0.3F);
+  auto planned = robot.exploration.plan(0.0);
   ASSERT_TRUE(planned);
   EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
-  EXPECT_FALSE(exploration.end());
-  for (int i = 0; i < 9; ++i)
-    exploration.insert(0, pose, scan_along_x(pose, std::numeric_limits<float>::infinity()));
-  planned = exploration.plan(1.0);
+  EXPECT_FALSE(robot.exploration.end());
+  robot.scan(9, std::numeric_limits<float>::infinity());
+  planned = robot.exploration.plan(1.0);
   ASSERT_TRUE(planned);
   EXPECT_TRUE(planned->step.robots[0].goal.pose);
 }
 
 TEST(StrayReturns, AreNotWhereARobotIs) {
-  const TeamInWorld team("room", 1, {small_uav()});
-  ContinuousExploration exploration(TeamInMotion::options(team, GoalChoice::kTours), team.empty_map());
-  exploration.begin(team.starts, 0.0);
-  const Pose pose = team.starts[0].pose;
-  for (int i = 0; i < 3; ++i) exploration.insert(0, pose, scan_along_x(pose, 0.01F));
-  const VoxelGrid& grid = exploration.mapping().grid();
-  ASSERT_EQ(grid.at(grid.lattice().key(pose.position).value()), Occupancy::kOccupied);
-  const auto planned = exploration.plan(0.0);
+  AtStart robot;
+  robot.scan(3, 0.01F);
+  const VoxelGrid& grid = robot.exploration.mapping().grid();
+  ASSERT_EQ(grid.at(grid.lattice().key(robot.pose.position).value()), Occupancy::kOccupied);
+  const auto planned = robot.exploration.plan(0.0);
   ASSERT_TRUE(planned);
   EXPECT_TRUE(planned->step.robots[0].goal.pose);
 }
