@@ -3,6 +3,7 @@
 #include <frontlux/key_box.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -24,29 +25,29 @@ std::vector<VoxelKey> stray_return_at(const VoxelKey& first, const VoxelGrid& gr
 
 std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<const VoxelKey> changed,
                                               std::span<const VoxelKey> occupied) {
-  std::vector<VoxelKey> all(changed.begin(), changed.end()), freed;
-  for (const VoxelKey& key : under_robots_) grid_.set(key, Occupancy::kOccupied);
-  all.insert(all.end(), under_robots_.begin(), under_robots_.end());
-  under_robots_.clear();
-  for (const VoxelKey& key : all) {
+  std::vector<VoxelKey> further = std::exchange(under_robots_, {}), freed;
+  for (const VoxelKey& key : further) grid_.set(key, Occupancy::kOccupied);
+  const auto take_over = [&](const VoxelKey& key) {
     if (grid_.at(key) != Occupancy::kOccupied)
       grid_.set(key, map.at(key));
     else if (map.at(key) == Occupancy::kFree)
       freed.push_back(key);
-  }
+  };
+  std::ranges::for_each(changed, take_over);
+  std::ranges::for_each(further, take_over);
   for (const VoxelKey& key : freed) {
     if (grid_.at(key) == Occupancy::kFree) continue;  // with another one
     const std::vector<VoxelKey> stray = stray_return_at(key, grid_, map);
     for (const VoxelKey& voxel : stray) grid_.set(voxel, Occupancy::kFree);
-    all.insert(all.end(), stray.begin(), stray.end());
+    further.insert(further.end(), stray.begin(), stray.end());
   }
   for (const VoxelKey& key : occupied) {
     if (grid_.at(key) != Occupancy::kOccupied) continue;
     grid_.set(key, Occupancy::kFree);
     under_robots_.push_back(key);
-    all.push_back(key);
+    further.push_back(key);
   }
-  return all;
+  return further;
 }
 
 }  // namespace frontlux::planner::detail

@@ -25,13 +25,10 @@ class ConservativeMap {
 
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
 
-  /// Of a voxel that is free in the map, whatever it was before.
-  void set_free(const VoxelKey& key) { grid_.set(key, Occupancy::kFree); }
-
   /// Takes over changes of the map.
   /// @param changed   the voxels that may have changed in it
   /// @param occupied  by robots: in these nothing else can be, so that they are free until the next update
-  /// @return the voxels that may have changed here
+  /// @return further voxels that may have changed here
   [[nodiscard]] std::vector<VoxelKey> update(const VoxelGrid& map, std::span<const VoxelKey> changed,
                                              std::span<const VoxelKey> occupied = {});
 

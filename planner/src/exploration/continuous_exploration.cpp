@@ -59,7 +59,6 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   if (starts.size() != state.team.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(state.team.size()) + " robots");
   check_time(time);
-  state.team.conservative_map.emplace(state.before);
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
@@ -69,11 +68,9 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
     member.sensed.push_back(starts[r].pose);
     state.members.push_back(std::move(member));
   }
-  for (std::size_t r = 0; r < starts.size(); ++r) {
+  for (std::size_t r = 0; r < starts.size(); ++r)
     state.note_scan(r, state.team.mapping.mark_free(starts[r].known_free));
-    for (const VoxelKey& key : starts[r].known_free)
-      if (state.team.mapping.grid().at(key) == Occupancy::kFree) state.team.conservative_map->set_free(key);
-  }
+  state.team.conservative_map.emplace(state.team.mapping.grid());
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
   state.team.number = 1;

@@ -162,7 +162,8 @@ void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange&
 // In which only their bodies can be, of robots on tours.
 Keys ContinuousExploration::State::voxels_of_robots(double time) const {
   Keys keys;
-  for (std::size_t r = 0; team.tours && r < members.size(); ++r) {
+  if (!team.tours) return keys;
+  for (std::size_t r = 0; r < members.size(); ++r) {
     const auto own = team.lattice().key(members[r].motion.at(time).pose.position);
     if (own && !members[r].is_lost() && team.fills_its_voxel(r)) keys.push_back(*own);
   }
