@@ -4,7 +4,7 @@ from typing import NamedTuple, Optional
 
 import paper
 from intervals import FEWEST, Interval, mean, median_ratio, ratio
-from markdown import counted, interval, percent, value
+from markdown import as_first_word, counted, interval, percent, value
 from results import same_everywhere
 
 # Pairs that a verdict needs: what is declared for a main row. In worlds of files only the start differs.
@@ -313,6 +313,21 @@ def contacts_line(results, who, methods):
     return Line(f"{who} without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs, fewest=NEEDED))
 
 
+def apart_line(who, runs, fewest=NEEDED):
+    several = [r for r in runs if r.facts.get("separation_min_m") is not None]
+    near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
+    least = min((r.facts["separation_min_m"] for r in several), default=None)
+    return Line(f"{who}: bodies stay {SEPARATION} m apart",
+                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=fewest))
+
+
+def mapped_line(who, runs, fewest=NEEDED):
+    failures = [r for r in runs if r.failure]
+    return Line(f"{who}: every run ends by itself with the world mapped (99 %, hospital 90 %)",
+                f"{counted(len(failures), 'failure')} in {counted(len(runs), 'run')}" if runs else "",
+                none_of(failures, runs, fewest=fewest))
+
+
 def safety_lines(results):
     of_tours = teams(results)
     yield contacts_line(results, "Tours", of_tours)
@@ -323,11 +338,7 @@ def safety_lines(results):
     near = [r for r in runs if r.facts.get("clearance_min_m") is not None and r.facts["clearance_min_m"] < CLEARANCE]
     yield Line(f"Tours: bodies keep {CLEARANCE} m from surfaces", f"less in {len(near)} of {counted(len(runs), 'run')}"
                if runs else "", none_of(near, runs, fewest=NEEDED))
-    several = [r for r in runs if r.facts.get("separation_min_m") is not None]
-    near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
-    least = min((r.facts["separation_min_m"] for r in several), default=None)
-    yield Line(f"Tours: bodies stay {SEPARATION} m apart",
-               f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=NEEDED))
+    yield apart_line("Tours", runs)
 
     moving = [r for r in runs if r.facts.get("worst_of_limits") is not None]
     over = [r for r in moving if r.facts["worst_of_limits"] > LIMITS_KEPT]
@@ -335,10 +346,7 @@ def safety_lines(results):
                f"at most {max(r.facts['worst_of_limits'] for r in moving):.6f} of a limit in {counted(len(moving), 'run')}"
                if moving else "", none_of(over, moving, fewest=NEEDED))
 
-    failures = [r for r in everything if r.failure]
-    yield Line("Tours: every run ends by itself with the world mapped (99 %, hospital 90 %)",
-               f"{counted(len(failures), 'failure')} in {counted(len(everything), 'run')}" if everything else "",
-               none_of(failures, everything, fewest=NEEDED))
+    yield mapped_line("Tours", everything)
 
 
 def time_lines(results):
@@ -363,6 +371,25 @@ def sameness_lines(results):
         unlike = [a for a, b in pairs if same_everywhere(a.content) != same_everywhere(b.content)]
         yield Line(claim, f"{len(pairs) - len(unlike)} of {len(pairs)} pairs of runs are the same" if pairs else "",
                    none_of(unlike, pairs, "pair"))
+
+
+def control_lines(results):
+    """Lines of tours, judged of runs in which what makes them hold is switched off. As few runs as are declared do: one
+    that holds all the same says nothing."""
+    def title(method):
+        return as_first_word(results.experiments.title(method))
+
+    for method, other in (("tour_hasty", "render"), ("tour_alone", "tour_uav")):
+        for task in results.experiments.declared_tasks(method):
+            found = to_a_level(results, [task], method, other, seconds_mapped)
+            yield Line(f"{title(method)}: time to 99 % below {results.experiments.title(other)}, {task}", times(found),
+                       at_most(found.found, 1, strictly=True))
+
+    def runs(method):
+        return [r for task in results.tasks() for r in results.of(task, method)]
+
+    yield mapped_line(title("tour_hasty"), runs("tour_hasty"), 1)
+    yield apart_line(title("tour_swaying"), [r for r in runs("tour_swaying") if r.facts], 1)
 
 
 def our_lines(results):

@@ -10,7 +10,7 @@ COMPLETE = 0.99  # of the observable space, unless the task says otherwise
 COMPLETES = (0.9, 0.95, 0.99)  # parts for which runs say when they had mapped them
 FIRST_PASS = 2  # seeds of each block that come before all others, unless it says otherwise
 # What shows a method, and whether it is shown against another one.
-TABLES = {"main": False, "lock-step": False, "why": True, "reality": True, "bumpers": True, "caster": True}
+TABLES = {"main": False, "lock-step": False, "controls": False, "why": True, "reality": True, "bumpers": True, "caster": True}
 
 
 class Run(NamedTuple):

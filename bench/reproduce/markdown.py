@@ -40,3 +40,8 @@ def interval(found, digits=0, scale=1.0, unit="", sign=False):
     mark = "+" if sign else ""
     middle, *ends = (None if v is None else f"{scale * v:{mark},.{digits}f}".replace("inf", "∞") for v in found[:3])
     return middle + unit + (f" ({ends[0]} to {ends[1]})" if ends[0] is not None else "")
+
+
+def as_first_word(text):
+    """Of a sentence."""
+    return text[:1].upper() + text[1:]

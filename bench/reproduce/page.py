@@ -1,10 +1,12 @@
 """docs/results.md: the results in short, what is compared, the main tables, why, the paper, limits."""
 
-from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, our_lines, paper_lines, relative, seconds_mapped, teams,
+from collections import Counter
+
+from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, control_lines, our_lines, paper_lines, relative, seconds_mapped, teams,
                     to_a_level)
 from explore import LONGEST
 from intervals import FEWEST, LEVEL, RESAMPLES, mean
-from markdown import counted, interval, percent, plain
+from markdown import as_first_word, counted, interval, percent, plain
 from tables import (bumpers_table, failures_list, lines_table, maps_table, missing_table, optimisation_table, pairs_table,
                     planning_table, published_list, safety_table, steps_table, times_table, unseen_table, variants_table)
 
@@ -28,8 +30,8 @@ only at viewpoints, with more rays, robots stop at each viewpoint and wait for e
 (2 m in motion) lose value."""
 
 LIMITS = f"""\
-- Worlds are simulated: nothing moves in them, sensors, poses and messages have no errors unless a row says so, and
-  robots follow their trajectories exactly. All robots plan with one map; maps that differ from robot to robot, and radios with a radius, are not simulated.
+- Worlds are simulated: nothing moves in them, and sensors, poses, motions and messages have no errors unless a row says
+  so. All robots plan with one map; maps that differ from robot to robot, and radios with a radius, are not simulated.
 - In worlds of others nothing is random but the start, which is moved by up to 0.6 m: their intervals say how far
   that moves a result, not how other worlds would do.
 - Percentile intervals of few values are too narrow: of normal values they hold the mean in about 87 % of cases for six,
@@ -52,12 +54,21 @@ def origin(results):
     seeds = [run.seed for run in results.all]
     dates = sorted({r.measured["date"] for r in runs if r.measured.get("date")})
     return (f"{len(runs)} of {len(results.wanted)} runs, seeds {min(seeds)} to {max(seeds)}, by version {versions}, "
-            f"program {plain(results.program)}" +
+            f"{named_programs(results)}" +
             (f", {plain(dates[0])}" + (f" to {plain(dates[-1])}" if len(dates) > 1 else "") if dates else ""))
 
 
+def named_programs(results):
+    program, *like = map(plain, results.programs)
+    if not like:
+        return f"program {program}"
+    counts = Counter(plain(r.program) for r in results.all.values())
+    return (f"program {program} ({counted(counts[program], 'run')}) and by what was given as like it: " +
+            ", ".join(f"{p} ({counted(counts[p], 'run')})" for p in like))
+
+
 def others_left_out(results):
-    return (f" Of other programs than {plain(results.program)} there are {counted(results.of_others, 'run')}, which are left out "
+    return (f" Of other programs than {' and '.join(map(plain, results.programs))} there are {counted(results.of_others, 'run')}, which are left out "
             "everywhere: the next `./dev reproduce` makes them again.") if results.of_others else ""
 
 
@@ -113,7 +124,7 @@ def page(results, images, runs):
 
     def of_each(kind, table):
         """A table for each method that has others against it."""
-        return "\n".join(f"{results.experiments.title(base).capitalize()}:\n\n{table(results, kind, base)}"
+        return "\n".join(f"{as_first_word(results.experiments.title(base))}:\n\n{table(results, kind, base)}"
                          for base in results.experiments.bases(kind))
 
     in_lockstep = "\n".join((
@@ -177,6 +188,9 @@ What was not mapped is in view only of smaller robots (narrow), of none (hidden)
 measured at the end at most a tenth of a method's runs failed. *Not judged* is the time to the end.
 
 {lines_table(ours)}
+**Can they fail?** The same lines of runs in which a part is switched off that makes them hold:
+
+{lines_table([*control_lines(results)])}
 ## Why
 
 One thing changed at a time, by pairs with the method unchanged (failed: of both); above 1 the change costs.
@@ -184,7 +198,7 @@ One thing changed at a time, by pairs with the method unchanged (failed: of both
 {of_each("why", variants_table)}
 ## What reality adds
 
-Errors of sensors, poses and messages, a robot that fails, and another sensor model; otherwise as above.
+Errors of sensors, poses, motions and messages, a robot that fails, and another sensor model; otherwise as above.
 
 {of_each("reality", variants_table)}
 What that does to the map, in points, by pairs with the same world and seed without it.

@@ -55,6 +55,8 @@ def read_options():
                         "worlds of others lie, on all workers; repeatable [FRONTLUX_WORLDS, folders joined by :]")
     parser.add_argument("--command", metavar="FRONTLUX", help="the program [build/release/bin/frontlux; with "
                         "--scheduler: frontlux on the workers' PATH]")
+    parser.add_argument("--like", type=lambda text: text.split(","), default=[], metavar="SHA256,...", help="runs of "
+                        "these programs count as well, since they decide the same: their digits as the page has them")
     parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER",
                         help="of all results")
     parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md]")
@@ -123,13 +125,14 @@ def execute(experiments, runs, options):
     workers = 1 if options.set == "timed" else options.workers
     lost = 0
     with connect(options.scheduler, workers, folder.parent / "workers") as client:
-        programs = sorted(set(client.run(program_of, options.command).values()))
-        if len(programs) > 1:
+        found = sorted(set(client.run(program_of, options.command).values()))
+        if len(found) > 1:
             raise ValueError(f"the workers have different programs {options.command}: " + ", ".join(
-                f"{p.version} ({p.sha256})" for p in programs) + "; install the same file everywhere")
-        program = programs[0]
+                f"{p.version} ({p.sha256})" for p in found) + "; install the same file everywhere")
+        program = found[0]
         tasks = {run: experiments.task_file(run) for run in runs}
-        left = [run for run in runs if not is_kept(folder, run, tasks[run], program)]
+        programs = {program.sha256, *options.like}
+        left = [run for run in runs if not is_kept(folder, run, tasks[run], programs)]
         say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
         calls = {run.name: (options.command, program, tasks[run], world_file(experiments.file_of(run.task), options),
                             2 if run.timed else 1) for run in left}
@@ -157,7 +160,7 @@ def write_page(experiments, runs, options):
     from figures import figures
     from page import page
     from svg_chart import save
-    results = Results(experiments, runs, options.runs)
+    results = Results(experiments, runs, options.runs, options.like)
     if not results.all:
         raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
     images = options.page.parent / "images/results"

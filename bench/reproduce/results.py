@@ -98,13 +98,13 @@ def read_result(file):
     return result
 
 
-def is_kept(folder, run, task, program):
-    """Whether this program has made this very run. A failed run is done again."""
+def is_kept(folder, run, task, programs):
+    """Whether one of these programs has made this very run. A failed run is done again."""
     try:
         result = read_result(folder / f"{run.name}.json")
     except (OSError, ValueError):
         return False
-    return result["task"] == task and result["measured"].get("program") == program.sha256 and "failure" not in result
+    return result["task"] == task and result["measured"].get("program") in programs and "failure" not in result
 
 
 def same_everywhere(result):
@@ -220,10 +220,10 @@ class Result:
 
 
 class Results:
-    """Of all wanted runs those that one program has made, that of most runs; how many are of others, and what is missing
-    or broken."""
+    """Of all wanted runs those that one program has made, that of most runs, or one that is given as like it; how
+    many are of others, and what is missing or broken."""
 
-    def __init__(self, experiments, runs, folder):
+    def __init__(self, experiments, runs, folder, like=()):
         self.experiments, self.wanted, self.broken = experiments, list(runs), {}
         read = {}
         for run in self.wanted:
@@ -238,8 +238,9 @@ class Results:
             except (OSError, ValueError) as error:
                 self.broken[run.name] = str(error)
         programs = Counter(result.program for result in read.values())
-        self.program = max(sorted(programs), key=programs.get, default=None)
-        self.all = {run: result for run, result in read.items() if result.program == self.program}
+        most = max(sorted({*programs} - {*like} or programs), key=programs.get, default=None)
+        self.programs = [most, *sorted(({*like} & {*programs}) - {most})]
+        self.all = {run: result for run, result in read.items() if result.program in self.programs}
         self.of_others = len(read) - len(self.all)
 
     @property

@@ -65,6 +65,9 @@ template <>
 inline constexpr auto kChoices<CasterKind> = choices_of(kCasterNames);
 
 template <>
+inline constexpr auto kChoices<planner::TourPart> = choices_of(planner::kTourPartNames);
+
+template <>
 inline constexpr auto kChoices<planner::SensorModel> = choices_of(planner::kSensorModelNames);
 
 /// The paper's robots.

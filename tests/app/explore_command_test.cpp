@@ -169,6 +169,9 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
                                                  {"--renderer", "rays"}})
     expect_refused(with(option), {option.front() + " is not for tours", "--goal render"});
   expect_refused(with({"--fix-every", "3"}), {"--fix-every is for --drift"});
+  expect_refused(with({"--tours-without", "zones", "--goal", "render"}),
+                 {"--tours-without is for robots on tours"});
+  expect_refused(with({"--tours-without", "legs"}), {"--tours-without: 'legs' is none of nothing, zones"});
   expect_refused(with({"--optimize", "1"}), {"--optimize", "'1'"});
   expect_refused(with({"--report", "maybe"}), {"--report", "'maybe'"});
   for (const char* number : {"-1", "1.5", "1025", "two", "", "99999999999999999999"})
@@ -179,7 +182,8 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
     expect_refused(with({"--seed", number}), {"--seed"});
   for (const char* number : {"0", "-0.3", "nan", "inf", "1e-9", "x"})
     expect_refused(with({"--resolution", number}), {"--resolution"});
-  for (const char* option : {"--epsilon", "--lambda", "--advance", "--min-distance", "--noise"})
+  for (const char* option :
+       {"--epsilon", "--lambda", "--advance", "--min-distance", "--noise", "--tracking-error"})
     for (const std::string number : {"-2", "nan", "inf", "1e999", "1m", ""})
       expect_refused(with({option, number}),
                      {option + std::string(": '") + number + "' is not a number of at least 0"});
@@ -197,6 +201,7 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
                  {"--pose: 'uav=2,1,1,0' places uav, which another --pose does already"});
   expect_refused(with({"--fail", "uav=3", "--lockstep"}), {"--fail is not for --lockstep"});
   expect_refused(with({"--drift", "0.1", "--lockstep"}), {"--drift is not for --lockstep"});
+  expect_refused(with({"--tracking-error", "0.1", "--lockstep"}), {"--tracking-error is not for --lockstep"});
   expect_refused(with({"--scan-loss", "0.1", "--lockstep"}), {"--scan-loss is not for --lockstep"});
   expect_refused(with({"--what"}), {"--what"});
   expect_refused(with({"--resume", output}), {"--resume"});

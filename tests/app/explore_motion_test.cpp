@@ -234,8 +234,9 @@ TEST_F(ExploreMotion, MotionEndsWhereABumperStopsIt) {
 
 TEST_F(ExploreMotion, RobotsFailAndDriftAndAreHeardLateAsAsked) {
   const auto words = [&](const std::string& output, const std::string& seconds) {
-    return joined(quick(output, seconds), {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2",
-                                           "--scan-delay", "0.5", "--scan-loss", "0.1"});
+    return joined(quick(output, seconds),
+                  {"--fail", "two=3", "--drift", "0.02", "--fix-every", "2", "--scan-delay", "0.5",
+                   "--scan-loss", "0.1", "--tracking-error", "0.1"});
   };
   const test::Answer answer = run(joined(words("run", "6"), {"--threads", "1"}));
   EXPECT_EQ(answer.code, 0);

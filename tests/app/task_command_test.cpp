@@ -119,12 +119,14 @@ TEST_F(TaskCommand, GivesWayToTheCommandLine) {
 TEST_F(TaskCommand, PublishesEveryOption) {
   write_court();
   const std::vector<std::string> in_motion = {
-      "--goal",         "render",   "--planner",      "rrt",  "--renderer",  "rays", "--samples",   "16",
-      "--assign",       "off",      "--optimize",     "off",  "--caster",    "grid", "--lambda",    "0.2",
-      "--advance",      "1",        "--min-distance", "0.5",  "--epsilon",   "5",    "--max-steps", "2",
-      "--bumper",       "off",      "--noise",        "0.01", "--dropout",   "0.1",  "--drift",     "0.01",
-      "--fix-every",    "5",        "--scan-delay",   "0.2",  "--scan-loss", "0.1",  "--fail",      "uav=500",
-      "--sensor-model", "cautious", "--stray",        "0.001"};
+      "--goal",         "render", "--planner",        "rrt",     "--renderer",     "rays",
+      "--samples",      "16",     "--assign",         "off",     "--optimize",     "off",
+      "--caster",       "grid",   "--lambda",         "0.2",     "--advance",      "1",
+      "--min-distance", "0.5",    "--epsilon",        "5",       "--max-steps",    "2",
+      "--bumper",       "off",    "--noise",          "0.01",    "--dropout",      "0.1",
+      "--drift",        "0.01",   "--fix-every",      "5",       "--scan-delay",   "0.2",
+      "--scan-loss",    "0.1",    "--fail",           "uav=500", "--sensor-model", "cautious",
+      "--stray",        "0.001",  "--tracking-error", "0.05"};
   const std::vector<std::string> of_world = {
       "--mode", "paper", "--goal",  "nearest",   "--ground",    "0", "--scale", "0.9",
       "--up",   "z",     "--start", "1.5,1.5,1", "--max-steps", "2", "--team",  "uav"};
@@ -138,6 +140,8 @@ TEST_F(TaskCommand, PublishesEveryOption) {
   };
   const nlohmann::json motion = expect_published("motion", joined({"room"}, in_motion));
   const nlohmann::json world = expect_published("world", joined({path("court.ply")}, of_world));
+  const nlohmann::json tours =
+      expect_published("tours", {"room", "--tours-without", "joining", "--max-steps", "2"});
   EXPECT_EQ(motion.at("method"), "render");
   EXPECT_EQ(world.at("method"), "paper");
   // What the command says it knows; the start is a member of its robot.
@@ -149,9 +153,11 @@ TEST_F(TaskCommand, PublishesEveryOption) {
   for (std::string name; std::getline(list >> std::ws, name, ',');) {
     ++known;
     if (name == "start") continue;
-    EXPECT_TRUE(motion.at("options").contains(name) || world.at("options").contains(name)) << name;
+    EXPECT_TRUE(motion.at("options").contains(name) || world.at("options").contains(name) ||
+                tours.at("options").contains(name))
+        << name;
   }
-  EXPECT_EQ(known, 26);
+  EXPECT_EQ(known, 28);
 }
 
 TEST_F(TaskCommand, ExploresABoxOfAWorld) {

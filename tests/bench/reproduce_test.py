@@ -25,7 +25,7 @@ sys.path[:0] = [str(REPRODUCE), str(REPRODUCE.parent)]
 import claims
 import explore
 import intervals
-from claims import at_least, at_most, changed_by, effect, our_lines, paper_lines
+from claims import at_least, at_most, changed_by, control_lines, effect, our_lines, paper_lines
 from csv_of_runs import csv_of_runs
 from experiments import Experiments, Run, merged
 from figures import figures, mean_curve, round_step, value_at
@@ -340,12 +340,13 @@ class OneRun(Made):
 
     def test_kept_if_it_is_the_same_run_by_the_same_program(self):
         run = Run("maze", "tour", 6)
-        task, program = self.experiments.task_file(run), explore.Program(VERSION, PROGRAM)
+        task, program = self.experiments.task_file(run), {PROGRAM}
         self.assertFalse(is_kept(self.folder, run, task, program))
         self.make(run)
         self.assertTrue(is_kept(self.folder, run, task, program))
         self.assertFalse(is_kept(self.folder, run, {**task, "latency_s": 0.5}, program))
-        self.assertFalse(is_kept(self.folder, run, task, explore.Program(VERSION, "another")))
+        self.assertFalse(is_kept(self.folder, run, task, {"another"}))
+        self.assertTrue(is_kept(self.folder, run, task, {"another", PROGRAM}))
         self.make(run, failure="exit code 1: x")
         self.assertFalse(is_kept(self.folder, run, task, program))
         self.make(run)
@@ -357,10 +358,17 @@ class OneRun(Made):
         runs = [self.make(Run("maze", "tour", seed)) for seed in (6, 7)]
         runs += [self.make(Run("maze", "tour", 8), "another"), self.make(Run("maze", "render", 8), "another")]
         results = self.results(runs + [self.make(Run("maze", "render", 6))])
-        self.assertEqual((results.program, len(results.all), results.of_others), (PROGRAM, 3, 2))
+        self.assertEqual((results.programs, len(results.all), results.of_others), ([PROGRAM], 3, 2))
         text = page(results, "images", "runs.csv")
         self.assertIn(f"program {PROGRAM}, 2026-01-02", text[:400])
         self.assertIn(f"Of other programs than {PROGRAM} there are 2 runs, which are left out", text)
+        for like in ("another", PROGRAM):  # the program is the one that others are like
+            results = Results(self.experiments, list(results.wanted), self.folder, [like])
+            self.assertEqual((set(results.programs), len(results.all), results.of_others), ({PROGRAM, "another"}, 5, 0))
+            self.assertNotEqual(results.programs[0], like)
+            text = page(results, "images", "runs.csv")
+            self.assertIn(f"program {results.programs[0]} (", text[:400])
+            self.assertIn(f"and by what was given as like it: {like} (", text[:400])
 
     def test_damaged_members_are_named_and_no_table_meets_them(self):
         run = self.make(Run("maze", "tour", 6))
@@ -527,6 +535,19 @@ class Lines(Made):
             verdicts = (line.verdict, fast[claim].verdict)
             self.assertTrue(any(v.startswith(("**does not hold", "**not reproduced")) for v in verdicts), (line, fast[claim]))
 
+    def test_every_control_fails_if_its_part_is_needed(self):
+        def made(but=lambda run, how: how):
+            runs = [Run(task, method, seed) for task in ("maze", "factory") for seed in range(6, 12)
+                    for method in ("tour_hasty", "tour_alone", "tour_swaying", "render", "tour_uav")]
+            for run in runs:
+                self.make(run, **but(run, {"seconds": 400.0 if run.method in ("render", "tour_uav") else 300.0}))
+            return [line.verdict for line in control_lines(self.results(runs))]
+
+        self.assertEqual(made(), ["holds"] * 6)
+        bad = {"tour_hasty": {"coverage": 0.98}, "tour_alone": {"seconds": 401.0}, "tour_swaying": {"separation_min_m": 0.3}}
+        for verdict in made(lambda run, how: {**how, **bad.get(run.method, {})}):
+            self.assertTrue(verdict.startswith("**does not hold"), verdict)
+
     def test_nothing_holds_without_runs(self):
         for line in self.judged(lambda make: None).values():
             self.assertEqual((line.measured, line.verdict), ("", "not measured"))
@@ -641,7 +662,9 @@ class Page(Made):
         for method, declared in self.experiments.methods.items():
             shown = {"caster": " of 2 pairs of runs are the same |",
                      "bumpers": f"| maze | {self.experiments.title(declared.get('against', method))} | 2 | 0 | 2 | 0 |"}
-            self.assertIn(shown.get(declared["table"], f"| {declared['title']} |"), text, method)
+            title = declared["title"]
+            shown["controls"] = f"| {title[0].upper()}{title[1:]}: "
+            self.assertIn(shown.get(declared["table"], f"| {title} |"), text, method)
 
     def test_table_of_runs(self):
         runs = [self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995, separation_min_m=None),

@@ -39,6 +39,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("renderer", options.renderer);
   visit("assign", options.assign);
   visit("optimize", options.optimize);
+  visit("tours_without", options.tours_without);
   visit("caster", options.caster);
   visit("sensor_model", options.sensor_model);
   visit("seed", options.seed);
@@ -59,6 +60,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("stray", options.errors.stray);
   visit("drift", options.pose_errors.drift);
   visit("fix_every", options.pose_errors.fix_every);
+  visit("tracking_error", options.pose_errors.tracking);
   visit("scan_delay", options.message_errors.delay);
   visit("scan_loss", options.message_errors.loss);
   visit("fail", options.failures);
@@ -211,11 +213,12 @@ bool makes_tours(const ExploreOptions& options) {
 }
 
 std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {
-  const auto& [drift, fix_every] = options.pose_errors;
+  const auto& [drift, fix_every, tracking] = options.pose_errors;
   const auto& [delay, loss] = options.message_errors;
   std::vector<std::string_view> names;
   for (const auto& [given, name] : {std::pair(drift > 0.0, "drift"),
                                     {fix_every > 0.0, "fix-every"},
+                                    {tracking > 0.0, "tracking-error"},
                                     {delay > 0.0, "scan-delay"},
                                     {loss > 0.0, "scan-loss"},
                                     {!options.failures.each.empty(), "fail"}})

@@ -62,6 +62,7 @@ struct ExploreOptions {
   std::optional<planner::PathSearch> search;
   std::optional<ViewQualityOptions::Renderer> renderer;
   bool assign = true, optimize = true;
+  planner::TourPart tours_without = planner::TourPart::kNone;
   CasterKind caster = CasterKind::kFast;
   planner::SensorModel sensor_model = planner::kOctomapSensorModel;
   std::uint64_t seed = 1;

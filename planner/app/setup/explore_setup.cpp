@@ -233,6 +233,9 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
                    " is not for tours, which choose their stops otherwise; give --goal render, cluster or "
                    "nearest with it, or leave it out" +
                    or_in_task(options));
+  if (options.tours_without != planner::TourPart::kNone && !makes_tours(options))
+    throw BadInput("--tours-without is for robots on tours; leave it out, or give --goal tour in motion" +
+                   or_in_task(options));
   planner::ExplorationOptions exploration = options.lockstep ? planner::exploration_options(options.mode)
                                             : makes_tours(options)
                                                 ? planner::tour_options(options.source.resolution)
@@ -250,6 +253,7 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   exploration.path.search = options.search.value_or(exploration.path.search);
   constexpr int kOfRrtStar = 2000;
   if (exploration.path.search == planner::PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
+  exploration.tours_without = options.tours_without;
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;
   exploration.caster = options.caster;

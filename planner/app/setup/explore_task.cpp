@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::GoalSearch, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 26> kFurther = {
-    "start",        "ground",    "scale",    "up",     "goal",        "planner", "renderer",
-    "samples",      "assign",    "optimize", "caster", "lambda",      "advance", "epsilon",
-    "min-distance", "max-steps", "bumper",   "noise",  "dropout",     "drift",   "fix-every",
-    "scan-delay",   "scan-loss", "fail",     "stray",  "sensor-model"};
+constexpr std::array<std::string_view, 28> kFurther = {
+    "start",        "ground",    "scale",    "up",     "goal",         "planner",       "renderer",
+    "samples",      "assign",    "optimize", "caster", "lambda",       "advance",       "epsilon",
+    "min-distance", "max-steps", "bumper",   "noise",  "dropout",      "drift",         "fix-every",
+    "scan-delay",   "scan-loss", "fail",     "stray",  "sensor-model", "tours-without", "tracking-error"};
 
 void set_method(const TaskMethod& method, ExploreOptions& options) {
   options.mode = method.goal ? Method::kDefault : Method::kPaper;
@@ -125,11 +125,13 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add("epsilon", options.epsilon);
   add("max-steps", options.max_steps);
   add_choice("sensor-model", options.sensor_model, other.sensor_model);
+  add_choice("tours-without", options.tours_without, other.tours_without);
   add_choice("bumper", options.bumper, other.bumper);
   add_number("noise", options.errors.sigma, other.errors.sigma);
   add_number("dropout", options.errors.dropout, other.errors.dropout);
   add_number("stray", options.errors.stray, other.errors.stray);
   add_number("drift", options.pose_errors.drift, other.pose_errors.drift);
+  add_number("tracking-error", options.pose_errors.tracking, other.pose_errors.tracking);
   add_number("fix-every", options.pose_errors.fix_every, other.pose_errors.fix_every);
   add_number("scan-delay", options.message_errors.delay, other.message_errors.delay);
   add_number("scan-loss", options.message_errors.loss, other.message_errors.loss);

@@ -20,6 +20,7 @@ namespace {
 void ExplorationOptions::check() const {
   if (team.empty()) refuse("the team has no robot");
   if (caster > CasterKind::kOctomap) refuse("caster is none of the values of CasterKind");
+  if (tours_without > TourPart::kTours) refuse("tours_without is none of the values of TourPart");
   if (!(epsilon >= 0.0 && std::isfinite(epsilon)))
     refuse("epsilon is " + std::to_string(epsilon) + ", but has to be finite and 0 or more");
   for (const auto& [name, value] :

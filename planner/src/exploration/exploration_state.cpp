@@ -82,7 +82,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   GoalSelection checked(std::move(team), lattice(), mapping.bounds(), options.assign);
   if (options.tours)
     tours.emplace(std::move(robots), poses, lattice(), mapping.bounds(),
-                  TourPlanning::Options{.least_gain = options.epsilon});
+                  TourPlanning::Options{.least_gain = options.epsilon, .without = options.tours_without});
   selection.emplace(std::move(checked));
   targets.resize(size());
   assigned.resize(size());

@@ -27,4 +27,7 @@ struct JoinedStop {
 /// clusters without a viewpoint are in none.
 [[nodiscard]] std::vector<JoinedStop> join_clusters(const SharedViews& views);
 
+/// A stop for each cluster with a viewpoint, seen from those that were found for it, in their order.
+[[nodiscard]] std::vector<JoinedStop> single_stops(const SharedViews& views);
+
 }  // namespace frontlux::planner::detail

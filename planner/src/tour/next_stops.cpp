@@ -45,7 +45,7 @@ TourPlanning::NextStops TourPlanning::next_stops(const Query& query) const {
   }
   next.views.parts =
       parts_seen(sight_of(query.robot, query.caster, query.grid), next.viewpoints, next.clusters);
-  next.stops = join_clusters(next.views);
+  next.stops = options_.without == TourPart::kJoining ? single_stops(next.views) : join_clusters(next.views);
   return next;
 }
 
@@ -93,7 +93,8 @@ void TourPlanning::put_in_order(const Query& query, NextStops& next) {
 std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, const NextStops& next) {
   std::vector<VoxelKey> cells;
   std::vector<std::vector<std::size_t>> stages;
-  for (std::size_t s = 0; s < std::min(options_.refined, next.stops.size()); ++s) {
+  const std::size_t refined = options_.without == TourPart::kRefinement ? 0 : options_.refined;
+  for (std::size_t s = 0; s < std::min(refined, next.stops.size()); ++s) {
     stages.push_back(next.stops[s].viewpoints);
     for (const std::size_t v : stages.back()) cells.push_back(next.viewpoints[v].cell);
   }
@@ -125,7 +126,7 @@ void TourPlanning::join_next_stops(const Query& query) {
   put_nearest_first(query);
   Member& member = members_[query.robot];
   NextStops next = next_stops(query);
-  put_in_order(query, next);
+  if (options_.without != TourPart::kArrival) put_in_order(query, next);
   const std::vector<std::size_t> chosen = chosen_viewpoints(query, next);
   std::vector<TourStop> tour;
   for (std::size_t s = 0; s < next.stops.size(); ++s) tour.push_back(stop_at(next, next.stops[s], chosen[s]));

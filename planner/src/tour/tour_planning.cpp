@@ -211,6 +211,14 @@ std::vector<SeenCluster> TourPlanning::seen_clusters(std::span<const MotionState
   return seen;
 }
 
+std::vector<StopClusters> TourPlanning::stop_places(const Query& query) const {
+  std::vector<SeenCluster> seen = seen_clusters(query.starts);
+  if (options_.without != TourPart::kZones) return group_into_stops(seen, zone_edge_);
+  std::vector<StopClusters> places;
+  for (const SeenCluster& cluster : seen) places.push_back({cluster.cluster});
+  return places;
+}
+
 // The clusters of a stop, each time the nearest one.
 StopClusters TourPlanning::in_order(const Member& member, const StopClusters& stop,
                                     Eigen::Vector3d from) const {
@@ -351,6 +359,23 @@ Tours TourPlanning::shared_out(const TourProblem& problem, const Tours& before) 
   return tours[anew ? 1 : 0];
 }
 
+// In the place of tours: that of the robot is the nearest stop to which no other robot is going.
+Tours TourPlanning::nearest_stop(const TourProblem& problem, const Tours& before, std::size_t robot) {
+  Tours tours(before.size());
+  std::vector<bool> taken(problem.stops);
+  for (std::size_t r = 0; r < before.size(); ++r)
+    if (r != robot && !before[r].empty()) {
+      tours[r].push_back(before[r].front());
+      taken[before[r].front()] = true;
+    }
+  std::optional<std::uint32_t> nearest;
+  const std::vector<double>& seconds = problem.robots[robot].first;
+  for (std::uint32_t stop = 0; stop < problem.stops; ++stop)
+    if (!taken[stop] && seconds[stop] < (nearest ? seconds[*nearest] : TourProblem::kNever)) nearest = stop;
+  if (nearest) tours[robot].push_back(*nearest);
+  return tours;
+}
+
 // A stop for each cluster, until the robot that plans joins its next ones.
 void TourPlanning::set_tours(const Query& query, std::span<const StopClusters> stops, const Tours& tours) {
   for (std::size_t r = 0; r < members_.size(); ++r) {
@@ -402,10 +427,11 @@ void TourPlanning::note_frontiers(const Query& query) {
 
 void TourPlanning::update(const Query& query) {
   update_map(query);
-  const std::vector<StopClusters> places = group_into_stops(seen_clusters(query.starts), zone_edge_);
+  const std::vector<StopClusters> places = stop_places(query);
   TourProblem all = problem(query, places);
   const Tours before = tours_before(query, places, all);
-  Tours tours = shared_out(all, before);
+  Tours tours =
+      options_.without == TourPart::kTours ? nearest_stop(all, before, query.robot) : shared_out(all, before);
   give_idle_robot_a_stop(all, query.robot, tours);
   set_tours(query, places, tours);
   join_next_stops(query);

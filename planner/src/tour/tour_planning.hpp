@@ -10,6 +10,7 @@
 
 #include <frontlux/planner/goal_selection.hpp>
 #include <frontlux/planner/robot.hpp>
+#include <frontlux/planner/tour_part.hpp>
 #include <frontlux/planner/trajectory.hpp>
 
 #include <cstddef>
@@ -45,6 +46,7 @@ class TourPlanning {
     std::size_t joined = 40;      ///< nearest clusters, which are seen from as few viewpoints as can be
     std::size_t refined = 5;      ///< first stops, whose viewpoints are chosen together
     std::size_t measured = 2500;  ///< nearest nodes of the graph to which the distances from a stop are known
+    TourPart without = TourPart::kNone;
   };
 
   /// @param starts  of the robots; those on a plane stay on it
@@ -142,6 +144,7 @@ class TourPlanning {
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
   [[nodiscard]] std::vector<SeenCluster> seen_clusters(std::span<const MotionState> starts) const;
+  [[nodiscard]] std::vector<StopClusters> stop_places(const Query& query) const;
   [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
   [[nodiscard]] TourProblem problem(const Query& query, std::span<const StopClusters> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,
@@ -155,6 +158,7 @@ class TourPlanning {
   [[nodiscard]] Tours tours_before(const Query& query, std::span<const StopClusters> stops,
                                    TourProblem& problem) const;
   [[nodiscard]] static Tours shared_out(const TourProblem& problem, const Tours& before);
+  [[nodiscard]] static Tours nearest_stop(const TourProblem& problem, const Tours& before, std::size_t robot);
   void set_tours(const Query& query, std::span<const StopClusters> stops, const Tours& tours);
   void join_next_stops(const Query& query);
   void note_frontiers(const Query& query);

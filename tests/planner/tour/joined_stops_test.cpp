@@ -90,7 +90,28 @@ TEST(JoinedStops, AreOneWhereOneViewpointSeesAll) {
   EXPECT_NEAR(stops[0].seen, 81.0, 1e-9);
 }
 
-TEST(JoinedStops, AreNoneOfNothing) { EXPECT_TRUE(join_clusters({}).empty()); }
+TEST(JoinedStops, AreOfOneClusterEachIfNotJoined) {
+  Random random(73);
+  for (int round = 0; round < 50; ++round) {
+    const SharedViews views = random_views(random, static_cast<std::size_t>(1 + random.below(12)));
+    std::vector<std::size_t> viewpoints;
+    for (const JoinedStop& stop : single_stops(views)) {
+      ASSERT_EQ(stop.clusters.size(), 1U);
+      for (const std::size_t v : stop.viewpoints) EXPECT_EQ(views.found_for[v], stop.clusters[0]);
+      viewpoints.insert(viewpoints.end(), stop.viewpoints.begin(), stop.viewpoints.end());
+      const std::size_t first = stop.viewpoints.at(0);
+      EXPECT_EQ(stop.seen, views.parts(first, stop.clusters[0]) * views.sizes[stop.clusters[0]]);
+    }
+    std::vector<std::size_t> all(views.found_for.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    EXPECT_EQ(viewpoints, all) << "each once, in order";
+  }
+}
+
+TEST(JoinedStops, AreNoneOfNothing) {
+  EXPECT_TRUE(join_clusters({}).empty());
+  EXPECT_TRUE(single_stops({}).empty());
+}
 
 }  // namespace
 }  // namespace frontlux::planner::detail

@@ -2,6 +2,7 @@
 
 #include "support/views.hpp"
 #include "support/voxel_keys.hpp"
+#include "tour/travel_seconds.hpp"
 
 #include <frontlux/frontier_set.hpp>
 
@@ -130,6 +131,37 @@ TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
         nearest = std::min(nearest, distances.at(cluster));
   ASSERT_GT(clusters, 2 * kJoined);
   EXPECT_LE(farthest, nearest);
+}
+
+TEST(TourPlanning, LeavesOutAPart) {
+  OpenSpace all({.near = 0.02});
+  all.plan(all.corridor());
+  const auto most_clusters = [](const OpenSpace& space) {
+    std::size_t most = 0;
+    for (const TourStop& stop : space.planning.tour(0)) most = std::max(most, stop.clusters.size());
+    return most;
+  };
+  ASSERT_GT(most_clusters(all), 1U);
+  for (const TourPart part :
+       {TourPart::kZones, TourPart::kJoining, TourPart::kArrival, TourPart::kRefinement}) {
+    OpenSpace space({.near = 0.02, .without = part});
+    space.plan(space.corridor());
+    EXPECT_EQ(space.clusters(), all.clusters());
+    EXPECT_EQ(most_clusters(space) == 1, part == TourPart::kJoining);
+  }
+}
+
+TEST(TourPlanning, WithoutToursIsTheNearestStop) {
+  OpenSpace all({.joined = 0}), nearest({.without = TourPart::kTours});
+  const TravelCorridor corridor = all.corridor();
+  for (OpenSpace* space : {&all, &nearest}) space->plan(corridor);
+  const auto seconds = [&](const TourStop& stop) {
+    return travel_seconds(all.robot, corridor.distance(stop.cell).value(),
+                          turn_between(all.pose.yaw, stop.pose.yaw));
+  };
+  ASSERT_GT(all.planning.tour(0).size(), 5U);
+  const TourStop first = *std::ranges::min_element(all.planning.tour(0), {}, seconds);
+  EXPECT_EQ(nearest.clusters(), std::set(first.clusters.begin(), first.clusters.end()));
 }
 
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.

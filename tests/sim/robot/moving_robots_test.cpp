@@ -399,10 +399,47 @@ TEST(MovingRobots, ThatDriveStayOnTheirFloorWhateverTheirErrors) {
   }
 }
 
+// At most so far at its greatest speed, in proportion when slower; its scans are right, since it knows.
+TEST(MovingRobots, SwayAroundTheirTrajectoryAndKnow) {
+  constexpr double kTracking = 0.2;
+  const BoxRoom room;
+  const Surface surface(room.world.mesh);
+  for (const RobotDescription& robot : {uav(50.0), ugv(50.0)}) {
+    const bool drives = robot.robot.travel.drives();
+    for (const double speed : {robot.robot.limits.speed, robot.robot.limits.speed / 4, 0.0}) {
+      const Vector3d from(3, 3, drives ? robot.robot.travel.sensor_height : 1.2);
+      const auto where = [&](std::size_t, double time) {
+        MotionState state = at(from + Vector3d(std::sin(time), std::cos(time), 0));
+        state.velocity = {speed, 0.0, 0.0};
+        return state;
+      };
+      double most = 0.0;
+      for (const std::uint64_t seed : {1, 2, 3}) {
+        Moving scene(room, {robot}, {{where(0, 0).pose}}, AtContact::kGoOn, {}, seed,
+                     {.tracking = kTracking});
+        for (double time = 0.0; time < 20.0;) {
+          const auto sensed = scene.robots.advance(where, scene.stopped);
+          time = sensed.time;
+          const Vector3d off = sensed.pose.position - where(0, time).pose.position;
+          EXPECT_LE(off.norm(), kTracking * speed / robot.robot.limits.speed + 1e-12);
+          EXPECT_TRUE(!drives || off.z() == 0.0);
+          most = std::max(most, off.norm());
+          EXPECT_EQ(sensed.scan.origin, sensed.pose.position.cast<float>());
+          const planner::Scan alone = sense(surface, sensor_of(robot, {}), sensed.pose, 0);
+          EXPECT_TRUE(same_bits(sensed.scan, alone)) << "it is where it believes";
+          if (time > 2.0 && seed != 1) break;
+        }
+      }
+      EXPECT_GE(most, 0.8 * kTracking * speed / robot.robot.limits.speed);
+    }
+  }
+}
+
 TEST(MovingRobots, RefusePoseErrorsThatAreNone) {
   const BoxRoom room;
-  for (const PoseErrors& wrong : {PoseErrors{-0.1, 0.0}, PoseErrors{1.1, 0.0}, PoseErrors{std::nan(""), 0.0},
-                                  PoseErrors{0.1, -1.0}, PoseErrors{0.1, std::nan("")}})
+  for (const PoseErrors& wrong :
+       {PoseErrors{-0.1, 0.0}, PoseErrors{1.1, 0.0}, PoseErrors{std::nan(""), 0.0}, PoseErrors{0.1, -1.0},
+        PoseErrors{0.1, std::nan("")}, PoseErrors{.tracking = -0.1}, PoseErrors{.tracking = std::nan("")}})
     EXPECT_REFUSED(Moving(room, {uav()}, {{{1, 1, 1}, 0.0}}, AtContact::kGoOn, {}, 1, wrong));
 }
 

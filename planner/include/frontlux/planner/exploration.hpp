@@ -8,6 +8,7 @@
 #include <frontlux/planner/path_planner.hpp>
 #include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/scan.hpp>
+#include <frontlux/planner/tour_part.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <array>
@@ -34,6 +35,7 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   /// In motion: tours through clusters of frontiers, for all robots together, in the place of one goal after
   /// the other.
   bool tours = false;
+  TourPart tours_without = TourPart::kNone;  ///< left out of the search for tours
   bool assign = true;    ///< each frontier to one robot; off: every robot goes for all that it sees
   bool optimize = true;  ///< off: robots look ahead along their paths
   /// How paths are found.

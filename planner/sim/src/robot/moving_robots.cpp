@@ -18,6 +18,8 @@ namespace {
 using planner::Pose;
 
 constexpr double kTick = 0.02;  // [s] bodies move straight in between
+// [s] Of a robot that sways, along x, y and z; no two of them are in step for long.
+const Eigen::Vector3d kSwayPeriods(4.1, 5.3, 6.7);
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("moving robots: " + what); }
 
@@ -54,6 +56,9 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
   if (!(pose_errors.fix_every >= 0.0 && std::isfinite(pose_errors.fix_every)))
     refuse("robots know their places every " + std::to_string(pose_errors.fix_every) +
            " s, but the time has to be finite and at least 0");
+  if (!(pose_errors.tracking >= 0.0 && std::isfinite(pose_errors.tracking)))
+    refuse("the tracking error is " + std::to_string(pose_errors.tracking) +
+           " m, but has to be finite and at least 0");
   if (starts.size() != robots_.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(robots_.size()) + " robots");
   for (std::size_t r = 0; r < robots_.size(); ++r) {
@@ -63,6 +68,7 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
     sensors_.push_back(sensor_of(robots_[r], errors));
     progress_.push_back({.pose = starts[r], .believed = starts[r], .path = PathRevisits(starts[r].position)});
     draw_direction(r);
+    draw_phases(r);
     measure_clearance(r);
   }
   measure_separation();
@@ -91,11 +97,32 @@ void MovingRobots::draw_direction(std::size_t robot) {
   now.direction = {std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z};
 }
 
+void MovingRobots::draw_phases(std::size_t robot) {
+  constexpr std::uint64_t kPhases = 0x53776179;  // a stream apart from the others
+  SplitMix64 random = random_of(seed_ + kPhases, robot);
+  for (double& phase : progress_[robot].phases) phase = 2 * std::numbers::pi * random.unit();
+}
+
 // How far a robot is from where it believes to be [m]. What it has learnt of is gone after a second.
 Eigen::Vector3d MovingRobots::error(std::size_t robot, double time) const {
   const Progress& now = progress_[robot];
   const double since = time - static_cast<double>(now.fixes) * pose_errors_.fix_every;
   return pose_errors_.drift * now.since_fix * now.direction + std::max(0.0, 1.0 - since) * now.known_error;
+}
+
+// Where a robot that should be somewhere believes to be.
+Pose MovingRobots::swayed(std::size_t robot, const planner::MotionState& to, double time) const {
+  Pose pose = to.pose;
+  if (pose_errors_.tracking == 0.0) return pose;
+  const planner::Robot& of = robots_[robot].robot;
+  const Eigen::Index axes = of.travel.drives() ? 2 : 3;
+  const double part = std::min(1.0, to.velocity.norm() / of.limits.speed);
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    const double angle = 2 * std::numbers::pi * time / kSwayPeriods[axis] + progress_[robot].phases[axis];
+    pose.position[axis] +=
+        pose_errors_.tracking * part * std::sin(angle) / std::sqrt(static_cast<double>(axes));
+  }
+  return pose;
 }
 
 // @param time  when it gets there
@@ -110,9 +137,10 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
     ++now.fixes;
     draw_direction(robot);
   }
-  const double step = (to.pose.position - now.believed.position).norm();
+  const Pose believed = swayed(robot, to, time);
+  const double step = (believed.position - now.believed.position).norm();
   now.since_fix += step;
-  const Eigen::Vector3d at = to.pose.position + error(robot, time);
+  const Eigen::Vector3d at = believed.position + error(robot, time);
   const Eigen::Vector3d from = now.pose.position, motion = at - from;
   const SweptBody swept(robots_[robot].robot.travel.planned_shape(), body(robot, from), motion);
   const bool contact = !motion.isZero(0.0) && solids_.count(swept) > 0;
@@ -122,7 +150,7 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
     record.idle += seconds;
     now.halted = true;
     stopped.push_back({robot, time_, now.believed,
-                       cells_ahead(truth_->lattice(), now.believed.position, to.pose.position)});
+                       cells_ahead(truth_->lattice(), now.believed.position, believed.position)});
     return;
   }
   if (contact && !now.touching) record.contacts.push_back({time, swept.bounds()});
@@ -132,7 +160,7 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   record.revisited = now.path.share();
   if (motion.isZero(0.0) && to.pose.yaw == now.pose.yaw) record.idle += seconds;
   now.pose = {at, to.pose.yaw};
-  now.believed = to.pose;
+  now.believed = believed;
   if (!motion.isZero(0.0)) measure_clearance(robot);
 }
 

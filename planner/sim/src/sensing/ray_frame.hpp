@@ -19,6 +19,7 @@ using Corners = std::array<Eigen::Vector3f, 3>;
 /// rounding cannot reverse the order of two products.
 class RayFrame {
  public:
+  RayFrame() = default;
   RayFrame(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) : origin_(origin) {
     direction.cwiseAbs().maxCoeff(&along_);
     across_[0] = (along_ + 1) % 3;
@@ -50,7 +51,7 @@ class RayFrame {
   }
 
  private:
-  Eigen::Vector3d origin_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   Eigen::Index along_ = 0;
   std::array<Eigen::Index, 2> across_{};
   std::array<double, 2> shear_{};

@@ -12,6 +12,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <stdexcept>
@@ -45,6 +46,17 @@ struct Geometry {
   }
 };
 
+constexpr unsigned kLanes = 8;  // rays of a packet
+
+// One ray of a packet.
+struct Lane {
+  RayFrame frame;
+  double length = 1.0;   // of the direction
+  double start = 0.0;    // where Embree's ray starts, in lengths of the direction
+  double nearest = 0.0;  // hit so far, or how far to look, in the same
+  std::uint32_t triangle = Surface::kNone;
+};
+
 // What a query hands to the callback. Embree's hierarchy only finds the triangles that may be hit.
 struct Query {
 #if FRONTLUX_EMBREE == 3
@@ -52,14 +64,12 @@ struct Query {
 #else
   RTCRayQueryContext embree;
 #endif
-  RayFrame frame;
-  double start;    // where Embree's ray starts, in lengths of the direction
-  double nearest;  // hit so far, or how far to look, in the same
-  std::uint32_t triangle = Surface::kNone;
+  std::array<Lane, kLanes> lanes;
 };
 
-// A little more, so that Embree's single precision loses nothing. Rounding may make a length negative.
-float widened(double length) { return static_cast<float>(std::max(length, 0.0) * (1.0 + 0x1p-20)); }
+// A little more, so that Embree's single precision loses nothing, and never 0, where a packet finds nothing.
+// Rounding may make a length negative.
+float widened(double length) { return static_cast<float>(std::max(length * (1.0 + 0x1p-20), 1e-30)); }
 
 void bounds_callback(const RTCBoundsFunctionArguments* args) {
   const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
@@ -79,16 +89,21 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   detail::hand_over(&geometry);
 }
 
+// Embree may hand over a part of a packet; a ray's id is its lane.
 void intersect_callback(const RTCIntersectFunctionNArguments* args) {
-  if (args->valid[0] == 0) return;
   auto& query = *reinterpret_cast<Query*>(args->context);
-  const auto& geometry = *static_cast<const Geometry*>(args->geometryUserPtr);
-  const auto t = query.frame.hit(geometry.triangles[args->primID]);
-  if (!t || !(*t >= 0.0 && *t <= query.nearest)) return;
-  if (*t == query.nearest && query.triangle <= args->primID) return;
-  query.nearest = *t;
-  query.triangle = args->primID;
-  reinterpret_cast<RTCRayHit*>(args->rayhit)->ray.tfar = widened(*t - query.start);
+  const Corners& corners = static_cast<const Geometry*>(args->geometryUserPtr)->triangles[args->primID];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    Lane& lane = query.lanes[RTCRayN_id(rays, args->N, i)];
+    const auto t = lane.frame.hit(corners);
+    if (!t || !(*t >= 0.0 && *t <= lane.nearest)) continue;
+    if (*t == lane.nearest && lane.triangle <= args->primID) continue;
+    lane.nearest = *t;
+    lane.triangle = args->primID;
+    RTCRayN_tfar(rays, args->N, i) = widened(*t - lane.start);
+  }
 }
 
 void check_ray(const Surface::Ray& ray, std::size_t index) {
@@ -139,14 +154,14 @@ struct Surface::Scene {
                                " triangles (error " + std::to_string(error) + ")");
   }
 
-  [[nodiscard]] Hit first(const Ray& ray) const {
+  // Whether the ray may hit anything.
+  bool set_lane(const Ray& ray, unsigned i, Lane& lane, RTCRayHit8& packet) const {
     // To about unit length by a power of two, which is exact: Embree has no room for tiny and huge numbers.
     int exponent = 0;
     std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent);
-    const Eigen::Vector3d direction =
-        ray.direction.cast<double>().unaryExpr([&](double c) { return std::ldexp(c, -exponent); });
-    const double length = direction.norm();
+    const Eigen::Vector3d direction = ray.direction.cast<double>() * std::ldexp(1.0, -exponent);
     const Eigen::Vector3d origin = ray.origin.cast<double>();
+    const double length = direction.norm();
     double start = 0.0, end = ray.max_range / length;
     for (int axis = 0; axis < 3; ++axis) {
       // NaN, from 0 / 0, does not count; outside a slab that the ray runs along, one of the two is infinite.
@@ -155,39 +170,56 @@ struct Surface::Scene {
       start = std::max(start, std::min(a, b));
       end = std::min(end, std::max(a, b));
     }
-    if (!(start <= end)) return {};
-    Query query{{}, RayFrame(origin, direction), start, end, kNone};
+    if (!(start <= end)) return false;
+    lane = {RayFrame(origin, direction), length, start, end, kNone};
     // A component so small that its inverse overflows moves the ray by less than the boxes are padded.
     const auto component = [&](Eigen::Index axis) {
       return std::fabs(direction[axis]) < 1e-18 ? 0.0F : static_cast<float>(direction[axis]);
     };
     const Eigen::Vector3f local = (origin + start * direction - mesh.middle).cast<float>();
-    RTCRayHit rayhit{};
-    rayhit.ray.org_x = local.x();
-    rayhit.ray.org_y = local.y();
-    rayhit.ray.org_z = local.z();
-    rayhit.ray.dir_x = component(0);
-    rayhit.ray.dir_y = component(1);
-    rayhit.ray.dir_z = component(2);
-    rayhit.ray.tfar = widened(end - start);
-    rayhit.ray.mask = ~0U;
-    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCRay8& rays = packet.ray;
+    rays.org_x[i] = local.x();
+    rays.org_y[i] = local.y();
+    rays.org_z[i] = local.z();
+    rays.dir_x[i] = component(0);
+    rays.dir_y[i] = component(1);
+    rays.dir_z[i] = component(2);
+    rays.tfar[i] = widened(end - start);
+    rays.mask[i] = ~0U;
+    rays.id[i] = i;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    return true;
+  }
+
+  // Of at most kLanes rays.
+  void first(std::span<const Ray> rays, std::span<Hit> hits) const {
+    Query query;
+    RTCRayHit8 packet{};
+    alignas(32) std::array<int, kLanes> valid{};
+    for (unsigned i = 0; i < rays.size(); ++i)
+      valid[i] = set_lane(rays[i], i, query.lanes[i], packet) ? -1 : 0;
     {
       const FloatingPointMode mode(FloatingPointMode::kFlushed);
 #if FRONTLUX_EMBREE == 3
       rtcInitIntersectContext(&query.embree);
-      rtcIntersect1(scene, &query.embree, &rayhit);
+      query.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+      rtcIntersect8(valid.data(), scene, &query.embree, &packet);
 #else
       rtcInitRayQueryContext(&query.embree);
       RTCIntersectArguments arguments;
       rtcInitIntersectArguments(&arguments);
       arguments.context = &query.embree;
-      rtcIntersect1(scene, &rayhit, &arguments);
+      arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+      rtcIntersect8(valid.data(), scene, &packet, &arguments);
 #endif
     }
-    if (query.triangle == kNone) return {};
-    return {std::min(query.nearest * length, ray.max_range), query.triangle};
+    for (unsigned i = 0; i < rays.size(); ++i) {
+      const Lane& lane = query.lanes[i];
+      hits[i] = lane.triangle == kNone
+                    ? Hit{}
+                    : Hit{std::min(lane.nearest * lane.length, rays[i].max_range), lane.triangle};
+    }
   }
 };
 
@@ -207,7 +239,10 @@ void Surface::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   for (std::size_t i = 0; i < rays.size(); ++i) check_ray(rays[i], i);
   const auto piece = [&](std::size_t begin, std::size_t end) {
     const FloatingPointMode mode(FloatingPointMode::kToNearest);
-    for (std::size_t i = begin; i < end; ++i) hits[i] = scene_->first(rays[i]);
+    for (std::size_t i = begin; i < end; i += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, end - i);
+      scene_->first(rays.subspan(i, count), hits.subspan(i, count));
+    }
   };
   constexpr std::size_t kChunk = 256;
   for_each_chunk(rays.size(), kChunk, piece);

@@ -41,13 +41,15 @@ struct MotionRecord {
   double clearance = 1.0;
 };
 
-/// Errors of the poses that robots believe to have; none by default. A robot that follows its trajectory is
-/// beside it, by a part of the length of its path since it last knew its place, in a direction that is drawn
-/// anew each time, horizontal if the robot drives. Headings are exact.
+/// Errors of where robots are; none by default, and none of headings. With a drift a robot that believes to
+/// follow its trajectory is beside it, by a part of the length of its path since it last knew its place, in a
+/// direction that is drawn anew each time. With a tracking error it sways around its trajectory, and knows.
+/// Both are horizontal if the robot drives.
 struct PoseErrors {
   double drift = 0.0;  ///< of the path length, 0 to 1
   double fix_every =
       0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
+  double tracking = 0.0;  ///< [m] how far it sways at most at its greatest speed, in proportion when slower
 };
 
 /// Robots that follow trajectories in a simulated world, under a clock that the simulation keeps. Each takes
@@ -100,6 +102,7 @@ class MovingRobots {
     Eigen::Vector3d known_error = Eigen::Vector3d::Zero();  // [m] which it learnt of then
     std::uint64_t fixes = 0;
     std::uint64_t scans = 0;
+    Eigen::Vector3d phases = Eigen::Vector3d::Zero();  // [rad] of its swaying
     bool touching = false, halted = false;
     PathRevisits path;
   };
@@ -107,7 +110,9 @@ class MovingRobots {
   [[nodiscard]] Eigen::AlignedBox3d body(std::size_t robot, const Eigen::Vector3d& at) const;
   void move(std::size_t robot, const planner::MotionState& to, double time, std::vector<Stopped>& stopped);
   [[nodiscard]] Eigen::Vector3d error(std::size_t robot, double time) const;
+  [[nodiscard]] planner::Pose swayed(std::size_t robot, const planner::MotionState& to, double time) const;
   void draw_direction(std::size_t robot);
+  void draw_phases(std::size_t robot);
   void measure_clearance(std::size_t robot);
   void measure_separation();
 
