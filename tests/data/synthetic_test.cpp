@@ -103,7 +103,7 @@ TEST(Scanner, FreesNothingBeyondTheOuterWalls) {
   const double resolution = 0.3;
   const Scene scene = make_building_scene(1);
   const Box& room = scene.room;
-  const auto tree = scan(scene, draw_places(scene, 100, 3.0, 1),
+  const auto tree = scan(scene, draw_places(scene, 50, 3.0, 1),
                          {.resolution = resolution, .max_range = 9.0, .rays = 100'000});
   std::size_t free = 0;
   for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {

@@ -17,7 +17,7 @@ try:
 except ModuleNotFoundError:  # a build without it
     planner = None
 
-SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 10
+SECONDS = float(sys.argv[1]) if len(sys.argv) > 1 else 5
 SEED = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 KINDS = [value for module in (frontlux, planner) if module is not None for value in vars(module).values()
          if inspect.isclass(value) and not issubclass(value, int)]

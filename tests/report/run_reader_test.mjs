@@ -218,10 +218,11 @@ await refused(textOf(one, [0, ...Array(3000).fill(255)]), /too early/);
 // ---- damages
 
 const seconds = Number(process.argv[3] ?? 0), end = performance.now() + 1000 * seconds;
+const rounds = process.env.FRONTLUX_LONG === "1" ? 3000 : 800;
 const seeds = seconds > 0 ? [Date.now() % 1e9] : [1];
 console.log(`seed ${seeds[0]}`);
 const roll = dice(seeds[0]);
-for (let i = 0; seconds > 0 ? performance.now() < end : i < 3000; ++i) {
+for (let i = 0; seconds > 0 ? performance.now() < end : i < rounds; ++i) {
   const steps = 1 + roll(3), robots = 1 + roll(2), facts = factsOf(steps, robots), data = dataOf(steps, robots, roll);
   const kind = roll(8);
   const text = kind === 0 ? damagedBytes(textOf(facts, data), roll).toString("latin1")

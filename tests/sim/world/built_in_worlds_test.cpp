@@ -211,7 +211,7 @@ TEST(BuiltInWorlds, CanBeExplored) {
         EXPECT_EQ(ugv.reached, ugv.all);
         EXPECT_EQ(uav.reached, uav.all);
       },
-      test::long_mode() ? 200 : 20);
+      test::long_mode() ? 200 : 8);
 }
 
 // Each robot has places of its own: tunnels and underpasses, where there is no room above 1.2 m, and floors
