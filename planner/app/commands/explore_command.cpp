@@ -1,6 +1,7 @@
 #include "bad_input.hpp"
 #include "command.hpp"
 #include "commands/commands.hpp"
+#include "commands/sensor_model_option.hpp"
 #include "explore/explore_run.hpp"
 #include "setup/explore_options.hpp"
 #include "setup/explore_task.hpp"
@@ -76,9 +77,7 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
       "A part of the search for tours that is left out, to see what it adds; without tours a robot goes\n"
       "to the nearest cluster of frontiers");
   command.add("--caster", options.caster, "Ray caster that answers visibility");
-  command.add("--sensor-model", options.sensor_model,
-              "What scans say of a voxel: as OctoMap has it, or that a ray which ends in it\n"
-              "outweighs five scans that pass it");
+  add_sensor_model_option(command, options.sensor_model);
   command.add("--lambda", options.lambda, "PER_METRE",
               "Decay of a goal's value with its distance, eq. 1 [by mode]", kFromZero);
   command.add("--advance", options.advance, "METRES",

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "commands/sensor_model_option.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
 
@@ -36,6 +37,7 @@ using io::RecordedScan, planner::Mapping, planner::MappingOptions;
 struct Options {
   std::string scans, output, poses;
   double resolution = 0.1;
+  planner::SensorModel sensor_model = planner::kOctomapSensorModel;
   std::optional<double> max_range;
   std::optional<Eigen::AlignedBox3d> bounds;
 };
@@ -191,6 +193,7 @@ Points map_scans(const Recording& recording, const Options& options, Mapping& ma
 MappingOptions mapping_options(const Options& options) {
   MappingOptions mapping;
   mapping.resolution = options.resolution;
+  mapping.sensor_model = options.sensor_model;
   try {
     if (options.bounds) mapping.bounds = planner::voxels_of(Lattice(options.resolution), *options.bounds);
   } catch (const std::invalid_argument& error) {
@@ -246,6 +249,7 @@ void add_map_command(CLI::App& app) {
               kAboveZero);
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Box to map: lowest and highest corner [everything]");
+  add_sensor_model_option(command, options->sensor_model);
   command.examples(R"(Examples:
   frontlux map corridor.graph -o corridor.bt --resolution 0.05
   frontlux map clouds/ -o clouds.ot --max-range 20 --bounds -10,-10,0,10,10,4

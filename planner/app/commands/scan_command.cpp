@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "commands/sensor_model_option.hpp"
 #include "interrupt.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
@@ -36,6 +37,7 @@ struct Options {
   Sensors sensors = Sensors::kBoth;
   std::uint64_t seed = 1;
   sim::RangeErrors errors;
+  planner::SensorModel sensor_model = planner::kOctomapSensorModel;
 };
 
 // What is to be scanned: the start bubbles, and from where.
@@ -172,7 +174,8 @@ void run(Options& options) {
     add_listed_views(options, poses, truth, plan);
   else
     add_sweep(options, truth, sim::free_start(sourced.world, source.resolution, false), plan);
-  Mapping mapping({.resolution = source.resolution, .bounds = truth.bounds()});
+  Mapping mapping(
+      {.resolution = source.resolution, .bounds = truth.bounds(), .sensor_model = options.sensor_model});
   scan(sourced, truth, plan, options, mapping);
   mapping.write(options.output);
   print_summary(options, sourced, truth, plan, mapping, watch.seconds());
@@ -201,6 +204,9 @@ void add_scan_command(CLI::App& app) {
   command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
   command.add("--dropout", options->errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
+  command.add("--stray", options->errors.stray, "P",
+              "Probability that a ray returns from nowhere, as from dust, before any surface", kProbability);
+  add_sensor_model_option(command, options->sensor_model);
   command.add("--seed", options->seed, "N", "Random seed (layout of a built-in world, noise)", kSeeds);
   add_world_options(command, options->source, "off");
   command.examples(R"(Examples:
