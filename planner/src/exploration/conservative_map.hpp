@@ -30,6 +30,7 @@ class ConservativeMap {
   /// @param occupied  by robots: in these nothing else can be, so that they are free until the next update
   /// @return further voxels that may have changed here
   [[nodiscard]] std::vector<VoxelKey> update(const VoxelGrid& map, std::span<const VoxelKey> changed,
+                                             std::span<const VoxelKey> hit,
                                              std::span<const VoxelKey> occupied = {});
 
  private:

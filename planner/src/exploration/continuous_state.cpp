@@ -170,6 +170,14 @@ Keys ContinuousExploration::State::voxels_of_robots(double time) const {
   return keys;
 }
 
+// Voxels in which rays of the last scan ended.
+void ContinuousExploration::State::note_hits(const MapChange& change) {
+  for (const VoxelKey& key : change.keys)
+    if (change.grid.at(key) == Occupancy::kOccupied) hit.push_back(key);
+  const auto overruled = team.mapping.overruled_hits();
+  hit.insert(hit.end(), overruled.begin(), overruled.end());
+}
+
 // What the robots have done since the last planning. A voxel that several have changed counts for the first.
 ExplorationStep ContinuousExploration::State::collect(double time) {
   ExplorationStep step = team.new_step();
@@ -188,7 +196,9 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     changed.push_back(key);
   }
   touched.clear();
-  const Keys further = team.conservative_map->update(grid, changed, voxels_of_robots(time));
+  sort_once(hit);
+  const Keys further =
+      team.conservative_map->update(grid, changed, std::exchange(hit, {}), voxels_of_robots(time));
   team.also_changed.insert(team.also_changed.end(), further.begin(), further.end());
   for (std::size_t r = 0; r < members.size(); ++r) {
     RobotStep& robot = step.robots[r];
