@@ -90,7 +90,8 @@ class Test:
             limits += [] if "--resume" in command else ["--force"]
             command = command.replace(" explore ", f" explore {' '.join(limits)} ", 1)
         if " scan " in command and "--help" not in command and "--poses" not in command:  # from fewer places
-            command = re.sub(r" --sweep \S+", "", command).replace(" scan ", " scan --sweep 8 ", 1)
+            command, given = re.subn(r"--sweep [0-9.]+ ", "--sweep 8 ", command)
+            command = command if given else command.replace(" scan ", " scan --sweep 8 ", 1)
         done = self.run(command)
         badly = "sys.exit(bool" in command and done.returncode == 1  # a warning: this machine was too slow for its latency
         if done.returncode and not badly:

@@ -304,28 +304,34 @@ def teams(results):
     return [m for m in results.experiments.methods_of("main") if methods[m]["task"]["method"] == "tour"]
 
 
-def contacts_line(results, who, methods):
+def contacts_line(results, who, methods, fewest=None):
     runs = [r for r in results.all.values() if r.run.method in methods and not r.run.timed and not r.crashed]
     touched = [r for r in runs if r.facts["contacts"]]
     said = f"{sum(r.facts['contacts'] for r in runs)} contacts, in {len(touched)} of {len(runs)} runs"
     if runs and not touched:
         said += f"; so with 95 % confidence fewer than {percent(1 - 0.05 ** (1 / len(runs)))} of runs have any"
-    return Line(f"{who} without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs, fewest=NEEDED))
+    return Line(f"{who} without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs, fewest=fewest or NEEDED))
 
 
-def apart_line(who, runs, fewest=NEEDED):
+def clear_line(who, runs, fewest=None):
+    near = [r for r in runs if r.facts.get("clearance_min_m") is not None and r.facts["clearance_min_m"] < CLEARANCE]
+    return Line(f"{who}: bodies keep {CLEARANCE} m from surfaces",
+                f"less in {len(near)} of {counted(len(runs), 'run')}" if runs else "", none_of(near, runs, fewest=fewest or NEEDED))
+
+
+def apart_line(who, runs, fewest=None):
     several = [r for r in runs if r.facts.get("separation_min_m") is not None]
     near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
     least = min((r.facts["separation_min_m"] for r in several), default=None)
     return Line(f"{who}: bodies stay {SEPARATION} m apart",
-                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=fewest))
+                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=fewest or NEEDED))
 
 
-def mapped_line(who, runs, fewest=NEEDED):
+def mapped_line(who, runs, fewest=None):
     failures = [r for r in runs if r.failure]
     return Line(f"{who}: every run ends by itself with the world mapped (99 %, hospital 90 %)",
                 f"{counted(len(failures), 'failure')} in {counted(len(runs), 'run')}" if runs else "",
-                none_of(failures, runs, fewest=fewest))
+                none_of(failures, runs, fewest=fewest or NEEDED))
 
 
 def safety_lines(results):
@@ -335,9 +341,7 @@ def safety_lines(results):
 
     everything = [r for r in results.all.values() if r.run.method in of_tours and not r.run.timed]
     runs = [r for r in everything if r.facts]
-    near = [r for r in runs if r.facts.get("clearance_min_m") is not None and r.facts["clearance_min_m"] < CLEARANCE]
-    yield Line(f"Tours: bodies keep {CLEARANCE} m from surfaces", f"less in {len(near)} of {counted(len(runs), 'run')}"
-               if runs else "", none_of(near, runs, fewest=NEEDED))
+    yield clear_line("Tours", runs)
     yield apart_line("Tours", runs)
 
     moving = [r for r in runs if r.facts.get("worst_of_limits") is not None]
@@ -373,23 +377,32 @@ def sameness_lines(results):
                    none_of(unlike, pairs, "pair"))
 
 
-def control_lines(results):
-    """Lines of tours, judged of runs in which what makes them hold is switched off. As few runs as are declared do: one
-    that holds all the same says nothing."""
-    def title(method):
-        return as_first_word(results.experiments.title(method))
+def noticed(verdict):
+    """Of a line about runs that are spoilt on purpose: it must not hold."""
+    if verdict == NOT_MEASURED:
+        return verdict
+    return failed("missed: it holds all the same") if verdict == "holds" else f"noticed: {verdict.strip('*')}"
 
+
+def control_lines(results):
+    """Lines of tours, judged of runs that are spoilt on purpose, as few as are declared: one that holds all the same would
+    not have noticed."""
+    title = results.experiments.title
+
+    def runs(method):
+        return [r for task in results.tasks() for r in results.of(task, method) if r.facts]
+
+    lines = []
     for method, other in (("tour_hasty", "render"), ("tour_alone", "tour_uav")):
         for task in results.experiments.declared_tasks(method):
             found = to_a_level(results, [task], method, other, seconds_mapped)
-            yield Line(f"{title(method)}: time to 99 % below {results.experiments.title(other)}, {task}", times(found),
-                       at_most(found.found, 1, strictly=True))
-
-    def runs(method):
-        return [r for task in results.tasks() for r in results.of(task, method)]
-
-    yield mapped_line(title("tour_hasty"), runs("tour_hasty"), 1)
-    yield apart_line(title("tour_swaying"), [r for r in runs("tour_swaying") if r.facts], 1)
+            lines.append(Line(f"Time to 99 %: {title(method)}, below {title(other)}, {task}", times(found),
+                              at_most(found.found, 1, strictly=True)))
+    lines += [mapped_line(as_first_word(title("tour_hasty")), runs("tour_hasty"), 1),
+              contacts_line(results, as_first_word(title("tour_swaying")), ("tour_swaying",), 1),
+              clear_line(as_first_word(title("tour_swaying")), runs("tour_swaying"), 1),
+              apart_line(as_first_word(title("tour_swaying")), runs("tour_swaying"), 1)]
+    return [line._replace(verdict=noticed(line.verdict)) for line in lines]
 
 
 def our_lines(results):

@@ -70,7 +70,8 @@ class Experiments:
                                  f"give one that the page has: {', '.join(TABLES)}")
             if TABLES[method["table"]] != ("against" in method) or method.get("against", name) not in self.methods:
                 raise self.wrong(f"method {name!r} is in table {method['table']!r} against {method.get('against')!r}",
-                                 "give the method that it changes, or leave it out for main and lock-step")
+                                 "give the method that it changes, or leave it out for " +
+                                 ", ".join(name for name, against in TABLES.items() if not against))
 
     def runs(self, set_name):
         """Of each block the `first` few seeds, then the others; in each block seed by seed, so that an early end leaves

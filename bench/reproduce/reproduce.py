@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from experiments import Experiments
 from explore import program_of
-from results import Results, is_kept, unlike, write_result
+from results import Results, is_kept, programs_in, unlike, write_result
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(1, str(ROOT / "bench"))  # of all plots
@@ -28,6 +29,14 @@ def number(low, high, kind=int):
             raise argparse.ArgumentTypeError(f"it is {text}, but has to be {low} to {high}")
         return value
     return read
+
+
+def digests(text):
+    found = [part.strip().lower() for part in text.split(",")]
+    for digest in found:
+        if not re.fullmatch("[0-9a-f]{12,64}", digest):
+            raise argparse.ArgumentTypeError(f"{digest!r} is no SHA-256; give 12 digits of it, or all, with commas between")
+    return [digest[:12] for digest in found]
 
 
 def read_options():
@@ -55,8 +64,8 @@ def read_options():
                         "worlds of others lie, on all workers; repeatable [FRONTLUX_WORLDS, folders joined by :]")
     parser.add_argument("--command", metavar="FRONTLUX", help="the program [build/release/bin/frontlux; with "
                         "--scheduler: frontlux on the workers' PATH]")
-    parser.add_argument("--like", type=lambda text: text.split(","), default=[], metavar="SHA256,...", help="runs of "
-                        "these programs count as well, since they decide the same: their digits as the page has them")
+    parser.add_argument("--like", type=digests, default=[], metavar="SHA256,...", help="runs of these programs count as "
+                        "well, since they decide the same: 12 digits each, as the page has them")
     parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER",
                         help="of all results")
     parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md]")
@@ -118,7 +127,7 @@ def describe(result):
 
 
 def execute(experiments, runs, options):
-    """Runs those that have no result of this program yet; how many of them were lost."""
+    """Runs those that have no result of this program yet; how many of them were lost, and the program's digest."""
     from cluster import connect, run_all  # only here: tables need no Dask
     folder = options.runs
     folder.mkdir(parents=True, exist_ok=True)
@@ -132,7 +141,8 @@ def execute(experiments, runs, options):
         program = found[0]
         tasks = {run: experiments.task_file(run) for run in runs}
         programs = {program.sha256, *options.like}
-        left = [run for run in runs if not is_kept(folder, run, tasks[run], programs)]
+        left = [run for run in runs
+                if not is_kept(folder, run, tasks[run], {program.sha256} if run.timed else programs)]
         say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
         calls = {run.name: (options.command, program, tasks[run], world_file(experiments.file_of(run.task), options),
                             2 if run.timed else 1) for run in left}
@@ -152,15 +162,15 @@ def execute(experiments, runs, options):
                 f"; about {minutes:.0f} min left")
     if lost:
         say(f"{lost} runs were lost by their machines and are missing; the same command makes them")
-    return lost
+    return lost, program.sha256
 
 
-def write_page(experiments, runs, options):
+def write_page(experiments, runs, options, program):
     from csv_of_runs import csv_of_runs
     from figures import figures
     from page import page
     from svg_chart import save
-    results = Results(experiments, runs, options.runs, options.like)
+    results = Results(experiments, runs, options.runs, options.like, program)
     if not results.all:
         raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
     images = options.page.parent / "images/results"
@@ -200,14 +210,18 @@ def main():
             return 0
         if options.compare:
             return compare(*options.compare)
-        lost = 0
+        if unknown := {*options.like} - programs_in(options.runs):
+            raise ValueError(f"--like: no run in {options.runs} is of program {', '.join(sorted(unknown))}; there are " +
+                             (", ".join(sorted(programs_in(options.runs))) or "none"))
+        lost, program = 0, None
         if not options.tables_only:
             for file in absent:
                 say(f"left out: {file} is in none of the folders given by --worlds")
-            lost = execute(experiments, runs, options)
+            lost, program = execute(experiments, runs, options)
         # The page is about all that is declared.
         sets = ("quick",) if options.set == "quick" else ("full", "timed")
-        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options) or int(lost > 0)
+        return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options,
+                          program) or int(lost > 0)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130

@@ -107,6 +107,17 @@ def is_kept(folder, run, task, programs):
     return result["task"] == task and result["measured"].get("program") in programs and "failure" not in result
 
 
+def programs_in(folder):
+    """Of the results in a folder."""
+    programs = set()
+    for file in folder.glob("*.json"):
+        try:
+            programs.add(read_result(file)["measured"].get("program"))
+        except (OSError, ValueError):
+            pass
+    return programs - {None}
+
+
 def same_everywhere(result):
     """What does not depend on the machine, nor on what the run is called."""
     return {key: result.get(key) for key in ("failure", "facts", "gains", "curve")}
@@ -220,10 +231,10 @@ class Result:
 
 
 class Results:
-    """Of all wanted runs those that one program has made, that of most runs, or one that is given as like it; how
-    many are of others, and what is missing or broken."""
+    """Of all wanted runs those that one program has made, if none is given that of most runs, or those that are given as
+    like it; how many are of others, and what is missing or broken."""
 
-    def __init__(self, experiments, runs, folder, like=()):
+    def __init__(self, experiments, runs, folder, like=(), program=None):
         self.experiments, self.wanted, self.broken = experiments, list(runs), {}
         read = {}
         for run in self.wanted:
@@ -238,9 +249,12 @@ class Results:
             except (OSError, ValueError) as error:
                 self.broken[run.name] = str(error)
         programs = Counter(result.program for result in read.values())
-        most = max(sorted({*programs} - {*like} or programs), key=programs.get, default=None)
-        self.programs = [most, *sorted(({*like} & {*programs}) - {most})]
-        self.all = {run: result for run, result in read.items() if result.program in self.programs}
+        if program is None:
+            program = max(sorted({*programs} - {*like} or programs), key=programs.get, default=None)
+        self.programs = [program, *sorted(({*like} & {*programs}) - {program})]
+        # Which program is faster its decisions do not say.
+        self.all = {run: result for run, result in read.items()
+                    if result.program in (self.programs[:1] if run.timed else self.programs)}
         self.of_others = len(read) - len(self.all)
 
     @property

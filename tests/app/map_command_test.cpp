@@ -57,24 +57,24 @@ std::shared_ptr<OcTree> tree_in(const std::string& file) {
 }
 
 TEST_F(MapCommandTest, MapsAGraphAsOctomapDoes) {
-  for (const char* model : {"octomap", "cautious"}) {
-    expect_answer({path("scans.graph"), "-o", path("map.ot"), "--resolution", "0.2", "--max-range", "3.5",
-                   "--sensor-model", model},
-                  {"scans        3\npoints       900\n"});
-    OcTree expected(0.2);
-    const SensorModel weights = sensor_model(model).value();
-    expected.setProbHit(weights.hit);
-    expected.setProbMiss(weights.miss);
-    expected.setClampingThresMin(weights.least);
-    expected.setClampingThresMax(weights.most);
+  const auto expect_map = [&](const std::vector<std::string>& words, OcTree expected) {
+    expect_answer(
+        test::joined({path("scans.graph"), "-o", path("map.ot"), "--resolution", "0.2", "--max-range", "3.5"},
+                     words),
+        {"scans        3\npoints       900\n"});
     for (const auto& scan : io::read_scan_graph(path("scans.graph"))) {
       octomap::Pointcloud cloud;
       for (const auto& p : io::points_in_world(scan)) cloud.push_back(p.x(), p.y(), p.z());
       const Eigen::Vector3f at = scan.T_world_sensor.translation().cast<float>();
       expected.insertPointCloud(cloud, {at.x(), at.y(), at.z()}, 3.5);
     }
-    EXPECT_TRUE(*tree_in(path("map.ot")) == expected) << model;
-  }
+    EXPECT_TRUE(*tree_in(path("map.ot")) == expected);
+  };
+  expect_map({}, OcTree(0.2));
+  OcTree cautious(0.2);
+  cautious.setProbMiss(kCautiousSensorModel.miss);
+  cautious.setClampingThresMin(kCautiousSensorModel.least);
+  expect_map({"--sensor-model", "cautious"}, cautious);
 }
 
 TEST_F(MapCommandTest, AFolderGivesTheMapOfTheGraph) {

@@ -29,8 +29,7 @@ ALL = [run.name for run in Experiments().runs("quick") if run.seed == 6]
 
 
 # Each starts a cluster or two.
-LONG = os.environ.get("FRONTLUX_LONG") == "1"
-long_test = unittest.skipUnless(LONG, "set FRONTLUX_LONG=1")
+long_test = unittest.skipUnless(os.environ.get("FRONTLUX_LONG") == "1", "set FRONTLUX_LONG=1")
 
 
 def until(true, what):
@@ -147,7 +146,10 @@ class Cluster(unittest.TestCase):
     def test_another_program_of_the_same_version_makes_all_runs_again(self):
         self.finish(self.reproduce("--workers", "2"), 0)
         self.log.unlink()
+        before = hashlib.sha256(self.command.read_bytes()).hexdigest()
         self.command.write_text(self.command.read_text() + "# built anew\n")
+        self.finish(self.reproduce("--workers", "2", "--like", before), 0)
+        self.assertEqual(self.calls(), [])
         self.finish(self.reproduce("--workers", "2"), 0)
         self.assertEqual(sorted(name for name, *_ in self.calls()), sorted(ALL))
         programs = {json.loads(file.read_text())["measured"]["program"] for file in (self.folder / "runs").glob("*.json")}
@@ -183,9 +185,8 @@ class Cluster(unittest.TestCase):
         self.assertEqual([name for name, *_ in self.calls()], ["maze-tour-6"])
 
     def test_ctrl_c_leaves_nothing_running_and_goes_on_later(self):
-        signals = (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
-                   ("others", lambda process: process.send_signal(signal.SIGTERM)))
-        for runs, interrupt in signals if LONG else signals[:1]:
+        for runs, interrupt in (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
+                                ("others", lambda process: process.send_signal(signal.SIGTERM))):
             self.log.unlink(missing_ok=True)
             process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS="factory-tour-6")
             until(lambda: ["factory-tour-6"] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")

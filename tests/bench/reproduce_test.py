@@ -362,9 +362,15 @@ class OneRun(Made):
         text = page(results, "images", "runs.csv")
         self.assertIn(f"program {PROGRAM}, 2026-01-02", text[:400])
         self.assertIn(f"Of other programs than {PROGRAM} there are 2 runs, which are left out", text)
+        # Planning times are of one program, and the program that was run is the one, however few its runs.
+        timed = self.make(Run("maze", "tour", 6, True), "another")
+        results = Results(self.experiments, [*results.wanted, timed], self.folder, ["another"])
+        self.assertEqual((len(results.all), timed in results.all), (5, False))
+        results = Results(self.experiments, results.wanted, self.folder, [], "another")
+        self.assertEqual((results.programs, len(results.all)), (["another"], 3))
         for like in ("another", PROGRAM):  # the program is the one that others are like
             results = Results(self.experiments, list(results.wanted), self.folder, [like])
-            self.assertEqual((set(results.programs), len(results.all), results.of_others), ({PROGRAM, "another"}, 5, 0))
+            self.assertEqual((set(results.programs), len(results.all)), ({PROGRAM, "another"}, 5 + (like == PROGRAM)))
             self.assertNotEqual(results.programs[0], like)
             text = page(results, "images", "runs.csv")
             self.assertIn(f"program {results.programs[0]} (", text[:400])
@@ -535,18 +541,20 @@ class Lines(Made):
             verdicts = (line.verdict, fast[claim].verdict)
             self.assertTrue(any(v.startswith(("**does not hold", "**not reproduced")) for v in verdicts), (line, fast[claim]))
 
-    def test_every_control_fails_if_its_part_is_needed(self):
-        def made(but=lambda run, how: how):
+    def test_lines_notice_what_is_spoilt(self):
+        def verdicts(but=lambda run, how: how):
             runs = [Run(task, method, seed) for task in ("maze", "factory") for seed in range(6, 12)
                     for method in ("tour_hasty", "tour_alone", "tour_swaying", "render", "tour_uav")]
             for run in runs:
                 self.make(run, **but(run, {"seconds": 400.0 if run.method in ("render", "tour_uav") else 300.0}))
             return [line.verdict for line in control_lines(self.results(runs))]
 
-        self.assertEqual(made(), ["holds"] * 6)
-        bad = {"tour_hasty": {"coverage": 0.98}, "tour_alone": {"seconds": 401.0}, "tour_swaying": {"separation_min_m": 0.3}}
-        for verdict in made(lambda run, how: {**how, **bad.get(run.method, {})}):
-            self.assertTrue(verdict.startswith("**does not hold"), verdict)
+        self.assertEqual(set(verdicts()), {"**missed: it holds all the same**"})
+        bad = {"tour_hasty": {"coverage": 0.98}, "tour_alone": {"seconds": 401.0},
+               "tour_swaying": {"separation_min_m": 0.3, "contacts": 2, "clearance_min_m": 0.0}}
+        for verdict in verdicts(lambda run, how: {**how, **bad.get(run.method, {})}):
+            self.assertTrue(verdict.startswith("noticed: does not hold"), verdict)
+        self.assertEqual({line.verdict for line in control_lines(self.results([]))}, {"not measured"})
 
     def test_nothing_holds_without_runs(self):
         for line in self.judged(lambda make: None).values():
@@ -663,7 +671,7 @@ class Page(Made):
             shown = {"caster": " of 2 pairs of runs are the same |",
                      "bumpers": f"| maze | {self.experiments.title(declared.get('against', method))} | 2 | 0 | 2 | 0 |"}
             title = declared["title"]
-            shown["controls"] = f"| {title[0].upper()}{title[1:]}: "
+            shown["controls"] = title[1:]  # its first letter may be the line's
             self.assertIn(shown.get(declared["table"], f"| {title} |"), text, method)
 
     def test_table_of_runs(self):
@@ -796,6 +804,10 @@ class Calls(unittest.TestCase):
     def test_bad_calls(self):
         for arguments, said in ((["--seeds", "0"], "1 to 1000"), (["--hours", "x"], "--hours"),
                                 (["--quick", "--timed"], "not allowed"),
+                                (["--like", "9a48"], "is no SHA-256; give 12 digits"),
+                                (["--tables-only", "--runs", "/nonexistent", "--like", "0123456789AB,"], "'' is no SHA-256"),
+                                (["--tables-only", "--runs", "/nonexistent", "--like", "0123456789AB"],
+                                 "no run in /nonexistent is of program 0123456789ab; there are none"),
                                 (["--tables-only", "--tasks", "mase"], "'mase'"), (["--tables-only", "--methods", "x"], "'x'"),
                                 (["--timed", "--scheduler", "tcp://x:1"], "--scheduler"),
                                 (["--tables-only", "--runs", "/nonexistent"], "no result in /nonexistent"),

@@ -72,10 +72,9 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
               Range<int>{1});
   command.add("--assign", options.assign, "Assign each frontier to one robot, or to all that see it");
   command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");
-  command.add(
-      "--tours-without", options.tours_without,
-      "A part of the search for tours that is left out, to see what it adds; without tours a robot goes\n"
-      "to the nearest cluster of frontiers");
+  command.add("--tours-without", options.tours_without,
+              "A part of the search for tours that is left out, to see what it adds; without tours a robot\n"
+              "goes to the stop that it reaches soonest");
   command.add("--caster", options.caster, "Ray caster that answers visibility");
   add_sensor_model_option(command, options.sensor_model);
   command.add("--lambda", options.lambda, "PER_METRE",
@@ -153,7 +152,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--fix-every", options.pose_errors.fix_every, "SECONDS",
               "After how long it learns where it is; 0: never", kFromZero);
   command.add("--tracking-error", options.pose_errors.tracking, "METRES",
-              "How far a robot at its full speed is beside its trajectory, at most; it knows", kFromZero);
+              "How far a robot at its full speed is beside its trajectory, at most; it knows",
+              Range<double>{kFromZero.low, 10.0});
   command.add("--scan-delay", options.message_errors.delay, "SECONDS",
               "Time that a scan takes to the map that the robots share",
               Range<double>{kFromZero.low, io::kMostLatency});

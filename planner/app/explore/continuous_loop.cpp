@@ -96,7 +96,7 @@ bool ContinuousLoop::lose_robots() {
   bool any = false;
   for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
     if (!setup_.failures[r] || *setup_.failures[r] > time_ || numbers_.robots[r].failed) continue;
-    exploration_.lose(r, exploration_.at(r, time_).pose, time_);
+    exploration_.lose(r, robots_.believed(r), time_);
     numbers_.robots[r].failed = time_;
     any = true;
   }

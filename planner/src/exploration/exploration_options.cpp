@@ -21,6 +21,7 @@ void ExplorationOptions::check() const {
   if (team.empty()) refuse("the team has no robot");
   if (caster > CasterKind::kOctomap) refuse("caster is none of the values of CasterKind");
   if (tours_without > TourPart::kTours) refuse("tours_without is none of the values of TourPart");
+  if (tours_without != TourPart::kNone && !tours) refuse("tours_without is for tours, which are off");
   if (!(epsilon >= 0.0 && std::isfinite(epsilon)))
     refuse("epsilon is " + std::to_string(epsilon) + ", but has to be finite and 0 or more");
   for (const auto& [name, value] :

@@ -51,8 +51,7 @@ std::vector<JoinedStop> single_stops(const SharedViews& views) {
   std::vector<JoinedStop> stops;
   for (std::size_t v = 0; v < views.found_for.size(); ++v) {
     const std::size_t c = views.found_for[v];
-    if (stops.empty() || stops.back().clusters.front() != c)
-      stops.push_back({{c}, {}, views.parts(v, c) * views.sizes[c]});
+    if (stops.empty() || stops.back().clusters.front() != c) stops.push_back({{c}, {}});
     stops.back().viewpoints.push_back(v);
   }
   return stops;

@@ -27,7 +27,8 @@ struct JoinedStop {
 /// clusters without a viewpoint are in none.
 [[nodiscard]] std::vector<JoinedStop> join_clusters(const SharedViews& views);
 
-/// A stop for each cluster with a viewpoint, seen from those that were found for it, in their order.
+/// A stop for each cluster with a viewpoint, seen from those that were found for it, in their order. What a
+/// stop sees is left open. @pre viewpoints of one cluster stand together
 [[nodiscard]] std::vector<JoinedStop> single_stops(const SharedViews& views);
 
 }  // namespace frontlux::planner::detail

@@ -364,9 +364,9 @@ Tours TourPlanning::nearest_stop(const TourProblem& problem, const Tours& before
   Tours tours(before.size());
   std::vector<bool> taken(problem.stops);
   for (std::size_t r = 0; r < before.size(); ++r)
-    if (r != robot && !before[r].empty()) {
-      tours[r].push_back(before[r].front());
-      taken[before[r].front()] = true;
+    for (std::size_t i = 0; r != robot && i < problem.robots[r].fixed; ++i) {
+      tours[r].push_back(before[r][i]);
+      taken[before[r][i]] = true;
     }
   std::optional<std::uint32_t> nearest;
   const std::vector<double>& seconds = problem.robots[robot].first;

@@ -300,6 +300,7 @@ TEST(Exploration, RefusesWrongOptions) {
   expect_refusal([](O& o) { o.team.clear(); }, "no robot");
   expect_refusal([](O& o) { o.caster = static_cast<CasterKind>(4); }, "caster");
   expect_refusal([](O& o) { o.epsilon = -1.0; }, "epsilon is -1");
+  expect_refusal([](O& o) { o.tours_without = TourPart::kZones; }, "tours_without is for tours");
   expect_refusal([](O& o) { o.epsilon = std::nan(""); }, "epsilon is nan");
   expect_refusal([](O& o) { o.epsilon = HUGE_VAL; }, "epsilon is inf");
   expect_refusal([](O& o) { o.low_gain_steps = 0; }, "low_gain_steps is 0");

@@ -133,22 +133,53 @@ TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
   EXPECT_LE(farthest, nearest);
 }
 
-TEST(TourPlanning, LeavesOutAPart) {
-  OpenSpace all({.near = 0.02});
-  all.plan(all.corridor());
-  const auto most_clusters = [](const OpenSpace& space) {
-    std::size_t most = 0;
-    for (const TourStop& stop : space.planning.tour(0)) most = std::max(most, stop.clusters.size());
-    return most;
+// The stops of a tour: what is looked at, and from where.
+std::vector<std::pair<std::vector<std::uint32_t>, std::pair<VoxelKey, double>>> stops_of(
+    const TourPlanning::Options& options) {
+  OpenSpace space(options);
+  space.plan(space.corridor());
+  std::vector<std::pair<std::vector<std::uint32_t>, std::pair<VoxelKey, double>>> stops;
+  for (const TourStop& stop : space.planning.tour(0))
+    stops.push_back({stop.clusters, {stop.cell, stop.pose.yaw}});
+  return stops;
+}
+
+TEST(TourPlanning, WithoutZonesFarClustersAreStopsOfTheirOwn) {
+  const auto single = stops_of({.near = 0.02, .joined = 0, .without = TourPart::kZones});
+  EXPECT_EQ(single, stops_of({.near = 1e9, .joined = 0}));
+  EXPECT_NE(single, stops_of({.near = 0.02, .joined = 0}));
+}
+
+TEST(TourPlanning, WithoutRefinementEachStopIsTheFirstOfItsViewpoints) {
+  const auto first = stops_of({.without = TourPart::kRefinement});
+  EXPECT_EQ(first, stops_of({.refined = 0}));
+  EXPECT_NE(first, stops_of({}));
+}
+
+TEST(TourPlanning, WithoutJoiningEachClusterIsAStop) {
+  const auto single = stops_of({.without = TourPart::kJoining}), joined = stops_of({});
+  const auto is_one = [](const auto& stop) { return stop.first.size() == 1; };
+  EXPECT_TRUE(std::ranges::all_of(single, is_one));
+  EXPECT_FALSE(std::ranges::all_of(joined, is_one));
+  std::set<std::uint32_t> clusters;
+  for (const auto& stop : joined) clusters.insert(stop.first.begin(), stop.first.end());
+  EXPECT_EQ(single.size(), clusters.size());
+}
+
+TEST(TourPlanning, WithoutArrivalStopsComeInTheOrderOfTheTour) {
+  std::map<std::uint32_t, std::size_t> place;  // of each cluster in the shortest tour
+  for (const auto& stop : stops_of({.joined = 0})) place.emplace(stop.first.at(0), place.size());
+  const auto places = [&](const TourPlanning::Options& options) {
+    std::vector<std::size_t> first;
+    for (const auto& [clusters, at] : stops_of(options)) {
+      first.push_back(place.at(clusters.front()));
+      for (const std::uint32_t cluster : clusters) first.back() = std::min(first.back(), place.at(cluster));
+    }
+    return first;
   };
-  ASSERT_GT(most_clusters(all), 1U);
-  for (const TourPart part :
-       {TourPart::kZones, TourPart::kJoining, TourPart::kArrival, TourPart::kRefinement}) {
-    OpenSpace space({.near = 0.02, .without = part});
-    space.plan(space.corridor());
-    EXPECT_EQ(space.clusters(), all.clusters());
-    EXPECT_EQ(most_clusters(space) == 1, part == TourPart::kJoining);
-  }
+  ASSERT_LE(place.size(), TourPlanning::Options{}.joined);
+  EXPECT_TRUE(std::ranges::is_sorted(places({.without = TourPart::kArrival})));
+  EXPECT_FALSE(std::ranges::is_sorted(places({})));
 }
 
 TEST(TourPlanning, WithoutToursIsTheNearestStop) {
@@ -162,6 +193,31 @@ TEST(TourPlanning, WithoutToursIsTheNearestStop) {
   ASSERT_GT(all.planning.tour(0).size(), 5U);
   const TourStop first = *std::ranges::min_element(all.planning.tour(0), {}, seconds);
   EXPECT_EQ(nearest.clusters(), std::set(first.clusters.begin(), first.clusters.end()));
+}
+
+// Two robots at one place, with stops of one and of several clusters.
+TEST(TourPlanning, WithoutToursNobodyGoesWhereAnotherOneIsGoing) {
+  for (const double near : {2.0, 0.02}) {
+    const TourPlanning::Options options{.near = near, .without = TourPart::kTours};
+    OpenSpace space(options);
+    const std::array<Pose, 2> poses{space.pose, space.pose};
+    TourPlanning both({space.robot, space.robot}, poses, space.grid.lattice(), kBounds, options);
+    const TravelCorridor corridor = space.corridor();
+    std::array<MotionState, 2> starts;
+    for (MotionState& start : starts) start.pose = space.pose;
+    const auto clusters = [&](std::size_t robot) {
+      std::set<std::uint32_t> ids;
+      for (const TourStop& stop : both.tour(robot)) ids.insert(stop.clusters.begin(), stop.clusters.end());
+      return ids;
+    };
+    for (const std::size_t robot : {0, 1, 0, 1}) {
+      both.update({robot, *space.caster, space.grid, corridor, space.frontiers.keys(), starts});
+      EXPECT_TRUE(near < 1.0 || !both.tour(robot).empty()) << "a far zone may hold all that there is";
+      std::vector<std::uint32_t> shared;
+      std::ranges::set_intersection(clusters(0), clusters(1), std::back_inserter(shared));
+      EXPECT_TRUE(shared.empty()) << near;
+    }
+  }
 }
 
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.

@@ -210,6 +210,57 @@ TEST(Surface, RangeLimitIsInclusiveAndLengthOfTheDirectionDoesNotMatter) {
   }
 }
 
+// Rays are cast in packets: whatever is beside it, a ray has the same answer.
+TEST(Surface, RaysDoNotDependOnTheirNeighbours) {
+  frontlux::test::Random random(8);
+  TriangleMesh mesh = test::box_mesh({Eigen::Vector3f(-3, -3, 0), Eigen::Vector3f(3, 3, 3)}, 3);
+  const std::size_t walls = mesh.triangles.size();
+  mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.begin() + 9);  // twice
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const Eigen::Vector3f middle = random_point(random, -2, 2);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int corner = 0; corner < 3; ++corner)
+      mesh.vertices.push_back(middle + random_point(random, -0.5, 0.5));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  const Surface surface(mesh);
+  std::vector<Surface::Ray> rays;
+  for (int i = 0; i < 3'000; ++i) {
+    Surface::Ray ray{random_point(random, -4, 4), random_point(random, -1, 1), random.uniform(0.0, 9.0)};
+    for (float& component : ray.direction) {
+      if (random.one_in(5)) component = random.one_in(2) ? 0.0F : -0.0F;
+      if (random.one_in(12)) component *= 1e-18F;
+    }
+    if (random.one_in(6)) ray.origin *= 1e3F;  // beside the mesh, so that it misses all of it
+    if (random.one_in(20)) ray.direction *= 1e-30F;
+    if (ray.direction.isZero(0.0F)) ray.direction = Eigen::Vector3f::UnitY();
+    if (random.one_in(8)) ray = {{3, ray.origin.y(), 1}, ray.direction, 0.0};  // on a wall
+    rays.push_back(ray);
+  }
+  std::vector<Surface::Hit> alone;
+  for (const Surface::Ray& ray : rays) alone.push_back(cast(surface, {ray})[0]);
+  EXPECT_GT(std::ranges::count(alone, 0.0, &Surface::Hit::range), 100);
+  EXPECT_GT(std::ranges::count(alone, Surface::kNone, &Surface::Hit::triangle), 300);
+  EXPECT_GT(std::ranges::count_if(alone, [&](const Surface::Hit& hit) { return hit.triangle < walls; }), 300);
+  std::vector<std::size_t> order(rays.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t batch = 1; batch <= 17; ++batch) {
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    for (std::size_t first = 0; first < order.size(); first += batch) {
+      const std::size_t count = std::min(batch, order.size() - first);
+      std::vector<Surface::Ray> some;
+      for (std::size_t i = 0; i < count; ++i) some.push_back(rays[order[first + i]]);
+      const auto hits = cast(surface, some);
+      for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(hits[i].triangle, alone[order[first + i]].triangle) << order[first + i];
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(hits[i].range),
+                  std::bit_cast<std::uint64_t>(alone[order[first + i]].range));
+      }
+    }
+  }
+}
+
 TEST(Surface, LeavesTheFloatingPointModeAlone) {
   const Surface surface(test::box_mesh({Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones()}));
   std::fesetround(FE_TOWARDZERO);

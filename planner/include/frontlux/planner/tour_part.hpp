@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -15,7 +14,8 @@ enum class TourPart : std::uint8_t {
   kJoining,     ///< the next clusters are seen from as few viewpoints as can be; without, each from its own
   kArrival,     ///< the next stops are in the order of early arrival; without, in that of the shortest tour
   kRefinement,  ///< viewpoints of the next few stops are chosen together; without, each sees most by itself
-  kTours,       ///< all of it: without, a robot goes to the nearest cluster to which no other one is going
+  kTours,  ///< who goes where in what order; without, each robot goes to the stop that it reaches soonest
+           ///< of those to which no other one is going
 };
 /// As options and files call them.
 inline constexpr std::array<std::pair<std::string_view, TourPart>, 6> kTourPartNames = {
@@ -25,12 +25,5 @@ inline constexpr std::array<std::pair<std::string_view, TourPart>, 6> kTourPartN
      {"arrival", TourPart::kArrival},
      {"refinement", TourPart::kRefinement},
      {"tours", TourPart::kTours}}};
-
-/// The part with this name; none if there is no such part.
-[[nodiscard]] constexpr std::optional<TourPart> tour_part(std::string_view name) {
-  for (const auto& [known, part] : kTourPartNames)
-    if (known == name) return part;
-  return std::nullopt;
-}
 
 }  // namespace frontlux::planner

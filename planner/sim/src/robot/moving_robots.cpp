@@ -17,8 +17,9 @@ namespace {
 
 using planner::Pose;
 
-constexpr double kTick = 0.02;  // [s] bodies move straight in between
-// [s] Of a robot that sways, along x, y and z; no two of them are in step for long.
+constexpr double kTick = 0.02;          // [s] bodies move straight in between
+constexpr double kMostTracking = 10.0;  // [m]
+// [s] Of a robot that sways, along x, y and z, so that it does not go to and fro on one line.
 const Eigen::Vector3d kSwayPeriods(4.1, 5.3, 6.7);
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("moving robots: " + what); }
@@ -56,9 +57,9 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
   if (!(pose_errors.fix_every >= 0.0 && std::isfinite(pose_errors.fix_every)))
     refuse("robots know their places every " + std::to_string(pose_errors.fix_every) +
            " s, but the time has to be finite and at least 0");
-  if (!(pose_errors.tracking >= 0.0 && std::isfinite(pose_errors.tracking)))
+  if (!(pose_errors.tracking >= 0.0 && pose_errors.tracking <= kMostTracking))
     refuse("the tracking error is " + std::to_string(pose_errors.tracking) +
-           " m, but has to be finite and at least 0");
+           " m, but has to lie between 0 and 10");
   if (starts.size() != robots_.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(robots_.size()) + " robots");
   for (std::size_t r = 0; r < robots_.size(); ++r) {

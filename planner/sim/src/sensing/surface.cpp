@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -46,7 +47,7 @@ struct Geometry {
   }
 };
 
-constexpr unsigned kLanes = 8;  // rays of a packet
+constexpr unsigned kLanes = 8;  // rays of a packet, where Embree traverses such; else they go one by one
 
 // One ray of a packet.
 struct Lane {
@@ -64,7 +65,7 @@ struct Query {
 #else
   RTCRayQueryContext embree;
 #endif
-  std::array<Lane, kLanes> lanes;
+  Lane* lanes;  // by the rays' ids
 };
 
 // A little more, so that Embree's single precision loses nothing, and never 0, where a packet finds nothing.
@@ -89,7 +90,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   detail::hand_over(&geometry);
 }
 
-// Embree may hand over a part of a packet; a ray's id is its lane.
+// Embree may hand over a part of a packet.
 void intersect_callback(const RTCIntersectFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Corners& corners = static_cast<const Geometry*>(args->geometryUserPtr)->triangles[args->primID];
@@ -122,6 +123,7 @@ struct Surface::Scene {
   Geometry mesh;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  bool packets = false;  // whether Embree traverses them here: those that it takes apart lose their ids
 
   explicit Scene(const TriangleMesh& triangle_mesh) : mesh(triangle_mesh) {}
   ~Scene() {
@@ -136,6 +138,7 @@ struct Surface::Scene {
     device = rtcNewDevice(nullptr);
     if (device == nullptr && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (device == nullptr) throw std::runtime_error("Embree cannot make a device on this machine");
+    packets = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
     scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(mesh.triangles.size()));
@@ -194,32 +197,64 @@ struct Surface::Scene {
 
   // Of at most kLanes rays.
   void first(std::span<const Ray> rays, std::span<Hit> hits) const {
-    Query query;
+    std::array<Lane, kLanes> lanes;
     RTCRayHit8 packet{};
     alignas(32) std::array<int, kLanes> valid{};
-    for (unsigned i = 0; i < rays.size(); ++i)
-      valid[i] = set_lane(rays[i], i, query.lanes[i], packet) ? -1 : 0;
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const bool may_hit = i < rays.size() && set_lane(rays[i], i, lanes[i], packet);
+      valid[i] = may_hit ? -1 : 0;
+      if (!may_hit) packet.ray.tfar[i] = -std::numeric_limits<float>::infinity();
+    }
+    Query query{{}, lanes.data()};
     {
       const FloatingPointMode mode(FloatingPointMode::kFlushed);
-#if FRONTLUX_EMBREE == 3
-      rtcInitIntersectContext(&query.embree);
-      query.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-      rtcIntersect8(valid.data(), scene, &query.embree, &packet);
-#else
-      rtcInitRayQueryContext(&query.embree);
-      RTCIntersectArguments arguments;
-      rtcInitIntersectArguments(&arguments);
-      arguments.context = &query.embree;
-      arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-      rtcIntersect8(valid.data(), scene, &packet, &arguments);
-#endif
+      if (packets)
+        intersect(valid, packet, query);
+      else
+        for (unsigned i = 0; i < kLanes; ++i)
+          if (valid[i] != 0) intersect(packet, i, query);
     }
     for (unsigned i = 0; i < rays.size(); ++i) {
-      const Lane& lane = query.lanes[i];
+      const Lane& lane = lanes[i];
       hits[i] = lane.triangle == kNone
                     ? Hit{}
                     : Hit{std::min(lane.nearest * lane.length, rays[i].max_range), lane.triangle};
     }
+  }
+
+  void intersect(const std::array<int, kLanes>& valid, RTCRayHit8& packet, Query& query) const {
+#if FRONTLUX_EMBREE == 3
+    rtcInitIntersectContext(&query.embree);
+    query.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid.data(), scene, &query.embree, &packet);
+#else
+    rtcInitRayQueryContext(&query.embree);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.embree;
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid.data(), scene, &packet, &arguments);
+#endif
+  }
+
+  // One ray of the packet.
+  void intersect(const RTCRayHit8& packet, unsigned i, Query& query) const {
+    const RTCRay8& rays = packet.ray;
+    RTCRayHit one{};
+    one.ray = {rays.org_x[i], rays.org_y[i], rays.org_z[i], 0.0F, rays.dir_x[i], rays.dir_y[i],
+               rays.dir_z[i], 0.0F,          rays.tfar[i],  ~0U,  rays.id[i],    0};
+    one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if FRONTLUX_EMBREE == 3
+    rtcInitIntersectContext(&query.embree);
+    rtcIntersect1(scene, &query.embree, &one);
+#else
+    rtcInitRayQueryContext(&query.embree);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.embree;
+    rtcIntersect1(scene, &one, &arguments);
+#endif
   }
 };
 

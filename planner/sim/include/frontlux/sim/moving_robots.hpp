@@ -49,7 +49,8 @@ struct PoseErrors {
   double drift = 0.0;  ///< of the path length, 0 to 1
   double fix_every =
       0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
-  double tracking = 0.0;  ///< [m] how far it sways at most at its greatest speed, in proportion when slower
+  double tracking =
+      0.0;  ///< [m] how far it sways at its greatest speed, in proportion when slower; at most 10
 };
 
 /// Robots that follow trajectories in a simulated world, under a clock that the simulation keeps. Each takes
@@ -91,6 +92,8 @@ class MovingRobots {
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
+  /// Where a robot believes to be. @pre it is one of them
+  [[nodiscard]] const planner::Pose& believed(std::size_t robot) const { return progress_[robot].believed; }
   /// [m] The least distance between the boxes around two bodies so far; infinite for a single robot.
   [[nodiscard]] double separation() const { return separation_; }
 
