@@ -1,6 +1,5 @@
 #include "mapping/scan_tree.hpp"
 #include "mapping/scan_voxels.hpp"
-#include "mapping/sort_once.hpp"
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
@@ -100,7 +99,7 @@ struct Mapping::State {
     for (const detail::ScanRay& ray : rays)
       if (ray.hit && ray.has_key && bounds.contains(ray.key) && grid.at(ray.key) == Occupancy::kFree)
         overruled.push_back(ray.key);
-    detail::sort_once(overruled);
+    std::sort(overruled.begin(), overruled.end());
   }
 
   MapChange write_to_grid() {
