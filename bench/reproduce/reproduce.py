@@ -210,9 +210,10 @@ def main():
             return 0
         if options.compare:
             return compare(*options.compare)
-        if unknown := {*options.like} - programs_in(options.runs):
+        there = programs_in(options.runs) if options.like else set()
+        if unknown := {*options.like} - there:
             raise ValueError(f"--like: no run in {options.runs} is of program {', '.join(sorted(unknown))}; there are " +
-                             (", ".join(sorted(programs_in(options.runs))) or "none"))
+                             (", ".join(sorted(there)) or "none"))
         lost, program = 0, None
         if not options.tables_only:
             for file in absent:

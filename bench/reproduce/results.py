@@ -255,7 +255,7 @@ class Results:
         # Which program is faster its decisions do not say.
         self.all = {run: result for run, result in read.items()
                     if result.program in (self.programs[:1] if run.timed else self.programs)}
-        self.of_others = len(read) - len(self.all)
+        self.of_others = sum(result.program not in self.programs for result in read.values())
 
     @property
     def missing(self):

@@ -246,6 +246,6 @@ def missing_table(results):
 def failures_list(results):
     spoilt = results.experiments.methods_of("controls")
     lines = [f"- {plain(r.run.name)}: {plain(r.failure)}\n" for r in results.all.values()
-             if r.failure and r.run.method not in spoilt]
+             if r.failure and (r.crashed or r.run.method not in spoilt)]
     lines += [f"- {plain(name)}: {plain(reason)}\n" for name, reason in results.broken.items()]
     return "".join(lines) or "None.\n"

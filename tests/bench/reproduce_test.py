@@ -370,7 +370,8 @@ class OneRun(Made):
         self.assertEqual((results.programs, len(results.all)), (["another"], 3))
         for like in ("another", PROGRAM):  # the program is the one that others are like
             results = Results(self.experiments, list(results.wanted), self.folder, [like])
-            self.assertEqual((set(results.programs), len(results.all)), ({PROGRAM, "another"}, 5 + (like == PROGRAM)))
+            self.assertEqual((set(results.programs), len(results.all), results.of_others),
+                             ({PROGRAM, "another"}, 5 + (like == PROGRAM), 0))
             self.assertNotEqual(results.programs[0], like)
             text = page(results, "images", "runs.csv")
             self.assertIn(f"program {results.programs[0]} (", text[:400])
@@ -555,6 +556,9 @@ class Lines(Made):
         for verdict in verdicts(lambda run, how: {**how, **bad.get(run.method, {})}):
             self.assertTrue(verdict.startswith("noticed: does not hold"), verdict)
         self.assertEqual({line.verdict for line in control_lines(self.results([]))}, {"not measured"})
+        same = verdicts(lambda run, how: {"seconds": 400.0 + (run.seed % 2 * 20 - 10) * (run.method in ("render", "tour_uav") or -1)})
+        self.assertEqual([v for v in same if v.startswith("noticed")], [])
+        self.assertIn("open: the interval contains the limit", same)
 
     def test_nothing_holds_without_runs(self):
         for line in self.judged(lambda make: None).values():

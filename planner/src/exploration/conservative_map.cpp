@@ -24,7 +24,6 @@ std::vector<VoxelKey> stray_return_at(const VoxelKey& first, const VoxelGrid& gr
 }  // namespace
 
 std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<const VoxelKey> changed,
-                                              std::span<const VoxelKey> hit,
                                               std::span<const VoxelKey> occupied) {
   std::vector<VoxelKey> further = std::exchange(under_robots_, {}), freed;
   for (const VoxelKey& key : further) grid_.set(key, Occupancy::kOccupied);
@@ -36,12 +35,6 @@ std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<co
   };
   std::ranges::for_each(changed, take_over);
   std::ranges::for_each(further, take_over);
-  for (const VoxelKey& key : hit) {
-    if (grid_.at(key) == Occupancy::kOccupied) continue;
-    grid_.set(key, Occupancy::kOccupied);
-    further.push_back(key);
-    if (map.at(key) == Occupancy::kFree) freed.push_back(key);
-  }
   for (const VoxelKey& key : freed) {
     if (grid_.at(key) == Occupancy::kFree) continue;  // with another one
     const std::vector<VoxelKey> stray = stray_return_at(key, grid_, map);

@@ -83,8 +83,6 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   check_finite({&pose, 1});
   const MapChange change = state.team.mapping.insert(scan);
   state.note_scan(robot, change);
-  const auto overruled = state.team.mapping.overruled_hits();
-  state.overruled.insert(state.overruled.end(), overruled.begin(), overruled.end());
   State::Member& member = state.members[robot];
   member.sensed.push_back(pose);
   if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) member.looked = pose;

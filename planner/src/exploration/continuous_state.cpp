@@ -170,18 +170,6 @@ Keys ContinuousExploration::State::voxels_of_robots(double time) const {
   return keys;
 }
 
-// Voxels in which two rays or more have ended since the last planning, and which are free all the same: one
-// may be a stray return.
-Keys ContinuousExploration::State::hit_again_and_again() {
-  std::ranges::sort(overruled);
-  Keys keys;
-  for (std::size_t i = 1; i < overruled.size(); ++i)
-    if (overruled[i] == overruled[i - 1] && (keys.empty() || keys.back() != overruled[i]))
-      keys.push_back(overruled[i]);
-  overruled.clear();
-  return keys;
-}
-
 // What the robots have done since the last planning. A voxel that several have changed counts for the first.
 ExplorationStep ContinuousExploration::State::collect(double time) {
   ExplorationStep step = team.new_step();
@@ -200,8 +188,7 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
     changed.push_back(key);
   }
   touched.clear();
-  const Keys further =
-      team.conservative_map->update(grid, changed, hit_again_and_again(), voxels_of_robots(time));
+  const Keys further = team.conservative_map->update(grid, changed, voxels_of_robots(time));
   team.also_changed.insert(team.also_changed.end(), further.begin(), further.end());
   for (std::size_t r = 0; r < members.size(); ++r) {
     RobotStep& robot = step.robots[r];

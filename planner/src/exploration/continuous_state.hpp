@@ -64,14 +64,12 @@ struct ContinuousExploration::State {
   std::vector<Member> members = {};
   VoxelGrid before;                                            // the map at the last planning
   std::vector<std::pair<VoxelKey, std::size_t>> touched = {};  // since then, and by whom
-  std::vector<VoxelKey> overruled = {};                        // in which rays ended since then, one for each
 
   void set_motion(std::size_t robot, Trajectory trajectory);
   void start_next_trajectories(double time);
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void note_scan(std::size_t robot, const MapChange& change);
-  [[nodiscard]] std::vector<VoxelKey> hit_again_and_again();
   void extend_trail(std::size_t robot, double until);
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;

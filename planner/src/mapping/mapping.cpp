@@ -70,7 +70,6 @@ struct Mapping::State {
   std::vector<detail::ScanRay> rays{};  // kept for their memory
   std::vector<detail::StateChange> changes{};
   std::vector<VoxelKey> keys{};  // of the last change
-  std::vector<VoxelKey> overruled{};
 
   explicit State(const MappingOptions& options)
       : tree(options.resolution, options.sensor_model),
@@ -89,17 +88,7 @@ struct Mapping::State {
     time.rays = watch.lap();
     tree.update(updates, changes);
     time.tree = watch.lap();
-    const MapChange change = write_to_grid();
-    note_overruled_hits();
-    return change;
-  }
-
-  void note_overruled_hits() {
-    overruled.clear();
-    for (const detail::ScanRay& ray : rays)
-      if (ray.hit && ray.has_key && bounds.contains(ray.key) && grid.at(ray.key) == Occupancy::kFree)
-        overruled.push_back(ray.key);
-    std::sort(overruled.begin(), overruled.end());
+    return write_to_grid();
   }
 
   MapChange write_to_grid() {
@@ -174,7 +163,6 @@ MapChange Mapping::mark_free(std::span<const VoxelKey> voxels) {
 
 const octomap::OcTree& Mapping::tree() const { return state_->tree; }
 const VoxelGrid& Mapping::grid() const { return state_->grid; }
-std::span<const VoxelKey> Mapping::overruled_hits() const { return state_->overruled; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
 const InsertionTime& Mapping::insertion_time() const { return state_->time; }
 

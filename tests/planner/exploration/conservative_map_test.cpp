@@ -22,9 +22,9 @@ struct Maps {
   ConservativeMap conservative{map};
   Keys told;
 
-  void set(const Keys& keys, Occupancy state, const Keys& hit = {}) {
+  void set(const Keys& keys, Occupancy state) {
     for (const VoxelKey& key : keys) map.set(key, state);
-    told = conservative.update(map, keys, hit);
+    told = conservative.update(map, keys);
     test::sort(told);
   }
   [[nodiscard]] Occupancy at(const VoxelKey& key) const { return conservative.grid().at(key); }
@@ -52,18 +52,6 @@ TEST(ConservativeMap, KeepsLargeSurfacesThatAreAllFree) {
   }
 }
 
-// A wall that most rays pass at a grazing angle, though some end in it.
-TEST(ConservativeMap, KeepsWhatWasHitThoughTheMapHasItFree) {
-  for (const int length : {1, kLeast - 1, kLeast}) {
-    Maps maps;
-    maps.set(row(length), Occupancy::kFree, row(length));
-    const bool stays = length >= kLeast;
-    for (const VoxelKey& key : row(length))
-      EXPECT_EQ(maps.at(key), stays ? Occupancy::kOccupied : Occupancy::kFree) << length;
-    EXPECT_TRUE(!stays || maps.told == row(length)) << "it is told of";
-  }
-}
-
 TEST(ConservativeMap, HangsVoxelsTogetherByCornersButNotOverGaps) {
   Maps maps;
   maps.set({key_at(0, 0, 0), key_at(1, 1, 1), key_at(3, 1, 1)}, Occupancy::kOccupied);
@@ -80,13 +68,13 @@ TEST(ConservativeMap, IsFreeWhereARobotIsAsLongAsItIsThere) {
   Maps maps;
   const VoxelKey own = key_at(0, 0, 0), beside = key_at(1, 0, 0);
   maps.set({own, beside}, Occupancy::kOccupied);
-  EXPECT_EQ(maps.conservative.update(maps.map, {}, {}, Keys{own}), Keys{own});
+  EXPECT_EQ(maps.conservative.update(maps.map, {}, Keys{own}), Keys{own});
   EXPECT_EQ(maps.at(own), Occupancy::kFree);
   EXPECT_EQ(maps.at(beside), Occupancy::kOccupied);
-  EXPECT_EQ(maps.conservative.update(maps.map, {}, {}, {}), Keys{own});
+  EXPECT_EQ(maps.conservative.update(maps.map, {}, {}), Keys{own});
   EXPECT_EQ(maps.at(own), Occupancy::kOccupied);
   maps.map.set(beside, Occupancy::kFree);
-  static_cast<void>(maps.conservative.update(maps.map, Keys{beside}, {}, Keys{own}));
+  static_cast<void>(maps.conservative.update(maps.map, Keys{beside}, Keys{own}));
   EXPECT_EQ(maps.at(beside), Occupancy::kOccupied);
   maps.set({own}, Occupancy::kFree);
   EXPECT_EQ(maps.at(own), Occupancy::kFree);
@@ -133,15 +121,8 @@ TEST(ConservativeMap, IsWhatItsRuleSaysAfterRandomChanges) {
         changed.push_back(key);
       }
       test::sort(changed);
-      Keys hit = changed;  // and some that are free all the same
-      for (int i = 0; i < 4; ++i) hit.push_back(random.key_in(box));
-      test::sort(hit);
-      std::erase_if(hit, [&](const VoxelKey& key) {
-        return maps.map.at(key) == Occupancy::kUnknown || random.one_in(2);
-      });
       const auto is_occupied = [&](const VoxelKey& key) { return maps.map.at(key) == Occupancy::kOccupied; };
       std::ranges::copy_if(changed, std::inserter(closed, closed.end()), is_occupied);
-      closed.insert(hit.begin(), hit.end());
       Keys opened;
       for (const VoxelKey& key : closed) {
         const std::set<VoxelKey> group = plain_group(closed, key);
@@ -150,7 +131,7 @@ TEST(ConservativeMap, IsWhatItsRuleSaysAfterRandomChanges) {
       for (const VoxelKey& key : opened) closed.erase(key);
       const VoxelGrid before = maps.conservative.grid();
       const VoxelKey robot = random.key_in(box);
-      Keys told = maps.conservative.update(maps.map, changed, hit, Keys{robot});
+      Keys told = maps.conservative.update(maps.map, changed, Keys{robot});
       told.insert(told.end(), changed.begin(), changed.end());
       test::sort(told);
       for (const VoxelKey& key : test::keys_of(box)) {

@@ -2,7 +2,6 @@
 
 #include "octomap/quiet_octomap.hpp"
 #include "support/complaint.hpp"
-#include "support/random.hpp"
 
 #include <frontlux/planner/mapping.hpp>
 
@@ -31,32 +30,6 @@ TEST(SensorModel, SaysHowManyMissesAHitOutweighs) {
   EXPECT_EQ(misses_to_clear(kOctomapSensorModel, 100), 0);
   EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 0), 6);
   EXPECT_EQ(misses_to_clear(kCautiousSensorModel, 100), 1);
-}
-
-// Of random scans from one place: for each ray the voxel in which it ends, if OctoMap's tree has it as free.
-TEST(SensorModel, LeavesHitsThatWereOverruled) {
-  test::Random random(3);
-  Mapping mapping(
-      {.resolution = 0.3, .bounds = {make_key(32760, 32760, 32764), make_key(32776, 32776, 32772)}});
-  const Eigen::Vector3f origin(0.15F, 0.15F, 0.15F);
-  std::size_t all = 0;
-  for (int scan = 0; scan < 60; ++scan) {
-    std::vector<Eigen::Vector3f> points;
-    std::vector<VoxelKey> expected;
-    for (int i = 0; i < 40; ++i) points.push_back(random.point(-3.0, 3.0).cast<float>());
-    mapping.insert(origin, points, 2.8);
-    for (const Eigen::Vector3f& point : points) {
-      const VoxelKey key = mapping.grid().lattice().key(point).value();
-      const auto* node = mapping.tree().search(octomap::OcTreeKey(key.x, key.y, key.z));
-      if ((point - origin).norm() <= 2.8F && mapping.bounds().contains(key) && node != nullptr &&
-          !mapping.tree().isNodeOccupied(node))
-        expected.push_back(key);
-    }
-    std::ranges::sort(expected);
-    EXPECT_TRUE(std::ranges::equal(mapping.overruled_hits(), expected));
-    all += expected.size();
-  }
-  EXPECT_GT(all, 100U);
 }
 
 TEST(SensorModel, IsOctomapsByDefault) {

@@ -439,7 +439,8 @@ TEST(MovingRobots, RefusePoseErrorsThatAreNone) {
   const BoxRoom room;
   for (const PoseErrors& wrong :
        {PoseErrors{-0.1, 0.0}, PoseErrors{1.1, 0.0}, PoseErrors{std::nan(""), 0.0}, PoseErrors{0.1, -1.0},
-        PoseErrors{0.1, std::nan("")}, PoseErrors{.tracking = -0.1}, PoseErrors{.tracking = std::nan("")}})
+        PoseErrors{0.1, std::nan("")}, PoseErrors{.tracking = -0.1}, PoseErrors{.tracking = 10.1},
+        PoseErrors{.tracking = std::nan("")}})
     EXPECT_REFUSED(Moving(room, {uav()}, {{{1, 1, 1}, 0.0}}, AtContact::kGoOn, {}, 1, wrong));
 }
 

@@ -114,10 +114,6 @@ class FRONTLUX_EXPORT Mapping {
   /// The same as `make_voxel_grid(tree())`, kept in step.
   [[nodiscard]] const VoxelGrid& grid() const;
 
-  /// Voxels in which rays of the last insertion ended, and which are free all the same, since more scans have
-  /// passed them: one for each ray, sorted.
-  [[nodiscard]] std::span<const VoxelKey> overruled_hits() const;
-
   /// Voxels outside are never touched.
   [[nodiscard]] const KeyBox& bounds() const;
 
