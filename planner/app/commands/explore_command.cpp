@@ -153,7 +153,7 @@ void add_explore_command(CLI::App& app) {
               "After how long it learns where it is; 0: never", kFromZero);
   command.add("--tracking-error", options.pose_errors.tracking, "METRES",
               "How far a robot at its full speed is beside its trajectory, at most; it knows",
-              Range<double>{kFromZero.low, 10.0});
+              Range<double>{kFromZero.low, sim::PoseErrors::kMostTracking});
   command.add("--scan-delay", options.message_errors.delay, "SECONDS",
               "Time that a scan takes to the map that the robots share",
               Range<double>{kFromZero.low, io::kMostLatency});

@@ -6,6 +6,7 @@
 #include <frontlux/sim/swept_body.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -17,10 +18,9 @@ namespace {
 
 using planner::Pose;
 
-constexpr double kTick = 0.02;          // [s] bodies move straight in between
-constexpr double kMostTracking = 10.0;  // [m]
+constexpr double kTick = 0.02;  // [s] bodies move straight in between
 // [s] Of a robot that sways, along x, y and z, so that it does not go to and fro on one line.
-const Eigen::Vector3d kSwayPeriods(4.1, 5.3, 6.7);
+constexpr std::array<double, 3> kSwayPeriods = {4.1, 5.3, 6.7};
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("moving robots: " + what); }
 
@@ -57,7 +57,7 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
   if (!(pose_errors.fix_every >= 0.0 && std::isfinite(pose_errors.fix_every)))
     refuse("robots know their places every " + std::to_string(pose_errors.fix_every) +
            " s, but the time has to be finite and at least 0");
-  if (!(pose_errors.tracking >= 0.0 && pose_errors.tracking <= kMostTracking))
+  if (!(pose_errors.tracking >= 0.0 && pose_errors.tracking <= PoseErrors::kMostTracking))
     refuse("the tracking error is " + std::to_string(pose_errors.tracking) +
            " m, but has to lie between 0 and 10");
   if (starts.size() != robots_.size())
@@ -119,7 +119,8 @@ Pose MovingRobots::swayed(std::size_t robot, const planner::MotionState& to, dou
   const Eigen::Index axes = of.travel.drives() ? 2 : 3;
   const double part = std::min(1.0, to.velocity.norm() / of.limits.speed);
   for (Eigen::Index axis = 0; axis < axes; ++axis) {
-    const double angle = 2 * std::numbers::pi * time / kSwayPeriods[axis] + progress_[robot].phases[axis];
+    const double angle = 2 * std::numbers::pi * time / kSwayPeriods[static_cast<std::size_t>(axis)] +
+                         progress_[robot].phases[axis];
     pose.position[axis] +=
         pose_errors_.tracking * part * std::sin(angle) / std::sqrt(static_cast<double>(axes));
   }

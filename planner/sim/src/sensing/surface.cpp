@@ -64,8 +64,33 @@ struct Query {
   RTCIntersectContext embree;  // first: callbacks get a pointer to it
 #else
   RTCRayQueryContext embree;
+  RTCIntersectArguments arguments;
 #endif
   Lane* lanes;  // by the rays' ids
+
+  Query(Lane* of, bool packets) : lanes(of) {
+#if FRONTLUX_EMBREE == 3
+    rtcInitIntersectContext(&embree);
+    if (packets) embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#else
+    rtcInitRayQueryContext(&embree);
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &embree;
+    if (packets) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+#endif
+  }
+
+#if FRONTLUX_EMBREE == 3
+  void intersect(RTCScene scene, const int* valid, RTCRayHit8& packet) {
+    rtcIntersect8(valid, scene, &embree, &packet);
+  }
+  void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &embree, &ray); }
+#else
+  void intersect(RTCScene scene, const int* valid, RTCRayHit8& packet) {
+    rtcIntersect8(valid, scene, &packet, &arguments);
+  }
+  void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &arguments); }
+#endif
 };
 
 // A little more, so that Embree's single precision loses nothing, and never 0, where a packet finds nothing.
@@ -105,6 +130,16 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
     lane.triangle = args->primID;
     RTCRayN_tfar(rays, args->N, i) = widened(*t - lane.start);
   }
+}
+
+// One ray of a packet.
+RTCRayHit ray_of(const RTCRay8& rays, unsigned i) {
+  RTCRayHit one{};
+  one.ray = {rays.org_x[i], rays.org_y[i], rays.org_z[i], 0.0F, rays.dir_x[i], rays.dir_y[i],
+             rays.dir_z[i], 0.0F,          rays.tfar[i],  ~0U,  rays.id[i],    0};
+  one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return one;
 }
 
 void check_ray(const Surface::Ray& ray, std::size_t index) {
@@ -205,14 +240,14 @@ struct Surface::Scene {
       valid[i] = may_hit ? -1 : 0;
       if (!may_hit) packet.ray.tfar[i] = -std::numeric_limits<float>::infinity();
     }
-    Query query{{}, lanes.data()};
+    Query query(lanes.data(), packets);
     {
       const FloatingPointMode mode(FloatingPointMode::kFlushed);
-      if (packets)
-        intersect(valid, packet, query);
-      else
-        for (unsigned i = 0; i < kLanes; ++i)
-          if (valid[i] != 0) intersect(packet, i, query);
+      if (packets) query.intersect(scene, valid.data(), packet);
+      for (unsigned i = 0; !packets && i < kLanes; ++i) {
+        RTCRayHit one = ray_of(packet.ray, i);
+        if (valid[i] != 0) query.intersect(scene, one);
+      }
     }
     for (unsigned i = 0; i < rays.size(); ++i) {
       const Lane& lane = lanes[i];
@@ -220,41 +255,6 @@ struct Surface::Scene {
                     ? Hit{}
                     : Hit{std::min(lane.nearest * lane.length, rays[i].max_range), lane.triangle};
     }
-  }
-
-  void intersect(const std::array<int, kLanes>& valid, RTCRayHit8& packet, Query& query) const {
-#if FRONTLUX_EMBREE == 3
-    rtcInitIntersectContext(&query.embree);
-    query.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect8(valid.data(), scene, &query.embree, &packet);
-#else
-    rtcInitRayQueryContext(&query.embree);
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &query.embree;
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcIntersect8(valid.data(), scene, &packet, &arguments);
-#endif
-  }
-
-  // One ray of the packet.
-  void intersect(const RTCRayHit8& packet, unsigned i, Query& query) const {
-    const RTCRay8& rays = packet.ray;
-    RTCRayHit one{};
-    one.ray = {rays.org_x[i], rays.org_y[i], rays.org_z[i], 0.0F, rays.dir_x[i], rays.dir_y[i],
-               rays.dir_z[i], 0.0F,          rays.tfar[i],  ~0U,  rays.id[i],    0};
-    one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if FRONTLUX_EMBREE == 3
-    rtcInitIntersectContext(&query.embree);
-    rtcIntersect1(scene, &query.embree, &one);
-#else
-    rtcInitRayQueryContext(&query.embree);
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &query.embree;
-    rtcIntersect1(scene, &one, &arguments);
-#endif
   }
 };
 

@@ -46,7 +46,8 @@ struct MotionRecord {
 /// direction that is drawn anew each time. With a tracking error it sways around its trajectory, and knows.
 /// Both are horizontal if the robot drives.
 struct PoseErrors {
-  double drift = 0.0;  ///< of the path length, 0 to 1
+  static constexpr double kMostTracking = 10.0;  ///< [m]
+  double drift = 0.0;                            ///< of the path length, 0 to 1
   double fix_every =
       0.0;  ///< [s] after which it knows its place, and is on its trajectory a second later; 0: never
   double tracking =
