@@ -1,8 +1,9 @@
 #pragma once
 
+#include "exploration/hit_points.hpp"
+
 #include <frontlux/voxel_grid.hpp>
 
-#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,23 +11,23 @@
 namespace frontlux::planner::detail {
 
 /// The map in motion, in which surfaces stay: rays that graze one free some of its voxels, until they are hit
-/// again. What is behind those is no frontier, and robots keep off them.
-///
-/// A voxel that was occupied at an update stays so as long as it is part of a surface: of the occupied voxels
-/// that hang together with it by faces, edges and corners one is still occupied in the map, or there are
-/// `kLeastSurface` of them or more. What is neither was a stray return, or so small that the map has lost it,
-/// and is free again.
+/// again. What is behind those is no frontier, and robots keep off them. So a voxel is occupied in it that is
+/// so in the map, or that `HitPoints` holds for solid.
 class ConservativeMap {
  public:
-  static constexpr std::size_t kLeastSurface = 10;  // voxels: a stray return is one, however large
-
   /// @param map  at the beginning
-  explicit ConservativeMap(VoxelGrid map) : grid_(std::move(map)) {}
+  explicit ConservativeMap(VoxelGrid map) : grid_(std::move(map)), hits_(grid_) {}
 
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
 
+  /// Takes note of a scan that the map has taken in; `grid` changes with the next `update`.
+  /// @return voxels that are free in the map and will be occupied here
+  std::vector<VoxelKey> insert(const Scan& scan, const Mapping& mapping, const MapChange& change) {
+    return hits_.insert(scan, mapping, change);
+  }
+
   /// Takes over changes of the map.
-  /// @param changed   the voxels that may have changed in it
+  /// @param changed   the voxels that may have changed in it since the last update
   /// @param occupied  by robots: in these nothing else can be, so that they are free until the next update
   /// @return further voxels that may have changed here
   [[nodiscard]] std::vector<VoxelKey> update(const VoxelGrid& map, std::span<const VoxelKey> changed,
@@ -34,6 +35,7 @@ class ConservativeMap {
 
  private:
   VoxelGrid grid_;
+  HitPoints hits_;
   std::vector<VoxelKey> under_robots_;  // occupied but for them
 };
 

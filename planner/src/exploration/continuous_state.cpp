@@ -154,9 +154,16 @@ void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange&
   for (const VoxelKey& key : change.keys) {
     touched.emplace_back(key, robot);
     if (change.grid.at(key) == Occupancy::kFree) continue;
-    for (Member& member : members)
-      member.blocked = member.blocked || std::ranges::binary_search(member.needed, key);
+    for (Member& member : members) member.note_closed(key);
   }
+}
+
+// Voxels that are closed from now on though the map has them free. A robot that goes back as it came does so
+// where the map lets it.
+void ContinuousExploration::State::note_solid(std::span<const VoxelKey> voxels) {
+  for (Member& member : members)
+    if (member.activity != Activity::kRetreats)
+      std::ranges::for_each(voxels, [&](const VoxelKey& key) { member.note_closed(key); });
 }
 
 // In which only their bodies can be, of robots on tours.

@@ -5,6 +5,7 @@
 
 #include <frontlux/planner/continuous_exploration.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -56,6 +57,7 @@ struct ContinuousExploration::State {
     bool asks = true;                      // when it plans next without a goal: others to make room
     std::vector<Keys> others_rested = {};  // where, each time that it has asked since it had a goal
 
+    void note_closed(const VoxelKey& key) { blocked = blocked || std::ranges::binary_search(needed, key); }
     [[nodiscard]] bool is_lost() const { return activity == Activity::kLost; }
     [[nodiscard]] bool is_going() const { return activity != Activity::kRests && !is_lost(); }
   };
@@ -70,6 +72,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void note_scan(std::size_t robot, const MapChange& change);
+  void note_solid(std::span<const VoxelKey> voxels);
   void extend_trail(std::size_t robot, double until);
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;

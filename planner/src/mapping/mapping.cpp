@@ -163,6 +163,7 @@ MapChange Mapping::mark_free(std::span<const VoxelKey> voxels) {
 
 const octomap::OcTree& Mapping::tree() const { return state_->tree; }
 const VoxelGrid& Mapping::grid() const { return state_->grid; }
+double Mapping::surface_depth() const { return state_->surface_depth; }
 const KeyBox& Mapping::bounds() const { return state_->bounds; }
 const InsertionTime& Mapping::insertion_time() const { return state_->time; }
 

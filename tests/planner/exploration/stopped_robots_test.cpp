@@ -157,7 +157,7 @@ TEST(StoppedRobots, GoBackAsTheyCame) {
   double length = 0.0;
   for (const double beyond : {0.0, 1.0}) {  // [m] where its trajectory ends by the time
     int corners = 0;
-    for (const double begin : {5.0, 11.0, 16.0, 18.0, 22.0, 40.0}) {  // [s]
+    for (const double begin : {5.0, 18.0, 33.0}) {  // [s]
       TeamInMotion scene("maze", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
       scene.explore(begin);
       ContinuousExploration& exploration = scene.exploration();

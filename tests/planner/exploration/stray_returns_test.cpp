@@ -14,29 +14,39 @@ using test::TeamInWorld;
 
 constexpr double kLong = 300.0;  // [s]
 constexpr float kRange = 2.0F;   // [m]
+constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 // A robot at its start, which measures along x.
 struct AtStart {
   TeamInWorld team{"room", 1, {small_uav()}};
-  ContinuousExploration exploration{TeamInMotion::options(team, GoalChoice::kTours), team.empty_map()};
+  ContinuousExploration exploration;
   const Pose pose = team.starts[0].pose;
 
-  AtStart() { exploration.begin(team.starts, 0.0); }
+  explicit AtStart(GoalChoice choice = GoalChoice::kTours)
+      : exploration(TeamInMotion::options(team, choice), team.empty_map()) {
+    exploration.begin(team.starts, 0.0);
+  }
   void scan(int times, float range) {
     const Scan ray{pose.position.cast<float>(), kRange, {Eigen::Vector3f::UnitX()}, {range}};
     for (int i = 0; i < times; ++i) exploration.insert(0, pose, ray);
+  }
+  // A ray that ends near the end of a trajectory, or passes it.
+  [[nodiscard]] Scan ray_towards(const Trajectory& trajectory, bool passes) const {
+    const double time = trajectory.begin() + 0.9 * (trajectory.end() - trajectory.begin());
+    const Eigen::Vector3f to = (trajectory.at(time).pose.position - pose.position).cast<float>();
+    return {pose.position.cast<float>(), kRange, {to.normalized()}, {passes ? kNothing : to.norm()}};
   }
 };
 
 // One that ends in the voxel beside a robot, until rays have passed that.
 TEST(StrayReturns, ShutARobotInForAMomentOnly) {
   AtStart robot;
-  robot.scan(3, 0.3F);
+  robot.scan(1, 0.3F);
   auto planned = robot.exploration.plan(0.0);
   ASSERT_TRUE(planned);
   EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
   EXPECT_FALSE(robot.exploration.end());
-  robot.scan(9, std::numeric_limits<float>::infinity());
+  robot.scan(3, kNothing);
   planned = robot.exploration.plan(1.0);
   ASSERT_TRUE(planned);
   EXPECT_TRUE(planned->step.robots[0].goal.pose);
@@ -50,6 +60,31 @@ TEST(StrayReturns, AreNotWhereARobotIs) {
   const auto planned = robot.exploration.plan(0.0);
   ASSERT_TRUE(planned);
   EXPECT_TRUE(planned->step.robots[0].goal.pose);
+}
+
+// Of two rays that end in a voxel ahead which the map has free, and goes on to have, the second one counts:
+// on tours, where robots keep off.
+TEST(StrayReturns, AreSurfacesIfThereAreTwo) {
+  for (const GoalChoice choice : {GoalChoice::kTours, GoalChoice::kGoals}) {
+    AtStart robot(choice);
+    const auto planned = robot.exploration.plan(0.0);
+    ASSERT_TRUE(planned && planned->step.robots[0].goal.pose);
+    for (int i = 0; i < 10; ++i)
+      robot.exploration.insert(0, robot.pose, robot.ray_towards(planned->trajectory, true));
+    const Scan ray = robot.ray_towards(planned->trajectory, false);
+    robot.exploration.insert(0, robot.pose, ray);
+    EXPECT_FALSE(robot.exploration.plan(0.2));
+    EXPECT_TRUE(robot.exploration.insert(0, robot.pose, ray).keys.empty());
+    const auto again = robot.exploration.plan(0.3);
+    ASSERT_EQ(again.has_value(), choice == GoalChoice::kTours);
+    if (!again) continue;
+    EXPECT_EQ(again->reason, PlanReason::kBlocked);
+    const Lattice& lattice = robot.exploration.mapping().grid().lattice();
+    const VoxelKey hit = lattice.key(Eigen::Vector3f(ray.origin + ray.directions[0] * ray.ranges[0])).value();
+    const Trajectory& now = again->trajectory;
+    for (double time = now.begin(); time <= now.end(); time += 0.01)
+      EXPECT_NE(lattice.key(now.at(time).pose.position), hit);
+  }
 }
 
 // One planning that finds nothing to do is no end, nor are two at about the same time.

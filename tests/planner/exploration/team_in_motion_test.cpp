@@ -226,7 +226,7 @@ TEST(TeamInMotion, EachHasItsTurnHoweverLongPlanningsTake) {
 // An obstacle is found on a robot's path while others pass near by: it brakes, and they keep away.
 TEST(TeamInMotion, BrakesForObstaclesOnThePathsOfOthers) {
   int obstacles = 0;
-  for (const double begin : {7.3, 7.4, 7.8, 8.5}) {
+  for (const double begin : {7.3, 7.4, 7.8, 8.2, 8.5, 9.0}) {
     TeamInMotion scene("room", std::vector<RobotDescription>(3, small_uav()), sim::AtContact::kGoOn,
                        GoalChoice::kTours);
     ContinuousExploration& exploration = scene.exploration();

@@ -73,7 +73,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   ///         has begun
   ExplorationStep begin(std::span<const ExplorationStart> starts, double time);
 
-  /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map.
+  /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map. Rays that end on
+  /// a robot of the team are to be left out (NaN): what they hit would be closed until others pass there.
   /// @param pose  where the robot has been, as it is believed: it may go back over all of these places. New
   ///              trajectories begin on the one that it has; a robot that has left it reports `stopped`.
   /// @throws std::invalid_argument before `begin`, if there is no such robot, for a pose that is not finite,

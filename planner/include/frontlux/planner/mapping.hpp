@@ -114,6 +114,9 @@ class FRONTLUX_EXPORT Mapping {
   /// The same as `make_voxel_grid(tree())`, kept in step.
   [[nodiscard]] const VoxelGrid& grid() const;
 
+  /// [m] `MappingOptions::surface_depth`.
+  [[nodiscard]] double surface_depth() const;
+
   /// Voxels outside are never touched.
   [[nodiscard]] const KeyBox& bounds() const;
 

@@ -1,0 +1,166 @@
+#include "exploration/hit_points.hpp"
+
+#include <frontlux/key_box.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace frontlux::planner::detail {
+namespace {
+
+std::pair<int, int> column_of(const VoxelKey& key) {
+  constexpr unsigned kLog2Edge = 6;
+  return {key.x >> kLog2Edge, key.y >> kLog2Edge};
+}
+
+}  // namespace
+
+/// Directions in cubic cells, to find those about a given one.
+class HitPoints::Directions {
+ public:
+  /// Those at less than this from a direction of unit length are found.
+  static constexpr float kFound = 0.9F / 16;
+
+  explicit Directions(std::span<const Eigen::Vector3f> directions)
+      : begins_(kEdge * kEdge * kEdge + 1), order_(directions.size()) {
+    std::vector<std::size_t> cells;
+    cells.reserve(directions.size());
+    for (const Eigen::Vector3f& direction : directions) cells.push_back(number_of(cell_of(direction)));
+    for (const std::size_t cell : cells) ++begins_[cell + 1];
+    for (std::size_t i = 1; i < begins_.size(); ++i) begins_[i] += begins_[i - 1];
+    std::vector<std::uint32_t> next = begins_;
+    for (std::size_t i = 0; i < cells.size(); ++i) order_[next[cells[i]]++] = static_cast<std::uint32_t>(i);
+  }
+
+  /// Calls `visit` with the number of each direction that differs by up to a cell in each coordinate, and of
+  /// some others.
+  template <class Visit>
+  void for_each_near(const Eigen::Vector3f& direction, const Visit& visit) const {
+    const Eigen::Vector3i cell = cell_of(direction);
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        // Cells along z follow each other.
+        const std::size_t first = number_of(cell + Eigen::Vector3i(x, y, -1));
+        for (std::uint32_t i = begins_[first]; i < begins_[first + 3]; ++i) visit(order_[i]);
+      }
+  }
+
+ private:
+  static constexpr float kCells = 16;  // from 0 to 1
+  static constexpr int kMiddle = 18;   // cell of 0: room for -1 to 1, and a cell more on each side
+  static constexpr int kEdge = 2 * kMiddle + 1;
+
+  static Eigen::Vector3i cell_of(const Eigen::Vector3f& direction) {
+    return ((direction * kCells).array().floor().cast<int>() + kMiddle).matrix();
+  }
+  static std::size_t number_of(const Eigen::Vector3i& cell) {
+    return static_cast<std::size_t>((cell.x() * kEdge + cell.y()) * kEdge + cell.z());
+  }
+
+  std::vector<std::uint32_t> begins_;  // in `order_`, of each cell
+  std::vector<std::uint32_t> order_;
+};
+
+HitPoints::HitPoints(const VoxelGrid& map) : near_(static_cast<float>(map.resolution() / 8)) {
+  map.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    // Larger blocks are the inside of something.
+    if (block.log2_edge > Brick::kLog2 || (brick == nullptr && state != Occupancy::kOccupied)) return;
+    const int last = (1 << block.log2_edge) - 1;
+    const VoxelKey& low = block.corner;
+    for_each_key({low, make_key(low.x + last, low.y + last, low.z + last)}, [&](const VoxelKey& key) {
+      if (map.at(key) == Occupancy::kOccupied) points_[key] = {map.lattice().center(key), 0, kLeastEnded, 0};
+    });
+  });
+}
+
+std::vector<VoxelKey> HitPoints::insert(const Scan& scan, const Mapping& mapping, const MapChange& change) {
+  ++scans_;
+  std::vector<VoxelKey> solid;
+  const auto is_free = [&](const VoxelKey& key) { return change.grid.at(key) == Occupancy::kFree; };
+  const auto depth = static_cast<float>(mapping.surface_depth());
+  std::pair<const VoxelKey, Point>* last = nullptr;  // neighbouring rays often end in the same voxel
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    if (!std::isfinite(scan.ranges[i])) continue;
+    const Eigen::Vector3f end = scan.origin + scan.directions[i] * (scan.ranges[i] + depth);
+    const auto key = change.grid.lattice().key(end);
+    if (!key || !mapping.bounds().contains(*key)) continue;
+    if (last == nullptr || last->first != *key) last = &*points_.try_emplace(*key).first;
+    Point& point = last->second;
+    const bool is_first = point.scan != scans_, was_solid = point.is_solid();
+    point = {end, scans_, static_cast<std::uint8_t>(was_solid ? kLeastEnded : point.ended + 1), 0};
+    if ((was_solid && !is_first) || !is_free(*key)) continue;
+    free_[column_of(*key)].insert(*key);
+    if (point.is_solid() && !was_solid) solid.push_back(*key);
+  }
+  changed_.insert(changed_.end(), solid.begin(), solid.end());
+  for (const VoxelKey& key : change.keys) {
+    const auto found = points_.find(key);
+    if (found == points_.end()) continue;
+    if (!is_free(key)) {
+      free_[column_of(key)].erase(key);
+      continue;
+    }
+    free_[column_of(key)].insert(key);
+    if (found->second.is_solid()) changed_.push_back(key);  // since it was occupied
+  }
+  note_passing(scan, change.grid.lattice());
+  return solid;
+}
+
+void HitPoints::note_passing(const Scan& scan, const Lattice& lattice) {
+  const auto key_at = [&](float reach, std::uint16_t otherwise) {
+    const auto along = [&](float at) { return lattice.key(static_cast<double>(at)).value_or(otherwise); };
+    return VoxelKey{along(scan.origin.x() + reach), along(scan.origin.y() + reach), 0};
+  };
+  const auto reach = static_cast<float>(scan.max_range);
+  const Column low = column_of(key_at(-reach, 0)), high = column_of(key_at(reach, 0xFFFF));
+  const Directions directions(scan.directions);
+  for (int x = low.first; x <= high.first; ++x)
+    for (auto column = free_.lower_bound({x, low.second});
+         column != free_.end() && column->first <= Column{x, high.second}; ++column)
+      note_passing(scan, directions, column->second);
+}
+
+void HitPoints::note_passing(const Scan& scan, const Directions& directions, std::set<VoxelKey>& column) {
+  for (auto voxel = column.begin(); voxel != column.end();) {
+    const auto found = points_.find(*voxel);
+    Point& point = found->second;
+    const int passed = point.scan == scans_ ? 0 : point.passed + passing(scan, directions, point.at);
+    point.passed = static_cast<std::uint8_t>(std::min(passed, kMostPassed));
+    if (passed < kMostPassed) {
+      ++voxel;
+      continue;
+    }
+    if (point.is_solid()) changed_.push_back(*voxel);
+    points_.erase(found);
+    voxel = column.erase(voxel);
+  }
+}
+
+// Rays that pass a point; enough of them where the sensor itself is.
+int HitPoints::passing(const Scan& scan, const Directions& directions, const Eigen::Vector3f& point) const {
+  const auto reach = static_cast<float>(scan.max_range);
+  const Eigen::Vector3f offset = point - scan.origin;
+  const float distance = offset.norm(), near = std::min(near_, Directions::kFound * distance);
+  if (distance <= near_) return kMostPassed;
+  if (distance >= reach) return 0;
+  int count = 0;
+  directions.for_each_near(offset / distance, [&](std::uint32_t ray) {
+    const Eigen::Vector3f& direction = scan.directions[ray];
+    // None that measures nothing, whose range is NaN.
+    const bool goes_on = std::min(scan.ranges[ray], reach) > offset.dot(direction) + near_;
+    count += static_cast<int>(goes_on && offset.cross(direction).norm() < near);
+  });
+  return count;
+}
+
+bool HitPoints::is_solid(const VoxelKey& voxel) const {
+  const auto found = points_.find(voxel);
+  return found != points_.end() && found->second.is_solid();
+}
+
+std::vector<VoxelKey> HitPoints::take_changed() { return std::exchange(changed_, {}); }
+
+}  // namespace frontlux::planner::detail
