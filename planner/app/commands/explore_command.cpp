@@ -131,8 +131,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps,\n"
               "in motion for 3 goals of each robot;\n"
-              "goals of at least this gain come first [10; --goal nearest: 1;\n"
-              "tours: at least 0.3 m2, at most 0.9 m2]",
+              "goals of at least this gain come first [10; --goal nearest,\n"
+              "--mode paper: 1; tours: at least 0.3 m2, at most 0.9 m2]",
               kFromZero);
   command.group("Robots");
   Option team = command.add("--team", options.team, "TEAM", "Robots joined by +: uav, ugv, 2uav+ugv");
