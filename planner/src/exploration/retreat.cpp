@@ -86,17 +86,19 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
   std::optional<TravelCorridor> elsewhere;
   const bool may_be_shut = fills_its_voxel(robot);
   const auto own = lattice().key(poses[robot].position);
-  double length = 0.0;   // [m] of the trail from the place on
-  bool is_shut = false;  // the trail, between the place and what the robot can reach
+  double length = 0.0;      // [m] of the trail from the place on
+  bool is_shut = false;     // the trail, between the place and what the robot can reach
+  std::set<VoxelKey> open;  // where it was not: it leaves out the loops of the trail
   for (std::size_t place = trail.size(); place-- > 0;) {
     const auto cell = lattice().key(trail[place].position);
     const bool reached = cell && can_reach(robot, *cell);
     if (place + 1 < trail.size()) {
       const Eigen::Vector3d &here = trail[place].position, &next = trail[place + 1].position;
       length += (next - here).norm();
-      is_shut =
-          may_be_shut && !reached && (is_shut || leads_through_occupied(mapping.grid(), here, next, own));
+      is_shut = may_be_shut && !reached && !(cell && open.contains(*cell)) &&
+                (is_shut || leads_through_occupied(mapping.grid(), here, next, own));
     }
+    if (cell && !is_shut) open.insert(*cell);
     if (!cell || is_shut || reached || !path_corridor(robot).passable(*cell)) continue;
     if (has_no_corridor && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;

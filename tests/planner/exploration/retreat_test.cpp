@@ -147,6 +147,23 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
 }
 
+// It has gone there and back.
+TEST(RetreatWithTours, IsNotShutByWhatStandsOnALoopOfTheTrail) {
+  TwoRooms rooms(true, 5);
+  rooms.go_to(TwoRooms::at(56, 18));
+  rooms.go_to(TwoRooms::at(56, 15));
+  const Eigen::Vector3f beside = rooms.state.lattice().exact_center(key_at(56, 16, 5)).cast<float>();
+  for (int i = 0; i < 5; ++i) rooms.state.mapping.insert(beside, {&beside, 1});
+  rooms.state.changed = {key_at(56, 16, 5)};
+  rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
+  rooms.state.update_views(rooms.step);
+  const Goal goal = rooms.choose();
+  ASSERT_EQ(goal.state, GoalState::kNoCorridor);
+  const std::vector<Pose> path = rooms.state.plan_retreat(0, goal);
+  ASSERT_FALSE(path.empty());
+  EXPECT_EQ(path.back().position, TwoRooms::at(34, 4).position);
+}
+
 // A door that a scan finds open while the robot keeps its stop is open at the next planning, when the robot
 // is in it.
 TEST(RetreatWithTours, IsOpenOnceAScanHasFoundItOpen) {
