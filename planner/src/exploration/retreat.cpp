@@ -16,12 +16,12 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// Whether the sensor of a robot would go through a voxel that is known to be occupied, but for the one that
-// it is in.
+// Whether the sensor of a robot would go through a voxel that is known to be occupied, but for those that its
+// body is in: there it stands beside what they hold, or touches it.
 bool leads_through_occupied(const VoxelGrid& map, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                            const std::optional<VoxelKey>& own) {
+                            const KeyBox& own) {
   return !SegmentVoxels(map.lattice(), from, to).all_of([&](const VoxelKey& key) {
-    return key == own || map.at(key) != Occupancy::kOccupied;
+    return own.contains(key) || map.at(key) != Occupancy::kOccupied;
   });
 }
 
@@ -85,7 +85,8 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
   const bool has_no_corridor = goal.state == GoalState::kNoCorridor;
   std::optional<TravelCorridor> elsewhere;
   const bool may_be_shut = fills_its_voxel(robot);
-  const auto own = lattice().key(poses[robot].position);
+  const KeyBox own =
+      voxels_of(lattice(), body_of(options.team[robot].robot.travel).translated(poses[robot].position));
   double length = 0.0;      // [m] of the trail from the place on
   bool is_shut = false;     // the trail, between the place and what the robot can reach
   std::set<VoxelKey> open;  // where it was not: it leaves out the loops of the trail
