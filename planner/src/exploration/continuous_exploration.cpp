@@ -83,7 +83,8 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   check_finite({&pose, 1});
   const MapChange change = state.team.mapping.insert(scan);
   state.note_scan(robot, change);
-  state.note_solid(state.team.conservative_map->insert(scan, state.team.mapping, change));
+  const std::vector<VoxelKey> closed = state.team.conservative_map->insert(scan, state.team.mapping, change);
+  if (state.team.tours) state.note_solid(closed);
   State::Member& member = state.members[robot];
   member.sensed.push_back(pose);
   if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) member.looked = pose;

@@ -166,9 +166,10 @@ void ContinuousExploration::State::note_solid(std::span<const VoxelKey> voxels) 
       std::ranges::for_each(voxels, [&](const VoxelKey& key) { member.note_closed(key); });
 }
 
-// In which only their bodies can be.
+// In which only their bodies can be, of robots on tours.
 Keys ContinuousExploration::State::voxels_of_robots(double time) const {
   Keys keys;
+  if (!team.tours) return keys;
   for (std::size_t r = 0; r < members.size(); ++r) {
     const auto own = team.lattice().key(members[r].motion.at(time).pose.position);
     if (own && !members[r].is_lost() && team.fills_its_voxel(r)) keys.push_back(*own);

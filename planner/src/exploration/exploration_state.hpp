@@ -24,7 +24,7 @@ struct ExplorationState {
 
   ExplorationOptions options;
   Mapping mapping;
-  /// If given: the map in motion. Frontiers and paths come from it.
+  /// If given: the map in motion. Frontiers come from it.
   std::optional<ConservativeMap> conservative_map = {};
   Keys also_changed = {};  // voxels that count as changed when the frontiers are updated next
   FrontierSet frontiers;
@@ -53,9 +53,11 @@ struct ExplorationState {
 
   /// How a robot travels between the nodes of its corridor, if it has such.
   [[nodiscard]] TravelOptions travel_by_voxels(std::size_t robot) const;
-  /// What robots find their paths in.
+  /// What robots find their paths in. On tours it is `conservative_map`: a robot that does not move measures
+  /// the same again and again, and if beams that graze the floor had freed it before the robot, it would
+  /// never go on.
   [[nodiscard]] const VoxelGrid& travel_map() const {
-    return conservative_map ? conservative_map->grid() : mapping.grid();
+    return tours ? conservative_map->grid() : mapping.grid();
   }
   [[nodiscard]] const Lattice& lattice() const { return mapping.grid().lattice(); }
   [[nodiscard]] std::size_t size() const { return options.team.size(); }

@@ -16,12 +16,20 @@
 namespace frontlux::planner::detail {
 namespace {
 
-// Whether the sensor of a robot would go through a voxel that is known to be occupied, but for those that its
-// body is in: there it stands beside what they hold, or touches it.
+// The voxels that a body fills: nothing else can be in them.
+bool fills(const Eigen::AlignedBox3d& body, const Lattice& lattice, const VoxelKey& voxel) {
+  const Eigen::Vector3d middle = lattice.exact_center(voxel),
+                        half = Eigen::Vector3d::Constant(lattice.resolution() / 2);
+  return body.contains(Eigen::AlignedBox3d(middle - half, middle + half));
+}
+
+// Whether the sensor of a robot would go through a voxel that is known to be occupied, but for its own one
+// and those that its body fills.
 bool leads_through_occupied(const VoxelGrid& map, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                            const KeyBox& own) {
-  return !SegmentVoxels(map.lattice(), from, to).all_of([&](const VoxelKey& key) {
-    return own.contains(key) || map.at(key) != Occupancy::kOccupied;
+                            const std::optional<VoxelKey>& own, const Eigen::AlignedBox3d& body) {
+  const Lattice& lattice = map.lattice();
+  return !SegmentVoxels(lattice, from, to).all_of([&](const VoxelKey& key) {
+    return key == own || map.at(key) != Occupancy::kOccupied || fills(body, lattice, key);
   });
 }
 
@@ -85,21 +93,20 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
   const bool has_no_corridor = goal.state == GoalState::kNoCorridor;
   std::optional<TravelCorridor> elsewhere;
   const bool may_be_shut = fills_its_voxel(robot);
-  const KeyBox own =
-      voxels_of(lattice(), body_of(options.team[robot].robot.travel).translated(poses[robot].position));
-  double length = 0.0;      // [m] of the trail from the place on
-  bool is_shut = false;     // the trail, between the place and what the robot can reach
-  std::set<VoxelKey> open;  // where it was not: it leaves out the loops of the trail
+  const auto own = lattice().key(poses[robot].position);
+  const Eigen::AlignedBox3d body =
+      body_of(options.team[robot].robot.travel).translated(poses[robot].position);
+  double length = 0.0;   // [m] of the trail from the place on
+  bool is_shut = false;  // the trail, between the place and where the robot is, or what it can reach
   for (std::size_t place = trail.size(); place-- > 0;) {
     const auto cell = lattice().key(trail[place].position);
     const bool reached = cell && can_reach(robot, *cell);
     if (place + 1 < trail.size()) {
       const Eigen::Vector3d &here = trail[place].position, &next = trail[place + 1].position;
       length += (next - here).norm();
-      is_shut = may_be_shut && !reached && !(cell && open.contains(*cell)) &&
-                (is_shut || leads_through_occupied(mapping.grid(), here, next, own));
+      is_shut = may_be_shut && !reached && cell != own &&
+                (is_shut || leads_through_occupied(mapping.grid(), here, next, own, body));
     }
-    if (cell && !is_shut) open.insert(*cell);
     if (!cell || is_shut || reached || !path_corridor(robot).passable(*cell)) continue;
     if (has_no_corridor && trail[place].position == poses[robot].position) return std::nullopt;
     if (std::ranges::find(tried, *cell) != tried.end()) continue;

@@ -62,7 +62,8 @@ TEST(StrayReturns, AreNotWhereARobotIs) {
   EXPECT_TRUE(planned->step.robots[0].goal.pose);
 }
 
-// Of two rays that end in a voxel ahead which the map has free, and goes on to have, the second one counts.
+// Of two rays that end in a voxel ahead which the map has free, and goes on to have, the second one counts:
+// on tours, where robots keep off.
 TEST(StrayReturns, AreSurfacesIfThereAreTwo) {
   for (const GoalChoice choice : {GoalChoice::kTours, GoalChoice::kGoals}) {
     AtStart robot(choice);
@@ -75,7 +76,8 @@ TEST(StrayReturns, AreSurfacesIfThereAreTwo) {
     EXPECT_FALSE(robot.exploration.plan(0.2));
     EXPECT_TRUE(robot.exploration.insert(0, robot.pose, ray).keys.empty());
     const auto again = robot.exploration.plan(0.3);
-    ASSERT_TRUE(again);
+    ASSERT_EQ(again.has_value(), choice == GoalChoice::kTours);
+    if (!again) continue;
     EXPECT_EQ(again->reason, PlanReason::kBlocked);
     const Lattice& lattice = robot.exploration.mapping().grid().lattice();
     const VoxelKey hit = lattice.key(Eigen::Vector3f(ray.origin + ray.directions[0] * ray.ranges[0])).value();
