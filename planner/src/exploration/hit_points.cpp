@@ -78,14 +78,19 @@ HitPoints::HitPoints(const VoxelGrid& map) : near_(static_cast<float>(map.resolu
 std::vector<VoxelKey> HitPoints::insert(const Scan& scan, const Mapping& mapping, const MapChange& change) {
   ++scans_;
   std::vector<VoxelKey> solid;
+  const Lattice& lattice = change.grid.lattice();
   const auto is_free = [&](const VoxelKey& key) { return change.grid.at(key) == Occupancy::kFree; };
   const auto depth = static_cast<float>(mapping.surface_depth());
   std::pair<const VoxelKey, Point>* last = nullptr;  // neighbouring rays often end in the same voxel
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     if (!std::isfinite(scan.ranges[i])) continue;
+    const Eigen::Vector3f hit = scan.origin + scan.directions[i] * scan.ranges[i];
     const Eigen::Vector3f end = scan.origin + scan.directions[i] * (scan.ranges[i] + depth);
-    const auto key = change.grid.lattice().key(end);
+    const auto key = lattice.key(end), before = lattice.key(hit);
     if (!key || !mapping.bounds().contains(*key)) continue;
+    // At the edge of what is in the voxel before, as a floor's above a pit, there is nothing behind it.
+    if (before && *before != *key && (change.grid.at(*before) == Occupancy::kOccupied || is_solid(*before)))
+      continue;
     if (last == nullptr || last->first != *key) last = &*points_.try_emplace(*key).first;
     Point& point = last->second;
     const bool is_first = point.scan != scans_, was_solid = point.is_solid();
@@ -105,7 +110,7 @@ std::vector<VoxelKey> HitPoints::insert(const Scan& scan, const Mapping& mapping
     free_[column_of(key)].insert(key);
     if (found->second.is_solid()) changed_.push_back(key);  // since it was occupied
   }
-  note_passing(scan, change.grid.lattice());
+  note_passing(scan, lattice);
   return solid;
 }
 

@@ -13,9 +13,9 @@
 
 namespace frontlux::planner::detail {
 
-/// Where rays have ended: of each voxel the last point. A voxel is solid if `kLeastEnded` rays have ended in
-/// it, until later ones have passed that point by less than an eighth of a voxel, and gone on: `kMostPassed`
-/// rays, of scans that have none that ends in the voxel.
+/// Where rays have ended: of each voxel the last point, `surface_depth` behind a surface. A voxel is solid if
+/// `kLeastEnded` rays have ended in it, until later ones have passed that point by less than an eighth of a
+/// voxel, and gone on: `kMostPassed` rays, of scans that have none that ends in the voxel.
 ///
 /// Of the rays that graze a wall most pass through its voxels, so that the map has these free. But few of
 /// them pass the very points at which others have ended, unless what was there is gone: a door has opened,

@@ -149,6 +149,20 @@ TEST(HitPoints, AreNotWhereNothingWasMeasuredOrOutsideTheMap) {
   EXPECT_EQ(points.take_changed(), Keys{});
 }
 
+// Rays that end at the very edge of a floor, behind which there is a pit.
+TEST(HitPoints, AreNotBehindTheEdgeOfWhatIsThere) {
+  for (const bool is_floor : {true, false}) {
+    Scene scene;
+    const std::vector<Eigen::Vector3f> floor = {{3.0F, 0.0F, 0.0F}}, edge = {{3.1496F, 0.0F, 0.0F}};
+    if (is_floor) scene.scan(floor, floor[0].x(), 2);
+    scene.scan({{3.5F, 0.0F, 0.0F}}, kNothing, is_floor ? 0 : 10);
+    const VoxelKey behind = scene.key({3.1504F, 0.0F, 0.0F});
+    ASSERT_NE(scene.key(edge[0]), behind);
+    scene.scan(edge, edge[0].x(), 3);
+    EXPECT_EQ(scene.points.is_solid(behind), !is_floor) << "a wall at a voxel's face";
+  }
+}
+
 // Its rule, ray by ray.
 class Plain {
  public:
@@ -159,6 +173,9 @@ class Plain {
       const Eigen::Vector3f end = scan.origin + scan.directions[i] * (scan.ranges[i] + 0.001F);
       const VoxelKey key = mapping.grid().lattice().key(end).value();
       if (!mapping.bounds().contains(key)) continue;
+      const Eigen::Vector3f hit = scan.origin + scan.directions[i] * scan.ranges[i];
+      const VoxelKey before = mapping.grid().lattice().key(hit).value();
+      if (before != key && (mapping.grid().at(before) == Occupancy::kOccupied || is_solid(before))) continue;
       Point& point = points_[key];
       point = {end, point.ended + 1, 0};
       ended.insert(key);
