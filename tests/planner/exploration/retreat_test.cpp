@@ -53,6 +53,13 @@ struct TwoRooms {
     step = state.new_step();
     state.update_views(step);
   }
+  /// For certain, in the map itself.
+  void occupy(const Keys& keys) {
+    for (const VoxelKey& key : keys) {
+      const Eigen::Vector3f middle = state.lattice().exact_center(key).cast<float>();
+      for (int i = 0; i < 5; ++i) state.mapping.insert(middle, {&middle, 1});
+    }
+  }
   static ExplorationOptions options(bool tours) {
     ExplorationOptions options = exploration_options();
     options.team.push_back({uav(), goal_options(uav())});
@@ -123,13 +130,7 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   for_each_key({key_at(-26, 0, 0), key_at(-26, 29, 9)}, [&](const VoxelKey& key) {
     if (key != gap.front()) pane.push_back(key);
   });
-  const auto occupy = [&](const Keys& keys) {
-    for (const VoxelKey& key : keys) {
-      const Eigen::Vector3f middle = rooms.state.lattice().exact_center(key).cast<float>();
-      for (int i = 0; i < 5; ++i) rooms.state.mapping.insert(middle, {&middle, 1});
-    }
-  };
-  occupy(pane);
+  rooms.occupy(pane);
   rooms.state.trails[0].insert(rooms.state.trails[0].begin(), TwoRooms::at(-28, 15));
   rooms.state.changed = pane;
   rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
@@ -141,7 +142,7 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   EXPECT_EQ(path.back().position, TwoRooms::at(-28, 15).position);
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
   // With the gap closed as well it does not go through: somebody has shut a door.
-  occupy(gap);
+  rooms.occupy(gap);
   rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   rooms.state.retreated_to[0].clear();
   EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
@@ -163,10 +164,7 @@ TEST(RetreatWithTours, LeavesWhatTheBodyFillsAndLoopsOfTheTrail) {
     Pose& pose = rooms.state.poses[0];
     if (stands != Stands::kBesideTheBody) pose.position.x() -= 0.1;  // so that it fills that voxel
     rooms.state.trails[0].push_back(pose);
-    for (const VoxelKey& key : occupied) {
-      const Eigen::Vector3f middle = rooms.state.lattice().exact_center(key).cast<float>();
-      for (int i = 0; i < 5; ++i) rooms.state.mapping.insert(middle, {&middle, 1});
-    }
+    rooms.occupy(occupied);
     rooms.state.changed = occupied;
     rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
     rooms.state.update_views(rooms.step);
