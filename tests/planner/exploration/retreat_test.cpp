@@ -53,12 +53,14 @@ struct TwoRooms {
     step = state.new_step();
     state.update_views(step);
   }
-  /// For certain, in the map itself.
+  /// For certain, in both maps.
   void occupy(const Keys& keys) {
     for (const VoxelKey& key : keys) {
       const Eigen::Vector3f middle = state.lattice().exact_center(key).cast<float>();
       for (int i = 0; i < 5; ++i) state.mapping.insert(middle, {&middle, 1});
     }
+    state.changed = keys;
+    state.conservative_map.emplace(state.mapping.grid());
   }
   static ExplorationOptions options(bool tours) {
     ExplorationOptions options = exploration_options();
@@ -132,8 +134,6 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   });
   rooms.occupy(pane);
   rooms.state.trails[0].insert(rooms.state.trails[0].begin(), TwoRooms::at(-28, 15));
-  rooms.state.changed = pane;
-  rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   rooms.state.update_views(rooms.step);
   const Goal goal = rooms.choose();
   ASSERT_EQ(goal.state, GoalState::kNothingAssigned);
@@ -143,7 +143,6 @@ TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
   // With the gap closed as well it does not go through: somebody has shut a door.
   rooms.occupy(gap);
-  rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
   rooms.state.retreated_to[0].clear();
   EXPECT_TRUE(rooms.state.plan_retreat(0, goal).empty());
 }
@@ -165,8 +164,6 @@ TEST(RetreatWithTours, LeavesWhatTheBodyFillsAndLoopsOfTheTrail) {
     if (stands != Stands::kBesideTheBody) pose.position.x() -= 0.1;  // so that it fills that voxel
     rooms.state.trails[0].push_back(pose);
     rooms.occupy(occupied);
-    rooms.state.changed = occupied;
-    rooms.state.conservative_map.emplace(rooms.state.mapping.grid());
     rooms.state.update_views(rooms.step);
     const Goal goal = rooms.choose();
     ASSERT_EQ(goal.state, GoalState::kNoCorridor);
