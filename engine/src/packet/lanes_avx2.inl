@@ -39,9 +39,27 @@ struct Lanes {
   }
   static I right(I a, I by) { return _mm256_srlv_epi32(a, by); }
   static I select(M m, I yes, I no) { return _mm256_blendv_epi8(no, yes, m); }
-  // Of the lanes of `where`; 0 elsewhere.
+  // Of the lanes of `where`; anything elsewhere. Word by word, which takes two thirds of a gather's time on
+  // Zen 3, and where Intel's processors were mended against gather data sampling.
   static I gather(const void* words, I at, M where) {
-    return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(words), at, where, 4);
+    const I safe = _mm256_and_si256(at, where);
+    const __m128i low = _mm256_castsi256_si128(safe), high = _mm256_extracti128_si256(safe, 1);
+    return _mm256_inserti128_si256(
+        _mm256_castsi128_si256(four_words(words, _mm_cvtsi128_si64(low), _mm_extract_epi64(low, 1))),
+        four_words(words, _mm_cvtsi128_si64(high), _mm_extract_epi64(high, 1)), 1);
+  }
+  // Two indices in each.
+  static __m128i four_words(const void* words, std::int64_t at01, std::int64_t at23) {
+    const auto word = [words](std::uint64_t at) {
+      int value = 0;
+      std::memcpy(&value, static_cast<const char*>(words) + sizeof value * at, sizeof value);
+      return value;
+    };
+    const auto first = static_cast<std::uint64_t>(at01), second = static_cast<std::uint64_t>(at23);
+    __m128i four = _mm_cvtsi32_si128(word(first & 0xFFFFFFFFU));
+    four = _mm_insert_epi32(four, word(first >> 32U), 1);
+    four = _mm_insert_epi32(four, word(second & 0xFFFFFFFFU), 2);
+    return _mm_insert_epi32(four, word(second >> 32U), 3);
   }
   static M closed(const void* words, I at, M where) {
     const I word = gather(words, _mm256_srli_epi32(at, 5), where);
