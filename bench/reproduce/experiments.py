@@ -51,14 +51,18 @@ class Experiments:
             raise ValueError(f"{file}: the member {error} is missing; add it") from error
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from error
-        self.check_methods()
-        for name in self.sets:
-            for run in self.runs(name):
-                self.task_file(run)
-                if self.complete(run) not in COMPLETES:
-                    raise self.wrong(f"{run.task} or {run.method} is complete at {self.complete(run)}",
-                                     f"give one of {', '.join(map(str, COMPLETES))}")
-        self.rows = {run[:2] for name in self.sets for run in self.runs(name) if not run.timed}
+        try:
+            self.check_methods()
+            for name in self.sets:
+                for run in self.runs(name):
+                    self.task_file(run)
+                    if self.complete(run) not in COMPLETES:
+                        raise self.wrong(f"{run.task} or {run.method} is complete at {self.complete(run)}",
+                                         f"give one of {', '.join(map(str, COMPLETES))}")
+            self.rows = {run[:2] for name in self.sets for run in self.runs(name) if not run.timed}
+        except (KeyError, TypeError, AttributeError) as error:
+            raise self.wrong(f"a task, a method or a block of a set has no {error}, or one of another type",
+                             "docs/reproducing.md says what they have") from error
 
     def wrong(self, what, do):
         return ValueError(f"{self.file}: {what}; {do}")

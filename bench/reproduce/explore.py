@@ -154,7 +154,7 @@ def run_in(folder, program, task, threads):
             facts["worst_of_limits"] = worst_of_limits(run / "motion.csv", facts["task"]["robots"])
         return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,
                 "measured": {key: facts.get(key) for key in MEASURED}}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, csv.Error) as error:
         return {"failure": f"what it left cannot be read: {error}", "measured": {}}
 
 

@@ -14,14 +14,18 @@ constexpr std::array kSignals = {SIGINT, SIGTERM};
 
 volatile std::sig_atomic_t note = 0;
 
-extern "C" void take_note(int) { note = 1; }
-
 // Only calls that a handler may make.
 extern "C" void end_at_once(int) {
   remove_own_unfinished();
   constexpr std::string_view kMessage = "frontlux: stopped\n";
   static_cast<void>(!::write(STDERR_FILENO, kMessage.data(), kMessage.size()));
   ::_exit(kInterruptedCode);
+}
+
+// The second time nobody wants to wait any more.
+extern "C" void take_note(int signal) {
+  if (note != 0) end_at_once(signal);
+  note = 1;
 }
 
 // A program started in the background ignores SIGINT, and continues to.
@@ -49,5 +53,12 @@ InterruptNote::~InterruptNote() {
 }
 
 bool InterruptNote::taken() { return note != 0; }
+
+void Patience::check() {
+  constexpr double kLongest = 2.0;  // [s]
+  if (!InterruptNote::taken()) return;
+  if (!since_) since_.emplace();
+  if (since_->seconds() > kLongest) throw Interrupted();
+}
 
 }  // namespace frontlux::app

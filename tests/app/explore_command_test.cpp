@@ -146,7 +146,8 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
                  {"'sttaion' is neither", "(did you mean station?); built-in worlds: "});
   expect_refused({path("none.ply"), "-o", output}, {"none.ply"});
   expect_refused({"-o", output}, {"WORLD"});
-  for (const char* team : {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv"})
+  for (const char* team :
+       {"", "+", "uav+", "car", "0uav", "-1uav", "uav ugv", "99uav", "uav+99999999999ugv", "32uav+32uav"})
     expect_refused(with({"--team", team}), {"--team"});
   expect_refused(with({"--robot", path("none.json")}), {"none.json"});
   expect_refused(with({"--robot", write("bad.json", R"({"name": "cart", "motion": "sideways"})")}),

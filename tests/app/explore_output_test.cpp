@@ -124,5 +124,19 @@ TEST_F(ExploreOutput, SigtermIsLikeCtrlC) {
   EXPECT_EQ(json_in("stopped").at("end"), "stopped");
 }
 
+// Whoever presses it again wants to wait no more.
+TEST_F(ExploreOutput, TheSecondCtrlCEndsAtOnce) {
+  const pid_t child = start_and_wait({"station", "--lockstep", "--report", "off", "-o", path("stopped")}, 1);
+  ASSERT_GT(child, 0);
+  kill(child, SIGSTOP);  // so that both come before the step ends
+  kill(child, SIGINT);
+  kill(child, SIGTERM);
+  kill(child, SIGCONT);
+  EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
+  EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");
+  EXPECT_FALSE(fs::exists(path("stopped/run.json")));
+  EXPECT_GE(read_recording(path("stopped/run.frontlux")).steps.size(), 2U);
+}
+
 }  // namespace
 }  // namespace frontlux::planner

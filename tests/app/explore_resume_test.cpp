@@ -141,9 +141,45 @@ TEST_F(ExploreCommand, RefusesARecordedSensorOfTooManyRays) {
   Recording recording = read_recording(path("run/run.frontlux"));
   recording.head.robots.back().columns = recording.head.robots.back().rows = 8000;
   RecordingWriter(path("run/run.frontlux"), recording.head).write(recording.steps[0]);
-  expect_refused({"--resume", path("run")}, {"--resume: " + path("run/run.frontlux") +
-                                                 ": the robot 'uav': columns and rows are 8000 and 8000",
-                                             "GB of memory"});
+  expect_refused({"--resume", path("run")},
+                 {"--resume: " + path("run/run.frontlux"),
+                  "robots[1].sensor.columns and rows are 8000 and 8000", "GB of memory"});
+}
+
+// Nor options that no command line takes, nor robots: each of these crashed or filled the disk.
+TEST_F(ExploreCommand, RefusesARecordingThatNoRunHasWritten) {
+  expect_explored("run");
+  const Recording good = read_recording(path("run/run.frontlux"));
+  const auto expect_refused_with = [&](const auto& change, const std::string& part) {
+    Recording recording = good;
+    change(recording.head);
+    RecordingWriter(path("run/run.frontlux"), recording.head).write(recording.steps[0]);
+    expect_refused({"--resume", path("run")}, {"--resume: ", path("run/run.frontlux"), part});
+  };
+  const auto option = [](const char* name, const char* value) {
+    return [=](RecordingHead& head) {
+      nlohmann::json options = nlohmann::json::parse(head.options);
+      options[name] = nlohmann::json::parse(value);
+      head.options = options.dump();
+    };
+  };
+  for (const auto& [name, value] : {std::pair("samples", "1e300"),
+                                    {"max_steps", "1e300"},
+                                    {"seed", "-1"},
+                                    {"stop_coverage", "-1"},
+                                    {"scan_delay", "1e300"},
+                                    {"latency", "0"},
+                                    {"tracking_error", "1e9"},
+                                    {"resolution", "0"}})
+    expect_refused_with(option(name, value), std::string(name) + ": '");
+  expect_refused_with(option("bumper", "3"), "type must be boolean");
+  expect_refused_with([](RecordingHead& head) { head.options = std::string(1'000'000, '['); },
+                      "nested too deeply");
+  expect_refused_with([](RecordingHead& head) { head.robots[1].rate = 1e-12; }, "robots[1].sensor.rate_hz");
+  expect_refused_with([](RecordingHead& head) { head.robots[1].robot.name = "\x1b[31m"; },
+                      "robots[1].name is '?[31m'");
+  expect_refused_with([](RecordingHead& head) { head.robots[1].robot.name = head.robots[0].robot.name; },
+                      "the same name");
 }
 
 // A world that is large enough to be caught in the middle of.

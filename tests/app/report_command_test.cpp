@@ -31,6 +31,14 @@ class ReportCommandTest : public test::CommandTest {
     CommandTest::expect_refused(words, std::vector<std::string>{part}, in_folder_);
   }
 
+  // What comes before a command that finds this script as ffmpeg.
+  std::string ffmpeg_that(const std::string& script) {
+    std::filesystem::create_directories(path("bin"));
+    write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(path("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    return in_folder_ + " PATH=" + test::quoted(path("bin")) + ":$PATH";
+  }
+
   std::string in_folder_ = "cd " + test::quoted(folder_.string()) + " &&";
 };
 
@@ -77,13 +85,7 @@ TEST_F(ReportCommandTest, MakesTheSameStillsInAllFormatsEachTime) {
 // A stand-in for ffmpeg is first on the path: one that does nothing, or one that makes a file of its last
 // word.
 TEST_F(ReportCommandTest, MakesAFilmWhereThereIsFfmpegAndElseItsFrames) {
-  std::filesystem::create_directories(path("bin"));
-  const auto stand_in = [&](const std::string& script) {
-    write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
-    std::filesystem::permissions(path("bin/ffmpeg"), std::filesystem::perms::owner_all);
-    return in_folder_ + " PATH=" + test::quoted(path("bin")) + ":$PATH";
-  };
-  const std::string none = stand_in("exit 127");
+  const std::string none = ffmpeg_that("exit 127");
   CommandTest::expect_answer({"one", "--video"}, {"one/video/\n"}, none);
   std::string first;
   for (const char* name : {"frame_0001.png", "frame_0090.png", "frame_0180.png", "frame_0210.png"}) {
@@ -99,12 +101,13 @@ TEST_F(ReportCommandTest, MakesAFilmWhereThereIsFfmpegAndElseItsFrames) {
   // All frames of a run that has no more than a start are one.
   planner::Recording recording = planner::read_recording(folder_ / "one" / "run.frontlux");
   planner::RecordingWriter(folder_ / "one" / "run.frontlux", recording.head).write(recording.steps[0]);
-  const std::string there = stand_in("for last; do :; done; [ \"$last\" = - ] || echo \"$@\" > \"$last\"");
+  const std::string there = ffmpeg_that("for last; do :; done; [ \"$last\" = - ] || echo \"$@\" > \"$last\"");
   write("one/video/mine", "a user's");
+  write("one/video/frame_0001.png", "a user's, too");
   CommandTest::expect_answer({"one", "--video", "--gif"}, {"one/video.mp4\n", "one/video.gif\n"}, there);
   test::expect_parts(content_of(path("one/video.mp4")), {"libx264"});
   test::expect_parts(content_of(path("one/video.gif")), {"palettegen"});
-  EXPECT_FALSE(std::filesystem::exists(path("one/video/frame_0001.png")));
+  EXPECT_EQ(content_of(path("one/video/frame_0001.png")), "a user's, too");
   EXPECT_EQ(content_of(path("one/video/mine")), "a user's");
 }
 
@@ -171,8 +174,9 @@ TEST_F(ReportCommandTest, RefusesOutputsBeforeItReadsTheRecording) {
   }
   write("one/video", "a user's");
   std::filesystem::remove_all(path("one/video.mp4"));
-  expect_refused({"one", "--video"},
-                 "--video: one/video/frame_0001.png cannot be written: there is no folder");
+  CommandTest::expect_refused({"one", "--video"},
+                              {"--video: one/video/frame_0001.png cannot be written: there is no folder"},
+                              ffmpeg_that("exit 127"));
   std::filesystem::create_directories(path("one/report.html"));
   expect_refused({"one"}, "--output: one/report.html is a folder");
   std::filesystem::copy_file(path("two/run.frontlux"), path("run.html"));
@@ -213,11 +217,16 @@ TEST_F(ReportCommandTest, SaysWhatIsWrongWithRunJson) {
 TEST_F(ReportCommandTest, LeavesNoFramesWhenStopped) {
   const pid_t child = test::start({FRONTLUX_COMMAND, "report", path("one"), "--video"}, folder_);
   ASSERT_GT(child, 0);
-  for (int i = 0; i < 6000 && !std::filesystem::exists(path("one/video/frame_0002.png")); ++i) usleep(5000);
+  const auto frames = [&] {  // in a folder that they are kept in, or not
+    for (const auto& entry : std::filesystem::directory_iterator(path("one")))
+      if (entry.path().filename().string().starts_with("video")) return entry.path();
+    return std::filesystem::path();
+  };
+  for (int i = 0; i < 6000 && !std::filesystem::exists(frames() / "frame_0002.png"); ++i) usleep(5000);
   kill(child, SIGINT);
   EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
   test::expect_parts(content_of(path("err")), {"stopped; no film was written"});
-  EXPECT_FALSE(std::filesystem::exists(path("one/video")));
+  EXPECT_EQ(frames(), std::filesystem::path());
   EXPECT_TRUE(std::filesystem::exists(path("one/report.html")));
 }
 

@@ -223,16 +223,17 @@ TEST_F(RunFolder, LosesWhatKilledRunsLeftUnfinished) {
   const pid_t gone = fork();
   if (gone == 0) _exit(0);
   test::status_of(gone);
-  const std::string dead = ".part" + std::to_string(gone), alive = ".part" + std::to_string(getpid());
+  const std::string dead = ".part-frontlux-" + std::to_string(gone) + "-0",
+                    alive = ".part-frontlux-" + std::to_string(getpid()) + "-0";
   write("run/map.ot" + dead, "half a map");
   write("run/run.json" + dead, "half");
   write("run/map.bt" + alive, "another process still writes it");
-  write("run/notes.part1x", "mine");
+  write("run/map.ot.part" + std::to_string(gone), "mine, as `split` names it");
   expect_resumed("run");
   EXPECT_FALSE(fs::exists(path("run/map.ot" + dead)));
   EXPECT_FALSE(fs::exists(path("run/run.json" + dead)));
   EXPECT_TRUE(fs::exists(path("run/map.bt" + alive)));
-  EXPECT_TRUE(fs::exists(path("run/notes.part1x")));
+  EXPECT_TRUE(fs::exists(path("run/map.ot.part" + std::to_string(gone))));
 }
 
 TEST_F(RunFolder, IsFullAtALimitOfFileSizes) {

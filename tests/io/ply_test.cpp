@@ -88,6 +88,13 @@ TEST_F(Ply, SaysWhatIsWrong) {
   refused("float x", "list uchar float x", "the vertices have no x");
   refused("double y", "double why", "the vertices have no y");
   refused("double y", "double x", "line 6: the property 'x' comes twice");
+  std::string elements, properties;
+  for (int i = 0; i < 1000; ++i) {
+    elements += "element e" + std::to_string(i) + " 0\n";
+    properties += "property float p" + std::to_string(i) + "\n";
+  }
+  refused("element face", elements + "element face", "there are more than 1000 elements");
+  refused("element camera", properties + "element camera", "there are more than 1000 properties");
   refused("element camera", "element vertex", "line 9: there is a second element 'vertex'");
   for (const char* count : {"eight", "-8", "99999999999999999999"})
     refused("vertex 5", std::string("vertex ") + count,

@@ -176,6 +176,19 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "rotation", live.insert_scan, self.points, 2 * np.eye(4))
         self.refuses(ValueError, r"ends in \.bt or \.ot", live.write, "map.txt")
 
+    def test_rays_that_octomap_cannot_follow(self):
+        fine = frontlux.LiveMap(0.001)
+        self.refuses(ValueError, "a ray passes 120000 voxels.*give a max_range", fine.insert, [[0.0, 0.0, 0.0], [25.0, 25.0, 25.0]],
+                     (-15.0, -15.0, -15.0))
+        self.assertEqual(fine.grid.count()[1:], [0, 0])
+        fine.insert([[25.0, 25.0, 25.0]], (-15.0, -15.0, -15.0), 1.0)
+        self.assertGreater(fine.grid.count()[1], 1000)
+        # The end of what would be free is outside the key range.
+        self.assertEqual(fine.insert([[60.0, 0.0, 0.0]], (30.0, 0.0, 0.0), 5.0).keys.size, 0)
+        # Nearer to each other than a float can tell, in two voxels; and so far that their distance is infinite.
+        self.assertEqual(frontlux.LiveMap(0.1).insert([[-1e-30, -1e-30, 0.05]], (1e-30, 1e-30, 0.05)).keys.size, 0)
+        self.assertEqual(frontlux.LiveMap(1e15).insert([[3e19, 3e19, 3e19]], (-3e19, 0.0, 0.0)).keys.size, 0)
+
     def test_objects_that_were_never_made(self):
         for kind in (frontlux.VoxelGrid, frontlux.RayCaster, frontlux.LiveMap, frontlux.FieldOfView, frontlux.MapChange,
                      frontlux.FrontierSet, frontlux.ViewQualityImage):

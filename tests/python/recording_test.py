@@ -1,10 +1,13 @@
 """Recordings as arrays, against what the same run wrote as tables and as a map; and damaged ones."""
 import csv
+import dataclasses
 import os
 import pathlib
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 import numpy as np
 
@@ -103,6 +106,29 @@ class Recordings(unittest.TestCase):
         file.write_bytes(b"frontlux recording, format 2\n")
         with self.assertRaisesRegex(RuntimeError, "has format 2, but this frontlux reads 3 to 5"):
             frontlux.read_recording(file)
+
+    def test_what_has_its_checksums_but_no_run_has_written(self):
+        whole = (self.run_folder / "run.frontlux").read_bytes()
+        begin = whole.index(b"\n") + 1
+        tag, packed, _, _ = struct.unpack("<4s3I", whole[begin:begin + 16])
+        head = zlib.decompress(whole[begin + 16:begin + 16 + packed])
+        options = head[head.index(b'{"'):head.index(b"}") + 1]
+        file = pathlib.Path(self.folder.name) / "made.frontlux"
+        for text, what in ((b"[1]", "options that are no object"), (b"{", "made.frontlux"), (b"\xff", "made.frontlux")):
+            other = head.replace(options, text.ljust(len(options)))
+            payload = zlib.compress(other)
+            sizes = struct.pack("<4s2I", tag, len(payload), len(other))
+            record = sizes + struct.pack("<I", zlib.crc32(sizes)) + payload + struct.pack("<I", zlib.crc32(payload))
+            file.write_bytes(whole[:begin] + record)
+            with self.assertRaisesRegex(RuntimeError, what):
+                frontlux.read_recording(file)
+
+    def test_a_grid_takes_no_memory_for_what_lies_between_its_voxels(self):
+        changes = {"step": np.int64([0, 0, 0, 0]), "keys": np.uint16([[0, 0, 0], [65535] * 3, [7, 9, 40000], [7, 9, 40000]]),
+                   "after": np.uint8([1, 2, 1, 2])}
+        grid = dataclasses.replace(self.recording, changes=changes).grid()
+        self.assertEqual(grid.count()[1:], [1, 2])
+        np.testing.assert_array_equal(grid.at(changes["keys"]), [1, 2, 2, 2])
 
     def test_a_recording_that_is_cut_off_is_read_up_to_there(self):
         whole = (self.run_folder / "run.frontlux").read_bytes()

@@ -24,6 +24,8 @@ enum class Adjacency : std::uint8_t {
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
+  /// @throws std::length_error if more than 2^26 bricks of 8 x 8 x 8 voxels within the bounds lie around free
+  ///         blocks of the grid: a giant free leaf has gigabytes of frontiers
   FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency = Adjacency::kFaces);
   ~FrontierSet();
   FrontierSet(FrontierSet&&) noexcept;

@@ -13,6 +13,7 @@ from ._engine import VoxelGrid
 _TITLE = b"frontlux recording, format "
 _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no assigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
+_CUBE = 16  # [voxels]
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "contacts")
 _ROBOT_COUNTS = ("gain_tangent", "gain_predicted", "gain_sum", "gained", "travelled")
@@ -73,14 +74,15 @@ class Recording:
         grid = VoxelGrid(self.resolution)
         rows = self.changes["step"] <= step
         if rows.any():
-            keys = self.changes["keys"][rows].astype(np.int64)
-            low = keys.min(axis=0)
-            states = np.zeros(keys.max(axis=0) - low + 1, np.uint8)
-            # Of equal places the last one counts.
-            _, places = np.unique(np.ravel_multi_index((keys[::-1] - low).T, states.shape), return_index=True)
-            newest = len(keys) - 1 - places
-            states[tuple((keys[newest] - low).T)] = self.changes["after"][rows][newest]
-            grid.set_states(low.astype(np.uint16), states)
+            keys, after = self.changes["keys"][rows].astype(np.int64), self.changes["after"][rows]
+            # Cube by cube, since they may be far apart; in each, of equal places the last one counts.
+            cubes = np.ravel_multi_index((keys // _CUBE).T, 3 * (0x10000 // _CUBE,))
+            order = np.argsort(cubes, kind="stable")
+            for part in np.split(order, np.flatnonzero(np.diff(cubes[order])) + 1):
+                low = keys[part[0]] // _CUBE * _CUBE
+                states = np.zeros((_CUBE, _CUBE, _CUBE), np.uint8)
+                states[tuple((keys[part] - low).T)] = after[part]
+                grid.set_states(low.astype(np.uint16), states)
         return grid
 
 
@@ -110,7 +112,10 @@ class _Bytes:
             raise ValueError("a whole number has more than 64 bits")
         digits = self.take(int(ends[-1]) + 1 - self.at).astype(np.int64) & 0x7F
         shifts = 7 * (np.arange(len(digits)) - np.repeat(begins - begins[0], ends - begins + 1))
-        return np.add.reduceat(digits << shifts, begins - begins[0])
+        numbers = np.add.reduceat(digits << shifts, begins - begins[0])
+        if numbers.min() < 0:
+            raise ValueError("a whole number is too large")
+        return numbers
 
     def count(self):
         value = shift = 0
@@ -159,16 +164,20 @@ def _read_head(record):
             "bounds": record.counts(6).reshape(2, 3).astype(np.uint16), "observable": record.count()}
     record.count()
     head["options"] = json.loads(record.text())
+    if not isinstance(head["options"], dict):
+        raise ValueError("has options that are no object")
     head["robots"] = [_read_robot(record) for _ in range(record.length())]
     starts = []
     for _ in range(record.length()):
         starts.append(record.doubles(4))
         record.keys(record.length())
     head["starts"] = np.array(starts).reshape(-1, 4)
+    if len(starts) != len(head["robots"]):
+        raise ValueError("has not one start for each robot")
     return head
 
 
-def _read_step(record, number, run, version):
+def _read_step(record, number, head, run, version):
     step = dict(zip(_STEP_COUNTS, record.counts(len(_STEP_COUNTS))))
     if step["number"] != number:
         raise ValueError(f"step {number} has another number")
@@ -177,7 +186,10 @@ def _read_step(record, number, run, version):
     known = record.counts(2 * record.length()).reshape(-1, 2)
     step["known"], step["known_in_bounds"] = known.T
     robots = []
-    for robot in range(record.length()):
+    team = record.length()
+    if not team == len(known) == len(head["robots"]):
+        raise ValueError(f"step {number} has not as many robots as the team")
+    for robot in range(team):
         of_robot = dict(zip(_ROBOT_COUNTS, record.counts(len(_ROBOT_COUNTS))))
         of_robot["length"] = record.doubles(1)[0]
         record.counts(2)  # outcome of the path search, state of the goal
@@ -186,6 +198,10 @@ def _read_step(record, number, run, version):
         poses = record.doubles(record.length(), 4)[:of_robot["travelled"]]
         changed = record.length()
         keys, states = record.keys(changed), record.counts(changed)
+        if changed and ((keys < head["bounds"][0]) | (keys > head["bounds"][1])).any():
+            raise ValueError(f"step {number} changes a voxel outside the bounds")
+        if changed and states.max() > 8:
+            raise ValueError(f"step {number} changes a voxel to no state")
         run["poses"].append((number, robot, poses))
         run["changes"].append((number, robot, keys, states // 3, states % 3))
         record.keys(record.length()), record.keys(record.length())  # still unknown; blocked
@@ -263,15 +279,15 @@ def read_recording(file):
                 if tag == b"head":
                     head = _read_head(record)
                 elif tag == b"step":
-                    _read_step(record, len(run["steps"]), run, version)
+                    _read_step(record, len(run["steps"]), head, run, version)
                 elif tag == b"end ":
                     end = record.text()
                 if record.at != len(record.bytes):
                     raise ValueError("has a record with bytes too many")
             if head is None:
                 raise ValueError("has no head")
-        except (ValueError, IndexError, OverflowError, zlib.error) as error:
-            raise RuntimeError(f"{fspath(file)}: {error}") from error
+        except (ValueError, IndexError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
+            raise RuntimeError(f"{fspath(file)}: {error or type(error).__name__}") from error
     robots = len(head["robots"])
     names = {"time": ((), np.float64), "seconds": ((6,), np.float64), "length": ((robots,), np.float64),
              **{name: ((), np.int64) for name in _STEP_COUNTS},

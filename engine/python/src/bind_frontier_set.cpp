@@ -8,26 +8,12 @@ namespace {
 
 using Self = Held<FrontierSet>;
 
-// Every brick beside free voxels is looked at: of a giant leaf there are too many.
-void check_surface(const VoxelGrid& grid) {
-  constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 26;
-  std::uint64_t bricks = 0;
-  grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
-    if (brick == nullptr && state == Occupancy::kFree)
-      bricks += std::uint64_t{6} << (2 * (block.log2_edge - Brick::kLog2));
-  });
-  if (bricks > kMostBricks)
-    throw std::invalid_argument(
-        "the free space is too large: its surface has more than 2^26 bricks of 8 x 8 x 8 voxels");
-}
-
 Self make(const Held<VoxelGrid>& held, const py::object& min_key, const py::object& max_key, bool corners) {
   KeyBox bounds = kAllVoxels;
   if (!min_key.is_none()) bounds.min = Keys("min_key", min_key).one();
   if (!max_key.is_none()) bounds.max = Keys("max_key", max_key).one();
   if (!bounds.contains(bounds.min)) throw py::value_error("min_key: above max_key");
   return held->use([&](const VoxelGrid& grid) {
-    check_surface(grid);
     return std::make_shared<Guarded<FrontierSet>>(grid, bounds,
                                                   corners ? Adjacency::kCorners : Adjacency::kFaces);
   });

@@ -10,7 +10,10 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 
 namespace frontlux::python {
 namespace {
@@ -28,6 +31,31 @@ Self make(double resolution) {
   return std::make_shared<Guarded<Map>>(std::make_shared<octomap::OcTree>(resolution));
 }
 
+// Whether OctoMap can follow a ray to its end, or to its range [m] if that is nearer: it prints of one that
+// ends outside the key range, and follows one whose length in float is 0, or infinite, for ever.
+// @throws std::invalid_argument if it would write past the end of its list of voxels
+bool can_follow(const Lattice& lattice, const octomap::point3d& origin, const octomap::point3d& point,
+                double max_range) {
+  constexpr int kMostSteps = 99'990;  // OctoMap's list has 100,000, and rounding adds a few
+  const auto key = [&](const octomap::point3d& at) {
+    return lattice.key(Eigen::Vector3f(at.x(), at.y(), at.z()));
+  };
+  const bool cut_off = max_range > 0.0 && (point - origin).norm() > max_range;
+  const octomap::point3d end =
+      cut_off ? origin + (point - origin).normalized() * static_cast<float>(max_range) : point;
+  const auto from = key(origin), to = key(end);
+  if (!from || !to) return false;
+  if (*from == *to) return true;
+  const auto length = static_cast<float>((end - origin).norm());
+  if (!(length > 1e-15F) || std::isinf(length)) return false;
+  const int steps = std::abs(to->x - from->x) + std::abs(to->y - from->y) + std::abs(to->z - from->z);
+  if (steps > kMostSteps)
+    throw std::invalid_argument("a ray passes " + std::to_string(steps) +
+                                " voxels, but OctoMap takes at most " + std::to_string(kMostSteps) +
+                                "; give a max_range");
+  return true;
+}
+
 // A scan whose points are in a frame of their own.
 ChangePointer insert(const Self& self, const Numbers& points, const Eigen::Affine3d& T_map_points,
                      const Eigen::Vector3f& origin, double max_range) {
@@ -40,8 +68,8 @@ ChangePointer insert(const Self& self, const Numbers& points, const Eigen::Affin
     octomap::Pointcloud cloud;
     for (std::size_t i = 0; i < size; ++i) {
       const Eigen::Vector3f point = (T_map_points * points.point(i).cast<double>()).cast<float>();
-      const bool cut_off = max_range > 0.0 && static_cast<double>((point - origin).norm()) > max_range;
-      if (point.allFinite() && (cut_off || lattice.key(point))) cloud.push_back(to_octomap(point));
+      if (point.allFinite() && can_follow(lattice, to_octomap(origin), to_octomap(point), max_range))
+        cloud.push_back(to_octomap(point));
     }
     std::visit(
         [&](const auto& tree) {
@@ -116,9 +144,10 @@ Methods may be called from several threads; insertions wait for each other, and 
           "insert", &insert_points, py::arg("points"), py::arg("origin"), py::arg("max_range") = -1.0,
           R"(Inserts a scan as OctoMap's insertPointCloud does: its points are occupied, and what lies before them free.
 
-points: float32 or float64 (..., 3) [m], in the map's frame; those that are not finite or outside the key range change
-nothing. origin: (3,) [m], where the sensor was. max_range: [m] rays are free up to there, and points beyond it do not
-count as hits; <= 0: no limit. Returns a MapChange.)")
+points: float32 or float64 (..., 3) [m], in the map's frame. Those that are not finite change nothing, nor do those whose
+ray ends outside the key range. origin: (3,) [m], where the sensor was. max_range: [m] rays are free up to there, and
+points beyond it do not count as hits; <= 0: no limit. Raises ValueError, with nothing inserted, if a ray passes more than
+99,990 voxels. Returns a MapChange.)")
       .def("insert_scan", &insert_scan, py::arg("points"), py::arg("pose"), py::arg("max_range") = -1.0,
            "The same for points in the sensor's frame. pose: (4, 4), maps the sensor's frame into the map's.")
       .def(

@@ -19,6 +19,7 @@ class Buffer {
  public:
   static constexpr std::size_t kSize = 1 << 12;
   Buffer() {
+    idle().reserve(idle().size() + 1);  // so that the destructor cannot fail
     if (idle().empty()) {
       values_.resize(kSize);
       return;

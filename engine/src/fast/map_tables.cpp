@@ -26,10 +26,11 @@ TableSnapshot::TableSnapshot(const VoxelGrid& grid, std::shared_ptr<Spare<MapTab
     map_table_ = std::make_unique<MapTable>(MapTable{make(), grid});
 }
 
-std::size_t TableSnapshot::memory_bytes() const {
-  return table().memory_bytes() +
-         spare_->measured([](const MapTable& spare) { return spare.table.memory_bytes(); });
+std::size_t memory_of(Spare<MapTable>& spare) {
+  return spare.measured([](const MapTable& map_table) { return map_table.table.memory_bytes(); });
 }
+
+std::size_t TableSnapshot::memory_bytes() const { return table().memory_bytes() + memory_of(*spare_); }
 
 // Tables of 2^30 bits with their borders, as wide as the height allows.
 std::optional<SectorPlan> SectorPlan::of(const KeyBox& known) {
@@ -68,7 +69,12 @@ MapTables::MapTables(const VoxelGrid& grid, const MapTables& before)
     use_whole(std::make_shared<Spare<MapTable>>());
   } else if (plan_ == before.plan_) {
     const std::lock_guard lock(before.mutex_);
-    for (const auto& [number, sector] : before.sectors_) sectors_[number].history = sector.history;
+    for (const auto& [number, sector] : before.sectors_) {
+      // Those that nobody has asked since the update before make room.
+      if (!sector.table && before.bytes_ > kMostBytes) continue;
+      sectors_[number].history = sector.history;
+      bytes_ += bytes_of(sector);
+    }
   }
 }
 
@@ -98,22 +104,29 @@ const OpenVoxels* MapTables::sector(std::uint32_t number) const {
   Sector& sector = sectors_.at(number);
   if (!sector.table) {
     if (bytes_ > kMostBytes) return nullptr;
+    const std::size_t spare = bytes_of(sector);
     // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
     run_isolated([&] {
       sector.table = std::make_unique<TableSnapshot>(grid_, sector.history->spare, [&] {
         return OpenVoxels(grid_, unknown_, known_, plan_->window(number));
       });
     });
-    bytes_ += sector.table->memory_bytes();
+    bytes_ += bytes_of(sector) - std::min(spare, bytes_of(sector));
   }
   return sector.table->table().empty() ? nullptr : &sector.table->table();
+}
+
+// With its spare one, also where that has not become a table of this moment yet.
+std::size_t MapTables::bytes_of(const Sector& sector) {
+  if (sector.table) return sector.table->memory_bytes();
+  return sector.history ? memory_of(*sector.history->spare) : 0;
 }
 
 std::size_t MapTables::memory_bytes() const {
   if (whole_) return whole_->memory_bytes();
   const std::lock_guard lock(mutex_);
   std::size_t bytes = 0;
-  for (const auto& [number, sector] : sectors_) bytes += sector.table ? sector.table->memory_bytes() : 0;
+  for (const auto& [number, sector] : sectors_) bytes += bytes_of(sector);
   return bytes;
 }
 

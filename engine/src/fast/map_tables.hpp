@@ -25,6 +25,8 @@ struct MapTable {
   VoxelGrid grid;
 };
 
+[[nodiscard]] std::size_t memory_of(Spare<MapTable>& spare);
+
 /// A table of a map as it is at one moment. It is the table of an earlier moment, brought up to date, if
 /// there is a spare one.
 class TableSnapshot {
@@ -95,6 +97,7 @@ class MapTables {
     std::unique_ptr<const TableSnapshot> table;
   };
 
+  static std::size_t bytes_of(const Sector& sector);
   void use_whole(std::shared_ptr<Spare<MapTable>> spare);
 
   VoxelGrid grid_;
@@ -104,7 +107,7 @@ class MapTables {
   KeyBox known_;                    // likewise: around all that is known
   mutable std::mutex mutex_;
   mutable std::map<std::uint32_t, Sector> sectors_;
-  mutable std::size_t bytes_ = 0;  // of the sectors' tables
+  mutable std::size_t bytes_ = 0;  // of the sectors' tables, spare ones too
 };
 
 }  // namespace frontlux::detail

@@ -12,7 +12,9 @@
 namespace frontlux {
 namespace {
 
-constexpr std::string_view kUnfinished = ".part";  // and the number of the process that writes it
+// And the number of the process that writes it, and that of the file among those it writes: map.ot becomes
+// map.ot.part-frontlux-1234-0.
+constexpr std::string_view kUnfinished = ".part-frontlux-";
 
 // The names of files that are being written. Who takes one out of its place has it for himself.
 constexpr std::size_t kAtOnce = 64;
@@ -22,14 +24,15 @@ static_assert(std::atomic<const char*>::is_always_lock_free);
 // Removed, unless the file got its name.
 class UnfinishedFile {
  public:
-  explicit UnfinishedFile(const std::filesystem::path& file) : path_(file) {
-    path_ += std::string(kUnfinished) + std::to_string(::getpid());
-    for (std::atomic<const char*>& place : being_written) {
+  explicit UnfinishedFile(const std::filesystem::path& file) {
+    static std::atomic<std::size_t> further{kAtOnce};
+    const std::string begin = file.string().append(kUnfinished) + std::to_string(::getpid()) + "-";
+    for (std::size_t number = 0; number < kAtOnce && place_ == nullptr; ++number) {
+      path_ = begin + std::to_string(number);
       const char* none = nullptr;
-      if (!place.compare_exchange_strong(none, path_.c_str())) continue;
-      place_ = &place;
-      break;
+      if (being_written[number].compare_exchange_strong(none, path_.c_str())) place_ = &being_written[number];
     }
+    if (place_ == nullptr) path_ = begin + std::to_string(further++);
   }
   ~UnfinishedFile() {
     std::error_code ignored;
@@ -91,7 +94,8 @@ void remove_unfinished(const std::filesystem::path& file) {
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (!name.starts_with(begin)) continue;
-    const auto process = number_from<::pid_t>(std::string_view(name).substr(begin.size()));
+    const std::string_view rest = std::string_view(name).substr(begin.size());
+    const auto process = number_from<::pid_t>(rest.substr(0, rest.find('-')));
     const bool gone = process && *process > 0 && ::kill(*process, 0) != 0 && errno == ESRCH;
     std::error_code ignored;
     if (gone) std::filesystem::remove(entry->path(), ignored);

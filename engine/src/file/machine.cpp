@@ -3,8 +3,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
+#include <string>
 #include <unistd.h>
 
 namespace frontlux {
@@ -24,6 +28,40 @@ std::uint64_t free_memory() {
   return known ? kilobytes * 1024 : kNotKnown;
 }
 
+// What a file of control groups holds; none if there is no such file, or no number in it ("max").
+std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::uint64_t number = 0;
+  return stream >> number ? std::optional(number) : std::nullopt;
+}
+
+// Of a control group, what it may still take; what it keeps of files it would give back.
+std::uint64_t free_in_group(const std::filesystem::path& group, const char* limit, const char* usage) {
+  const auto most = number_in(group / limit), used = number_in(group / usage);
+  if (!most || !used) return kNotKnown;
+  std::uint64_t files = 0;
+  std::ifstream parts(group / "memory.stat");
+  for (std::string name; parts >> name;) {
+    std::uint64_t bytes = 0;
+    parts >> bytes;
+    if (name == "inactive_file") files = bytes;
+  }
+  return *most - std::min(*most, *used - std::min(*used, files));
+}
+
+// In the control groups of this process, as those of a container.
+std::uint64_t free_in_groups() {
+  const std::filesystem::path root = "/sys/fs/cgroup";
+  std::uint64_t least = free_in_group(root / "memory", "memory.limit_in_bytes", "memory.usage_in_bytes");
+  std::ifstream file("/proc/self/cgroup");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("0::/")) continue;
+    for (std::filesystem::path group = line.substr(4); !group.empty(); group = group.parent_path())
+      least = std::min(least, free_in_group(root / group, "memory.max", "memory.current"));
+  }
+  return std::min(least, free_in_group(root, "memory.max", "memory.current"));
+}
+
 std::uint64_t free_addresses() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kNotKnown;
@@ -39,7 +77,7 @@ std::uint64_t address_space() {
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-std::uint64_t available_memory() { return std::min(free_memory(), free_addresses()); }
+std::uint64_t available_memory() { return std::min({free_memory(), free_addresses(), free_in_groups()}); }
 
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");

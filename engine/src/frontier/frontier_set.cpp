@@ -107,6 +107,7 @@ VoxelKey corner_of(std::uint64_t number) {
 
 struct FrontierSet::State {
   using Bricks = BrickTable<bool>;  // a set of numbers
+  static constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 26;
 
   KeyBox bounds;
   Adjacency adjacency;
@@ -154,10 +155,24 @@ struct FrontierSet::State {
   // Finds the frontiers of every brick in which, or next to which, a voxel is free.
   void build(const VoxelGrid& grid) {
     Bricks stale;
+    std::uint64_t outside = 0;  // bricks around blocks of one state
     grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
-      if (brick != nullptr || state == Occupancy::kFree) add_surroundings(block, brick != nullptr, stale);
+      if (brick == nullptr && state != Occupancy::kFree) return;
+      if (brick == nullptr) outside += surroundings(block);
+      if (outside > kMostBricks)
+        throw std::length_error(
+            "the free space is too large: its surface has more than 2^26 bricks of 8 x 8 x 8 voxels");
+      add_surroundings(block, brick != nullptr, stale);
     });
     refresh(grid, stale);
+  }
+
+  // How many bricks of the bounds are next to a block.
+  [[nodiscard]] std::uint64_t surroundings(const Block& block) const {
+    const KeyBox voxels = cube(block.corner, 1 << block.log2_edge);
+    const auto around = intersection(bricks_of(grown(voxels, 8)), bricks_of(bounds)),
+               inside = intersection(bricks_of(voxels), bricks_of(bounds));
+    return around ? size_of(*around) - (inside ? size_of(*inside) : 0) : 0;
   }
 
   // The bricks of the bounds in and next to a block. In a block of one state nothing is unknown.

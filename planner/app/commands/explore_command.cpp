@@ -69,7 +69,7 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
   command.add("--renderer", options.renderer,
               "View quality of all frontiers, or by rays to drawn ones [by mode]");
   command.add("--samples", options.samples, "N", "Frontiers drawn for each viewpoint with rays [by mode]",
-              Range<int>{1});
+              kSampleCounts);
   command.add("--assign", options.assign, "Assign each frontier to one robot, or to all that see it");
   command.add("--optimize", options.optimize, "Turn viewpoints so that they see more frontiers");
   command.add("--tours-without", options.tours_without,
@@ -120,13 +120,13 @@ void add_explore_command(CLI::App& app) {
       command.add_flag("--lockstep", options.lockstep,
                        "Alg. 1 as printed: all robots plan, move, stop at each viewpoint, and wait for all");
   command.add("--latency", options.latency, "SECONDS", "Time from a planning to the begin of its trajectory",
-              Range<double>{kAboveZero.low, io::kMostLatency});
+              kLatencies);
   command.group("Stopping");
   command.add("--stop-coverage", options.stop_coverage, "PART",
               "Stop when this part of the observable space is mapped, 0 to 1", kProbability);
   command.add("--stop-time", options.stop_time, "SECONDS", "Stop after this time on the clock", kFromZero);
   command.add("--max-steps", given->run.max_steps, "N",
-              "Stop after this many steps [1000],\nin motion plannings [no limit]", Range<int>{0});
+              "Stop after this many steps [1000],\nin motion plannings [no limit]", kStepLimits);
   command.group("Stopping", Command::Shown::kInHelpAll);
   command.add("--epsilon", options.epsilon, "FRONTIERS",
               "Stop when the expected gain stays below this for 3 steps,\n"
@@ -153,10 +153,9 @@ void add_explore_command(CLI::App& app) {
               "After how long it learns where it is; 0: never", kFromZero);
   command.add("--tracking-error", options.pose_errors.tracking, "METRES",
               "How far a robot at its full speed is beside its trajectory, at most; it knows",
-              Range<double>{kFromZero.low, sim::PoseErrors::kMostTracking});
+              kTrackingErrors);
   command.add("--scan-delay", options.message_errors.delay, "SECONDS",
-              "Time that a scan takes to the map that the robots share",
-              Range<double>{kFromZero.low, io::kMostLatency});
+              "Time that a scan takes to the map that the robots share", kScanDelays);
   command.add("--scan-loss", options.message_errors.loss, "P", "Probability that a scan never gets there",
               kProbability);
   command.add("--fail", options.failures, "NAME=SECONDS",

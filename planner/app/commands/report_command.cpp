@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -101,8 +102,8 @@ std::filesystem::path check_outputs(const Options& options, const std::vector<st
     if (options.gif) check_writable("--gif", folder / kFilms[1]);
     std::error_code error;
     const std::filesystem::path frames = folder / kFrames;
-    if ((options.video || options.gif) && std::filesystem::exists(frames, error))
-      check_writable(options.video ? "--video" : "--gif", frames / "frame_0001.png");
+    if (options.video && std::filesystem::exists(frames, error) && !has_ffmpeg())
+      check_writable("--video", frames / "frame_0001.png");
   }
   return output;
 }
@@ -155,9 +156,12 @@ void write_films(const Options& options, const Run& run) {
   constexpr int kWidth = 1200;  // [px]
   const std::filesystem::path folder = run.file.parent_path();
   const InterruptNote note;
-  Frames frames(folder / kFrames);
+  const bool keeps_frames = !has_ffmpeg();
+  // What is gone in the end takes no names that a user may have given to his own files.
+  Frames frames(folder /
+                (keeps_frames ? kFrames : kFrames + (".part-frontlux-" + std::to_string(::getpid()))));
   write_frames(frames.folder, run.recording, run.name, kWidth);
-  if (!has_ffmpeg()) {
+  if (keeps_frames) {
     frames.keep = true;
     std::cout << (frames.folder / "").string() << '\n';
     return;

@@ -1,5 +1,7 @@
 #include "explore/lockstep_loop.hpp"
 
+#include "interrupt.hpp"
+
 #include <frontlux/planner/trajectory.hpp>
 
 #include <span>
@@ -21,8 +23,10 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
 }
 
 planner::Drive LockstepLoop::drive() {
-  return
-      [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
+  return [this, patience = Patience()](std::size_t robot, const planner::Pose& viewpoint) mutable {
+    patience.check();
+    return robots_.drive(robot, viewpoint);
+  };
 }
 
 ExplorationStep LockstepLoop::step() {

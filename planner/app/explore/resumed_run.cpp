@@ -4,13 +4,17 @@
 #include "explore/run_folder.hpp"
 #include "explore/run_json.hpp"
 
-#include <frontlux/io/robot_file.hpp>
+#include <frontlux/io/task_file.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 namespace frontlux::app {
 namespace {
@@ -18,12 +22,19 @@ namespace {
 namespace fs = std::filesystem;
 using planner::Recording;
 
-// A recording holds more than a robot's file may.
-void check_rays(const planner::RobotDescription& robot, const fs::path& recording) {
+// A recording may hold robots that no file may, and that ask for too much.
+void check_robots(const planner::RecordingHead& head, const fs::path& recording) {
+  std::vector<io::TaskRobot> robots;
+  std::set<std::string> names;
+  for (const planner::RobotDescription& robot : head.robots) {
+    robots.push_back({robot, std::nullopt});
+    names.insert(robot.robot.name);
+  }
   try {
-    io::check_rays(robot);
+    static_cast<void>(io::robots_of(io::robots_text(robots)));
+    if (names.size() < robots.size()) throw std::runtime_error("two of its robots have the same name");
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(recording.string() + ": the robot '" + robot.robot.name + "': " + error.what());
+    throw std::runtime_error(recording.string() + ": " + error.what());
   }
 }
 
@@ -61,7 +72,7 @@ Recording read_run(const ExploreRun& run) {
         "to -o, or begin it anew, without --resume");
   try {
     Recording recording = planner::read_recording(file);
-    for (const planner::RobotDescription& robot : recording.head.robots) check_rays(robot, file);
+    check_robots(recording.head, file);
     // Before the recorded steps are repeated, which may take long.
     if (::access(run.folder.c_str(), W_OK | X_OK) != 0)
       throw BadInput("--resume: " + run.folder.string() + " cannot be written to; check its permissions");

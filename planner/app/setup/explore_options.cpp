@@ -16,15 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Every member with its name, in one place for both directions.
+// Every member with its name, and of a number what it may be, in one place for both directions.
 template <class Options, class Visit>
 void for_each_member(Options& options, const Visit& visit) {
   visit("name", options.name);
   visit("world", options.source.world);
   visit("world_uri", options.world_path);
-  visit("world_seed", options.source.seed);
+  visit("world_seed", options.source.seed, kSeeds);
   visit("box_m", options.source.box);
-  visit("scale", options.source.scale);
+  visit("scale", options.source.scale, kAboveZero);
   visit("up", options.source.up);
   visit("start", options.source.start);
   visit("ground", options.source.ground);
@@ -42,27 +42,27 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("tours_without", options.tours_without);
   visit("caster", options.caster);
   visit("sensor_model", options.sensor_model);
-  visit("seed", options.seed);
-  visit("max_steps", options.max_steps);
-  visit("epsilon", options.epsilon);
-  visit("lambda", options.lambda);
-  visit("advance", options.advance);
-  visit("min_distance", options.min_distance);
-  visit("samples", options.samples);
+  visit("seed", options.seed, kSeeds);
+  visit("max_steps", options.max_steps, kStepLimits);
+  visit("epsilon", options.epsilon, kFromZero);
+  visit("lambda", options.lambda, kFromZero);
+  visit("advance", options.advance, kFromZero);
+  visit("min_distance", options.min_distance, kFromZero);
+  visit("samples", options.samples, kSampleCounts);
   visit("lockstep", options.lockstep);
-  visit("latency", options.latency);
+  visit("latency", options.latency, kLatencies);
   visit("bumper", options.bumper);
-  visit("stop_coverage", options.stop_coverage);
-  visit("stop_time", options.stop_time);
-  visit("resolution", options.source.resolution);
-  visit("noise", options.errors.sigma);
-  visit("dropout", options.errors.dropout);
-  visit("stray", options.errors.stray);
-  visit("drift", options.pose_errors.drift);
-  visit("fix_every", options.pose_errors.fix_every);
-  visit("tracking_error", options.pose_errors.tracking);
-  visit("scan_delay", options.message_errors.delay);
-  visit("scan_loss", options.message_errors.loss);
+  visit("stop_coverage", options.stop_coverage, kProbability);
+  visit("stop_time", options.stop_time, kFromZero);
+  visit("resolution", options.source.resolution, kVoxelEdges);
+  visit("noise", options.errors.sigma, kFromZero);
+  visit("dropout", options.errors.dropout, kProbability);
+  visit("stray", options.errors.stray, kProbability);
+  visit("drift", options.pose_errors.drift, kProbability);
+  visit("fix_every", options.pose_errors.fix_every, kFromZero);
+  visit("tracking_error", options.pose_errors.tracking, kTrackingErrors);
+  visit("scan_delay", options.message_errors.delay, kScanDelays);
+  visit("scan_loss", options.message_errors.loss, kProbability);
   visit("fail", options.failures);
 }
 
@@ -121,23 +121,20 @@ Json json_of(const std::optional<Value>& value) {
   return value ? json_of(*value) : Json();
 }
 
-template <class Value>
-void take(const Json& json, Value& value) {
-  if constexpr (Chosen<Value> && !std::is_same_v<Value, bool>)
-    read(json.get<std::string>(), value);
-  else
+// As a word of the command line, with which it has to agree.
+std::string word_of(const Json& json) {
+  if (!json.is_array()) return json.is_string() ? json.get<std::string>() : json.dump();
+  std::string words;
+  for (const Json& item : json) words.append(words.empty() ? "" : ",").append(word_of(item));
+  return words;
+}
+
+template <class Value, class... Limits>
+void take(const Json& json, Value& value, const Limits&... limits) {
+  if constexpr (std::is_same_v<Value, bool>)
     json.get_to(value);
-}
-void take(const Json& json, StartPose& start) { read(json.get<std::string>(), start); }
-void take(const Json& json, RobotFailures& failures) { read(json.get<std::string>(), failures); }
-void take(const Json& json, Eigen::Vector3f& point) {
-  for (int i = 0; i < 3; ++i) point[i] = json.at(static_cast<std::size_t>(i)).get<float>();
-}
-void take(const Json& json, GroundAlignment& ground) {
-  if (json.is_number())
-    ground = {true, json.get<double>()};
   else
-    read(json.get<std::string>(), ground);
+    read(word_of(json), value, limits...);
 }
 void take(const Json& json, AbsolutePath& path) {
   const auto uri = json.get<std::string>();
@@ -154,20 +151,14 @@ void take(const Json& json, AbsolutePath& path) {
     path.text += static_cast<char>(byte);
   }
 }
-void take(const Json& json, Eigen::AlignedBox3d& box) {
-  for (int i = 0; i < 3; ++i) {
-    box.min()[i] = json.at(0).at(static_cast<std::size_t>(i)).get<double>();
-    box.max()[i] = json.at(1).at(static_cast<std::size_t>(i)).get<double>();
-  }
-}
 void take(const Json& json, std::vector<io::TaskRobot>& robots) { robots = io::robots_of(json.dump()); }
 template <class Value>
 void take(const Json& json, std::vector<Value>& values) {
   for (const Json& item : json) take(item, values.emplace_back());
 }
-template <class Value>
-void take(const Json& json, std::optional<Value>& value) {
-  take(json, value.emplace());
+template <class Value, class... Limits>
+void take(const Json& json, std::optional<Value>& value, const Limits&... limits) {
+  take(json, value.emplace(), limits...);
 }
 
 }  // namespace
@@ -248,7 +239,7 @@ void note_paths(ExploreOptions& options) {
 
 std::string json_text(const ExploreOptions& options) {
   Json json = Json::object();
-  for_each_member(options, [&](const char* name, const auto& value) {
+  for_each_member(options, [&](const char* name, const auto& value, const auto&...) {
     Json member = json_of(value);
     if (!member.is_null()) json[name] = std::move(member);
   });
@@ -256,12 +247,23 @@ std::string json_text(const ExploreOptions& options) {
 }
 
 ExploreOptions explore_options_of(const std::string& text) {
+  constexpr std::size_t kDepth = 8;  // a box in the list of robots has five
+  const auto not_too_deep = [](int depth, Json::parse_event_t, const Json&) {
+    if (static_cast<std::size_t>(depth) > kDepth) throw std::runtime_error("they are nested too deeply");
+    return true;
+  };
   try {
-    const Json json = Json::parse(text);
+    const Json json = Json::parse(text, not_too_deep);
     if (!json.is_object()) throw std::runtime_error("they are not a JSON object");
     ExploreOptions options;
-    for_each_member(options, [&](const char* name, auto& value) {
-      if (const auto found = json.find(name); found != json.end()) take(*found, value);
+    for_each_member(options, [&](const std::string& name, auto& value, const auto&... limits) {
+      const auto found = json.find(name);
+      if (found == json.end()) return;
+      try {
+        take(*found, value, limits...);
+      } catch (const BadInput& error) {
+        throw std::runtime_error(name + ": " + error.what());
+      }
     });
     return options;
   } catch (const Json::exception& error) {

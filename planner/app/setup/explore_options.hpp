@@ -1,6 +1,6 @@
 #pragma once
 
-#include "choices.hpp"
+#include "read_value.hpp"
 #include "world_source.hpp"
 
 #include <frontlux/io/task_file.hpp>
@@ -18,6 +18,11 @@
 #include <vector>
 
 namespace frontlux::app {
+
+inline constexpr Range<double> kLatencies{kAboveZero.low, io::kMostLatency};          ///< [s]
+inline constexpr Range<double> kScanDelays{0.0, io::kMostLatency};                    ///< [s]
+inline constexpr Range<double> kTrackingErrors{0.0, sim::PoseErrors::kMostTracking};  ///< [m]
+inline constexpr Range<int> kStepLimits{0}, kSampleCounts{1};
 
 /// Where one robot's sensor starts.
 struct StartPose {

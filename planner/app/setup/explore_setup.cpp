@@ -114,14 +114,16 @@ std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
 
 GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
   GivenStarts given{std::vector<std::optional<Pose>>(robots.size()), std::vector<std::string>(robots.size())};
-  std::size_t driving = 0, flying = static_cast<std::size_t>(std::count_if(
-                               robots.begin(), robots.end(),
-                               [](const RobotDescription&robot) { return robot.robot.travel.drives(); }));
+  const auto drives = [](const RobotDescription& robot) { return robot.robot.travel.drives(); };
+  const auto first_flying = static_cast<std::size_t>(std::count_if(robots.begin(), robots.end(), drives));
+  std::size_t driving = 0, flying = first_flying;
   for (const io::TaskRobot& robot : options.robots) {
-    const bool drives = robot.description.robot.travel.drives();
-    const std::size_t r = drives ? driving++ : flying++;
-    given.poses.at(r) = robot.start;
-    given.givers.at(r) = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
+    const bool on_ground = drives(robot.description);
+    const std::size_t r = on_ground ? driving++ : flying++;
+    if (r >= (on_ground ? first_flying : robots.size()))
+      throw BadInput("the robots of the task are not those of the run");  // of a damaged recording
+    given.poses[r] = robot.start;
+    given.givers[r] = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }
   std::vector<bool> placed(robots.size());
   for (const StartPose& start : options.poses) {
@@ -312,6 +314,8 @@ std::vector<RobotDescription> team_of(const std::string& word, Method method) {
       throw BadInput(
           quote(word) +
           " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
+    if (robots.size() + count > kMaxRobots)
+      throw BadInput(quote(word) + " is more than " + std::to_string(kMaxRobots) + " robots; give fewer");
     for (std::size_t i = 0; i < count; ++i)
       robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
     if (rest.find('+') == std::string_view::npos) return robots;

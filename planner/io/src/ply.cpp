@@ -97,6 +97,7 @@ class PlyReader {
     if (!count) fail_here("the element does not have a name and a number", "say how many there are");
     if (std::ranges::any_of(elements_, [&](const Element& other) { return other.name == words[1]; }))
       fail_here("there is a second element " + quote(words[1]), "leave one");
+    check_number(elements_.size(), "elements");
     elements_.push_back({words[1], *count, {}});
   }
 
@@ -113,8 +114,16 @@ class PlyReader {
     auto& properties = elements_.back().properties;
     if (std::ranges::any_of(properties, [&](const Property& other) { return other.name == words.back(); }))
       fail_here("the property " + quote(words.back()) + " comes twice", "leave one");
+    check_number(properties.size(), "properties");
     properties.push_back({words.back(), known_type(words[words.size() - 2]), std::nullopt});
     if (list) properties.back().length = known_type(words[2]);
+  }
+
+  // Of what each one more is compared with.
+  void check_number(std::size_t there, const char* what) const {
+    constexpr std::size_t kMost = 1000;
+    if (there >= kMost)
+      fail_here("there are more than " + std::to_string(kMost) + " " + what, "leave out what is not needed");
   }
 
   void check_vertices() const {

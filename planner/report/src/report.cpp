@@ -70,6 +70,9 @@ std::string base64(std::string_view bytes) {
 std::string packed(const ReportedRun& run, const std::string& version) {
   const std::string facts = detail::run_facts(run, version);
   std::string bytes;
+  if (facts.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::runtime_error(run.name + ": what is known of the run has " + std::to_string(facts.size()) +
+                             " bytes, too many for a report");
   append_number(bytes, static_cast<std::uint32_t>(facts.size()));
   bytes.append(facts).append(detail::run_data(*run.recording));
   return base64(compressed(bytes));

@@ -3,6 +3,7 @@
 #include "corridor/path_search.hpp"
 #include "corridor/terrain.hpp"
 #include "corridor/whole_voxels.hpp"
+#include "mapping/sort_once.hpp"
 
 #include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -101,10 +102,6 @@ VoxelKey cell_of(const TravelOptions& options, const Lattice& lattice, const Vox
 
 KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice, const VoxelKey& cell) {
   return BodyStencil(options, lattice.resolution()).box_around(cell);
-}
-
-Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice) {
-  return BodyStencil(options, lattice.resolution()).reach();
 }
 
 std::string_view describe(CorridorState state) {
@@ -326,8 +323,9 @@ bool TravelCorridor::find_path(const VoxelKey& cell, const std::function<bool(co
 void TravelCorridor::block(std::span<const VoxelKey> cells) {
   std::vector<VoxelKey>& blocked = state_->blocked;
   blocked.insert(blocked.end(), cells.begin(), cells.end());
-  std::sort(blocked.begin(), blocked.end());
+  detail::sort_once(blocked);
 }
+std::span<const VoxelKey> TravelCorridor::blocked() const { return state_->blocked; }
 
 void TravelCorridor::keep_out_of(std::vector<KeyBox> boxes) { state_->kept_out = std::move(boxes); }
 

@@ -340,7 +340,9 @@ void ExplorationState::update_frontiers(ExplorationStep& step) {
   }
   changed.insert(changed.end(), also_changed.begin(), also_changed.end());
   if (!std::exchange(also_changed, {}).empty()) sort_once(changed);
-  frontiers.update({conservative_map ? conservative_map->grid() : mapping.grid(), changed});
+  const VoxelGrid& map = conservative_map ? conservative_map->grid() : mapping.grid();
+  frontiers.update({map, changed});
+  abandoned.forget_known(changed, map);
   if (tours) tours->note_changed_voxels(changed);
 }
 

@@ -96,6 +96,7 @@ struct ExplorationState {
   /// Counts steps of low gain; `Exploration::end` decides by them.
   void count_low_gain(const ExplorationStep& step);
 
+  /// The one in which its paths are planned.
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
     return voxel_corridors[robot] ? *voxel_corridors[robot] : selection->corridor(robot);
   }
@@ -124,6 +125,7 @@ struct ExplorationState {
   [[nodiscard]] std::vector<Pose> retreat_to(std::size_t robot, std::size_t place);
   [[nodiscard]] bool can_reach_as_many_as(std::size_t robot, std::size_t count) const;
   [[nodiscard]] bool can_reach(std::size_t robot, const VoxelKey& cell) const;
+  [[nodiscard]] TravelCorridor corridor_elsewhere(std::size_t robot) const;
   [[nodiscard]] bool would_have_goal_at(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
                                         double length) const;
   void remember(std::size_t robot, const RobotStep& step);

@@ -35,8 +35,7 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
   const TravelCorridor& corridor = team.path_corridor(robot);
   return [this, &corridor](const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                            const Eigen::Vector3d& deviation) {
-    return SegmentVoxels(team.lattice(), from, to, corridor.reach() + deviation)
-        .all_of([&](const VoxelKey& key) { return corridor.passable(key); });
+    return segment_is_free(corridor, team.lattice(), from, to, deviation);
   };
 }
 

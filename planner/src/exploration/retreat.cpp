@@ -50,6 +50,13 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> pa
 
 }  // namespace
 
+// As the robot's own, with all that is closed to it, but for the update.
+TravelCorridor ExplorationState::corridor_elsewhere(std::size_t robot) const {
+  TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());
+  elsewhere.block(path_corridor(robot).blocked());
+  return elsewhere;
+}
+
 // Whether a robot would have a goal if it were in a cell, to which its path has this length [m]. Without
 // tours what other robots see anyhow is worth less from afar, as eq. 1 has it.
 bool ExplorationState::would_have_goal_at(TravelCorridor& elsewhere, std::size_t robot, const VoxelKey& cell,
@@ -112,7 +119,7 @@ std::optional<std::size_t> ExplorationState::place_to_retreat_to(std::size_t rob
     if (std::ranges::find(tried, *cell) != tried.end()) continue;
     if (has_no_corridor) return place;
     if (elsewhere && elsewhere->contains(*cell)) continue;
-    if (!elsewhere) elsewhere.emplace(travel_by_voxels(robot), lattice(), mapping.bounds());
+    if (!elsewhere) elsewhere = corridor_elsewhere(robot);
     if (would_have_goal_at(*elsewhere, robot, *cell, length)) return place;
   }
   return std::nullopt;
@@ -165,7 +172,7 @@ bool ExplorationState::is_cut_off(std::size_t robot, const Goal& goal) const {
   const auto place = place_to_retreat_to(robot, goal, {});
   if (!place) return false;
   // What has closed off a part that is smaller than that where it is has not locked it in.
-  TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());
+  TravelCorridor elsewhere = corridor_elsewhere(robot);
   elsewhere.update({travel_map()}, lattice().key(trails[robot][*place].position).value());
   return !can_reach_as_many_as(robot, elsewhere.cells().size());
 }

@@ -108,9 +108,7 @@ bool GoalSelection::find_path(std::size_t robot, const VoxelKey& cell,
 }
 
 void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
-  State::Member& member = state_->members[robot];
-  member.blocked.insert(member.blocked.end(), cells.begin(), cells.end());
-  member.corridor.block(cells);
+  state_->members[robot].corridor.block(cells);
 }
 
 void GoalSelection::lose(std::size_t robot) { state_->lose(robot); }

@@ -83,8 +83,9 @@ void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {
 }
 
 void GoalSelection::State::renew_corridor(std::size_t robot) {
-  members[robot].corridor = TravelCorridor(team[robot].robot.travel, lattice, bounds);
-  members[robot].corridor.block(members[robot].blocked);
+  TravelCorridor renewed(team[robot].robot.travel, lattice, bounds);
+  renewed.block(members[robot].corridor.blocked());
+  members[robot].corridor = std::move(renewed);
   members[robot].unseen.forget();
 }
 

@@ -30,7 +30,6 @@ struct GoalSelection::State {
     Keys targets = {};                                        // frontiers of its last choice
     std::vector<FrontierViewpoint> previous_viewpoints = {};  // of the assigned frontiers, sorted
     detail::UnseenFrontiers unseen = {};
-    Keys blocked = {};      // cells it does not go through, in any order
     bool rendered = false;  // whether the image is that of `targets`
     Goal goal = {};         // the last one
   };

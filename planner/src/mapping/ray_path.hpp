@@ -146,8 +146,9 @@ class PathLanes {
 /// more than once.
 ///
 /// OctoMap's loop never ends for points so near each other that their distance is 0 in float although they
-/// lie in different voxels, as (1e-30, 1e-30, 0) and (-1e-30, -1e-30, 0) do; here such a ray passes its first
-/// voxel only. Otherwise rounding can carry a path past the voxel of its end by one voxel an axis at most.
+/// lie in different voxels, as (1e-30, 1e-30, 0) and (-1e-30, -1e-30, 0) do, or infinite; here such a ray
+/// passes its first voxel only. Otherwise rounding can carry a path past the voxel of its end by one voxel an
+/// axis at most.
 template <class Mark>
 void for_each_passed(const Lattice& lattice, const Eigen::Vector3f& origin, const VoxelKey& start,
                      std::span<const ScanRay> rays, const LinearPlaces& places, const Mark& mark) {
@@ -161,7 +162,7 @@ void for_each_passed(const Lattice& lattice, const Eigen::Vector3f& origin, cons
       mark(lane, first);
       const Eigen::Vector3f offset = ray.point - origin;
       const auto length = static_cast<float>(octomap_norm(offset));
-      if (!(length > 1e-15F)) continue;
+      if (!(length > 1e-15F) || std::isinf(length)) continue;
       // The end of a ray that is cut off at `reach` has no place in a container of what it
       // passes.
       const bool whole = ray.reach == std::numeric_limits<double>::infinity();

@@ -2,7 +2,6 @@
 #include "motion/speed_profile.hpp"
 
 #include <frontlux/planner/trajectory.hpp>
-#include <frontlux/planner/visible_pairs.hpp>
 
 #include <algorithm>
 #include <cmath>

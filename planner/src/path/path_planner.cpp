@@ -217,8 +217,8 @@ std::string_view describe(PathOutcome outcome) {
 }
 
 bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& from,
-                     const Eigen::Vector3d& to) {
-  return SegmentVoxels(lattice, from, to, corridor.reach()).all_of([&](const VoxelKey& key) {
+                     const Eigen::Vector3d& to, const Eigen::Vector3d& deviation) {
+  return SegmentVoxels(lattice, from, to, corridor.reach() + deviation).all_of([&](const VoxelKey& key) {
     return corridor.passable(key);
   });
 }

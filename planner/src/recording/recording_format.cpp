@@ -28,6 +28,8 @@ void code_length(RecordBytes& bytes, double& value, const char* what) {
 void code_pose(RecordBytes& bytes, Pose& pose) {
   for (double* number : {&pose.position.x(), &pose.position.y(), &pose.position.z(), &pose.yaw})
     code_finite(bytes, *number, "a pose is not finite");
+  constexpr double kFarthest = 1e9;  // [m], as of meshes
+  bytes.require(pose.position.array().abs().maxCoeff() <= kFarthest, "a pose is more than 1e9 m away");
 }
 
 void code_keys(RecordBytes& bytes, std::vector<VoxelKey>& keys) {

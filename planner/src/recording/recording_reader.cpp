@@ -3,9 +3,11 @@
 #include "recording/recording_format.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/machine.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,8 +45,28 @@ std::pair<int, std::size_t> read_title(const std::filesystem::path& file, std::s
   return {format, kRecordingTitle.size() + digits + 1};
 }
 
+// Bytes that what has been read may take: a thousand times those of the file would do for its steps.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(const std::filesystem::path& file) : file_(file) {}
+  void add(std::size_t plain) {
+    constexpr std::size_t kPerByte = 3;  // a voxel of four bytes becomes one of eight, beside them
+    all_ += kPerByte * plain;
+    if (all_ > available_)
+      fail(file_,
+           "holds steps that take more than " + std::to_string(all_) + " bytes of memory, but only " +
+               std::to_string(available_) + " are left",
+           "read it on a machine with more memory");
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::uint64_t all_ = 0;
+  const std::uint64_t available_ = available_memory();
+};
+
 // Reads the records one after the other. `at`: where the next one begins
-Recording read_records(std::string_view bytes, int format, std::size_t& at) {
+Recording read_records(std::string_view bytes, int format, MemoryLimit memory, std::size_t& at) {
   Recording recording;
   recording.format = format;
   const std::size_t zeros = detail::without_zeros(bytes).size();  // where they begin
@@ -53,6 +75,7 @@ Recording read_records(std::string_view bytes, int format, std::size_t& at) {
     if (recording.end && zeros > at) throw detail::BadRecord("goes on after its end");
     const auto record = detail::record_at(bytes, at, zeros);
     if (!record) break;
+    memory.add(record->bytes.size());
     if (has_head == (record->tag == detail::kHeadTag))
       throw detail::BadRecord(has_head ? "has a second head" : "has no head");
     if (record->tag == detail::kHeadTag)
@@ -76,7 +99,7 @@ Recording read_recording(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   auto [format, at] = read_title(file, bytes);
   try {
-    Recording recording = read_records(bytes, format, at);
+    Recording recording = read_records(bytes, format, MemoryLimit(file), at);
     if (recording.bytes == 0) fail_unbegun(file, "before the run began");
     return recording;
   } catch (const detail::BadRecord& error) {

@@ -17,7 +17,6 @@ class NumberTable {
   [[nodiscard]] double operator()(std::size_t row, std::size_t column) const {
     return numbers_[row * columns_ + column];
   }
-  [[nodiscard]] double* row(std::size_t row) { return numbers_.data() + row * columns_; }
   [[nodiscard]] const double* row(std::size_t row) const { return numbers_.data() + row * columns_; }
 
  private:

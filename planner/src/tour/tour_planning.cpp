@@ -13,6 +13,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -395,21 +396,18 @@ void TourPlanning::set_tours(const Query& query, std::span<const StopClusters> s
 
 // Of all tours, and of the first stop of the robot that plans.
 void TourPlanning::note_frontiers(const Query& query) {
-  std::vector<Member*> whose;  // by the clusters' ids
+  std::unordered_map<std::uint32_t, Member*> whose;  // by the clusters' ids
   for (Member& member : members_) {
     member.frontiers.clear();
     for (const TourStop& stop : member.tour)
-      for (const std::uint32_t id : stop.clusters) {
-        whose.resize(std::max<std::size_t>(whose.size(), id + 1));
-        whose[id] = &member;
-      }
+      for (const std::uint32_t id : stop.clusters) whose[id] = &member;
   }
   std::vector<std::uint32_t> ids(query.frontiers.size());
   for_each_index(ids.size(), [&](std::size_t i) { ids[i] = clusters_.cluster_of(query.frontiers[i]); });
   left_ = {.enough = clusters_.least()};
   for (std::size_t i = 0; i < ids.size(); ++i)
-    if (Member* owner = ids[i] < whose.size() ? whose[ids[i]] : nullptr; owner != nullptr)
-      owner->frontiers.push_back(query.frontiers[i]);
+    if (const auto owner = whose.find(ids[i]); owner != whose.end())
+      owner->second->frontiers.push_back(query.frontiers[i]);
     else
       ++(ids[i] == FrontierClusters::kNone ? left_.small : left_.unseen);
   Member& member = members_[query.robot];

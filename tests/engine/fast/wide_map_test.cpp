@@ -153,9 +153,22 @@ TEST(WideMap, HasATableOnlyWhereItIsAskedOften) {
   ASSERT_NE(tables.sector(sector), nullptr);
   EXPECT_TRUE(tables.sector(sector)->contains(kAlongX.min));
   EXPECT_FALSE(tables.sector(sector)->contains(kAlongX.max));
-  // At the next moment it is still known to be asked often.
-  const MapTables later(grid, tables);
+}
+
+// At the next moment it is still known to be asked often, and what was its table takes memory.
+TEST(WideMap, CountsTablesThatWaitForTheirNextMoment) {
+  const VoxelGrid grid = crossing(5);
+  auto tables = std::make_unique<MapTables>(grid, UnknownPolicy::kBlock);
+  const std::uint32_t sector = tables->sector_of(kAlongX.min);
+  EXPECT_TRUE(tables->is_worth_a_table(sector, 100'000));
+  ASSERT_NE(tables->sector(sector), nullptr);
+  const std::size_t bytes = tables->memory_bytes();
+  const MapTables later(grid, *tables);
+  tables.reset();
+  EXPECT_EQ(later.memory_bytes(), bytes);
   EXPECT_TRUE(later.is_worth_a_table(sector, 1));
+  ASSERT_NE(later.sector(sector), nullptr);
+  EXPECT_EQ(later.memory_bytes(), bytes);
 }
 
 TEST(WideMap, ThatGrowsGoesFromOneTableToSectorsAndToNone) {

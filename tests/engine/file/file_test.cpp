@@ -90,6 +90,23 @@ TEST_F(FileTest, RemovesWhatAHandlerFindsUnfinished) {
   EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 2);
 }
 
+// Of threads that write the same file the last one wins, but each writes one of its own until it is whole.
+TEST_F(FileTest, IsWholeWhoeverWritesItAtOnce) {
+  const std::string file = path("shared.csv");
+  std::vector<std::thread> threads;
+  for (const char letter : {'a', 'b', 'c', 'd'})
+    threads.emplace_back([&, letter] {
+      for (int i = 0; i < 50; ++i) {
+        write_file(file, std::string(200'000, letter));
+        const std::string there = test::content_of(file);
+        EXPECT_EQ(there.size(), 200'000U);
+        EXPECT_EQ(there.find_first_not_of(there.front()), std::string::npos);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 1);
+}
+
 TEST_F(FileTest, LeavesWhatIsNoFileAsItIs) {
   const std::string pipe = path("pipe"), link = path("link");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

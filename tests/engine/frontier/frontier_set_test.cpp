@@ -58,5 +58,14 @@ TEST(FrontierSet, FindsTheSurfaceOfLargeBlocks) {
   EXPECT_EQ(FrontierSet(grid, kAllVoxels).size(), 6U * 64U * 64U - 64U);
 }
 
+// A file of a few bytes may hold a leaf whose frontiers take gigabytes.
+TEST(FrontierSet, RefusesTheSurfaceOfAGiantBlock) {
+  VoxelGrid grid(0.1);
+  grid.fill({{0, 0, 0}, 15}, Occupancy::kFree);
+  EXPECT_THROW(FrontierSet(grid, kAllVoxels), std::length_error);
+  const KeyBox part = around(32768, 100, 100, 10);  // beside it
+  expect_frontiers(FrontierSet(grid, part), grid, part, Adjacency::kFaces, "part");
+}
+
 }  // namespace
 }  // namespace frontlux

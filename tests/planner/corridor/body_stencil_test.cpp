@@ -98,7 +98,7 @@ TEST(BodyStencil, ReachIsNoMoreThanTheBodyNeeds) {
     TravelOptions travel;
     travel.shape = shape;
     travel.extents = Eigen::Vector3d::Constant(width);
-    return Eigen::Vector3d(reach_of(travel, Lattice(resolution)) / resolution);
+    return Eigen::Vector3d(BodyStencil(travel, resolution).reach() / resolution);
   };
   // A radius of 5/6 of a voxel: all of three voxels along each axis, which have room for its box.
   EXPECT_EQ(reach(BodyShape::kCylinder, 0.5, 0.3), Eigen::Vector3d::Zero());
@@ -141,7 +141,7 @@ TEST(BodyStencil, ReachIsSoundAnywhere) {
           const Eigen::Vector3d here = at + part * (to - at);
           for_each_key(test::voxels_near(travel, lattice, here), [&](const VoxelKey& key) {
             if (grid.at(key) == Occupancy::kFree) return;
-            // `reach_of` does not count a ten thousandth of a voxel along each axis.
+            // `reach` does not count a ten thousandth of a voxel along each axis.
             ASSERT_LE(test::depth_in(travel, here, test::cube_of(lattice, key)), 1.75e-4 * resolution)
                 << here.transpose() << ", " << resolution << " m, shape " << static_cast<int>(travel.shape)
                 << " of " << travel.extents.transpose() << ", margin " << travel.margin;

@@ -76,5 +76,20 @@ TEST(AbandonedFrontiers, AreAbandonedAfterSomeVisits) {
   }
 }
 
+TEST(AbandonedFrontiers, AreForgottenOnceTheyAreKnown) {
+  detail::AbandonedFrontiers abandoned(2);
+  const std::vector<VoxelKey> all = {{1, 7, 9}, {2, 7, 9}, {3, 7, 9}};
+  for (int visits = 0; visits < 2; ++visits) abandoned.visited(all);
+  EXPECT_TRUE(abandoned.without_abandoned(all).empty());
+  VoxelGrid grid(0.1);
+  abandoned.forget_known(all, grid);  // they are unknown
+  EXPECT_TRUE(abandoned.without_abandoned(all).empty());
+  grid.set(all[1], Occupancy::kFree);
+  abandoned.forget_known(all, grid);
+  EXPECT_EQ(abandoned.without_abandoned(all), std::vector<VoxelKey>{all[1]});
+  abandoned.visited(std::vector<VoxelKey>{all[1]});  // as if for the first time
+  EXPECT_EQ(abandoned.without_abandoned(all), std::vector<VoxelKey>{all[1]});
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -4,6 +4,7 @@
 #include "planner/path/walled_space.hpp"
 #include "support/random.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/path_planner.hpp>
 
 namespace frontlux::planner {
@@ -63,7 +64,7 @@ double depth_in_unknown(const Scene& scene, const TravelOptions& travel, const E
 
 TEST(BodyClearance, ReachIsWhatTheCollisionBoxLeavesOpen) {
   const auto reach = [](const TravelOptions& travel, double resolution) {
-    return reach_of(travel, Lattice(resolution));
+    return BodyStencil(travel, resolution).reach();
   };
   EXPECT_EQ(reach(ugv_travel(), 0.3), Eigen::Vector3d::Zero());  // 1.5 m of voxels for 1.0 m
   EXPECT_TRUE(reach(uav_travel(), 0.3).isApprox(Eigen::Vector3d::Constant(0.1)));
@@ -103,7 +104,7 @@ TEST(BodyClearance, ASegmentIsFreeIfAndOnlyIfTheBodyFitsInItsCells) {
                                                                (corner & 4) != 0 ? d.z() : -d.z()));
         if (is_free) {
           ASSERT_TRUE(cells_free) << at.transpose();
-          // What `reach_of` ignores is a ten thousandth of a voxel.
+          // What `reach` ignores is a ten thousandth of a voxel.
           ASSERT_LE(depth_in_unknown(scene, travel, at), 1.001e-4 * resolution)
               << at.transpose() << " on the segment from " << from.transpose() << " to " << to.transpose();
         }

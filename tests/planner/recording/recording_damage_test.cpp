@@ -1,10 +1,12 @@
 #include "planner/recording/recorded_run.hpp"
 #include "recording/packed_record.hpp"
 #include "recording/recording_format.hpp"
+#include "support/input_test.hpp"
 
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstring>
 
 namespace frontlux::planner {
 namespace {
@@ -32,6 +34,28 @@ TEST_F(RecordingDamageTest, EveryTruncationIsAPrefix) {
     EXPECT_EQ(recording.truncated, length != sizes[count]);
     EXPECT_EQ(recording.end, std::nullopt);
   }
+}
+
+// What draws it would be far out of its numbers.
+TEST_F(RecordingDamageTest, PosesAreOnThisPlanet) {
+  const auto head_size = record(1, 4, true).front();
+  const std::string head = bytes().substr(0, head_size);
+  RecordedStep step = steps_[0];
+  step.step.robots[0].planned = {Pose{{1e9, 0.0, 0.0}, 0.0}};
+  step.step.robots[0].travelled = 1;
+  const std::string good = detail::step_bytes(step, head_, 0, kRecordingFormat);
+  const auto as_bytes = [](double number) {
+    std::string text(sizeof number, '\0');
+    std::memcpy(text.data(), &number, sizeof number);
+    return text;
+  };
+  for (const double x : {1e9, 1.001e9, -1e300}) {
+    const std::string changed = test::replaced(good, as_bytes(1e9), as_bytes(x));
+    const std::string said = complaint(head + detail::packed_record(detail::kStepTag, changed));
+    EXPECT_EQ(said.find("a pose is more than 1e9 m away") != std::string::npos, x != 1e9) << said;
+  }
+  step.step.robots[0].planned[0].position.x() = 1.001e9;
+  EXPECT_THROW(RecordingWriter(file_, head_).write(step), std::invalid_argument);
 }
 
 TEST_F(RecordingDamageTest, EveryFlippedByteIsFound) {

@@ -26,6 +26,19 @@ World world_of(const std::vector<Eigen::AlignedBox3f>& boxes, const Eigen::Align
 
 using frontlux::test::key_at;
 
+// Each of them alone is painted in a moment.
+TEST(GroundTruth, RefusesLargeTrianglesThatLieOnEachOther) {
+  World world{"sheets", {}, Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d(60, 60, 60)), {}};
+  world.mesh.vertices = {{0, 0, 1}, {60, 0, 59}, {0, 60, 30}};
+  world.mesh.triangles = {{0, 1, 2}};
+  const Eigen::Vector3d start(1, 1, 5);
+  EXPECT_EQ(GroundTruth(world, kEdge, start).at(key_at(0, 0, 3)), Truth::kSurface);
+  for (int i = 0; i < 100'000; ++i) world.mesh.triangles.push_back({0, 1, 2});
+  frontlux::test::expect_parts(
+      frontlux::test::complaint_of<std::invalid_argument>([&] { GroundTruth(world, kEdge, start); }),
+      {"lie on each other"});
+}
+
 std::vector<std::pair<VoxelKey, Truth>> observable_voxels(const GroundTruth& truth) {
   std::vector<std::pair<VoxelKey, Truth>> voxels;
   for_each_key(truth.bounds(), [&](const VoxelKey& key) {

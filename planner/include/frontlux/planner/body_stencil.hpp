@@ -44,7 +44,11 @@ class FRONTLUX_EXPORT BodyStencil {
                     static_cast<std::size_t>(y - low_[1])];
   }
 
-  /// [m] As `reach_of` says.
+  /// How far a body that is not in the middle of a voxel may stick out of the stencil around the voxel, along
+  /// each axis [m]. The body fits at a position if all cells are passable that a box of this half width
+  /// around the position touches. It is 0 along axes on which the stencil has room for the body anywhere in
+  /// the voxel, for robots that drive along z, and for nodes; of round bodies it is up to half a voxel. A ten
+  /// thousandth of a voxel does not count, so that a body as wide as its collision box fits in the middle.
   [[nodiscard]] const Eigen::Vector3d& reach() const { return reach_; }
 
   /// The smallest box around the voxels of a cell, cut off at the end of the key range.

@@ -36,8 +36,7 @@ struct PlannedMotion {
   /// Why it planned.
   PlanReason reason = PlanReason::kStart;
   Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
-  /// `RobotStep::planned` holds the poses at which each robot took a scan, after the last of the planning
-  /// before; goal, tour, path, image and gains are those of the robot that planned.
+  /// Of each robot what it has done; goal, tour, path, image and gains are those of the robot that planned.
   ExplorationStep step;
 };
 
@@ -107,8 +106,9 @@ class FRONTLUX_EXPORT ContinuousExploration {
 
   /// Why the exploration is over; nothing while it goes on. A robot has nothing to do if it has found no goal
   /// and has rested for one and a half periods, in which what closed its way for a moment is seen to be free;
-  /// if it has waited for others ten times in a row; or if it is lost. Of low gain is an exploration without
-  /// tours in which each robot has chosen a goal of low gain, or found none, `low_gain_steps` times in a row.
+  /// if it has waited for others more than ten times in a row; or if it is lost. Of low gain is an
+  /// exploration without tours in which each robot has chosen a goal of low gain, or found none,
+  /// `low_gain_steps` times in a row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   /// As given.

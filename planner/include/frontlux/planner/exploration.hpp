@@ -59,14 +59,14 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   void check() const;
 };
 
-/// All but the team. By default robots take the corridor's own shortest paths, since a random search finds
-/// longer ones; `kPaper` searches by RRT.
+/// What robots in lock-step explore with by default; the team is to be added. Robots take the corridor's own
+/// shortest paths, since a random search finds longer ones; `kPaper` searches by RRT.
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions exploration_options(Method method = Method::kDefault);
-/// The same for robots in motion, which note what each scan has in view: a frontier that stays unknown after
-/// one look is abandoned, and the number of plannings has no limit.
+/// The same for robots in motion. A frontier that stays unknown after one look, in the last scan before a
+/// planning, is abandoned, and the number of plannings has no limit.
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions motion_options(Method method = Method::kDefault);
-/// All but the team as `frontlux explore` has it by default: in motion, on tours, whose stops show ten
-/// frontiers, and not less than 0.3 m2 of them nor more than 0.9 m2.
+/// What `frontlux explore` has by default, in motion and on tours; the team is to be added. A stop shows at
+/// least ten frontiers, but no fewer than make up 0.3 m2 and no more than 0.9 m2.
 /// @param resolution  [m] of the map
 [[nodiscard]] FRONTLUX_EXPORT ExplorationOptions tour_options(double resolution);
 
@@ -102,7 +102,8 @@ struct RobotStep {
   std::vector<RenderedCell> image;
   /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
-  /// Viewpoints from where it was to the goal; empty if it stays. In motion: where it took its scans.
+  /// Viewpoints from where it was to the goal; empty if it stays. In motion: where it took its scans since
+  /// the previous planning, after that planning's last one.
   std::vector<Pose> planned;
   std::uint64_t gain_tangent = 0;    ///< distinct frontiers of its own in the path's view, if it looked ahead
   std::uint64_t gain_predicted = 0;  ///< the same with the yaws as optimised
@@ -137,7 +138,7 @@ struct FRONTLUX_EXPORT ExplorationStep {
   /// Of them, those that are no robot's: none can see them, or with tours their cluster has no stop.
   std::size_t unassigned = 0;
   std::size_t abandoned = 0;      ///< of them, those no longer tried, since they stay unknown when looked at
-  std::uint64_t rays = 0;         ///< cast to plan the step
+  std::uint64_t rays = 0;         ///< cast to plan the step, but for retreats
   std::vector<RobotStep> robots;  ///< in the team's order
   std::array<double, kPhases> seconds{};  ///< [s] by `Phase`
 

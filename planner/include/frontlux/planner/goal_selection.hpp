@@ -177,8 +177,8 @@ class FRONTLUX_EXPORT GoalSelection {
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
                                  std::optional<std::size_t> choosing = std::nullopt);
 
-  /// In the place of a step: takes the change, and brings up to date no more than one robot's corridor. All
-  /// robots keep their goals. @pre robot < team().size()
+  /// Instead of `select`: takes the change, and updates this robot's corridor only. No robot chooses a goal.
+  /// @pre robot < team().size()
   void update_corridor(const MapChange& change, std::size_t robot, const Pose& pose,
                        CorridorExtent extent = CorridorExtent::kAllCells);
 

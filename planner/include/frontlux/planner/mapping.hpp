@@ -42,7 +42,7 @@ struct SensorModel {
 inline constexpr SensorModel kOctomapSensorModel{.hit = 0.7, .miss = 0.4, .least = 0.1192, .most = 0.971};
 
 /// For robots that keep away from all they saw: a hit makes any voxel occupied at once. It outweighs five
-/// misses after it if the voxel was unknown before, and one if many misses came before.
+/// misses after it if the voxel was unknown before; after many misses the next one frees it again.
 inline constexpr SensorModel kCautiousSensorModel{.hit = 0.7, .miss = 0.46, .least = 0.32, .most = 0.971};
 
 /// As options and files call them.

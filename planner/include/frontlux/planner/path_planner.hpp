@@ -104,8 +104,10 @@ struct PathPlan {
 /// Whether the body of a robot that goes straight from one point [m] to another stays in space that is known
 /// to be free: every voxel that a box of the corridor's `reach()` around the robot enters has to be a
 /// passable cell (see `SegmentVoxels`). False if an end is not finite or beyond the key range.
-[[nodiscard]] FRONTLUX_EXPORT bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice,
-                                                   const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+/// @param deviation  [m] along each axis, by which the robot may be beside the straight line
+[[nodiscard]] FRONTLUX_EXPORT bool segment_is_free(
+    const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& from,
+    const Eigen::Vector3d& to, const Eigen::Vector3d& deviation = Eigen::Vector3d::Zero());
 
 /// Sum of the distances between successive viewpoints [m].
 [[nodiscard]] FRONTLUX_EXPORT double path_length(std::span<const Pose> viewpoints);

@@ -139,13 +139,6 @@ struct FRONTLUX_EXPORT TravelOptions {
 [[nodiscard]] FRONTLUX_EXPORT KeyBox voxels_of_cell(const TravelOptions& options, const Lattice& lattice,
                                                     const VoxelKey& cell);
 
-/// How far a body that is not in the middle of a voxel may stick out of the stencil around the voxel, along
-/// each axis [m]. The body fits at a position if all cells are passable that a box of this half width around
-/// the position touches. It is 0 along axes on which the stencil has room for the body anywhere in the voxel,
-/// for robots that drive along z, and for nodes; of round bodies it is up to half a voxel. A ten thousandth
-/// of a voxel does not count, so that a body as wide as its collision box fits in the middle.
-[[nodiscard]] FRONTLUX_EXPORT Eigen::Vector3d reach_of(const TravelOptions& options, const Lattice& lattice);
-
 /// Why there is a corridor, or none.
 enum class CorridorState : std::uint8_t {
   kReady,
@@ -202,6 +195,8 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// Makes these cells impassable from the next update on at the latest, whatever the map says: there is
   /// something that no sensor has seen.
   void block(std::span<const VoxelKey> cells);
+  /// All of these so far, sorted. Valid until the next call of `block`.
+  [[nodiscard]] std::span<const VoxelKey> blocked() const;
 
   /// Makes the cells in these boxes impassable from the next update on at the latest, in the place of those
   /// of the call before: other robots are there, or will be. If a box holds the robot's own cell, the part
@@ -231,7 +226,7 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// Whether a cell would be passable, wherever other robots are. In constant time.
   [[nodiscard]] bool fits(const VoxelKey& key) const;
 
-  /// `reach_of` the corridor's options.
+  /// `BodyStencil::reach` of the robot.
   [[nodiscard]] const Eigen::Vector3d& reach() const;
 
   /// The key of the cell that holds a voxel: the voxel itself, unless cells are nodes.

@@ -60,7 +60,4 @@ class FRONTLUX_EXPORT VisiblePairs {
 [[nodiscard]] FRONTLUX_EXPORT std::vector<Eigen::Vector3d> centers(const Lattice& lattice,
                                                                    std::span<const VoxelKey> keys);
 
-/// @throws std::invalid_argument naming the first viewpoint that is not finite
-FRONTLUX_EXPORT void check_finite(std::span<const Pose> viewpoints);
-
 }  // namespace frontlux::planner

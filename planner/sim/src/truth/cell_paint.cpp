@@ -4,6 +4,9 @@
 
 #include <frontlux/parallel.hpp>
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace frontlux::sim {
 namespace {
 
@@ -20,6 +23,20 @@ class Painter {
       : frame_(frame), cells_(cells) {
     triangles_.reserve(mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) triangles_.emplace_back(corners_of(mesh, i));
+  }
+
+  // How many cells will be looked at, a cell once for each triangle: no more than the triangle's area has,
+  // and than the largest side of its bounds has.
+  [[nodiscard]] double work(const TriangleMesh& mesh) const {
+    double all = 0.0;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      const auto corners = corners_of(mesh, i);
+      const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
+      const Block reach = reach_of(triangles_[i]);
+      const Eigen::Array3d size = (reach.high - reach.low).cast<double>().array() + 1.0;
+      all += std::min(area / (frame_.edge * frame_.edge), size.prod() / size.minCoeff());
+    }
+    return all;
   }
 
   // All triangles, in one slab of cells: slabs share no cell, so each may have its own thread.
@@ -80,7 +97,13 @@ class Painter {
 
 void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::uint8_t>& cells) {
   constexpr std::size_t kThickness = 16;
+  constexpr double kMostWork = 1 << 30;
   Painter painter(mesh, frame, cells);
+  if (painter.work(mesh) > kMostWork)
+    throw std::invalid_argument(
+        "the triangles of the mesh lie on each other: they pass through more than 2^30 voxels, each counted "
+        "for "
+        "each triangle; leave out those that are there twice, or take larger voxels");
   Eigen::Index axis = 0;
   const std::int64_t length = frame.size.maxCoeff(&axis);
   for_each_chunk(static_cast<std::size_t>(length), kThickness, [&](std::size_t begin, std::size_t end) {

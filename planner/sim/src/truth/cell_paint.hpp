@@ -37,6 +37,7 @@ struct CellFrame {
 
 /// Marks the cells (x fastest) that surfaces pass through, and the faces that they lie on, in parallel over
 /// TBB's current arena. The faces of a solid cell are not marked.
+/// @throws std::invalid_argument if that would take minutes: many large triangles pass through the same cells
 /// @pre cells.size() is the product of frame.size, and the mesh is valid
 void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::uint8_t>& cells);
 

@@ -16,9 +16,6 @@ inline constexpr std::size_t kLongestRobotName = 40;
 inline constexpr std::uint64_t kMostRays = std::uint64_t{1} << 22;  // of a scan
 inline constexpr std::uint64_t kMostRaysPerSecond = std::uint64_t{1} << 26;
 
-/// @throws std::runtime_error saying how many the sensor of this robot has, and what to do, if those are more
-FRONTLUX_EXPORT void check_rays(const planner::RobotDescription& robot);
-
 /// Reads a robot from a JSON file; docs/robots.md shows one and says what each member means.
 /// @throws std::runtime_error naming the file, the member, what is wrong and what to do
 [[nodiscard]] FRONTLUX_EXPORT planner::RobotDescription read_robot(const std::filesystem::path& file);
