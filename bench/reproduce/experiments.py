@@ -61,7 +61,7 @@ class Experiments:
                                          f"give one of {', '.join(map(str, COMPLETES))}")
             self.rows = {run[:2] for name in self.sets for run in self.runs(name) if not run.timed}
         except (KeyError, TypeError, AttributeError) as error:
-            raise self.wrong(f"a task, a method or a block of a set has no {error}, or one of another type",
+            raise self.wrong(f"a task, a method or a block of a set lacks a member, or has one of another type ({error})",
                              "docs/reproducing.md says what they have") from error
 
     def wrong(self, what, do):

@@ -1,7 +1,6 @@
 #include "bad_input.hpp"
 
 #include <new>
-#include <stdexcept>
 
 namespace frontlux::app {
 
@@ -13,8 +12,6 @@ void work_on(const std::string& input, const char* memory, const std::function<v
   } catch (const std::bad_alloc&) {
     throw BadInput(input + ": there is not enough memory; " + memory);
   } catch (const std::invalid_argument& error) {
-    throw BadInput(input + ": " + error.what());
-  } catch (const std::length_error& error) {
     throw BadInput(input + ": " + error.what());
   } catch (const std::runtime_error& error) {
     throw BadInput(error.what());

@@ -2,8 +2,11 @@
 
 #include <frontlux/file.hpp>
 
+#include <atomic>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
+#include <ctime>
 #include <string_view>
 #include <unistd.h>
 
@@ -12,7 +15,9 @@ namespace {
 
 constexpr std::array kSignals = {SIGINT, SIGTERM};
 
-volatile std::sig_atomic_t note = 0;
+constexpr std::int64_t kNone = -1;
+std::atomic<std::int64_t> noted_at = kNone;  // [ns]
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
 // Only calls that a handler may make.
 extern "C" void end_at_once(int) {
@@ -22,10 +27,15 @@ extern "C" void end_at_once(int) {
   ::_exit(kInterruptedCode);
 }
 
-// The second time nobody wants to wait any more.
+// Who asks again wants to wait no more. What comes with the first one is that one: `timeout` sends its signal
+// to the program and to its group.
 extern "C" void take_note(int signal) {
-  if (note != 0) end_at_once(signal);
-  note = 1;
+  constexpr std::int64_t kSecond = 1'000'000'000, kAgain = kSecond / 2;
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  const std::int64_t now = kSecond * time.tv_sec + time.tv_nsec;
+  std::int64_t before = kNone;
+  if (!noted_at.compare_exchange_strong(before, now) && now - before > kAgain) end_at_once(signal);
 }
 
 // A program started in the background ignores SIGINT, and continues to.
@@ -43,7 +53,7 @@ void end_at_interrupts() {
 }
 
 InterruptNote::InterruptNote() {
-  note = 0;
+  noted_at = kNone;
   for (std::size_t i = 0; i < kSignals.size(); ++i) before_[i] = handle(kSignals[i], &take_note);
 }
 
@@ -52,13 +62,6 @@ InterruptNote::~InterruptNote() {
     if (before_[i] != SIG_ERR) std::signal(kSignals[i], before_[i]);
 }
 
-bool InterruptNote::taken() { return note != 0; }
-
-void Patience::check() {
-  constexpr double kLongest = 2.0;  // [s]
-  if (!InterruptNote::taken()) return;
-  if (!since_) since_.emplace();
-  if (since_->seconds() > kLongest) throw Interrupted();
-}
+bool InterruptNote::taken() { return noted_at != kNone; }
 
 }  // namespace frontlux::app

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <frontlux/stopwatch.hpp>
-
 #include <array>
 #include <exception>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,8 +23,8 @@ inline constexpr int kInterruptedCode = 128 + 2;  ///< how the program exits whe
 /// that are not whole.
 void end_at_interrupts();
 
-/// While it lives, Ctrl-C and SIGTERM are noted instead of ending the program; a second one ends it at once.
-/// One at a time.
+/// While it lives, Ctrl-C and SIGTERM are noted instead of ending the program; a second one, half a
+/// second later or more, ends it at once. One at a time.
 class InterruptNote {
  public:
   InterruptNote();
@@ -40,16 +37,6 @@ class InterruptNote {
  private:
   using Action = void (*)(int);
   std::array<Action, 2> before_;  // by `kSignals`
-};
-
-/// With a step of work that is to come to its end after an interrupt, which may take long.
-class Patience {
- public:
-  /// To be called now and then. @throws Interrupted two seconds after the interrupt
-  void check();
-
- private:
-  std::optional<Stopwatch> since_;
 };
 
 }  // namespace frontlux::app

@@ -98,7 +98,11 @@ std::optional<FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& g
     if (all) around += size_of(*all) - (inside ? size_of(*inside) : 0);
   });
   if (around > most) return std::nullopt;
-  return FrontierSet(grid, bounds);
+  try {
+    return FrontierSet(grid, bounds);
+  } catch (const std::length_error&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace frontlux::app

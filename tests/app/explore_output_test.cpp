@@ -128,9 +128,15 @@ TEST_F(ExploreOutput, SigtermIsLikeCtrlC) {
 TEST_F(ExploreOutput, TheSecondCtrlCEndsAtOnce) {
   const pid_t child = start_and_wait({"station", "--lockstep", "--report", "off", "-o", path("stopped")}, 1);
   ASSERT_GT(child, 0);
-  kill(child, SIGSTOP);  // so that both come before the step ends
+  const auto wait = [](int milliseconds) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+  };
   kill(child, SIGINT);
-  kill(child, SIGTERM);
+  kill(child, SIGTERM);  // with the first: as `timeout` sends its own to a program and its group
+  wait(50);
+  kill(child, SIGSTOP);  // before it is done
+  wait(600);
+  kill(child, SIGINT);
   kill(child, SIGCONT);
   EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
   EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");

@@ -24,8 +24,8 @@ enum class Adjacency : std::uint8_t {
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
-  /// @throws std::length_error if more than 2^26 bricks of 8 x 8 x 8 voxels within the bounds lie around free
-  ///         blocks of the grid: a giant free leaf has gigabytes of frontiers
+  /// @throws std::length_error if more than 2^22 bricks of 8 x 8 x 8 voxels within the bounds are beside
+  ///         blocks of the grid that are free as a whole: a giant one has gigabytes of frontiers
   FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency = Adjacency::kFaces);
   ~FrontierSet();
   FrontierSet(FrontierSet&&) noexcept;

@@ -14,7 +14,8 @@ namespace frontlux {
 [[nodiscard]] FRONTLUX_EXPORT std::uint64_t address_space();
 
 /// Memory that this process can still take [bytes]: what the system says is available, swap included, within
-/// the process's limit on addresses (`ulimit -v`). The largest number if the system does not say.
+/// the process's limit on addresses (`ulimit -v`) and those of its control groups, as a container's. The
+/// largest number if the system does not say.
 [[nodiscard]] FRONTLUX_EXPORT std::uint64_t available_memory();
 
 /// The vector instructions that the engine uses: "avx512", "avx2", "vector" (16 bytes, any processor) or

@@ -75,7 +75,9 @@ class Recording:
         rows = self.changes["step"] <= step
         if rows.any():
             keys, after = self.changes["keys"][rows].astype(np.int64), self.changes["after"][rows]
-            # Cube by cube, since they may be far apart; in each, of equal places the last one counts.
+            # Of equal ones the last counts; cube by cube, since they may be far apart.
+            _, last = np.unique(np.ravel_multi_index(keys[::-1].T, 3 * (0x10000,)), return_index=True)
+            keys, after = keys[len(keys) - 1 - last], after[len(after) - 1 - last]
             cubes = np.ravel_multi_index((keys // _CUBE).T, 3 * (0x10000 // _CUBE,))
             order = np.argsort(cubes, kind="stable")
             for part in np.split(order, np.flatnonzero(np.diff(cubes[order])) + 1):
@@ -113,7 +115,7 @@ class _Bytes:
         digits = self.take(int(ends[-1]) + 1 - self.at).astype(np.int64) & 0x7F
         shifts = 7 * (np.arange(len(digits)) - np.repeat(begins - begins[0], ends - begins + 1))
         numbers = np.add.reduceat(digits << shifts, begins - begins[0])
-        if numbers.min() < 0:
+        if numbers.min() < 0 or (digits[shifts == 63] > 0).any():
             raise ValueError("a whole number is too large")
         return numbers
 
@@ -287,7 +289,7 @@ def read_recording(file):
             if head is None:
                 raise ValueError("has no head")
         except (ValueError, IndexError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
-            raise RuntimeError(f"{fspath(file)}: {error or type(error).__name__}") from error
+            raise RuntimeError(f"{fspath(file)}: {str(error) or type(error).__name__}") from error
     robots = len(head["robots"])
     names = {"time": ((), np.float64), "seconds": ((6,), np.float64), "length": ((robots,), np.float64),
              **{name: ((), np.int64) for name in _STEP_COUNTS},

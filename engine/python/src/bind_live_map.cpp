@@ -52,7 +52,7 @@ bool can_follow(const Lattice& lattice, const octomap::point3d& origin, const oc
   if (steps > kMostSteps)
     throw std::invalid_argument("a ray passes " + std::to_string(steps) +
                                 " voxels, but OctoMap takes at most " + std::to_string(kMostSteps) +
-                                "; give a max_range");
+                                "; give a " + (max_range > 0.0 ? "smaller " : "") + "max_range");
   return true;
 }
 
@@ -145,7 +145,7 @@ Methods may be called from several threads; insertions wait for each other, and 
           R"(Inserts a scan as OctoMap's insertPointCloud does: its points are occupied, and what lies before them free.
 
 points: float32 or float64 (..., 3) [m], in the map's frame. Those that are not finite change nothing, nor do those whose
-ray ends outside the key range. origin: (3,) [m], where the sensor was. max_range: [m] rays are free up to there, and
+ray ends outside the key range, or in another voxel with no length in float32. origin: (3,) [m], where the sensor was. max_range: [m] rays are free up to there, and
 points beyond it do not count as hits; <= 0: no limit. Raises ValueError, with nothing inserted, if a ray passes more than
 99,990 voxels. Returns a MapChange.)")
       .def("insert_scan", &insert_scan, py::arg("points"), py::arg("pose"), py::arg("max_range") = -1.0,

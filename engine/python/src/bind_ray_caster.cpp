@@ -19,7 +19,6 @@ class Buffer {
  public:
   static constexpr std::size_t kSize = 1 << 12;
   Buffer() {
-    idle().reserve(idle().size() + 1);  // so that the destructor cannot fail
     if (idle().empty()) {
       values_.resize(kSize);
       return;
@@ -27,7 +26,12 @@ class Buffer {
     values_ = std::move(idle().back());
     idle().pop_back();
   }
-  ~Buffer() { idle().push_back(std::move(values_)); }
+  ~Buffer() {
+    try {
+      idle().push_back(std::move(values_));
+    } catch (const std::bad_alloc&) {  // it is made anew
+    }
+  }
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
   [[nodiscard]] std::span<T> first(std::size_t size) { return std::span(values_).first(size); }

@@ -15,6 +15,10 @@ constexpr std::uint64_t kWorthATable = 1U << 15U;
 // For all sectors under one policy. What starts in others goes to Embree.
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;
 
+std::size_t memory_of(const Spare<MapTable>& spare) {
+  return spare.measured([](const MapTable& map_table) { return map_table.table.memory_bytes(); });
+}
+
 }  // namespace
 
 TableSnapshot::TableSnapshot(const VoxelGrid& grid, std::shared_ptr<Spare<MapTable>> spare,
@@ -24,10 +28,6 @@ TableSnapshot::TableSnapshot(const VoxelGrid& grid, std::shared_ptr<Spare<MapTab
     map_table_->grid = grid;
   else
     map_table_ = std::make_unique<MapTable>(MapTable{make(), grid});
-}
-
-std::size_t memory_of(Spare<MapTable>& spare) {
-  return spare.measured([](const MapTable& map_table) { return map_table.table.memory_bytes(); });
 }
 
 std::size_t TableSnapshot::memory_bytes() const { return table().memory_bytes() + memory_of(*spare_); }
@@ -69,12 +69,13 @@ MapTables::MapTables(const VoxelGrid& grid, const MapTables& before)
     use_whole(std::make_shared<Spare<MapTable>>());
   } else if (plan_ == before.plan_) {
     const std::lock_guard lock(before.mutex_);
-    for (const auto& [number, sector] : before.sectors_) {
-      // Those that nobody has asked since the update before make room.
-      if (!sector.table && before.bytes_ > kMostBytes) continue;
-      sectors_[number].history = sector.history;
-      bytes_ += bytes_of(sector);
-    }
+    for (const bool asked : {true, false})
+      for (const auto& [number, sector] : before.sectors_) {
+        // Those that nobody has asked since the update before make room.
+        if ((sector.table != nullptr) != asked || (!asked && bytes_ > kMostBytes)) continue;
+        bytes_ += sectors_[number].counted = bytes_of(sector);
+        sectors_[number].history = sector.history;
+      }
   }
 }
 
@@ -103,15 +104,15 @@ const OpenVoxels* MapTables::sector(std::uint32_t number) const {
   const std::lock_guard lock(mutex_);
   Sector& sector = sectors_.at(number);
   if (!sector.table) {
-    if (bytes_ > kMostBytes) return nullptr;
-    const std::size_t spare = bytes_of(sector);
+    if (bytes_ > kMostBytes && bytes_of(sector) == 0) return nullptr;
     // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
     run_isolated([&] {
       sector.table = std::make_unique<TableSnapshot>(grid_, sector.history->spare, [&] {
         return OpenVoxels(grid_, unknown_, known_, plan_->window(number));
       });
     });
-    bytes_ += bytes_of(sector) - std::min(spare, bytes_of(sector));
+    bytes_ += bytes_of(sector) - sector.counted;
+    sector.counted = bytes_of(sector);
   }
   return sector.table->table().empty() ? nullptr : &sector.table->table();
 }

@@ -25,8 +25,6 @@ struct MapTable {
   VoxelGrid grid;
 };
 
-[[nodiscard]] std::size_t memory_of(Spare<MapTable>& spare);
-
 /// A table of a map as it is at one moment. It is the table of an earlier moment, brought up to date, if
 /// there is a spare one.
 class TableSnapshot {
@@ -95,6 +93,7 @@ class MapTables {
   struct Sector {
     std::shared_ptr<SectorHistory> history;
     std::unique_ptr<const TableSnapshot> table;
+    std::size_t counted = 0;  // in `bytes_`
   };
 
   static std::size_t bytes_of(const Sector& sector);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 
 namespace frontlux {
@@ -39,12 +40,16 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
 std::uint64_t free_in_group(const std::filesystem::path& group, const char* limit, const char* usage) {
   const auto most = number_in(group / limit), used = number_in(group / usage);
   if (!most || !used) return kNotKnown;
+  const bool nested =
+      std::string_view(limit) != "memory.max";  // of version 1: totals are those with its parts
   std::uint64_t files = 0;
   std::ifstream parts(group / "memory.stat");
   for (std::string name; parts >> name;) {
     std::uint64_t bytes = 0;
     parts >> bytes;
-    if (name == "inactive_file") files = bytes;
+    if (name == (nested ? "total_inactive_file" : "inactive_file") ||
+        name == (nested ? "total_active_file" : "active_file") || name == "slab_reclaimable")
+      files += bytes;
   }
   return *most - std::min(*most, *used - std::min(*used, files));
 }

@@ -107,7 +107,7 @@ VoxelKey corner_of(std::uint64_t number) {
 
 struct FrontierSet::State {
   using Bricks = BrickTable<bool>;  // a set of numbers
-  static constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 26;
+  static constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 22;
 
   KeyBox bounds;
   Adjacency adjacency;
@@ -155,14 +155,15 @@ struct FrontierSet::State {
   // Finds the frontiers of every brick in which, or next to which, a voxel is free.
   void build(const VoxelGrid& grid) {
     Bricks stale;
-    std::uint64_t outside = 0;  // bricks around blocks of one state
+    std::uint64_t beside = 0;  // bricks, of blocks of one state: files have no more of the others than bytes
     grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
       if (brick == nullptr && state != Occupancy::kFree) return;
-      if (brick == nullptr) outside += surroundings(block);
-      if (outside > kMostBricks)
+      if (brick == nullptr && beside + surroundings(block) > kMostBricks)
         throw std::length_error(
-            "the free space is too large: its surface has more than 2^26 bricks of 8 x 8 x 8 voxels");
+            "the free space is too large: more than 2^22 bricks of 8 x 8 x 8 voxels are beside it");
+      const std::size_t before = stale.entries().size();
       add_surroundings(block, brick != nullptr, stale);
+      if (brick == nullptr) beside += stale.entries().size() - before;
     });
     refresh(grid, stale);
   }

@@ -30,7 +30,7 @@ struct Table {
   const void *words, *radii;
 };
 
-// How far the cells around are open, in cells; 0 where the lanes of `where` are not.
+// How far the cells around are open, in cells; anything but in the lanes of `where`.
 [[gnu::always_inline]] inline Lanes::I open_radius(const Table& table, Lanes::I at, Lanes::M where) {
   using I = Lanes::I;
   const I word = Lanes::gather(table.radii, Lanes::right(at, 9), where);

@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kUnfinishedEnding = 16;  // .part and the number of a process, until a file is whole
+// Until a file is whole: .part-frontlux-, the number of the process and that of the file.
+constexpr std::size_t kUnfinishedEnding = 32;
 
 }  // namespace
 

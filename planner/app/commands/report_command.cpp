@@ -20,7 +20,6 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -158,8 +157,7 @@ void write_films(const Options& options, const Run& run) {
   const InterruptNote note;
   const bool keeps_frames = !has_ffmpeg();
   // What is gone in the end takes no names that a user may have given to his own files.
-  Frames frames(folder /
-                (keeps_frames ? kFrames : kFrames + (".part-frontlux-" + std::to_string(::getpid()))));
+  Frames frames(folder / (keeps_frames ? kFrames : kUnfinishedFrames));
   write_frames(frames.folder, run.recording, run.name, kWidth);
   if (keeps_frames) {
     frames.keep = true;

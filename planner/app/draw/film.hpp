@@ -11,6 +11,8 @@ namespace frontlux::app {
 /// The names of films beside a run's recording, and of the folder of their frames.
 inline constexpr std::array kFilms = {"video.mp4", "video.gif"};
 inline constexpr const char* kFrames = "video";
+/// Of those that are gone once the films are made.
+inline constexpr const char* kUnfinishedFrames = "video.unfinished";
 
 /// Whether there is an ffmpeg to make films with.
 [[nodiscard]] bool has_ffmpeg();

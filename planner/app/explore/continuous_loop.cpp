@@ -3,6 +3,8 @@
 #include "explore/csv_row.hpp"
 #include "interrupt.hpp"
 
+#include <frontlux/stopwatch.hpp>
+
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -12,6 +14,8 @@ namespace frontlux::app {
 namespace {
 
 using planner::ExplorationStep, planner::Pose;
+
+constexpr double kLongestStop = 2.0;  // [s] for the end of a step, when the run is to stop
 
 std::vector<Pose> start_poses(const ExploreSetup& setup) {
   std::vector<Pose> poses;
@@ -58,9 +62,12 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
     note_numbers(mapped);
     return first;
   }
-  Patience patience;
+  std::optional<Stopwatch> waiting;  // since somebody wants the run to stop
   for (;;) {
-    patience.check();
+    if (InterruptNote::taken()) {
+      if (!waiting) waiting.emplace();
+      if (waiting->seconds() > kLongestStop) throw Interrupted();
+    }
     // All scans of one moment come before the plannings.
     if (robots_.next_time() > time_)
       if (auto planned = exploration_.plan(time_)) {

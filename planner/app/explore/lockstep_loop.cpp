@@ -1,7 +1,5 @@
 #include "explore/lockstep_loop.hpp"
 
-#include "interrupt.hpp"
-
 #include <frontlux/planner/trajectory.hpp>
 
 #include <span>
@@ -23,10 +21,8 @@ LockstepLoop::LockstepLoop(const ExploreSetup& setup)
 }
 
 planner::Drive LockstepLoop::drive() {
-  return [this, patience = Patience()](std::size_t robot, const planner::Pose& viewpoint) mutable {
-    patience.check();
-    return robots_.drive(robot, viewpoint);
-  };
+  return
+      [this](std::size_t robot, const planner::Pose& viewpoint) { return robots_.drive(robot, viewpoint); };
 }
 
 ExplorationStep LockstepLoop::step() {

@@ -32,7 +32,8 @@ void check_robots(const planner::RecordingHead& head, const fs::path& recording)
   }
   try {
     static_cast<void>(io::robots_of(io::robots_text(robots)));
-    if (names.size() < robots.size()) throw std::runtime_error("two of its robots have the same name");
+    if (names.size() < robots.size())
+      throw std::runtime_error("two of its robots have the same name; begin the run anew");
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(recording.string() + ": " + error.what());
   }

@@ -108,7 +108,7 @@ void remove_views(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(folder / kReport, ignored);
   for (const std::string& file : pictures()) fs::remove(folder / file, ignored);
-  remove_frames(folder / kFrames);
+  for (const char* frames : {kFrames, kUnfinishedFrames}) remove_frames(folder / frames);
 }
 
 std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head, std::size_t steps) {

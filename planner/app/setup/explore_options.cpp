@@ -247,9 +247,9 @@ std::string json_text(const ExploreOptions& options) {
 }
 
 ExploreOptions explore_options_of(const std::string& text) {
-  constexpr std::size_t kDepth = 8;  // a box in the list of robots has five
+  constexpr int kDepth = 8;  // a box in the list of robots has five
   const auto not_too_deep = [](int depth, Json::parse_event_t, const Json&) {
-    if (static_cast<std::size_t>(depth) > kDepth) throw std::runtime_error("they are nested too deeply");
+    if (depth > kDepth) throw std::runtime_error("they are nested too deeply");
     return true;
   };
   try {

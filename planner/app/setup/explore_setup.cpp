@@ -121,7 +121,7 @@ GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDes
     const bool on_ground = drives(robot.description);
     const std::size_t r = on_ground ? driving++ : flying++;
     if (r >= (on_ground ? first_flying : robots.size()))
-      throw BadInput("the robots of the task are not those of the run");  // of a damaged recording
+      throw BadInput("--resume: the recorded options name other robots than the run has; begin it anew");
     given.poses[r] = robot.start;
     given.givers[r] = options.task + ": the start of the robot '" + robots[r].robot.name + "'";
   }

@@ -50,7 +50,7 @@ std::vector<Pose> without_loops(const Lattice& lattice, std::span<const Pose> pa
 
 }  // namespace
 
-// As the robot's own, with all that is closed to it, but for the update.
+// As the robot's own, without the cells that it found blocked, before an update and wherever others are.
 TravelCorridor ExplorationState::corridor_elsewhere(std::size_t robot) const {
   TravelCorridor elsewhere(travel_by_voxels(robot), lattice(), mapping.bounds());
   elsewhere.block(path_corridor(robot).blocked());

@@ -22,13 +22,12 @@ class AbandonedFrontiers {
       if (++visits_[key] == max_visits_) abandoned_.insert(std::ranges::lower_bound(abandoned_, key), key);
   }
 
-  /// These voxels have changed: those that are known now will be no frontiers any more.
+  /// These voxels have changed, sorted: those that are known now will be no frontiers any more.
   void forget_known(std::span<const VoxelKey> changed, const VoxelGrid& grid) {
     std::vector<VoxelKey> known;
     for (const VoxelKey& key : changed)
       if (grid.at(key) != Occupancy::kUnknown && visits_.erase(key) != 0) known.push_back(key);
     if (known.empty() || abandoned_.empty()) return;
-    std::ranges::sort(known);
     std::erase_if(abandoned_, [&](const VoxelKey& key) { return std::ranges::binary_search(known, key); });
   }
 

@@ -45,23 +45,25 @@ std::pair<int, std::size_t> read_title(const std::filesystem::path& file, std::s
   return {format, kRecordingTitle.size() + digits + 1};
 }
 
-// Bytes that what has been read may take: a thousand times those of the file would do for its steps.
+// What has been read may take no more memory than there is: a record may be a thousandth of what is in it.
 class MemoryLimit {
  public:
   explicit MemoryLimit(const std::filesystem::path& file) : file_(file) {}
-  void add(std::size_t plain) {
-    constexpr std::size_t kPerByte = 3;  // a voxel of four bytes becomes one of eight, beside them
-    all_ += kPerByte * plain;
-    if (all_ > available_)
+
+  /// @param plain  bytes of a record, unpacked
+  void add(std::size_t plain, std::size_t robots) {
+    constexpr std::size_t kPerByte = 2;  // a change takes eight bytes of memory, and four in the file
+    kept_ += kPerByte * plain + robots * sizeof(RobotStep);
+    if (kept_ + plain > available_)
       fail(file_,
-           "holds steps that take more than " + std::to_string(all_) + " bytes of memory, but only " +
-               std::to_string(available_) + " are left",
+           "holds steps that take more than " + std::to_string(kept_ + plain) +
+               " bytes of memory, but only " + std::to_string(available_) + " are left",
            "read it on a machine with more memory");
   }
 
  private:
   const std::filesystem::path& file_;
-  std::uint64_t all_ = 0;
+  std::uint64_t kept_ = 0;  // [bytes]
   const std::uint64_t available_ = available_memory();
 };
 
@@ -75,7 +77,7 @@ Recording read_records(std::string_view bytes, int format, MemoryLimit memory, s
     if (recording.end && zeros > at) throw detail::BadRecord("goes on after its end");
     const auto record = detail::record_at(bytes, at, zeros);
     if (!record) break;
-    memory.add(record->bytes.size());
+    memory.add(record->bytes.size(), recording.head.robots.size());
     if (has_head == (record->tag == detail::kHeadTag))
       throw detail::BadRecord(has_head ? "has a second head" : "has no head");
     if (record->tag == detail::kHeadTag)

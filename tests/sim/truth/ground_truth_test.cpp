@@ -36,7 +36,7 @@ TEST(GroundTruth, RefusesLargeTrianglesThatLieOnEachOther) {
   for (int i = 0; i < 100'000; ++i) world.mesh.triangles.push_back({0, 1, 2});
   frontlux::test::expect_parts(
       frontlux::test::complaint_of<std::invalid_argument>([&] { GroundTruth(world, kEdge, start); }),
-      {"lie on each other"});
+      {"leave out triangles that are there twice"});
 }
 
 std::vector<std::pair<VoxelKey, Truth>> observable_voxels(const GroundTruth& truth) {

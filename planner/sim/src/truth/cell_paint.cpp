@@ -25,8 +25,8 @@ class Painter {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) triangles_.emplace_back(corners_of(mesh, i));
   }
 
-  // How many cells will be looked at, a cell once for each triangle: no more than the triangle's area has,
-  // and than the largest side of its bounds has.
+  // About how many cells will be looked at, a cell once for each triangle: those of its area or of its
+  // longest side, and no more than there are along one side of its bounds.
   [[nodiscard]] double work(const TriangleMesh& mesh) const {
     double all = 0.0;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -34,7 +34,8 @@ class Painter {
       const double area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
       const Block reach = reach_of(triangles_[i]);
       const Eigen::Array3d size = (reach.high - reach.low).cast<double>().array() + 1.0;
-      all += std::min(area / (frame_.edge * frame_.edge), size.prod() / size.minCoeff());
+      all += std::min(std::max(area / (frame_.edge * frame_.edge), size.maxCoeff()),
+                      size.prod() / size.minCoeff());
     }
     return all;
   }
@@ -101,9 +102,9 @@ void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::ui
   Painter painter(mesh, frame, cells);
   if (painter.work(mesh) > kMostWork)
     throw std::invalid_argument(
-        "the triangles of the mesh lie on each other: they pass through more than 2^30 voxels, each counted "
-        "for "
-        "each triangle; leave out those that are there twice, or take larger voxels");
+        "the triangles of the mesh pass through more than 2^30 voxels, a voxel counted for each of them; "
+        "leave "
+        "out triangles that are there twice, or take larger voxels");
   Eigen::Index axis = 0;
   const std::int64_t length = frame.size.maxCoeff(&axis);
   for_each_chunk(static_cast<std::size_t>(length), kThickness, [&](std::size_t begin, std::size_t end) {
