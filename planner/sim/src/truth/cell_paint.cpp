@@ -103,8 +103,7 @@ void paint(const TriangleMesh& mesh, const CellFrame& frame, std::vector<std::ui
   if (painter.work(mesh) > kMostWork)
     throw std::invalid_argument(
         "the triangles of the mesh pass through more than 2^30 voxels, a voxel counted for each of them; "
-        "leave "
-        "out triangles that are there twice, or take larger voxels");
+        "leave out triangles that are there twice, or take larger voxels");
   Eigen::Index axis = 0;
   const std::int64_t length = frame.size.maxCoeff(&axis);
   for_each_chunk(static_cast<std::size_t>(length), kThickness, [&](std::size_t begin, std::size_t end) {
