@@ -129,7 +129,7 @@ def page(results, images, runs):
                          for base in results.experiments.bases(kind))
 
     in_lockstep = "\n".join((
-        steps_table(results), figure("coverage_by_step", "Mapped part against steps: team, UAV alone, UGV alone"),
+        steps_table(results), figure("coverage_by_step", "Mapped part against steps, by team"),
         figure("contributions", "What each robot mapped first, against steps"),
         optimisation_table(results))) if any(results.methods(t, "lock-step") for t in built_in) else "No runs.\n"
 
