@@ -79,7 +79,7 @@ class Recording:
             _, last = np.unique(np.ravel_multi_index(keys[::-1].T, 3 * (0x10000,)), return_index=True)
             keys, after = keys[len(keys) - 1 - last], after[len(after) - 1 - last]
             cubes = np.ravel_multi_index((keys // _CUBE).T, 3 * (0x10000 // _CUBE,))
-            order = np.argsort(cubes, kind="stable")
+            order = np.argsort(cubes)
             for part in np.split(order, np.flatnonzero(np.diff(cubes[order])) + 1):
                 low = keys[part[0]] // _CUBE * _CUBE
                 states = np.zeros((_CUBE, _CUBE, _CUBE), np.uint8)

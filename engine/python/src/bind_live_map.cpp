@@ -145,9 +145,9 @@ Methods may be called from several threads; insertions wait for each other, and 
           R"(Inserts a scan as OctoMap's insertPointCloud does: its points are occupied, and what lies before them free.
 
 points: float32 or float64 (..., 3) [m], in the map's frame. Those that are not finite change nothing, nor do those whose
-ray ends outside the key range, or in another voxel with no length in float32. origin: (3,) [m], where the sensor was. max_range: [m] rays are free up to there, and
-points beyond it do not count as hits; <= 0: no limit. Raises ValueError, with nothing inserted, if a ray passes more than
-99,990 voxels. Returns a MapChange.)")
+ray ends outside the key range, or in another voxel with no length in float32. origin: (3,) [m], where the sensor was.
+max_range: [m] rays are free up to there, and points beyond it do not count as hits; <= 0: no limit. Raises ValueError, with
+nothing inserted, if a ray passes more than 99,990 voxels. Returns a MapChange.)")
       .def("insert_scan", &insert_scan, py::arg("points"), py::arg("pose"), py::arg("max_range") = -1.0,
            "The same for points in the sensor's frame. pose: (4, 4), maps the sensor's frame into the map's.")
       .def(

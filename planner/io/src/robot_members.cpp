@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -37,21 +36,20 @@ std::string name_of_robot(Members& members) {
   return name;
 }
 
-// @throws std::runtime_error saying how many rays the sensor has, and what to do, if those are too many
-void check_rays(const RobotDescription& robot) {
+void check_rays(const Members& members, const RobotDescription& robot) {
   constexpr double kRayBytes = 110.0, kGigabyte = 1e9;  // measured: rays, hits and ranges of a scan
   const double columns = static_cast<double>(robot.columns), rows = static_cast<double>(robot.rows),
                rays = columns * rows;
   const std::string sensor =
       "columns and rows are " + decimals_of(columns) + " and " + decimals_of(rows) + ": ";
   if (rays > static_cast<double>(kMostRays))
-    throw std::runtime_error(sensor + "a scan would take about " +
-                             decimals_of(std::ceil(rays * kRayBytes / kGigabyte)) +
-                             " GB of memory; give at most " + std::to_string(kMostRays) + " rays in all");
+    members.refuse(sensor + "a scan would take about " +
+                   decimals_of(std::ceil(rays * kRayBytes / kGigabyte)) + " GB of memory; give at most " +
+                   std::to_string(kMostRays) + " rays in all");
   if (rays * robot.rate > static_cast<double>(kMostRaysPerSecond))
-    throw std::runtime_error(sensor + "with a rate_hz of " + decimals_of(robot.rate) + " they are " +
-                             decimals_of(std::round(rays * robot.rate)) + " rays a second; give at most " +
-                             std::to_string(kMostRaysPerSecond) + " in all");
+    members.refuse(sensor + "with a rate_hz of " + decimals_of(robot.rate) + " they are " +
+                   decimals_of(std::round(rays * robot.rate)) + " rays a second; give at most " +
+                   std::to_string(kMostRaysPerSecond) + " in all");
 }
 
 void read_sensor(Members members, RobotDescription& robot) {
@@ -78,11 +76,7 @@ void read_sensor(Members members, RobotDescription& robot) {
   robot.rows = members.whole("rows", 1, kMostRays);
   robot.rate = members.number("rate_hz", "scans a second", kRates,
                               view.shape == Shape::kPyramid ? kCameraRate : robot.rate);
-  try {
-    check_rays(robot);
-  } catch (const std::runtime_error& error) {
-    members.refuse(error.what());
-  }
+  check_rays(members, robot);
   members.expect_no_more();
 }
 
