@@ -28,9 +28,11 @@ class FRONTLUX_EXPORT Lattice {
 
   /// Key along one axis of a coordinate [m]; none outside the key range or if it is not finite.
   [[nodiscard]] std::optional<std::uint16_t> key(double coordinate) const {
-    const double cell = std::floor(factor_ * coordinate);
-    if (!(cell >= -kOrigin && cell < kKeysPerAxis - kOrigin)) return std::nullopt;
-    return static_cast<std::uint16_t>(static_cast<int>(cell) + kOrigin);
+    const double cells = factor_ * coordinate;
+    if (!(cells >= -kOrigin && cells < kKeysPerAxis - kOrigin)) return std::nullopt;
+    // Down, from where a conversion cuts off: std::floor is a call where SSE4.1 may be missing.
+    const int toward_0 = static_cast<int>(cells), down = cells < toward_0 ? 1 : 0;
+    return static_cast<std::uint16_t>(toward_0 - down + kOrigin);
   }
 
   /// Key of the voxel that holds a point [m], of floats or doubles. Cells are half-open: a point on a face

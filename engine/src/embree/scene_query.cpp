@@ -7,12 +7,33 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace frontlux::detail {
 namespace {
 
 // Such a component of a direction moves a ray by less than the tolerance all through the key range.
 constexpr double kParallel = 1e-12;
+
+// Looks up voxels most of which lie in the tile of the one before.
+class TileLookup {
+ public:
+  explicit TileLookup(const VoxelGrid& grid) : grid_(grid) {}
+  Occupancy operator()(const VoxelKey& key) {
+    const VoxelKey corner = make_key(key.x & kMask, key.y & kMask, key.z & kMask);
+    if (tile_ == nullptr || corner != corner_) {
+      corner_ = corner;
+      tile_ = &grid_.tile(key);
+    }
+    return tile_->brick(key).at(key);
+  }
+
+ private:
+  static constexpr int kMask = ~((1 << Tile::kLog2) - 1);
+  const VoxelGrid& grid_;
+  const Tile* tile_ = nullptr;
+  VoxelKey corner_{};
+};
 
 }  // namespace
 
@@ -81,14 +102,17 @@ std::optional<VoxelKey> SceneQuery::entered_voxel(const Line& line, const KeyBox
   return as_key(key);
 }
 
-Hit SceneQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                       const std::optional<KeyBox>& box) const {
+void SceneQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+                        const std::optional<KeyBox>& box, Hit& hit) const {
   std::optional<VoxelKey> blocker;
   if (box) {
     blocker = entered_voxel(line_of(ray.origin, direction), *box);
-    if (!blocker) return walk_ray(grid_, ray, unknown_);
+    if (!blocker) {
+      hit = walk_ray(grid_, ray, unknown_);
+      return;
+    }
   }
-  return end_ray(grid_, ray, start, direction, unknown_, blocker);
+  end_ray(grid_, ray, start, direction, unknown_, blocker, hit);
 }
 
 void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -119,7 +143,7 @@ void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
                                              : std::numeric_limits<double>::infinity();
     const auto probed = probe(line_of(ray.origin, direction), t_far);
     if (!probed) {
-      hits[i] = finish(ray, *start, direction, std::nullopt);
+      finish(ray, *start, direction, std::nullopt, hits[i]);
       continue;
     }
     probes[size] = *probed;
@@ -128,18 +152,15 @@ void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {
   scene_.first({probes.data(), size}, {boxes.data(), size});
   for (std::size_t i = 0; i < size; ++i) {
     const Pending& p = pending[i];
-    hits[p.index] = finish(rays[p.index], p.start, p.direction, boxes[i]);
+    finish(rays[p.index], p.start, p.direction, boxes[i], hits[p.index]);
   }
 }
 
 // Between voxel centres the line is offset + t * difference with t from 0 to 1, all exact in float. It enters
 // the target where the axis of the largest difference crosses into it.
-SceneQuery::Prepared SceneQuery::prepare(const KeySegment& segment) const {
-  if (segment.from == segment.to) return {true, {}};
-  // Most that are blocked are so right before what is to be seen.
-  const VoxelKey last = voxel_before_end(segment.from, segment.to);
-  if (last != segment.from && blocks(grid_.at(last), unknown_)) return {false, {}};
-  if (blocks(grid_.at(segment.from), unknown_)) return {};
+SceneQuery::By SceneQuery::prepare(const KeySegment& segment, Probe& sight, bool& target_is_grazed) const {
+  if (segment.from == segment.to) return By::kVisible;
+  if (blocks(grid_.at(segment.from), unknown_)) return By::kWalk;
   const VoxelKey& base = scene_.origin();
   const Eigen::Array3f origin(static_cast<float>(segment.from.x - base.x) + 0.5F,
                               static_cast<float>(segment.from.y - base.y) + 0.5F,
@@ -151,28 +172,27 @@ SceneQuery::Prepared SceneQuery::prepare(const KeySegment& segment) const {
   const float longest = length.maxCoeff(), inverse = 1.0F / longest;
   const auto tolerance = static_cast<float>(scene_.tolerance());
   const float t_far = 1.0F - 0.5F * inverse - 3.0F * tolerance * inverse;
-  SegmentProbe sight{
-      {{origin[0], origin[1], origin[2]}, 0.0F, {difference[0], difference[1], difference[2]}, t_far}, false};
+  sight = {{origin[0], origin[1], origin[2]}, 0.0F, {difference[0], difference[1], difference[2]}, t_far};
   // At its entry the line is this far from the target's other faces, along its longest axis by 0. By an edge
   // it passes one voxel within the tolerance, which is the last one; by a corner there is another before it.
   int grazed = 0;
   for (int i = 0; i < 3; ++i)
     grazed += static_cast<int>(0.5F * (longest - length[i]) * inverse < 4.0F * tolerance);
-  sight.target_is_grazed = grazed > 2;
+  target_is_grazed = grazed > 2;
   if (!reach_.contains(origin.matrix().cast<double>())) {
     const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, static_cast<double>(t_far));
-    if (!probed) return sight.target_is_grazed ? Prepared{} : Prepared{true, {}};
-    sight.probe = *probed;
+    if (!probed) return target_is_grazed ? By::kWalk : By::kVisible;
+    sight = *probed;
   }
-  return {{}, sight};
+  return By::kProbe;
 }
 
-SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
+SceneQuery::By SceneQuery::prepare(const Segment& segment, Probe& sight, bool& target_is_grazed) const {
   const auto from = lattice_.key(segment.from), to = lattice_.key(segment.to);
-  if (!from || !to) return {false, {}};
-  if (*from == *to) return {true, {}};
+  if (!from || !to) return By::kHidden;
+  if (*from == *to) return By::kVisible;
   const Eigen::Vector3f direction = normalized_as_octomap(segment.to - segment.from);
-  if (!is_unit(direction) || blocks(grid_.at(*from), unknown_)) return {};
+  if (!is_unit(direction) || blocks(grid_.at(*from), unknown_)) return By::kWalk;
   const Line line = line_of(segment.from, direction);
   const auto base = as_array(scene_.origin()), target = as_array(*to);
   std::array<double, 3> enter{}, leave{}, error{};
@@ -180,7 +200,7 @@ SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
     const auto a = static_cast<std::size_t>(i);
     const double d = line.direction[i];
     if (std::fabs(d) < kParallel) {
-      if (as_array(*from)[a] != target[a]) return {};
+      if (as_array(*from)[a] != target[a]) return By::kWalk;
       enter[a] = 0.0;
       leave[a] = std::numeric_limits<double>::infinity();
       continue;
@@ -191,15 +211,27 @@ SceneQuery::Prepared SceneQuery::prepare(const Segment& segment) const {
     error[a] = 4.0 * scene_.tolerance() / std::fabs(d);
   }
   const auto axis = static_cast<std::size_t>(std::max_element(enter.begin(), enter.end()) - enter.begin());
-  SegmentProbe sight;
+  target_is_grazed = false;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (i != axis && enter[i] + error[i] > enter[axis] - error[axis]) sight.target_is_grazed = true;
-    if (leave[i] - error[i] < enter[axis] + error[axis]) sight.target_is_grazed = true;
+    if (i != axis && enter[i] + error[i] > enter[axis] - error[axis]) target_is_grazed = true;
+    if (leave[i] - error[i] < enter[axis] + error[axis]) target_is_grazed = true;
   }
   const auto probed = probe(line, enter[axis] - error[axis]);
-  if (!probed) return sight.target_is_grazed ? Prepared{} : Prepared{true, {}};
-  sight.probe = *probed;
-  return {{}, sight};
+  if (!probed) return target_is_grazed ? By::kWalk : By::kVisible;
+  sight = *probed;
+  return By::kProbe;
+}
+
+// Most segments that are blocked are so right before what is to be seen. All are looked at first, without a
+// branch that depends on it, so that they wait for memory together.
+void SceneQuery::hide_behind_last(std::span<const KeySegment> segments, std::span<bool> hidden) const {
+  TileLookup state_of(grid_);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto& [from, to] = segments[i];
+    const VoxelKey last = voxel_before_end(from, to);
+    hidden[i] = (static_cast<int>(blocks(state_of(last), unknown_)) & static_cast<int>(last != from) &
+                 static_cast<int>(from != to)) != 0;
+  }
 }
 
 template <class Segment>
@@ -211,17 +243,23 @@ void SceneQuery::visible(std::span<const Segment> segments, std::span<std::uint8
   const auto walk = [&](std::size_t i) {
     visible[i] = static_cast<std::uint8_t>(walk_visible(grid_, segments[i], unknown_));
   };
+  std::array<bool, BoxScene::kMaxBatch> hidden{};
+  if constexpr (std::is_same_v<Segment, KeySegment>) hide_behind_last(segments, hidden);
   std::size_t size = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Prepared prepared = prepare(segments[i]);
-    if (prepared.answer) {
-      visible[i] = static_cast<std::uint8_t>(*prepared.answer);
-    } else if (prepared.segment) {
-      probes[size] = prepared.segment->probe;
-      target_is_grazed[size] = prepared.segment->target_is_grazed;
-      index[size++] = i;
-    } else {
-      walk(i);
+    switch (hidden[i] ? By::kHidden : prepare(segments[i], probes[size], target_is_grazed[size])) {
+      case By::kHidden:
+        visible[i] = 0;
+        break;
+      case By::kVisible:
+        visible[i] = 1;
+        break;
+      case By::kProbe:
+        index[size++] = i;
+        break;
+      case By::kWalk:
+        walk(i);
+        break;
     }
   }
   scene_.occluded({probes.data(), size}, {sights.data(), size});

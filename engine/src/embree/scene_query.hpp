@@ -47,21 +47,17 @@ class SceneQuery {
 
   [[nodiscard]] std::optional<Probe> probe(const Line& line, double t_far) const;
   [[nodiscard]] std::optional<VoxelKey> entered_voxel(const Line& line, const KeyBox& box) const;
-  [[nodiscard]] Hit finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                           const std::optional<KeyBox>& box) const;
+  void finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+              const std::optional<KeyBox>& box, Hit& hit) const;
 
-  struct SegmentProbe {
-    Probe probe;
-    // It enters the target's voxel so close to an edge that it may pass another one, which was not looked at.
-    bool target_is_grazed = false;
-  };
-  // Either the answer, or the probe that gives it. Without both the walk must answer.
-  struct Prepared {
-    std::optional<bool> answer;
-    std::optional<SegmentProbe> segment;
-  };
-  [[nodiscard]] Prepared prepare(const KeySegment& segment) const;
-  [[nodiscard]] Prepared prepare(const Segment& segment) const;
+  // Marks the segments whose last voxel before the target blocks.
+  void hide_behind_last(std::span<const KeySegment> segments, std::span<bool> hidden) const;
+  // What answers a segment.
+  enum class By : std::uint8_t { kHidden, kVisible, kProbe, kWalk };
+  // Sets the probe in place, since a copy would have to wait for it, and whether it enters the target's voxel
+  // so close to an edge that it may pass another one, which was not looked at.
+  [[nodiscard]] By prepare(const KeySegment& segment, Probe& sight, bool& target_is_grazed) const;
+  [[nodiscard]] By prepare(const Segment& segment, Probe& sight, bool& target_is_grazed) const;
 
   const VoxelGrid& grid_;
   const Lattice& lattice_;

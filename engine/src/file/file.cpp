@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <fcntl.h>
 #include <fstream>
 #include <stdexcept>
 #include <unistd.h>
@@ -49,6 +50,18 @@ class UnfinishedFile {
   std::filesystem::path path_;
   std::atomic<const char*>* place_ = nullptr;
 };
+
+// Else a loss of power after a file got its name could leave it empty.
+// @return false if the disk says why it cannot, with errno; some file systems have nothing to say
+bool reach_disk(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool lost = ::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOSYS;
+  const int why = errno;
+  ::close(descriptor);
+  errno = why;
+  return !lost;
+}
 
 }  // namespace
 
@@ -124,7 +137,8 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
     cannot(std::generic_category().message(errno), "check that its folder exists and may be written to");
   write(stream);
   stream.close();
-  if (!stream) cannot(std::generic_category().message(errno), "check the space left on the disk");
+  if (!stream || !reach_disk(part.path()))
+    cannot(std::generic_category().message(errno), "check the space left on the disk");
   std::filesystem::rename(part.path(), file, error);
   if (error) cannot(error.message(), "check the permissions of the folder and of the file that is there");
 }

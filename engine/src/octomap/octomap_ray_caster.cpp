@@ -50,8 +50,10 @@ class OctomapRayCaster final : public RayCaster {
       stop = RayStop::kOutOfRange;
     else if (state == Occupancy::kUnknown && unknown == UnknownPolicy::kBlock)
       stop = RayStop::kUnknown;
-    return detail::make_hit(lattice(), ray, *start, detail::normalized_as_octomap(ray.direction), stop, state,
-                            key);
+    Hit answer;
+    detail::make_hit(lattice(), ray, *start, detail::normalized_as_octomap(ray.direction), stop, state, key,
+                     answer);
+    return answer;
   }
 
   // True if castRay from `from` stops in the voxel of `to`, or gets further without a blocker.

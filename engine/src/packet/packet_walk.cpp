@@ -1,11 +1,14 @@
 #include "packet/packet_walk.hpp"
 
 #include "isa/targets.hpp"
+#include "walk/free_end.hpp"
+#include "walk/walk.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace frontlux::detail {
 namespace {

@@ -44,13 +44,15 @@ struct PacketLines {
 
 /// Where the walk of a ray ended: the table's index of the closed voxel that stopped it, or one of these.
 enum WalkEnd : std::uint32_t {
-  kWentThrough = ~0U,     ///< nothing stopped it within `walked_length`
+  kWentThrough = ~0U,     ///< nothing stopped it within `walked_length`, and where it ends could not be told
   kTooCloseToTell = ~1U,  ///< it passed an edge closer than the rounding of times
   kNeverStarted = ~2U,    ///< it does not start in an open voxel of the table, or has no unit direction
-  kFirstWalkEnd = kNeverStarted
+  kFreeEnd = ~3U,         ///< nothing stopped it before its first voxel out of range, where it ends
+  kFirstWalkEnd = kFreeEnd
 };
 
-/// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped.
+/// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped, or
+/// has a free end.
 struct RayBatch {
   std::size_t size = 0;
   alignas(64) PerAxisAndLine<float> origin;     ///< [m]
@@ -62,7 +64,7 @@ struct RayBatch {
   alignas(64) PerAxisAndLine<float> end;          ///< [m] its centre
   alignas(64) PerAxisAndLine<float> entry;        ///< [m] where the ray enters it
   alignas(64) PerLine<float> distance;            ///< [m] from the origin to there
-  alignas(64) PerLine<std::uint8_t> in_range;     ///< whether its centre is
+  alignas(64) PerLine<std::uint8_t> in_range;     ///< whether its centre is; of those that a voxel stopped
 };
 
 /// How far rays are walked [voxels]. This is where a BVH becomes about as fast (docs/benchmarking.md); times
@@ -92,7 +94,8 @@ struct PacketWalk {
                           std::span<const KeySegment> segments, std::uint8_t* visible, std::uint16_t* left);
   static constexpr int kMaxOffset = 1000;  // (2 n + 1) dy dz has to fit into 31 bits
 
-  /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`.
+  /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`, and tells
+  /// where those end that nothing stops in their range.
   void (*rays)(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch);
 };
 

@@ -3,6 +3,7 @@
 
 constexpr unsigned kAllLanes = Lanes::kWidth == 32 ? ~0U : (1U << Lanes::kWidth) - 1U;
 
+#include "packet/free_ends_body.inl"
 #include "packet/ray_batch_body.inl"
 #include "packet/segment_batch_body.inl"
 
@@ -203,6 +204,7 @@ template <LineKind kKind, bool kJumps, class Finish>
         if (__builtin_popcount(Lanes::bits(jumping)) >= kWorthAJump) {
           going = Lanes::but_not(going, jump<kKind>(p, table, jumping, radius));
           step();
+          if constexpr (kKind == LineKind::kRay) step();  // for the lanes that could not jump
           ended_bits = ended();
           rounds_to_look = rounds_between_looks = 0;
           continue;
@@ -264,5 +266,7 @@ void rays(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> 
                                                                              : at[lane];
         }
       });
-  end_in_voxels(lattice, table, batch);
+  locate(lattice, table, batch);
+  find_free_ends(lattice, batch);
+  end_in_voxels(lattice, batch);
 }

@@ -36,7 +36,7 @@ inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& fitness) {
     dx[i] = x;
     dy[i] = y;
     dz[i] = z;
-    fitness[i] = std::fabs(x * x + y * y + z * z - 1.0F) < 1e-4F ? kStarts | kIsClear : 0U;
+    fitness[i] = is_unit(x * x + y * y + z * z) ? kStarts | kIsClear : 0U;
   }
 }
 
@@ -105,28 +105,45 @@ inline void rate_steps(PacketLines& lines) {
     }
 }
 
-// out_of_range and make_hit, for rays that a voxel stopped.
-inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch) {
+// The voxels that stopped rays, and out_of_range.
+inline void locate(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch) {
   const double resolution = lattice.resolution();
   const OpenVoxels::Layout& layout = table.layout();
-  alignas(64) PerLine<double> distance_sq, time;
-  for (std::size_t i = 0; i < batch.size; ++i) distance_sq[i] = time[i] = 0.0;
+  alignas(64) PerLine<double> distance_sq;
+  for (std::size_t i = 0; i < batch.size; ++i) distance_sq[i] = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const int corner = layout.corner[a];
     const std::uint32_t low_shift = 3U * static_cast<std::uint32_t>(a), high_shift = layout.shift(a),
                         bits = layout.bits[a] & ~511U;
-    const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
+    const float* const origin = batch.origin[a].data();
     std::int32_t* const cells = batch.cell[a].data();
     float* const end = batch.end[a].data();
     for (std::size_t i = 0; i < batch.size; ++i) {
       const std::uint32_t at = batch.stopped_at[i];
-      const auto key =
-          static_cast<std::int32_t>((at >> low_shift & 7U) | (at & bits) >> high_shift << 3U) + corner;
-      const double cell = static_cast<double>(key - Lattice::kOrigin);
-      cells[i] = key;
+      cells[i] = static_cast<std::int32_t>((at >> low_shift & 7U) | (at & bits) >> high_shift << 3U) + corner;
+      const double cell = static_cast<double>(cells[i] - Lattice::kOrigin);
       end[i] = static_cast<float>((cell + 0.5) * resolution);
       const float offset = end[i] - origin[i], squared = offset * offset;
       distance_sq[i] += static_cast<double>(squared);
+    }
+  }
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const double range = batch.max_range[i];
+    const std::uint8_t unlimited = range > 0.0 ? 0 : 1, too_far = distance_sq[i] > range * range ? 1 : 0;
+    batch.in_range[i] = static_cast<std::uint8_t>(unlimited | (too_far ^ 1));
+  }
+}
+
+// make_hit, for rays that ended in a voxel.
+inline void end_in_voxels(const Lattice& lattice, RayBatch& batch) {
+  const double resolution = lattice.resolution();
+  alignas(64) PerLine<double> time;
+  for (std::size_t i = 0; i < batch.size; ++i) time[i] = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const float *const origin = batch.origin[a].data(), *const direction = batch.direction[a].data();
+    const std::int32_t* const cells = batch.cell[a].data();
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const double cell = static_cast<double>(cells[i] - Lattice::kOrigin);
       const double o = static_cast<double>(origin[i]), d = static_cast<double>(direction[i]);
       const double face = cell + (d < 0.0 ? 1.0 : 0.0);
       const double crossing = (face * resolution - o) / d;
@@ -148,10 +165,5 @@ inline void end_in_voxels(const Lattice& lattice, const OpenVoxels& table, RayBa
                  z = static_cast<double>(dz[i]);
     // The sum in the order of `make_hit`.
     batch.distance[i] = static_cast<float>(time[i] * std::sqrt(x * x + y * y + z * z));
-  }
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    const double range = batch.max_range[i];
-    const std::uint8_t unlimited = range > 0.0 ? 0 : 1, too_far = distance_sq[i] > range * range ? 1 : 0;
-    batch.in_range[i] = static_cast<std::uint8_t>(unlimited | (too_far ^ 1));
   }
 }

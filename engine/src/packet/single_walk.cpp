@@ -14,8 +14,8 @@ constexpr std::array kLowBit = {0U, 3U, 6U};  // of each axis in an index
 // A number for each axis, and a fourth one that means nothing. Times are whole numbers, as in packets.
 using PerAxis [[gnu::vector_size(16)]] = std::int32_t;
 // The end of a ray's time. Four crossings behind it still fit into 31 bits, though their times mean nothing.
-constexpr std::int32_t kEndOfTime = (1 << 29) - 1;
-constexpr std::int32_t kNever = 0x7FFFFFFF;
+constexpr std::int32_t kEndOfTime = (1 << 28) - 1;
+constexpr std::int32_t kNever = 7 * (1 << 28);  // later than those, and `too_close` can be added
 
 // What is added below an axis' bits carries up to them.
 std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t steps) {
@@ -90,11 +90,13 @@ std::uint32_t walk_alone(const OpenVoxels& table, const TableRay& ray, double le
     }
     // No branch depends on which axis is next. `along` is the index, with the bits of all other axes set.
     PerAxis along = static_cast<std::int32_t>(index) | others;
+    PerAxis surely_over = t + too_close;
     for (int step = 0; step < 4; ++step) {
       const PerAxis one = __builtin_shufflevector(t, t, 1, 2, 0, 3),
                     other = __builtin_shufflevector(t, t, 2, 0, 1, 3);
-      const PerAxis first = (one - t > too_close) & (other - t > too_close);
-      t += d & first;
+      const PerAxis first = (one > surely_over) & (other > surely_over), ahead = d & first;
+      t += ahead;
+      surely_over += ahead;
       along = (along - first) | others;
       PerAxis all = along & __builtin_shufflevector(along, along, 2, 3, 0, 1);
       all &= __builtin_shufflevector(all, all, 1, 0, 3, 2);

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace frontlux::detail {
@@ -38,9 +37,10 @@ class TableQuery {
                       std::span<std::uint16_t> left) const;
 
  private:
-  [[nodiscard]] std::optional<Hit> cast_alone(const Ray& ray) const;
-  [[nodiscard]] std::optional<Hit> finish(const Ray& ray, const VoxelKey& start,
-                                          const Eigen::Vector3f& direction, std::uint32_t stopped_at) const;
+  // Each sets `hit`, unless it returns false: then the ray is not answered.
+  [[nodiscard]] bool cast_alone(const Ray& ray, Hit& hit) const;
+  [[nodiscard]] bool finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+                            std::uint32_t stopped_at, Hit& hit) const;
   /// Whether a cell, by its key, is one that the table contains.
   [[nodiscard]] bool is_inside(const std::array<int, 3>& cell) const;
 

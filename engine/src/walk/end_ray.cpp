@@ -5,19 +5,22 @@
 
 namespace frontlux::detail {
 
-Hit end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-            UnknownPolicy unknown, const std::optional<VoxelKey>& blocker) {
+void end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+             UnknownPolicy unknown, const std::optional<VoxelKey>& blocker, Hit& hit) {
   const Lattice& lattice = grid.lattice();
   if (blocker) {
     if (!(ray.max_range > 0.0) || !out_of_range(ray.origin, lattice.center(*blocker), ray.max_range)) {
-      const Occupancy state = grid.at(*blocker);
-      return make_hit(lattice, ray, start, direction, stop_in(state), state, *blocker);
+      const Occupancy state = blocker_state(grid, *blocker, unknown);
+      return make_hit(lattice, ray, start, direction, stop_in(state), state, *blocker, hit);
     }
   }
   // No blocker within range, since centres only get further away along a ray.
   const auto end = find_free_end(lattice, ray, start, direction);
-  if (!end) return walk_ray(grid, ray, unknown);
-  return make_hit(lattice, ray, start, direction, end->stop, grid.at(end->key), end->key);
+  if (!end) {
+    hit = walk_ray(grid, ray, unknown);
+    return;
+  }
+  make_hit(lattice, ray, start, direction, end->stop, grid.at(end->key), end->key, hit);
 }
 
 }  // namespace frontlux::detail

@@ -12,7 +12,8 @@ namespace frontlux::detail {
 /// @param start      voxel of the origin, which does not block
 /// @param direction  as `normalized_as_octomap` returns it, of unit length
 /// @param blocker    the first blocker on the ray's path, or none if there is none in range
-Hit end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-            UnknownPolicy unknown, const std::optional<VoxelKey>& blocker);
+/// @param hit        written where it stays, since a copy would have to wait for it
+void end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+             UnknownPolicy unknown, const std::optional<VoxelKey>& blocker, Hit& hit);
 
 }  // namespace frontlux::detail

@@ -21,4 +21,20 @@ struct FreeEnd {
 std::optional<FreeEnd> find_free_end(const Lattice& lattice, const Ray& ray, const VoxelKey& key,
                                      const Eigen::Vector3f& direction);
 
+/// Most voxels that it looks at.
+inline constexpr int kMostStepsToEnd = 32;
+/// castRay reaches a crossing by at most 2^17 additions, each off by half an ulp of a time below 2^18 voxels:
+/// 1e-11 of that time. Its first crossing, and ours, are off by an ulp of a coordinate below 2^17 voxels,
+/// over the direction. 1e-9 leaves a factor of 50 and more.
+inline constexpr double kRelativeErrorOfTimes = 1e-9;
+
+/// By how much a crossing near a ray's end may be off. All in voxels.
+/// @param between  time from one crossing of its axis to the next
+/// @param last     when the ray ends
+inline double error_of_crossing(double between, double last) {
+  return kRelativeErrorOfTimes * (between + last + kMostStepsToEnd);
+}
+/// How far a point of the ray has to be from a voxel's faces to be surely in it. In voxels.
+inline double margin_of_entry(double last) { return 1e-6 + kRelativeErrorOfTimes * last; }
+
 }  // namespace frontlux::detail

@@ -20,10 +20,11 @@ Eigen::Vector3d unit_vector(const Eigen::Vector3f& direction) {
 
 }  // namespace
 
-Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
-             const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key) {
-  Hit hit{stop, state, key, lattice.center(key), ray.origin, 0.0F};
-  if (key == origin_key) return hit;
+void make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
+              const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key,
+              Hit& hit) {
+  hit = {stop, state, key, lattice.center(key), ray.origin, 0.0F};
+  if (key == origin_key) return;
   // Only a direction that castRay could not normalise needs care.
   const Eigen::Vector3d d = is_unit(direction) ? direction.cast<double>() : unit_vector(direction);
   const Eigen::Vector3d origin = ray.origin.cast<double>();
@@ -38,7 +39,6 @@ Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
   // In this order, as packets do: where the product is in the middle between two floats it decides.
   const double length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
   hit.distance = static_cast<float>(time * length);
-  return hit;
 }
 
 Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
@@ -47,7 +47,9 @@ Hit walk_ray(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
   if (!start) return {};
   const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
   const auto end_in = [&](RayStop stop, Occupancy state, const VoxelKey& key) {
-    return make_hit(lattice, ray, *start, direction, stop, state, key);
+    Hit hit;
+    make_hit(lattice, ray, *start, direction, stop, state, key, hit);
+    return hit;
   };
 
   const Occupancy origin_state = grid.at(*start);

@@ -26,10 +26,10 @@ inline Eigen::Vector3f normalized_as_octomap(Eigen::Vector3f d) {
   return d;
 }
 
-/// Whether `normalized_as_octomap` had something to normalise.
-inline bool is_unit(const Eigen::Vector3f& direction) {
-  return std::fabs(direction.squaredNorm() - 1.0F) < 1e-4F;
-}
+/// Whether a squared length is that of a direction that `normalized_as_octomap` could normalise: but for
+/// vectors whose squares are too small or too large for a float, its rounding leaves at most 6e-7.
+inline bool is_unit(float squared_length) { return std::fabs(squared_length - 1.0F) < 1e-6F; }
+inline bool is_unit(const Eigen::Vector3f& direction) { return is_unit(direction.squaredNorm()); }
 
 inline std::array<int, 3> as_array(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 inline VoxelKey as_key(const std::array<int, 3>& key) { return make_key(key[0], key[1], key[2]); }
@@ -96,9 +96,9 @@ inline Crossings<std::int64_t> crossings_of(const VoxelKey& from, const VoxelKey
   return line;
 }
 
-/// The last voxel that the path between two voxel centres visits before `to`, which is another one than
-/// `from`: that beside it along the longest axis, of two as long along x before y before z (rule 5, from the
-/// other end).
+/// The last voxel that the path between two voxel centres visits before `to`; of no meaning if `from` is the
+/// same. It is that beside it along the longest axis, of two as long along x before y before z (rule 5, from
+/// the other end).
 inline VoxelKey voxel_before_end(const VoxelKey& from, const VoxelKey& to) {
   const int x = from.x - to.x, y = from.y - to.y, z = from.z - to.z;
   // Without branches, since nothing foretells them.
@@ -129,15 +129,20 @@ inline double time_surely_in_range(double max_range, double resolution, const Ei
   return time > 0.0 ? time : -std::numeric_limits<double>::infinity();
 }
 
-/// The hit of a ray that ended in a known voxel. One function for all casters, so that entry and distance are
-/// equal wherever the voxel is.
+/// Sets the hit of a ray that ended in a known voxel. One function for all casters, so that entry and
+/// distance are equal wherever the voxel is.
 /// @param direction as `normalized_as_octomap` returns it, not zero unless the ray ended where it began
-Hit make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
-             const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key);
+void make_hit(const Lattice& lattice, const Ray& ray, const VoxelKey& origin_key,
+              const Eigen::Vector3f& direction, RayStop stop, Occupancy state, const VoxelKey& key, Hit& hit);
 
 /// Whether a voxel of this state stops a ray.
 inline bool blocks(Occupancy state, UnknownPolicy unknown) {
   return state == Occupancy::kOccupied || (state == Occupancy::kUnknown && unknown == UnknownPolicy::kBlock);
+}
+
+/// The state of a voxel that stops a ray.
+inline Occupancy blocker_state(const VoxelGrid& grid, const VoxelKey& blocker, UnknownPolicy unknown) {
+  return unknown == UnknownPolicy::kPass ? Occupancy::kOccupied : grid.at(blocker);
 }
 
 inline RayStop stop_in(Occupancy state) {

@@ -265,6 +265,39 @@ TEST(PacketWalk, StopsWhereTheWalkStops) {
   }
 }
 
+TEST(PacketWalk, TellsWhereRaysRunOut) {
+  const VoxelGrid grid = hall_grid(7);
+  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  auto rays = adversarial_rays(grid, 40'000, 9);
+  Random random(10);
+  for (Ray& ray : rays)
+    ray.max_range = random.one_in(20) ? -1.0 : random.uniform(0.01, random.one_in(5) ? 0.2 : 4.0);
+  for (const detail::PacketWalk& walk : detail::packet_walks()) {
+    SCOPED_TRACE(name_of(walk.needs));
+    std::size_t told = 0, ran_out = 0;
+    for (std::size_t begin = 0; begin < rays.size(); begin += detail::kMaxLines) {
+      const auto some = std::span(rays).subspan(begin, std::min(detail::kMaxLines, rays.size() - begin));
+      detail::RayBatch batch;
+      walk.rays(grid.lattice(), table, some, batch);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        if (batch.stopped_at[i] == detail::kNeverStarted) continue;
+        const Hit expected = detail::walk_ray(grid, some[i], UnknownPolicy::kBlock);
+        ran_out += expected.stop == RayStop::kOutOfRange ? 1 : 0;
+        if (batch.stopped_at[i] != detail::kFreeEnd) continue;
+        ++told;
+        const auto per_axis = [i](const auto& v) { return Eigen::Vector3f(v[0][i], v[1][i], v[2][i]); };
+        const VoxelKey key = detail::as_key({batch.cell[0][i], batch.cell[1][i], batch.cell[2][i]});
+        ASSERT_TRUE(same(Hit{RayStop::kOutOfRange, grid.at(key), key, per_axis(batch.end),
+                             per_axis(batch.entry), batch.distance[i]},
+                         expected));
+      }
+    }
+    // The rest pass edges and corners, or end within the first voxels.
+    EXPECT_GT(ran_out, 5000U);
+    EXPECT_GT(told, ran_out / 2) << ran_out;
+  }
+}
+
 // A ray whose distance lies in the middle between two floats, to the last bit of its direction's length: the
 // sum of squares has one order.
 TEST(PacketWalk, MeasuresDistancesAsTheWalkDoes) {
