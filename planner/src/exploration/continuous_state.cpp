@@ -5,11 +5,11 @@
 #include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
 #include "mapping/sort_once.hpp"
+#include "motion/yaw.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace frontlux::planner {
@@ -30,9 +30,8 @@ constexpr double kPatience = 1.5;
 bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) {
   constexpr double kNear = 0.01, kAligned = 0.01, kLong = 0.5;  // [m], [rad], [s]
   const Pose end = trajectory.at(trajectory.end()).pose;
-  return time >= trajectory.end() + kLong ||
-         ((scanned.position - end.position).norm() < kNear &&
-          std::abs(std::remainder(scanned.yaw - end.yaw, 2 * std::numbers::pi)) < kAligned);
+  return time >= trajectory.end() + kLong || ((scanned.position - end.position).norm() < kNear &&
+                                              std::abs(detail::turn(end.yaw, scanned.yaw)) < kAligned);
 }
 
 // Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is

@@ -8,6 +8,7 @@
 #include "exploration/phase_clock.hpp"
 #include "frontier/small_clusters.hpp"
 #include "mapping/sort_once.hpp"
+#include "motion/yaw.hpp"
 
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/path_planner.hpp>
@@ -17,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -100,7 +100,7 @@ void ExplorationState::look_around(std::span<const ExplorationStart> starts, con
     robot.path = PathOutcome::kInPlace;
     robot.planned = {starts[r].pose};  // nothing is measured at a path's first viewpoint
     for (Pose look : planner::look_around(options.team[r].robot.view, starts[r].pose)) {
-      look.yaw = std::remainder(look.yaw, 2 * std::numbers::pi);
+      look.yaw = wrapped(look.yaw);
       robot.planned.push_back(look);
     }
     if (robot.planned.size() > 2) robot.planned.push_back(starts[r].pose);  // it goes on from how it stood

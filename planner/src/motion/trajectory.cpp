@@ -1,18 +1,16 @@
 #include "motion/rounded_path.hpp"
 #include "motion/speed_profile.hpp"
+#include "motion/yaw.hpp"
 
 #include <frontlux/planner/trajectory.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+#include <string>
 
 namespace frontlux::planner {
 namespace {
-
-// From one yaw to another on the shorter side [rad].
-double turn(double from, double to) { return std::remainder(to - from, 2 * std::numbers::pi); }
 
 // The part of some pieces up to a length.
 std::vector<PathPiece> cut_off(std::vector<PathPiece> pieces, double length) {
@@ -41,6 +39,12 @@ std::optional<Trajectory> Trajectory::through(const MotionState& start, double t
   check_finite(viewpoints);
   if (!start.velocity.allFinite()) throw std::invalid_argument("trajectory: the velocity is not finite");
   limits.check();
+  double way = 0.0;
+  for (std::size_t i = 1; i < viewpoints.size(); ++i)
+    way += (viewpoints[i].position - viewpoints[i - 1].position).norm();
+  if (way > kLongestWay)
+    throw std::length_error("trajectory: the way is longer than " +
+                            std::to_string(static_cast<int>(kLongestWay)) + " m; take it in parts");
 
   Trajectory whole(start.pose, time);
   std::vector<Look> looks;
@@ -97,13 +101,13 @@ void Trajectory::turn_to(std::span<const Look> looks, double rate) {
   yaws_.resize(1);
   const double begin = yaws_.front().time, arrival = nodes_.back().time, first = yaws_.front().yaw;
   double last = first;
-  for (const Look& look : looks) last += turn(last, look.yaw);
+  for (const Look& look : looks) last += detail::turn(last, look.yaw);
   // Without the time for all these turns it takes the shortest.
-  if (std::abs(last - first) > rate * (arrival - begin)) last = first + turn(first, last);
+  if (std::abs(last - first) > rate * (arrival - begin)) last = first + detail::turn(first, last);
   const double end = std::max(arrival, begin + std::abs(last - first) / rate);
   double wanted = first;
   for (const Look& look : looks) {
-    wanted += turn(wanted, look.yaw);
+    wanted += detail::turn(wanted, look.yaw);
     const YawNode before = yaws_.back();
     if (look.time <= before.time || look.time >= end) continue;
     const double now = rate * (look.time - before.time), later = rate * (end - look.time);
@@ -203,7 +207,7 @@ MotionState Trajectory::at(double time) const {
     state.yaw_rate = (next->yaw - before.yaw) / (next->time - before.time);
     yaw += state.yaw_rate * (time - before.time);
   }
-  state.pose.yaw = std::remainder(yaw, 2 * std::numbers::pi);
+  state.pose.yaw = detail::wrapped(yaw);
   return state;
 }
 

@@ -1,17 +1,16 @@
 #pragma once
 
+#include "motion/yaw.hpp"
+
 #include <frontlux/planner/robot.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace frontlux::planner::detail {
 
 /// Angle between two yaws [rad].
-[[nodiscard]] inline double turn_between(double a, double b) {
-  return std::abs(std::remainder(b - a, 2 * std::numbers::pi));
-}
+[[nodiscard]] inline double turn_between(double a, double b) { return std::abs(turn(a, b)); }
 
 /// [s] for a distance [m] and a turn [rad]; robots that see all around need not turn.
 [[nodiscard]] inline double travel_seconds(const Robot& robot, double distance, double turn) {

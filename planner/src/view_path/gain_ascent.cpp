@@ -1,5 +1,7 @@
 #include "view_path/gain_ascent.hpp"
 
+#include "motion/yaw.hpp"
+
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -29,7 +31,7 @@ class Climb {
   [[nodiscard]] double evaluate(std::span<const double> yaws, double sharpness, std::span<double> gradient) {
     ++evaluations_;
     // What would be returned, to the last bit: without whole turns, the ends as they were given.
-    for (std::size_t i = 1; i + 1 < yaws.size(); ++i) shown_[i] = wrapped(yaws[i]);
+    for (std::size_t i = 1; i + 1 < yaws.size(); ++i) shown_[i] = detail::wrapped(yaws[i]);
     const std::uint64_t distinct = gain_.distinct(shown_);
     if (distinct >= most_ && limits_.allow(shown_)) {
       most_ = distinct;
@@ -60,7 +62,8 @@ class Stage : public Ipopt::TNLP {
         sharpness_(sharpness),
         last_evaluation_(climb.evaluations() + max_evaluations) {
     // From here on yaws are continuous along the path, without jumps by a whole turn.
-    for (std::size_t i = 1; i < yaws_.size(); ++i) yaws_[i] = yaws_[i - 1] + wrapped(yaws_[i] - yaws_[i - 1]);
+    for (std::size_t i = 1; i < yaws_.size(); ++i)
+      yaws_[i] = yaws_[i - 1] + detail::turn(yaws_[i - 1], yaws_[i]);
     gain_ = climb_.evaluate(yaws_, sharpness_, gradient_);
     double steepest = 0.0;
     for (std::size_t i = 1; i + 1 < yaws_.size(); ++i) steepest = std::max(steepest, std::fabs(gradient_[i]));

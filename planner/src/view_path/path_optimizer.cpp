@@ -1,3 +1,4 @@
+#include "motion/yaw.hpp"
 #include "view_path/gain_ascent.hpp"
 #include "view_path/yaw_bins.hpp"
 #include "view_path/yaw_limits.hpp"
@@ -107,7 +108,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
     path.yaws = start_yaws(gain, tangent, limits, options);
   else
     path.yaws = limits.allow(tangent) ? tangent : even;
-  for (std::size_t i = 1; i + 1 < path.yaws.size(); ++i) path.yaws[i] = wrapped(path.yaws[i]);
+  for (std::size_t i = 1; i + 1 < path.yaws.size(); ++i) path.yaws[i] = detail::wrapped(path.yaws[i]);
   path.start = report(path.yaws);
 
   if (!reachable)
@@ -138,7 +139,7 @@ std::vector<double> tangent_yaws(std::span<const Pose> viewpoints) {
     }
     const Eigen::Vector3d ahead = viewpoints[i + 1].position - viewpoints[i].position;
     yaws.push_back(ahead.x() != 0.0 || ahead.y() != 0.0 ? std::atan2(ahead.y(), ahead.x())
-                                                        : wrapped(yaws.back()));
+                                                        : detail::wrapped(yaws.back()));
   }
   return yaws;
 }

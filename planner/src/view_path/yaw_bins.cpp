@@ -1,5 +1,7 @@
 #include "view_path/yaw_bins.hpp"
 
+#include "motion/yaw.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <numbers>
@@ -24,7 +26,7 @@ YawBins::YawBins(const InformationGain& gain, int bins, double first_yaw, double
     if (i == 0 || i + 1 == yaws_.size()) {
       yaws_[i] = {i == 0 ? first_yaw : last_yaw};
     } else {
-      for (int b = 0; b < bins; ++b) yaws_[i].push_back(wrapped(2.0 * std::numbers::pi * b / bins));
+      for (int b = 0; b < bins; ++b) yaws_[i].push_back(detail::wrapped(2.0 * std::numbers::pi * b / bins));
       if (limits.limited()) yaws_[i].push_back(even[i]);
     }
     in_view_[i].assign(gain.frontiers_of(i).size(), 0);

@@ -1,13 +1,12 @@
 #include "view_path/yaw_limits.hpp"
 
+#include "motion/yaw.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace frontlux::planner {
-
-double wrapped(double yaw) { return std::remainder(yaw, 2.0 * std::numbers::pi); }
 
 YawLimits::YawLimits(std::span<const Pose> viewpoints, double max_step, double max_rate) {
   for (std::size_t i = 0; i + 1 < viewpoints.size(); ++i) {
@@ -22,7 +21,7 @@ YawLimits::YawLimits(std::span<const Pose> viewpoints, double max_step, double m
 }
 
 bool YawLimits::allows(std::size_t i, double yaw, double next) const {
-  return std::fabs(wrapped(next - yaw)) <= steps_[i] + kTolerance;
+  return std::fabs(detail::turn(yaw, next)) <= steps_[i] + kTolerance;
 }
 
 bool YawLimits::allow(std::span<const double> yaws) const {
@@ -33,7 +32,7 @@ bool YawLimits::allow(std::span<const double> yaws) const {
 
 std::vector<double> YawLimits::even_turn(double first, double last) const {
   const auto most = [](double step) { return std::min(step, std::numbers::pi); };
-  const double turn = wrapped(last - first);
+  const double turn = detail::turn(first, last);
   double all = 0.0, passed = 0.0;
   for (const double step : steps_) all += most(step);
   std::vector<double> yaws{first};

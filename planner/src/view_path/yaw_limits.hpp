@@ -7,9 +7,6 @@
 
 namespace frontlux::planner {
 
-/// The same direction in [-pi, pi] [rad].
-[[nodiscard]] double wrapped(double yaw);
-
 /// How far a robot may turn from each viewpoint to the next [rad]; infinite: no limit.
 class YawLimits {
  public:

@@ -229,6 +229,17 @@ TEST(Trajectory, StopAndGoTakesTheTimeOfEachPart) {
   EXPECT_EQ(stop_and_go_time({}, limits), 0.0);
 }
 
+TEST(Trajectory, RefusesAWayThatIsTooLong) {
+  const auto along_x = [](double x) { return Pose{{x, 0, 0}, 0}; };
+  const auto through = [](const std::vector<Pose>& poses) {
+    return Trajectory::through({poses.front()}, 0, poses, {}, kAllFree);
+  };
+  EXPECT_NEAR(through({along_x(0), along_x(6e4), along_x(9e4)})->length(), 9e4, 1e-6);
+  EXPECT_THROW(static_cast<void>(through({along_x(0), along_x(6e4), along_x(0)})), std::length_error);
+  EXPECT_THROW(static_cast<void>(through({along_x(0), along_x(1e300)})), std::length_error);
+  EXPECT_THROW(static_cast<void>(through({along_x(-1e308), along_x(1e308)})), std::length_error);
+}
+
 TEST(Trajectory, RefusesWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Pose here;

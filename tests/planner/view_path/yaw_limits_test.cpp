@@ -1,5 +1,6 @@
 #include "view_path/yaw_limits.hpp"
 
+#include "motion/yaw.hpp"
 #include "support/random.hpp"
 
 namespace frontlux::planner {
@@ -45,7 +46,7 @@ TEST(YawLimits, EvenTurnUsesTheSameFractionOfEachLimit) {
     const double all = std::accumulate(steps.begin(), steps.end(), 0.0);
     const double turn = std::remainder(last - first, 2 * kPi);
     for (std::size_t i = 0; i < steps.size(); ++i)
-      EXPECT_NEAR(wrapped(yaws[i + 1] - yaws[i] - turn * steps[i] / all), 0.0, 1e-12);
+      EXPECT_NEAR(detail::wrapped(yaws[i + 1] - yaws[i] - turn * steps[i] / all), 0.0, 1e-12);
     EXPECT_EQ(limits.allow(yaws), std::fabs(turn) <= all);
     reachable += limits.allow(yaws) ? 1 : 0;
   }
