@@ -141,6 +141,7 @@ class Run {
     const auto reason = loop_->end();
     const std::string end = reason ? reason->word : kStopped;
     writer_->write_end(end);
+    display_.ended(watch_.seconds());
     loop_->mapping().write(how_.folder / "map.ot");
     loop_->mapping().write(how_.folder / "map.bt");
     const RunSums& sums = files_->sums();

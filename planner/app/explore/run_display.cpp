@@ -91,6 +91,12 @@ void RunDisplay::step(const ExplorationStep& step, const RunSums& sums, double s
   print_line(line + (left ? "; " + about(*left) + " to go" : ""));
 }
 
+void RunDisplay::ended(double seconds) {
+  const std::string text = "writing the map, looking for what stayed unseen";
+  if (in_place_) line_.show(run_.folder.string() + ": " + text + "; " + minutes(seconds) + " so far");
+  if (lines_) print_line(text);
+}
+
 void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& end,
                         const std::string& run_json) {
   if (in_place_) line_.clear();

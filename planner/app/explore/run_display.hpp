@@ -31,6 +31,8 @@ class RunDisplay {
   void begin();
   /// How far the run is, what each robot does in this step, and what it is about.
   void step(const planner::ExplorationStep& step, const RunSums& sums, double seconds);
+  /// No step follows; what is made of the run takes long in a large world.
+  void ended(double seconds);
   /// What the run came to.
   /// @param end       why it ended; nothing if it was stopped
   /// @param run_json  the bytes of run.json
