@@ -61,7 +61,7 @@ TEST_F(ExploreOutput, OnATerminalTheProgressStaysInItsLine) {
   const std::string said = on_terminal(room({"-o", "run"}), 0);
   expect_parts(said,
                {"exploring into run", "\rrun: mapped ", "step 2; 0:0",
-                "\rrun: writing the map, looking for what stayed unseen; 0:0", "end          step_limit: "});
+                "\rrun: the run has ended, its results are being made; 0:0", "end          step_limit: "});
   EXPECT_EQ(said.find("step 2: mapped"), std::string::npos) << "there are lines as well";
   for (std::size_t at = 0; (at = said.find("\rrun: ", at)) != std::string::npos; ++at)
     EXPECT_LT(said.find("\033[K", at) - at, 71U) << "the line is longer than the terminal's";

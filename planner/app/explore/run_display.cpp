@@ -92,7 +92,7 @@ void RunDisplay::step(const ExplorationStep& step, const RunSums& sums, double s
 }
 
 void RunDisplay::ended(double seconds) {
-  const std::string text = "writing the map, looking for what stayed unseen";
+  const std::string text = "the run has ended, its results are being made";
   if (in_place_) line_.show(run_.folder.string() + ": " + text + "; " + minutes(seconds) + " so far");
   if (lines_) print_line(text);
 }
