@@ -71,28 +71,21 @@ bool TableQuery::cast_alone(const Ray& ray, Hit& hit) const {
 // Not if the walk ended before the ray did, or went on out of the window.
 bool TableQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
                         std::uint32_t stopped_at, Hit& hit) const {
-  std::optional<VoxelKey> blocker;
-  if (stopped_at == kWentThrough) {
-    if (!is_walked_whole(ray.max_range, grid_.resolution())) return false;
-  } else {
-    const std::array<int, 3> cell = table_.layout().key(stopped_at);
-    const VoxelKey key = as_key(cell);
-    if (is_inside(cell)) {
-      blocker = key;
-    } else {
-      const bool in_key_range = as_array(key) == cell;
-      if (in_key_range && !table_.window().contains(key)) return false;
-      // The border stops every walk, but its voxels are unknown ones like others: only kBlock stops in them.
-      if (unknown_ == UnknownPolicy::kBlock) {
-        if (!in_key_range) {
-          hit = walk_ray(grid_, ray, unknown_);
-          return true;
-        }
-        blocker = key;
-      }
-    }
-  }
-  end_ray(grid_, ray, start, direction, unknown_, blocker, hit);
+  const auto end = [&](const std::optional<VoxelKey>& blocker) {
+    end_ray(grid_, ray, start, direction, unknown_, blocker, hit);
+    return true;
+  };
+  if (stopped_at == kWentThrough)
+    return is_walked_whole(ray.max_range, grid_.resolution()) && end(std::nullopt);
+  const std::array<int, 3> cell = table_.layout().key(stopped_at);
+  const VoxelKey key = as_key(cell);
+  if (is_inside(cell)) return end(key);
+  const bool in_key_range = as_array(key) == cell;
+  if (in_key_range && !table_.window().contains(key)) return false;
+  // The border stops every walk, but its voxels are unknown ones like others: under kPass they do not block.
+  if (unknown_ == UnknownPolicy::kPass) return end(std::nullopt);
+  if (in_key_range) return end(key);
+  hit = walk_ray(grid_, ray, unknown_);
   return true;
 }
 
