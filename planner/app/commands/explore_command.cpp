@@ -78,7 +78,7 @@ std::pair<Option, Option> add_method_options(Command& command, ExploreOptions& o
   command.add("--caster", options.caster, "Ray caster that answers visibility");
   add_sensor_model_option(command, options.sensor_model);
   command.add("--lambda", options.lambda, "PER_METRE",
-              "Decay of a goal's value with its distance, eq. 1 [by mode]", kFromZero);
+              "Decay of a goal's value with its distance, eq. 1 [0.1386]", kFromZero);
   command.add("--advance", options.advance, "METRES",
               "Goals nearer than this lose value in proportion; 0: they do not [by mode]", kFromZero);
   command.add("--min-distance", options.min_distance, "METRES", "Least distance of a goal [0.6]", kFromZero);

@@ -120,7 +120,7 @@ export function details(run, written) {
       ...(numbers.motion ? [
         ["Latency charged", Number.isFinite(result.latency) ? `${seconds(result.latency)} for each planning` : "not recorded"],
         ...(Number.isFinite(result.clearance) ? [["Clearance", `${clearanceOf(result.clearance)}, the least between a body and a surface`]] : []),
-        ...(Number.isFinite(result.separation) ? [["Between robots", `${centimetres(result.separation)}, the least between two bodies`]] : []),
+        ...(Number.isFinite(result.separation) ? [["Between robots", `${centimetres(result.separation)}, the least between the boxes around two bodies`]] : []),
       ] : []),
       ["Contacts", [whole(result.contacts), bumpers(result)].filter(Boolean).join("; ")],
       ["Rays cast for planning", whole(result.rays)], ["Report written by", `frontlux ${written}`],
