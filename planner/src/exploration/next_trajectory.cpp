@@ -43,8 +43,7 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
 // since the robot came on it, but may not be shut.
 Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
   constexpr double kStep = 0.05;  // [s]
-  const TravelOptions& body = team.options.team[robot].robot.travel;
-  const BodyStencil stencil(body, team.lattice().resolution());
+  const BodyStencil stencil(team.travel_by_voxels(robot), team.lattice().resolution());
   const bool retreats = members[robot].activity == Activity::kRetreats;
   const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
   Keys cells;

@@ -28,8 +28,8 @@ std::size_t TourPlanning::least_frontiers(const Options& options, const Lattice&
 }
 
 double TourPlanning::least_gain(std::size_t robot) const {
-  return std::min(
-      {options_.least_gain, least_left_, most_to_ask(members_[robot].robot.view, lattice_.resolution())});
+  const double most = most_to_ask(members_[robot].robot.view, lattice_.resolution());
+  return std::max(1.0, std::min({options_.least_gain, least_left_, most}));
 }
 
 // As far as they have planned.

@@ -123,6 +123,24 @@ TEST_P(Retreat, IsNotWorthTakingWithNothingToSeeAtItsEnd) {
   EXPECT_FALSE(rooms.state.is_cut_off(0, goal));
 }
 
+// No sensor sees the floor on which its robot stands: a robot that drives starts without.
+TEST(RetreatOnAPlane, MayLeadToTheStart) {
+  const Robot robot = ugv();
+  const KeyBox bounds{key_at(0, 0, 0), key_at(19, 19, 9)};
+  ExplorationOptions options = exploration_options();
+  options.team.push_back({robot, goal_options(robot)});
+  ExplorationState state(options, Mapping({kResolution, bounds}));
+  const VoxelKey start = key_at(10, 10, 4);
+  // Down to the floor.
+  const KeyBox known{key_at(0, 0, 2), bounds.max};
+  const ExplorationStart begins{{state.lattice().exact_center(start), 0.0}, test::keys_of(known)};
+  state.start_from({&begins, 1});
+  state.mapping.mark_free(begins.known_free);
+  TravelCorridor elsewhere = state.corridor_elsewhere(0);
+  elsewhere.update({state.mapping.grid()}, start);
+  EXPECT_TRUE(elsewhere.contains(start));
+}
+
 // What it has left closed is smaller than where it is: it has lost something to see, and not its path.
 TEST(RetreatWithTours, ThatIsClosedToASmallPartCutsNobodyOff) {
   const Keys gap{key_at(-26, 15, 5)};  // where the sensor has been

@@ -101,6 +101,12 @@ TEST(TourPlanning, StopsAreAmongItsCandidates) {
     }));
 }
 
+// A stop from which nothing is in view would be planned again and again.
+TEST(TourPlanning, AsksForAFrontierAStopAtLeast) {
+  EXPECT_EQ(OpenSpace({.least_gain = 0.0}).planning.least_gain(0), 1.0);
+  EXPECT_EQ(OpenSpace({.least_gain = 3.0}).planning.least_gain(0), 3.0);
+}
+
 // Where the map is large only ways between near places are measured, and far clusters share stops.
 TEST(TourPlanning, LeadsToAllClustersHoweverFarTheyAre) {
   OpenSpace all, some({.measured = 1}), far({.near = 0.02, .measured = 1});
