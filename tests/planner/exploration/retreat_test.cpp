@@ -136,7 +136,10 @@ TEST(RetreatOnAPlane, MayLeadToTheStart) {
   const ExplorationStart begins{{state.lattice().exact_center(start), 0.0}, test::keys_of(known)};
   state.start_from({&begins, 1});
   state.mapping.mark_free(begins.known_free);
-  TravelCorridor elsewhere = state.corridor_elsewhere(0);
+  TravelCorridor asks(robot.travel, state.lattice(), bounds);
+  asks.update({state.mapping.grid()}, start);
+  EXPECT_FALSE(asks.contains(start));
+  TravelCorridor elsewhere(state.travel_by_voxels(0), state.lattice(), bounds);
   elsewhere.update({state.mapping.grid()}, start);
   EXPECT_TRUE(elsewhere.contains(start));
 }
