@@ -21,8 +21,8 @@ namespace frontlux {
 /// The vector instructions that the engine uses: "avx512", "avx2", "vector" (16 bytes, any processor) or
 /// "none". It takes the widest that the processor has; the environment variable FRONTLUX_ISA, read once,
 /// asks for a narrower one.
-/// @throws std::runtime_error if FRONTLUX_ISA names none of them, or one that is not there; casters throw the
-///         same when they are made
+/// @throws std::runtime_error if FRONTLUX_ISA names none of them, or one that is not there; the fast
+///         and the Embree caster throw the same when they are made
 [[nodiscard]] FRONTLUX_EXPORT std::string instruction_set_name();
 
 }  // namespace frontlux

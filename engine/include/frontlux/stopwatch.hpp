@@ -8,11 +8,11 @@ namespace frontlux {
 /// Measures time from when it was made, or from its last lap.
 class Stopwatch {
  public:
-  /// Time since it was made [s].
+  /// Time since it was made, or since its last lap [s].
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// Time since it was made [ms].
+  /// The same [ms].
   [[nodiscard]] double milliseconds() const { return 1e3 * seconds(); }
   /// The seconds up to now, from where the next lap begins.
   double lap() {
