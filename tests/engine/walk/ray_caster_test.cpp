@@ -180,6 +180,31 @@ TEST(RayCaster, MissesTheEndOfASegmentAsTheWalkDoesWithoutBlockers) {
   }
 }
 
+// A float's last digit is worth hundredths of a voxel there.
+TEST(RayCaster, SegmentsAcrossAllSpaceEndAtTheirVoxel) {
+  VoxelGrid grid(0.1);
+  Random random(73);
+  const VoxelKey target = make_key(60000, 60000, 60000);
+  const KeyBox around = grown({target, target}, 3);
+  for (int i = 0; i < 60; ++i) grid.set(random.key_in(around), Occupancy::kOccupied);
+  std::vector<KeySegment> segments{{make_key(0, 60000, 60000), make_key(59996, 60000, 60000)}};
+  for (int i = 0; i < 300; ++i) {
+    const VoxelKey to = random.key_in(around);
+    const int longest = 10'000 + random.below(45'000);
+    const auto less = [&] { return random.one_in(4) ? 0 : longest - random.below(200); };
+    segments.push_back({make_key(to.x - longest, to.y - less(), to.z - less()), to});
+  }
+  std::vector<std::uint8_t> walked(segments.size()), seen(segments.size());
+  for (const UnknownPolicy unknown : kPolicies) {
+    make_grid_ray_caster(grid)->visible(segments, walked, unknown);
+    for (const auto& caster : casters_of(grid)) {
+      caster->visible(segments, seen, unknown);
+      EXPECT_EQ(seen, walked);
+    }
+    EXPECT_EQ(walked.front(), unknown == UnknownPolicy::kPass ? 1 : 0) << "its voxel is before all others";
+  }
+}
+
 TEST(RayCaster, DistanceAndEntryAreThoseOfTheBlockersFace) {
   VoxelGrid grid(0.5);
   grid.fill({{32768, 32768, 32768}, 4}, Occupancy::kFree);
