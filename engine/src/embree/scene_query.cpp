@@ -180,7 +180,9 @@ SceneQuery::By SceneQuery::prepare(const KeySegment& segment, Probe& sight, bool
     grazed += static_cast<int>(0.5F * (longest - length[i]) * inverse < 4.0F * tolerance);
   target_is_grazed = grazed > 2;
   if (!reach_.contains(origin.matrix().cast<double>())) {
-    const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, static_cast<double>(t_far));
+    // From so far away a float's last digit is more than the tolerance.
+    const double entered = 1.0 - (0.5 + 3.0 * scene_.tolerance()) / static_cast<double>(longest);
+    const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, entered);
     if (!probed) return target_is_grazed ? By::kWalk : By::kVisible;
     sight = *probed;
   }
