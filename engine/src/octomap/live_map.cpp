@@ -2,6 +2,7 @@
 
 #include <frontlux/live_map.hpp>
 
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -24,17 +25,27 @@ const Octree& watched(const Octree& tree) {
 struct LiveMap::State {
   Octree tree;
   OctreeMirror mirror;
+  VoxelGrid told;  // the map of the last account: what throws before the next one loses no change
   std::unique_ptr<RayCaster> caster;
   std::vector<VoxelKey> keys{};
 
   explicit State(Octree map)
-      : tree(std::move(map)), mirror(watched(tree)), caster(make_ray_caster(mirror.grid())) {}
+      : tree(std::move(map)),
+        mirror(watched(tree)),
+        told(mirror.grid()),
+        caster(make_ray_caster(mirror.grid())) {}
 
-  MapChange take_in(const VoxelGrid& before) {
+  MapChange take_in() {
     watched(tree);
     caster->update(mirror.grid());
     keys.clear();
-    keys = changed_keys(before, mirror.grid());
+    try {
+      keys = changed_keys(told, mirror.grid());
+    } catch (const std::length_error&) {  // more than can be told, ever
+      told = mirror.grid();
+      throw;
+    }
+    told = mirror.grid();
     return {mirror.grid(), keys};
   }
 };
@@ -47,15 +58,13 @@ LiveMap::LiveMap(LiveMap&&) noexcept = default;
 LiveMap& LiveMap::operator=(LiveMap&&) noexcept = default;
 
 MapChange LiveMap::update() {
-  const VoxelGrid before = state_->mirror.grid();
   state_->mirror.update();
-  return state_->take_in(before);
+  return state_->take_in();
 }
 
 MapChange LiveMap::rebuild() {
-  const VoxelGrid before = state_->mirror.grid();
   state_->mirror.rebuild();
-  return state_->take_in(before);
+  return state_->take_in();
 }
 
 const VoxelGrid& LiveMap::grid() const { return state_->mirror.grid(); }

@@ -1,5 +1,6 @@
 #include "octomap/octomap_adapter.hpp"
 
+#include <frontlux/floating_point_mode.hpp>
 #include <frontlux/key_box.hpp>
 #include <frontlux/octomap.hpp>
 
@@ -31,6 +32,7 @@ VoxelGrid mirror(const Tree& tree) {
     throw std::invalid_argument(
         "only trees of OctoMap's standard depth 16 are supported, this one has depth " +
         std::to_string(tree.getTreeDepth()));
+  const FloatingPointMode mode(FloatingPointMode::kToNearest);
   VoxelGrid grid(tree.getResolution());
   if (tree.getRoot() != nullptr) mirror_node(tree, tree.getRoot(), {{}, 16}, grid);
   return grid;
@@ -127,6 +129,7 @@ struct OctreeMirror::Watch {
   }
 
   void update() {
+    const FloatingPointMode mode(FloatingPointMode::kToNearest);
     std::visit(
         [this](const auto& t) {
           const auto refresh = [&](const VoxelKey& key) { grid.set(key, state_at(*t, key)); };

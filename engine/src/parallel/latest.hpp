@@ -25,11 +25,13 @@ class Latest {
   }
 
   void set(std::shared_ptr<const T> value) {
-    for (Stripe& stripe : stripes_) {
-      // A second owner with a count of its own keeps the first alive.
-      std::shared_ptr<const T> copy(value.get(), [value](const T*) {});
-      const std::lock_guard lock(stripe.mutex);
-      stripe.value.swap(copy);
+    // Second owners with counts of their own keep the first alive. All are made before any is seen, since
+    // there may be no memory for one.
+    std::array<std::shared_ptr<const T>, kStripes> copies;
+    for (auto& copy : copies) copy = std::shared_ptr<const T>(value.get(), [value](const T*) {});
+    for (std::size_t i = 0; i < kStripes; ++i) {
+      const std::lock_guard lock(stripes_[i].mutex);
+      stripes_[i].value.swap(copies[i]);
     }
   }
 

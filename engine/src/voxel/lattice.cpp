@@ -1,11 +1,21 @@
+#include <frontlux/floating_point_mode.hpp>
 #include <frontlux/lattice.hpp>
 
 #include <stdexcept>
 #include <string>
 
 namespace frontlux {
+namespace {
 
-Lattice::Lattice(double resolution) : resolution_(resolution), factor_(1. / resolution) {
+// As OctoMap's, in whatever mode a thread makes a map: rounded otherwise, points on faces get other keys.
+double inverse_of(double resolution) {
+  const FloatingPointMode mode(FloatingPointMode::kToNearest);
+  return 1. / resolution;
+}
+
+}  // namespace
+
+Lattice::Lattice(double resolution) : resolution_(resolution), factor_(inverse_of(resolution)) {
   if (!(std::isfinite(resolution) && resolution > 0. && std::isfinite(factor_)))
     throw std::invalid_argument("resolution must be a positive, finite length in metres, got " +
                                 std::to_string(resolution));

@@ -14,15 +14,14 @@ class KeyList {
  public:
   // All voxels of a block.
   void add(const Block& block) {
-    const std::uint64_t size = std::uint64_t{1} << (3 * block.log2_edge);
-    if (size > kMostListedKeys - std::min<std::uint64_t>(keys_.size(), kMostListedKeys))
-      throw std::length_error("more than " + std::to_string(kMostListedKeys) + " voxels to list");
+    need(std::uint64_t{1} << (3 * block.log2_edge));
     for_each_key(cube(block.corner, 1 << block.log2_edge),
                  [&](const VoxelKey& key) { keys_.push_back(key); });
   }
 
   // Those of a layer of the brick that begins at a corner.
   void add(const VoxelKey& corner, std::size_t z, std::uint64_t layer) {
+    need(static_cast<std::uint64_t>(std::popcount(layer)));
     for (; layer != 0; layer &= layer - 1) {
       const int bit = std::countr_zero(layer);
       keys_.push_back(make_key(corner.x + (bit & 7), corner.y + (bit >> 3), corner.z + static_cast<int>(z)));
@@ -35,6 +34,12 @@ class KeyList {
   }
 
  private:
+  // Before more are added.
+  void need(std::uint64_t more) const {
+    if (more > kMostListedKeys - std::min<std::uint64_t>(keys_.size(), kMostListedKeys))
+      throw std::length_error("more than " + std::to_string(kMostListedKeys) + " voxels to list");
+  }
+
   std::vector<VoxelKey> keys_;
 };
 

@@ -9,6 +9,8 @@
 #include <frontlux/live_map.hpp>
 #include <frontlux/view_quality.hpp>
 
+#include <cfenv>
+
 namespace frontlux::test {
 namespace {
 
@@ -85,6 +87,41 @@ TEST(LiveMap, SharesTheTreeOfAFile) {
   LiveMap moved(std::move(map));
   moved.update();
   EXPECT_TRUE(moved.grid() == make_voxel_grid(*room));
+}
+
+TEST(LiveMap, TellsOfAChangeAfterAnUpdateThatFailed) {
+  octomap::OcTree tree(0.1);
+  tree.updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), false);
+  LiveMap map(tree);
+  tree.updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), false);
+  tree.setResolution(0.2);
+  EXPECT_THROW(map.update(), std::invalid_argument);
+  tree.setResolution(0.1);
+  EXPECT_EQ(map.update().keys.size(), 1U);
+  EXPECT_TRUE(map.update().keys.empty());
+}
+
+TEST(LiveMap, IsTheSameWhateverFloatingPointModeItIsMadeIn) {
+  octomap::OcTree tree(0.1);
+  for (std::uint16_t x = 32768; x < 32798; ++x)
+    tree.updateNode(octomap::OcTreeKey(x, 32768, 32768), x == 32777);
+  std::fesetround(FE_TOWARDZERO);
+  LiveMap made(tree), made_anew(tree);
+  made_anew.rebuild();
+  std::fesetround(FE_TONEAREST);
+  octomap::point3d end;
+  const bool hits = tree.castRay({1.0F, 0.05F, 0.05F}, {1, 0, 0}, end, false, 5.0);
+  for (const LiveMap* map : {&made, &made_anew}) {
+    // On a face of the voxel that is occupied.
+    const Ray ray{{1.0F, 0.05F, 0.05F}, {1, 0, 0}, 5.0};
+    std::vector<Hit> batch(20);
+    map->caster().cast(std::vector<Ray>(20, ray), batch, UnknownPolicy::kBlock);
+    batch.push_back(map->caster().cast(ray, UnknownPolicy::kBlock));
+    for (const Hit& hit : batch) {
+      EXPECT_EQ(hit.stop == RayStop::kOccupied, hits);
+      EXPECT_EQ(hit.end, Eigen::Vector3f(end.x(), end.y(), end.z()));
+    }
+  }
 }
 
 TEST(ChangedKeys, AreRefusedIfThereAreTooMany) {
