@@ -24,6 +24,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -118,7 +119,7 @@ class Run {
     recorded_ = recorded_steps().size();
     if (!loop_->end()) remove_views(how_.folder);
     remove_unfinished_files(how_.folder);
-    for (const char* written : kRunFiles)
+    for (const std::string_view written : kRunFiles)
       if (written != kRecording) remove_link(how_.folder / written);
     files_.emplace(how_.folder, setup_.head);
     for (const RecordedStep& step : recorded_steps()) files_->add(step);

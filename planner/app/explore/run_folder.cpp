@@ -7,6 +7,7 @@
 #include <frontlux/file.hpp>
 
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
@@ -100,7 +101,7 @@ void remove_link(const fs::path& file) {
 
 void remove_old_files(const fs::path& folder) {
   std::error_code ignored;
-  for (const char* file : kRunFiles)
+  for (const std::string_view file : kRunFiles)
     if (file != kRecording) fs::remove(folder / file, ignored);
 }
 
