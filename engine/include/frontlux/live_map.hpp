@@ -35,7 +35,8 @@ class FRONTLUX_EXPORT LiveMap {
   /// Takes in what changed in the tree since the last call, in time that grows with the change. Returns what
   /// is new; its grid and keys are valid until the next call.
   /// @throws std::length_error as `changed_keys` does; grid and caster are up to date all the same
-  /// @throws std::invalid_argument if the tree's resolution has changed
+  /// @throws std::invalid_argument as long as the tree's resolution is another than at the last call that returned: make
+  ///         another LiveMap for a new one. What changed meanwhile is told by the next call that returns
   MapChange update();
 
   /// The same by reading the whole tree: after calls that OctoMap reports no change for (`OctreeMirror`).

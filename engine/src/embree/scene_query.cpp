@@ -171,8 +171,12 @@ SceneQuery::By SceneQuery::prepare(const KeySegment& segment, Probe& sight, bool
   const Eigen::Array3f length = difference.abs();
   const float longest = length.maxCoeff(), inverse = 1.0F / longest;
   const auto tolerance = static_cast<float>(scene_.tolerance());
-  const float t_far = 1.0F - 0.5F * inverse - 3.0F * tolerance * inverse;
-  sight = {{origin[0], origin[1], origin[2]}, 0.0F, {difference[0], difference[1], difference[2]}, t_far};
+  // In double: from far outside the boxes a float's last digit is more than the tolerance.
+  const double t_far = 1.0 - (0.5 + 3.0 * scene_.tolerance()) / static_cast<double>(longest);
+  sight = {{origin[0], origin[1], origin[2]},
+           0.0F,
+           {difference[0], difference[1], difference[2]},
+           static_cast<float>(t_far)};
   // At its entry the line is this far from the target's other faces, along its longest axis by 0. By an edge
   // it passes one voxel within the tolerance, which is the last one; by a corner there is another before it.
   int grazed = 0;
@@ -180,9 +184,7 @@ SceneQuery::By SceneQuery::prepare(const KeySegment& segment, Probe& sight, bool
     grazed += static_cast<int>(0.5F * (longest - length[i]) * inverse < 4.0F * tolerance);
   target_is_grazed = grazed > 2;
   if (!reach_.contains(origin.matrix().cast<double>())) {
-    // From so far away a float's last digit is more than the tolerance.
-    const double entered = 1.0 - (0.5 + 3.0 * scene_.tolerance()) / static_cast<double>(longest);
-    const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, entered);
+    const auto probed = probe({origin.cast<double>(), difference.cast<double>()}, t_far);
     if (!probed) return target_is_grazed ? By::kWalk : By::kVisible;
     sight = *probed;
   }

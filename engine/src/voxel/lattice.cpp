@@ -10,7 +10,9 @@ namespace {
 // As OctoMap's, in whatever mode a thread makes a map: rounded otherwise, points on faces get other keys.
 double inverse_of(double resolution) {
   const FloatingPointMode mode(FloatingPointMode::kToNearest);
-  return 1. / resolution;
+  // Volatile: compilers know nothing of modes, and may move other divisions out of this one's.
+  const volatile double given = resolution, inverse = 1. / given;
+  return inverse;
 }
 
 }  // namespace

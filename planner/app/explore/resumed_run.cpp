@@ -68,7 +68,7 @@ Recording read_run(const ExploreRun& run) {
                    "; name the one that was given to -o, or begin the run with -o");
   if (!fs::exists(file, error))
     throw BadInput(
-        "--resume: " + run.folder.string() + " holds no " + kRecording +
+        "--resume: " + run.folder.string() + " holds no " + std::string(kRecording) +
         ": it is not the folder of a run, or the run had not begun; name the folder that was given "
         "to -o, or begin it anew, without --resume");
   try {
@@ -77,7 +77,7 @@ Recording read_run(const ExploreRun& run) {
     // Before the recorded steps are repeated, which may take long.
     if (::access(run.folder.c_str(), W_OK | X_OK) != 0)
       throw BadInput("--resume: " + run.folder.string() + " cannot be written to; check its permissions");
-    for (const char* written : kRunFiles)
+    for (const std::string_view written : kRunFiles)
       if (fs::exists(run.folder / written, error) && (fs::is_directory(run.folder / written, error) ||
                                                       ::access((run.folder / written).c_str(), W_OK) != 0))
         throw BadInput("--resume: " + (run.folder / written).string() +

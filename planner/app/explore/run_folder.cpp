@@ -7,7 +7,6 @@
 #include <frontlux/file.hpp>
 
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
@@ -55,7 +54,7 @@ std::vector<std::string> pictures() {
 }  // namespace
 
 void remove_unfinished_files(const fs::path& folder) {
-  for (const char* file : kRunFiles) remove_unfinished(folder / file);
+  for (const std::string_view file : kRunFiles) remove_unfinished(folder / file);
   for (const std::string& file : pictures()) remove_unfinished(folder / file);
 }
 
@@ -78,7 +77,7 @@ void check_folder(const ExploreRun& run, const std::string& world) {
         run,
         "is not empty; name another folder, continue the run in it with --resume, or replace it with "
         "--force");
-  for (const char* file : kRunFiles) {
+  for (const std::string_view file : kRunFiles) {
     if (fs::is_directory(run.folder / file, error))
       refuse_folder(run, "holds a folder " + std::string(file) + "; move it away, or name another folder");
     if (fs::equivalent(run.folder / file, world, error))

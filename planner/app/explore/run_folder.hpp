@@ -8,13 +8,15 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace frontlux::app {
 
-inline constexpr const char* kRecording = "run.frontlux";
+inline constexpr std::string_view kRecording = "run.frontlux";
 /// All that a run writes into its folder.
-inline constexpr std::array kRunFiles = {kRecording,   "run.json",  "steps.csv", "paths.csv", "events.csv",
-                                         "motion.csv", "tours.csv", "map.ot",    "map.bt",    kReport};
+inline constexpr auto kRunFiles =
+    std::to_array<std::string_view>({kRecording, "run.json", "steps.csv", "paths.csv", "events.csv",
+                                     "motion.csv", "tours.csv", "map.ot", "map.bt", kReport});
 
 /// Whether a new run may have its folder. Removes what killed runs left there unfinished.
 /// @param world  which the run must not overwrite

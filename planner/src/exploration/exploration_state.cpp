@@ -45,8 +45,8 @@ ExplorationState::ExplorationState(ExplorationOptions given, Mapping map)
       abandoned(options.max_visits) {}
 
 TravelOptions ExplorationState::travel_by_voxels(std::size_t robot) const {
-  // From the start on, with where it needs to see no floor.
-  TravelOptions travel = (selection ? selection->team() : options.team)[robot].robot.travel;
+  // With the start, where it needs to see no floor: `options` lacks that.
+  TravelOptions travel = selection->team()[robot].robot.travel;
   travel.node_edge = 0.0;
   return travel;
 }

@@ -51,7 +51,7 @@ struct ExplorationState {
 
   ExplorationState(ExplorationOptions given, Mapping map);
 
-  /// How a robot travels between the nodes of its corridor, if it has such.
+  /// How a robot travels between the nodes of its corridor, if it has such. @pre it has been started
   [[nodiscard]] TravelOptions travel_by_voxels(std::size_t robot) const;
   /// What robots find their paths in. On tours it is `conservative_map`: a robot that does not move measures
   /// the same again and again, and if beams that graze the floor had freed it before the robot, it would

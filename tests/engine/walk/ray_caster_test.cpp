@@ -180,7 +180,7 @@ TEST(RayCaster, MissesTheEndOfASegmentAsTheWalkDoesWithoutBlockers) {
   }
 }
 
-// A float's last digit is worth hundredths of a voxel there.
+// A float's last digit is worth thousandths of a voxel there.
 TEST(RayCaster, SegmentsAcrossAllSpaceEndAtTheirVoxel) {
   VoxelGrid grid(0.1);
   Random random(73);

@@ -76,7 +76,7 @@ struct FRONTLUX_EXPORT GoalOptions {
 };
 
 /// By default, view quality for all robots: of those that drive counted exactly; in space drawn from buckets
-/// at every second voxel, pruned, and counted for the best cells. As printed: of those that drive by hits
+/// at every 0.6 m, pruned, and counted for the best cells. As printed: of those that drive by hits
 /// among the drawn frontiers, in space by clusters.
 [[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault);
 /// The same for a robot in motion: by default near goals cost it less, since it plans again before it
