@@ -33,10 +33,10 @@ class FRONTLUX_EXPORT LiveMap {
   LiveMap& operator=(LiveMap&&) noexcept;
 
   /// Takes in what changed in the tree since the last call, in time that grows with the change. Returns what
-  /// is new; its grid and keys are valid until the next call.
+  /// is new; its grid and keys are valid until the next call. If it throws, the next call that returns has
+  /// what is new, unless that was too much.
   /// @throws std::length_error as `changed_keys` does; grid and caster are up to date all the same
-  /// @throws std::invalid_argument as long as the tree's resolution is another than at the last call that returned: make
-  ///         another LiveMap for a new one. What changed meanwhile is told by the next call that returns
+  /// @throws std::invalid_argument as long as the tree has another resolution than this map began with
   MapChange update();
 
   /// The same by reading the whole tree: after calls that OctoMap reports no change for (`OctreeMirror`).

@@ -10,7 +10,7 @@ namespace {
 // As OctoMap's, in whatever mode a thread makes a map: rounded otherwise, points on faces get other keys.
 double inverse_of(double resolution) {
   const FloatingPointMode mode(FloatingPointMode::kToNearest);
-  // Volatile: compilers know nothing of modes, and may move other divisions out of this one's.
+  // Volatile, since compilers know nothing of modes, and might divide before this one is set.
   const volatile double given = resolution, inverse = 1. / given;
   return inverse;
 }
