@@ -43,10 +43,11 @@ std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
   std::vector<Pose> all, some;
   for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
   const auto straight = [&](std::size_t a, std::size_t b) {
-    const Eigen::Vector3d along = (all[b].position - all[a].position).stableNormalized();
+    const Eigen::Vector3d way = all[b].position - all[a].position, along = way.stableNormalized();
     for (std::size_t i = a + 1; i < b; ++i) {
       const Eigen::Vector3d to = all[i].position - all[a].position;
-      if ((to - to.dot(along) * along).norm() > kOff) return false;
+      // Not of the line beyond: a robot may brake and turn back on its way.
+      if ((to - std::clamp(to.dot(along), 0.0, way.norm()) * along).norm() > kOff) return false;
     }
     return true;
   };

@@ -111,6 +111,30 @@ TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLi
 }
 
 // Steps tell all that happened: numbers, times, scans and changes.
+// Also where it brakes and goes back on its way.
+TEST_P(ContinuousExplorationBy, RecordsTrajectoriesToCentimetres) {
+  TeamInMotion scene("room", {small_uav(), planner::ugv_description()}, sim::AtContact::kGoOn, GetParam());
+  double most = 0.0;
+  scene.explore(kLong, [&](const PlannedMotion& now) {
+    const std::vector<Pose>& recorded = now.step.robots[now.robot].trajectory;
+    ASSERT_FALSE(recorded.empty());
+    const auto from_recorded = [&](const Eigen::Vector3d& place) {
+      double least = (place - recorded.front().position).norm();
+      for (std::size_t i = 1; i < recorded.size(); ++i) {
+        const Eigen::Vector3d a = recorded[i - 1].position, way = recorded[i].position - a;
+        const double part = std::clamp((place - a).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+        least = std::min(least, (place - a - part * way).norm());
+      }
+      return least;
+    };
+    const double end = now.trajectory.end();
+    for (double time = std::max(now.trajectory.begin(), now.step.time + 0.1); time < end; time += 0.02)
+      most = std::max(most, from_recorded(now.trajectory.at(time).pose.position));
+  });
+  EXPECT_GT(most, 0.001);
+  EXPECT_LT(most, 0.05);
+}
+
 TEST_P(ContinuousExplorationBy, StepsAddUpToTheMap) {
   TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
   scene.explore(6.0);
