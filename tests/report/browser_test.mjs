@@ -115,7 +115,8 @@ async function besideWorks(browser) {
   }
   const apart = () => page.evaluate(async () => {
     const { scene, second } = window.frontlux.page;
-    await new Promise((done) => setTimeout(done, 300));
+    // Frames and not seconds: one follows the other in the next of its frames.
+    for (let frame = 0; frame < 20; ++frame) await new Promise(requestAnimationFrame);
     return [scene.camera.position.distanceTo(second.camera.position), second.layers.voxels, second.drawn];
   });
   await page.evaluate(() => window.frontlux.page.scene.orbit(0.5, 0.1));
