@@ -114,16 +114,17 @@ struct FrontierSet::State {
   BrickTable<Layers> bricks{};   // frontiers, by number; bricks that have none any more stay
   std::vector<VoxelKey> keys{};  // the same, sorted
 
-  // Finds the frontiers of some bricks again.
+  // Finds the frontiers of some bricks again: of all, or of none if there is not enough memory.
   void refresh(const VoxelGrid& grid, const Bricks& stale) {
     std::vector<VoxelKey> added, removed;
+    std::vector<std::pair<std::uint64_t, Layers>> differ;  // by number, and then by place
     for (const auto& entry : stale.entries()) {
       const VoxelKey corner = corner_of(entry.number);
       const Layers* known = bricks.find(entry.number);
       const Layers before = known == nullptr ? Layers{} : *known;
       const Layers after = frontiers_in_brick(grid, corner, bounds, adjacency);
       if (after == before) continue;
-      bricks[entry.number] = after;
+      differ.emplace_back(entry.number, after);
       for (std::size_t z = 0; z < 8; ++z) {
         append(corner, z, after[z] & ~before[z], added);
         append(corner, z, before[z] & ~after[z], removed);
@@ -131,7 +132,11 @@ struct FrontierSet::State {
     }
     std::sort(added.begin(), added.end());
     std::sort(removed.begin(), removed.end());
-    merge(added, removed);
+    if (differ.empty()) return;
+    std::vector<VoxelKey> merged = with_changes(added, removed);
+    for (auto& [at, layers] : differ) at = bricks.index(at);
+    for (const auto& [at, layers] : differ) bricks.value(at) = layers;
+    keys = std::move(merged);
   }
 
   static void append(const VoxelKey& corner, std::size_t z, std::uint64_t layer, std::vector<VoxelKey>& to) {
@@ -141,15 +146,15 @@ struct FrontierSet::State {
     }
   }
 
-  void merge(const std::vector<VoxelKey>& added, const std::vector<VoxelKey>& removed) {
-    if (added.empty() && removed.empty()) return;
+  [[nodiscard]] std::vector<VoxelKey> with_changes(const std::vector<VoxelKey>& added,
+                                                   const std::vector<VoxelKey>& removed) const {
     std::vector<VoxelKey> rest;
     rest.reserve(keys.size() + added.size());
     std::set_difference(keys.begin(), keys.end(), removed.begin(), removed.end(), std::back_inserter(rest));
     const auto kept = static_cast<std::ptrdiff_t>(rest.size());
     rest.insert(rest.end(), added.begin(), added.end());
     std::inplace_merge(rest.begin(), rest.begin() + kept, rest.end());
-    keys = std::move(rest);
+    return rest;
   }
 
   // Finds the frontiers of every brick in which, or next to which, a voxel is free.
