@@ -48,11 +48,15 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   } catch (const BadInput& error) {
     throw BadInput(std::string("--team: ") + error.what());
   }
-  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground.
+  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground. They
+  // leave the middles of voxels: there a voxel that is taken for free may hold the edge of a surface.
+  constexpr double kMargin = 0.05;  // [m]
   if (!options.lockstep && method == Method::kDefault)
-    for (RobotDescription& robot : robots)
-      if (robot.robot.travel.motion == Motion::kSpace)
-        robot.robot.travel.min_height = robot.robot.travel.extents.z() / 2;
+    for (RobotDescription& robot : robots) {
+      planner::TravelOptions& travel = robot.robot.travel;
+      travel.margin = kMargin;
+      if (travel.motion == Motion::kSpace) travel.min_height = travel.extents.z() / 2;
+    }
   for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);
   for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
   if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");
