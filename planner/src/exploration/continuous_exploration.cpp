@@ -87,7 +87,10 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   if (state.team.tours) state.note_solid(closed);
   State::Member& member = state.members[robot];
   member.sensed.push_back(pose);
-  if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) member.looked = pose;
+  if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) {
+    member.last_look = pose;
+    member.looked = true;
+  }
   return change;
 }
 
@@ -108,6 +111,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   member.stopped = true;
   member.blocked = false;
   member.needed.clear();
+  member.closed.clear();
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
   const bool learns = !cells.empty() && (!member.planned || std::ranges::any_of(cells, is_new));
@@ -137,6 +141,7 @@ std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   if (!state.team.selection) refuse("a planning before its beginning");
   check_time(time);
   state.start_next_trajectories(time);
+  state.look_for_blocked(time);
   std::optional<std::pair<std::size_t, PlanReason>> next;
   Turn best;
   for (std::size_t r = 0; r < state.members.size(); ++r) {

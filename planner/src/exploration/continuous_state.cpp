@@ -25,14 +25,14 @@ constexpr double kSoonest = 0.4;  // of the period, before a robot with such a g
 // Periods for which a robot rests until it has nothing to do: scans free by then what a stray return has
 // closed.
 constexpr double kPatience = 1.5;
+constexpr double kLongPatience = 10.0;  // without a scan from where it rests
 
-// Whether a robot has taken a scan where its trajectory ends, or has had the time for that.
-bool has_looked(const Trajectory& trajectory, const Pose& scanned, double time) {
-  constexpr double kNear = 0.01, kAligned = 0.01, kLong = 0.5;  // [m], [rad], [s]
-  const Pose end = trajectory.at(trajectory.end()).pose;
-  return time >= trajectory.end() + kLong || ((scanned.position - end.position).norm() < kNear &&
-                                              std::abs(detail::turn(end.yaw, scanned.yaw)) < kAligned);
+bool is_near(const Pose& pose, const Pose& other, double length, double angle) {
+  return (pose.position - other.position).norm() < length &&
+         std::abs(detail::turn(other.yaw, pose.yaw)) < angle;
 }
+
+Pose end_of(const Trajectory& trajectory) { return trajectory.at(trajectory.end()).pose; }
 
 // Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
 // about straight.
@@ -76,6 +76,26 @@ void ContinuousExploration::State::start_next_trajectories(double time) {
   }
 }
 
+// Whether its last scan was taken about where its trajectory ends.
+bool ContinuousExploration::State::has_looked_from_end(const Member& member) const {
+  constexpr double kAligned = 0.1;  // [rad]
+  return member.last_look &&
+         is_near(*member.last_look, end_of(member.motion.last()), team.lattice().resolution() / 2, kAligned);
+}
+
+// Whether a robot has taken a scan at its goal, or a few scans since it has arrived none of which is from
+// there. One that is told that it is a little beside its trajectory's end will not get nearer; scans may be
+// rare, or late.
+bool ContinuousExploration::State::has_looked(const Member& member, double time) const {
+  constexpr double kNear = 0.01, kAligned = 0.01, kSoon = 0.5;  // [m], [rad], [s]
+  constexpr int kMostMissed = 3;
+  const Trajectory& trajectory = member.motion.last();
+  if (!member.looked) return false;
+  if (is_near(*member.last_look, end_of(trajectory), kNear, kAligned)) return true;
+  return time >= trajectory.end() + kSoon &&
+         (member.missed_looks >= kMostMissed || has_looked_from_end(member));
+}
+
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
                                                                        double time) const {
   if (member.is_lost()) return std::nullopt;
@@ -90,9 +110,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (member.blocked) return PlanReason::kBlocked;
   const bool leaves = member.activity == Activity::kRetreats || member.activity == Activity::kMakesRoom;
   if (leaves && !arrives) return std::nullopt;
-  if (member.is_going() &&
-      (member.goal_frontiers.empty() ? arrives
-                                     : has_looked(member.motion.last(), member.sensed.back(), time)))
+  if (member.is_going() && (member.goal_frontiers.empty() ? arrives : has_looked(member, time)))
     return PlanReason::kArrival;
   if (member.is_going() && !member.goal_frontiers.empty() && age >= team.options.period * kSoonest) {
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
@@ -217,13 +235,13 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
 
 // Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has
 // arrived these are also the ones for which it came: planning, between the middles of voxels, may see past an
-// edge that hides them from where it is.
+// edge that hides them from where it is. So are they if no scan comes from there.
 void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
   RobotStep& now = step.robots[robot];
-  const std::optional<Pose> looked = std::exchange(members[robot].looked, std::nullopt);
-  if (!looked) return;
-  const Pose& pose = *looked;
+  Member& member = members[robot];
+  if (!std::exchange(member.looked, false)) return;
+  const Pose& pose = *member.last_look;
   const FieldOfView& view = team.options.team[robot].robot.view;
   const Keys frontiers =
       detail::frontiers_near_path(team.lattice(), team.frontiers.keys(), {&pose, 1}, view.max_range);
@@ -233,11 +251,12 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
     const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
     if (view.contains(offset, pose.yaw)) now.still_unknown.push_back(frontiers[i]);
   }
-  const Member& member = members[robot];
   const Trajectory& last = member.motion.last();
-  if (reason == PlanReason::kArrival && member.goal.pose &&
-      team.lattice().key(member.goal.pose->position) ==
-          team.lattice().key(last.at(last.end()).pose.position)) {
+  const bool goes_there = member.goal.pose && team.lattice().key(member.goal.pose->position) ==
+                                                  team.lattice().key(end_of(last).position);
+  const bool waits = goes_there && reason != PlanReason::kArrival && step.time >= last.end();
+  member.missed_looks = waits ? member.missed_looks + 1 : 0;
+  if (goes_there && reason == PlanReason::kArrival) {
     for (const VoxelKey& key : member.goal_frontiers)
       if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
     sort_once(now.still_unknown);
@@ -344,14 +363,17 @@ void ContinuousExploration::State::count_low_gain(std::size_t robot, const Robot
     member.idle_since.reset();
   else if (!member.idle_since)
     member.idle_since = member.planned;
-  member.waits = waits ? member.waits + 1 : 0;
+  // That there is no goal outside of all cells in which others might be is no answer yet.
+  const bool kept_out = member.waits % 2 == 1 && !member.is_going();
+  member.waits = waits || kept_out ? member.waits + 1 : 0;
   if (member.waits > kMostWaits && member.request) end_request(robot);
 }
 
+// A scan from where it rests may be on its way still, and show something to do.
 bool ContinuousExploration::State::has_nothing_to_do(const Member& member) const {
   if (member.is_lost()) return true;
   if (member.is_going() || member.others_rest) return false;
-  const double patience = kPatience * team.options.period;
+  const double patience = (has_looked_from_end(member) ? kPatience : kLongPatience) * team.options.period;
   return member.waits > kMostWaits ||
          (member.waits == 0 && member.idle_since && *member.planned - *member.idle_since >= patience);
 }

@@ -48,16 +48,22 @@ struct ContinuousExploration::State {
     Goal goal = {};                 // the last one
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys needed = {};               // voxels that its trajectory needs free; sorted
+    Keys closed = {};               // of these, since it was last looked whether it has passed them
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
     std::size_t samples = 0;        // of its trajectory that its trail has, or passes near by
-    std::optional<Pose> looked = {};  // where it took its last scan that shows something, since it planned
+    std::optional<Pose> last_look = {};    // where it took its last scan that shows something
+    bool looked = false;                   // it has taken it since it planned last
+    int missed_looks = 0;                  // plannings in a row at its goal before it has looked from there
     std::optional<Request> request = {};   // by another one, while it has no goal
     bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
     bool asks = true;                      // when it plans next without a goal: others to make room
     std::vector<Keys> others_rested = {};  // where, each time that it has asked since it had a goal
+    std::optional<VoxelKey> told_from = {};  // where it rested when it told the others last
 
-    void note_closed(const VoxelKey& key) { blocked = blocked || std::ranges::binary_search(needed, key); }
+    void note_closed(const VoxelKey& key) {
+      if (std::ranges::binary_search(needed, key)) closed.push_back(key);
+    }
     [[nodiscard]] bool is_lost() const { return activity == Activity::kLost; }
     [[nodiscard]] bool is_going() const { return activity != Activity::kRests && !is_lost(); }
   };
@@ -69,10 +75,13 @@ struct ContinuousExploration::State {
 
   void set_motion(std::size_t robot, Trajectory trajectory);
   void start_next_trajectories(double time);
+  [[nodiscard]] bool has_looked_from_end(const Member& member) const;
+  [[nodiscard]] bool has_looked(const Member& member, double time) const;
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);
   void note_scan(std::size_t robot, const MapChange& change);
   void note_solid(std::span<const VoxelKey> voxels);
+  void look_for_blocked(double time);
   void extend_trail(std::size_t robot, double until);
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
@@ -112,6 +121,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
                                  std::size_t other) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
+  [[nodiscard]] Keys voxels_on(std::size_t robot, const Trajectory& trajectory, double from) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
 };
 

@@ -78,6 +78,7 @@ struct ExplorationState {
   void count_frontiers(ExplorationStep& step) const;
   /// Leaves a robot the stop of its tour that it has for a goal.
   void keep_stop(std::size_t robot, ExplorationStep& step);
+  void set_targets(std::size_t robot);
   /// Shares the frontiers out in tours, and gives a robot the first stop of its tour for a goal.
   /// @param starts  of all robots, when the robot's trajectory begins
   void plan_tours(std::size_t robot, std::span<const MotionState> starts, ExplorationStep& step);

@@ -55,8 +55,19 @@ bool ExplorationState::find_path_to_stop(std::size_t robot, const VoxelKey& cell
   return selection->find_path(robot, cell, near_path);
 }
 
+// What the robot's yaws are chosen for: what is left, but not to others.
+void ExplorationState::set_targets(std::size_t robot) {
+  targets[robot].clear();
+  std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
+}
+
 void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   update_corridor(robot, step, extent_of_tours(robot));
+  {
+    const PhaseClock clock(step, Phase::kGoals);
+    wanted = abandoned.without_abandoned(frontiers.keys());
+    set_targets(robot);
+  }
   const VoxelKey& cell = step.robots[robot].goal.cell;
   if (find_path_to_stop(robot, cell, step)) return;
   const PhaseClock clock(step, Phase::kPaths);
@@ -114,8 +125,7 @@ void ExplorationState::plan_tours(std::size_t robot, std::span<const MotionState
   step.rays += counting.rays();
   const GoalOptions& rating = options.team[robot].options;
   const PhaseClock clock(step, Phase::kGoals);
-  targets[robot].clear();
-  std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
+  set_targets(robot);
   const Goal& goal = step.robots[robot].goal = first_stop(robot);
   std::vector<RenderedCell> candidates = tours->candidates(robot);
   for (RenderedCell& cell : candidates) cell.quality = rating.discount(cell.distance) * cell.gain;

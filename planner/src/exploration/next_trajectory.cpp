@@ -22,7 +22,9 @@ using Keys = std::vector<VoxelKey>;
 bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
                                                std::size_t other) const {
   const auto body = [&](std::size_t r) { return body_of(team.options.team[r].robot.travel); };
-  return detail::keeps_apart(trajectory, from, body(robot), members[other].motion, body(other), kSeparation);
+  const auto speed = [&](std::size_t r) { return team.options.team[r].robot.limits.speed; };
+  return detail::keeps_apart(trajectory, from, body(robot), members[other].motion, body(other), kSeparation,
+                             speed(robot) + speed(other));
 }
 
 bool ContinuousExploration::State::keeps_apart(std::size_t robot, const Trajectory& trajectory) const {
@@ -39,16 +41,18 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
   };
 }
 
-// What has to stay free for the rest of a trajectory. The path of a retreat need not be free for the body,
-// since the robot came on it, but may not be shut.
-Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+// The voxels in which a robot will be from a time [s] on. Of a retreat only those of the sensor: it need not
+// be free for the body, since the robot came on it, but may not be shut.
+Keys ContinuousExploration::State::voxels_on(std::size_t robot, const Trajectory& trajectory,
+                                             double since) const {
   constexpr double kStep = 0.05;  // [s]
   const BodyStencil stencil(team.travel_by_voxels(robot), team.lattice().resolution());
   const bool retreats = members[robot].activity == Activity::kRetreats;
   const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
   Keys cells;
-  Eigen::Vector3d from = trajectory.at(trajectory.begin()).pose.position;
-  for (double time = trajectory.begin(); time < trajectory.end(); time += kStep) {
+  const double begin = std::max(trajectory.begin(), since);
+  Eigen::Vector3d from = trajectory.at(begin).pose.position;
+  for (double time = begin; time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
     // Between its cells' middles a body touches voxels that are none of its own cell's.
     static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
@@ -62,12 +66,34 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
   Keys voxels;
   for (const VoxelKey& cell : cells) {
     static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
-      if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
+      voxels.push_back(key);
       return true;
     }));
   }
   sort_once(voxels);
   return voxels;
+}
+
+// What has to stay free for a trajectory.
+Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+  Keys voxels = voxels_on(robot, trajectory, trajectory.begin());
+  if (members[robot].activity != Activity::kRetreats)
+    std::erase_if(voxels,
+                  [&](const VoxelKey& key) { return team.mapping.grid().at(key) != Occupancy::kFree; });
+  return voxels;
+}
+
+// What has been closed behind a robot does not stop it.
+void ContinuousExploration::State::look_for_blocked(double time) {
+  for (std::size_t r = 0; r < members.size(); ++r) {
+    Member& member = members[r];
+    if (member.closed.empty()) continue;
+    const Keys ahead = voxels_on(r, member.motion.last(), time);
+    member.blocked = member.blocked || std::ranges::any_of(member.closed, [&](const VoxelKey& key) {
+                       return std::ranges::binary_search(ahead, key);
+                     });
+    member.closed.clear();
+  }
 }
 
 // Off another one's path, or back on the path on which it came, to the last place from which it can go on.

@@ -16,8 +16,9 @@ Eigen::AlignedBox3d positions_too_near(const Eigen::AlignedBox3d& body, const Ei
 }
 
 bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::AlignedBox3d& body,
-                 const RobotMotion& other, const Eigen::AlignedBox3d& other_body, double gap) {
-  constexpr double kStep = 0.01;      // [s] in which two robots hardly come nearer
+                 const RobotMotion& other, const Eigen::AlignedBox3d& other_body, double gap, double speeds) {
+  constexpr double kLeast = 0.002;    // [m] by which robots move before it is looked again,
+  constexpr double kShortest = 1e-4;  // [s] but no sooner
   constexpr double kRounding = 1e-9;  // [m] places that are just not too near are far enough
   const double end = std::max(trajectory.end(), other.rests_from());
   const auto gap_at = [&](double time) {
@@ -25,10 +26,16 @@ bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::Aligned
                        other_body.translated(other.at(time).pose.position));
   };
   const double least = std::min(gap, gap_at(from)) - kRounding;
-  const double steps = std::ceil((end - from) / kStep);
-  for (double i = 1.0; i <= steps; ++i)
-    if (gap_at(std::min(from + i * kStep, end)) < least) return false;
-  return true;
+  // No sooner than after so much of a way can they be too near.
+  const auto next = [&](double time, double now) {
+    return time + std::max(std::max(kLeast, now - least) / speeds, kShortest);
+  };
+  double time = from;
+  for (double now = gap_at(from); time < end; now = gap_at(time)) {
+    if (now < least) return false;
+    time = std::min(next(time, now), end);
+  }
+  return gap_at(std::max(from, end)) >= least;
 }
 
 }  // namespace frontlux::planner::detail

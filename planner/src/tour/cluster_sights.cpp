@@ -37,13 +37,14 @@ bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& 
   return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
-// A cell of each node around a cluster, or a few, that does not connect with the robot.
+// Of each node around a cluster a cell that the robot cannot get to, or a few: it may be a wall that is in
+// the way, or another robot.
 std::vector<VoxelKey> ClusterSights::cells_beyond(const Query& query, const FrontierCluster& cluster) {
   const TravelGraph& graph = query.view.graph;
   std::vector<VoxelKey> cells = graph.spread_cells(grown(cluster.box, query.view.region.reach()));
+  std::erase_if(cells, query.reaches);
   const auto node_of = [&](const VoxelKey& cell) { return graph.node(cell); };
   cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());
-  std::erase_if(cells, query.connects);
   return cells;
 }
 
@@ -61,7 +62,7 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
   sight.found_beyond =
       std::ranges::any_of(sight.found, [&](const ClusterViewpoint& v) { return !query.connects(v.cell); });
   sight.pause = std::max(0, sight.pause - 1);
-  if ((sight.stale && sight.faces_stale) || std::ranges::none_of(sight.beyond, query.connects)) return;
+  if ((sight.stale && sight.faces_stale) || std::ranges::none_of(sight.beyond, query.reaches)) return;
   sight.stale = sight.faces_stale = true;
   sight.beyond.clear();
 }

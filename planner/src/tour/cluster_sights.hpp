@@ -56,7 +56,7 @@ class ClusterSights {
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
     bool faces_stale = true;                   // since its faces were looked for
-    // A cell of each node from which it might be seen, and which did not connect with the robot then.
+    // A cell of each node from which it might be seen, and which the robot could not get to then.
     std::vector<VoxelKey> beyond;
     bool found_beyond = false;  // where it has no viewpoints: some of what is found does not connect
     int in_vain = 0;            // that often, in a row

@@ -76,6 +76,7 @@ void TourPlanning::lose(std::size_t robot) {
   member.changed = {};
   member.sights = {};
   member.tour.clear();
+  member.going_for.clear();
   member.frontiers.clear();
   member.first_view.clear();
 }
@@ -190,9 +191,7 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 // Those that some robot sees.
 std::vector<SeenCluster> TourPlanning::seen_clusters(std::span<const MotionState> starts) const {
   std::set<std::uint32_t> first;  // ids of those to which a robot is going
-  for (const Member& member : members_)
-    if (!member.tour.empty())
-      first.insert(member.tour.front().clusters.begin(), member.tour.front().clusters.end());
+  for (const Member& member : members_) first.insert(member.going_for.begin(), member.going_for.end());
   std::vector<SeenCluster> seen;
   const auto clusters = clusters_.clusters();
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
@@ -318,6 +317,7 @@ void TourPlanning::update_map(const Query& query) {
   };
   const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
   member.sights.update(sights(view));
+  member.stuck = can_move ? 0 : std::min(member.stuck + 1, kStuck);
   if (!can_move) return;
   // A flat patch of unknown floor may be all that keeps a robot from where it would see something.
   if (!nobody_sees_any() && !member.sights.sees_any() && member.sights.would_see_any())
@@ -325,7 +325,8 @@ void TourPlanning::update_map(const Query& query) {
   if (nobody_sees_any()) look_closer(query, sights);
 }
 
-// What is left of the tours before. Where another robot goes already, it goes: that stop is fixed.
+// What is left of the tours before. Where another robot goes already, it goes: all that it is to see from
+// there is fixed.
 Tours TourPlanning::tours_before(const Query& query, std::span<const StopClusters> stops,
                                  TourProblem& problem) const {
   std::map<std::uint32_t, std::uint32_t> stop_of;  // cluster
@@ -333,17 +334,23 @@ Tours TourPlanning::tours_before(const Query& query, std::span<const StopCluster
     for (const std::uint32_t cluster : stops[i]) stop_of[clusters_.clusters()[cluster].id] = i;
   Tours before(members_.size());
   std::vector<bool> taken(stops.size());
+  const auto take = [&](std::size_t r, std::span<const std::uint32_t> ids) {
+    for (const std::uint32_t id : ids) {
+      const auto place = stop_of.find(id);
+      if (place == stop_of.end() || taken[place->second] ||
+          problem.robots[r].first[place->second] == TourProblem::kNever)
+        continue;
+      taken[place->second] = true;
+      before[r].push_back(place->second);
+    }
+  };
+  for (std::size_t r = 0; r < members_.size(); ++r) {
+    if (r == query.robot) continue;
+    take(r, members_[r].going_for);
+    problem.robots[r].fixed = before[r].size();
+  }
   for (std::size_t r = 0; r < members_.size(); ++r)
-    for (const TourStop& stop : members_[r].tour)
-      for (const std::uint32_t cluster : stop.clusters) {
-        const auto place = stop_of.find(cluster);
-        if (place == stop_of.end() || taken[place->second] ||
-            problem.robots[r].first[place->second] == TourProblem::kNever)
-          continue;
-        taken[place->second] = true;
-        before[r].push_back(place->second);
-        if (r != query.robot && &stop == members_[r].tour.data()) ++problem.robots[r].fixed;
-      }
+    for (const TourStop& stop : members_[r].tour) take(r, stop.clusters);
   return before;
 }
 
@@ -433,6 +440,8 @@ void TourPlanning::update(const Query& query) {
   give_idle_robot_a_stop(all, query.robot, tours);
   set_tours(query, places, tours);
   join_next_stops(query);
+  Member& member = members_[query.robot];
+  member.going_for = member.tour.empty() ? std::vector<std::uint32_t>{} : member.tour.front().clusters;
   note_frontiers(query);
 }
 

@@ -127,10 +127,12 @@ class TourPlanning {
     GraphDistances distances;  // from where it is when its trajectory begins
     bool planned = false;      // before
     bool lost = false;
+    int stuck = 0;                       // its last plannings, in a row, in which it could get nowhere
     std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
-    std::vector<VoxelKey> frontiers = {};  // of the clusters in the tour
+    std::vector<std::uint32_t> going_for = {};  // ids of the clusters of its first stop, when it planned last
+    std::vector<VoxelKey> frontiers = {};       // of the clusters in the tour
     std::vector<VoxelKey> first_view = {};
   };
 
@@ -182,6 +184,8 @@ class TourPlanning {
                                        std::size_t b) const;
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
+
+  static constexpr int kStuck = 5;  // [plannings] after which it is not for a moment that a robot is stuck
 
   Lattice lattice_;
   Options options_;

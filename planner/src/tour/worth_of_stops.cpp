@@ -32,10 +32,11 @@ double TourPlanning::least_gain(std::size_t robot) const {
   return std::max(1.0, std::min({options_.least_gain, least_left_, most}));
 }
 
-// As far as they have planned.
+// As far as they have planned. A robot that can get nowhere for a moment sees what it saw before.
 bool TourPlanning::nobody_sees_any() const {
   return std::ranges::all_of(members_, [](const Member& member) {
-    return member.lost || (member.planned && !member.sights.sees_any());
+    const bool for_a_moment = member.stuck > 0 && member.stuck < kStuck;
+    return member.lost || (member.planned && !for_a_moment && !member.sights.sees_any());
   });
 }
 

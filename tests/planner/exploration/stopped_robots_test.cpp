@@ -100,6 +100,32 @@ TEST(StoppedRobots, PlansAnewIfSomethingTurnsUpWhereItsBodyWillBe) {
   EXPECT_GT(turned_up, 3);
 }
 
+// What turns up where a robot has been is not in its way.
+TEST(StoppedRobots, GoesOnIfSomethingTurnsUpBehindIt) {
+  int turned_up = 0;
+  for (double time = 2.0; time < 14.0; time += 0.8) {
+    TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GoalChoice::kTours);
+    std::optional<Trajectory> last;
+    scene.explore(time, [&](const PlannedMotion& now) { last = now.trajectory; });
+    ContinuousExploration& exploration = scene.exploration();
+    if (exploration.end()) break;
+    const Pose begin = last->at(last->begin()).pose;
+    const VoxelKey voxel = scene.grid().lattice().key(begin.position).value();
+    double now = std::max(scene.time(), last->begin());
+    const auto is_past = [&] { return (exploration.at(0, now).pose.position - begin.position).norm() > 1.2; };
+    while (now < last->end() - 0.5 && !is_past()) now += 0.05;
+    if (!is_past()) continue;
+    const Eigen::Vector3d from = begin.position + Eigen::Vector3d(0.0, 0.0, 1.0);
+    const Scan scan{from.cast<float>(), 10.0, {-Eigen::Vector3f::UnitZ()}, {1.0F}};
+    for (int hit = 0; hit < 10; ++hit) exploration.insert(0, exploration.at(0, now).pose, scan);
+    ASSERT_EQ(scene.grid().at(voxel), Occupancy::kOccupied);
+    const auto planned = exploration.plan(now);
+    EXPECT_TRUE(!planned || planned->reason != PlanReason::kBlocked) << time;
+    ++turned_up;
+  }
+  EXPECT_GT(turned_up, 3);
+}
+
 TEST(StoppedRobots, LeavesACellInWhichItWasStopped) {
   UnderWay team{TeamInMotion("room", {small_uav()})};
   auto& [scene, exploration, time, lattice, rests] = team;

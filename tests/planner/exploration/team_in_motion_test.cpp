@@ -85,7 +85,7 @@ TEST_P(TeamInMotionBy, DoesNotGoOnThroughARobotThatFails) {
   constexpr double kAhead = 1.4, kFar = 2.0;  // [s], [m]
   const Eigen::AlignedBox3d body = body_of(small_uav().robot.travel);
   std::size_t failures = 0;
-  const double step = test::long_mode() ? 0.4 : 0.8;  // [s]
+  const double step = test::long_mode() ? 0.4 : 0.7;  // [s]
   for (double time = 1.0; time < 9.0; time += step) {
     TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
     ContinuousExploration& exploration = scene.exploration();

@@ -81,7 +81,12 @@ TEST(Separation, IsThatOfManySamples) {
   int kept = 0, lost = 0, passed = 0;
   for (int i = 0; i < 900; ++i) {
     SCOPED_TRACE(i);
-    const auto limits = [&] { return MotionLimits{random.uniform(0.5, 2), random.uniform(1, 4), 1.0}; };
+    double fastest = 0.0;
+    const auto limits = [&] {
+      const MotionLimits drawn{random.uniform(0.5, 2), random.uniform(1, 4), 1.0};
+      fastest = std::max(fastest, drawn.speed);
+      return drawn;
+    };
     const auto point = [&] { return random.point(-2, 2); };
     const AlignedBox3d body = cube(random.uniform(0.2, 0.8)), other_body = cube(random.uniform(0.2, 0.8));
     const Trajectory mine = straight(point(), point(), random.uniform(0, 2), limits());
@@ -94,10 +99,10 @@ TEST(Separation, IsThatOfManySamples) {
     const double gap = least_gap(mine, body, other, other_body);
     const double first = detail::gap_between(body.translated(mine.at(mine.begin()).pose.position),
                                              other_body.translated(other.at(mine.begin()).pose.position));
-    const bool keeps = detail::keeps_apart(mine, mine.begin(), body, other, other_body, kGap);
+    const bool keeps = detail::keeps_apart(mine, mine.begin(), body, other, other_body, kGap, 2 * fastest);
     const double least = std::min(kGap, first);
-    // In half of a hundredth of a second they come nearer by no more than this.
-    if (std::abs(gap - least) < 0.02 && gap != first) continue;
+    // It is that to a millimetre, and between two of the many samples they come nearer by no more than two.
+    if (std::abs(gap - least) < 0.003 && gap != first) continue;
     EXPECT_EQ(keeps, gap >= least - 1e-9) << gap << " of " << least;
     (keeps ? kept : lost) += 1;
     passed += first < kGap && keeps ? 1 : 0;
@@ -113,8 +118,8 @@ TEST(Separation, PlacesThatAreJustFarEnoughAreFree) {
     const double at = (i + 0.5) * 0.3;
     const detail::RobotMotion other{Trajectory({{at, 0, 0}, 0.0}, 0.0)};
     const auto ends = [&](double x) { return straight({x - 1.0, 0, 0}, {x, 0, 0}, 0.0, {}); };
-    EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
-    EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), 0.0, cube(0.8), other, cube(0.8), 0.1)) << i;
+    EXPECT_TRUE(detail::keeps_apart(ends(at - 0.9), 0.0, cube(0.8), other, cube(0.8), 0.1, 2.0)) << i;
+    EXPECT_FALSE(detail::keeps_apart(ends(at - 0.8999), 0.0, cube(0.8), other, cube(0.8), 0.1, 2.0)) << i;
   }
 }
 
@@ -127,15 +132,15 @@ TEST(Separation, LooksAsFarAheadAsTheOtherMoves) {
     return detail::RobotMotion{Trajectory({{20, 0, 0}, 0.0}, 0.0),
                                Trajectory::through({way.front()}, 10.0, way, limits, kAllFree).value()};
   };
-  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
-  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.5), cube(0.5), 0.1));
+  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1, 2.0));
+  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), comes_to(1.5), cube(0.5), 0.1, 2.0));
   // One that rests does so for ever, whenever it was told: also where there are more steps than time.
   const auto rests_at = [](double x) { return detail::RobotMotion{Trajectory({{x, 0, 0}, 0.0}, 1e9)}; };
-  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.7), cube(0.5), 0.1));
-  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.5), cube(0.5), 0.1));
+  EXPECT_TRUE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.7), cube(0.5), 0.1, 2.0));
+  EXPECT_FALSE(detail::keeps_apart(mine, mine.begin(), cube(0.5), rests_at(1.5), cube(0.5), 0.1, 2.0));
   // What was before does not matter.
   const Trajectory later = straight({1.0, 0, 0}, {0, 0, 0}, 60.0, limits);
-  EXPECT_TRUE(detail::keeps_apart(later, later.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1));
+  EXPECT_TRUE(detail::keeps_apart(later, later.begin(), cube(0.5), comes_to(1.7), cube(0.5), 0.1, 2.0));
 }
 
 }  // namespace

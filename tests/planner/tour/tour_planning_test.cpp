@@ -226,6 +226,33 @@ TEST(TourPlanning, WithoutToursNobodyGoesWhereAnotherOneIsGoing) {
   }
 }
 
+// A robot goes to see several clusters from one place. Others that plan meanwhile, and are there already,
+// leave all of them to it.
+TEST(TourPlanning, LeavesToARobotWhatItGoesToSee) {
+  OpenSpace space;
+  const std::array<Pose, 2> poses{space.pose, space.pose};
+  TourPlanning both({space.robot, space.robot}, poses, space.grid.lattice(), kBounds, {});
+  std::array<MotionState, 2> starts;
+  for (MotionState& start : starts) start.pose = space.pose;
+  const auto plan = [&](std::size_t robot) {
+    TravelCorridor corridor(space.robot.travel, space.grid.lattice(), kBounds);
+    corridor.update({space.grid}, space.grid.lattice().key(starts.at(robot).pose.position).value());
+    both.update({robot, *space.caster, space.grid, corridor, space.frontiers.keys(), starts});
+  };
+  plan(0);
+  const TourStop stop = both.tour(0).front();
+  ASSERT_GT(stop.clusters.size(), 1U);
+  starts[1].pose = stop.pose;
+  for (int planning = 0; planning < 3; ++planning) {
+    plan(1);
+    std::set<std::uint32_t> kept;
+    for (const TourStop& next : both.tour(0).first(std::min(stop.clusters.size(), both.tour(0).size())))
+      kept.insert(next.clusters.begin(), next.clusters.end());
+    EXPECT_EQ(kept, std::set(stop.clusters.begin(), stop.clusters.end())) << planning;
+    EXPECT_FALSE(both.tour(1).empty());
+  }
+}
+
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.
 TEST(TourPlanning, GoesOnAfterTheRobotWasLost) {
   OpenSpace space;
@@ -308,7 +335,7 @@ struct ShutIn {
   std::vector<MotionState> starts = std::vector<MotionState>(2);
   std::optional<TourPlanning> planning;
 
-  explicit ShutIn(Occupancy end) {
+  explicit ShutIn(Occupancy end, const TourPlanning::Options& options = {}) {
     robots[0].travel.motion = Motion::kPlane;
     robots[0].travel.extents = {0.6, 0.6, 0.6};
     robots[0].travel.sensor_height = 0.7;
@@ -323,10 +350,11 @@ struct ShutIn {
       starts[r].pose.position = grid.lattice().exact_center(cells[r]);
       poses.push_back(starts[r].pose);
     }
-    planning.emplace(robots, poses, grid.lattice(), bounds, TourPlanning::Options{});
+    planning.emplace(robots, poses, grid.lattice(), bounds, options);
   }
-  void plan(std::size_t robot) {
+  void plan(std::size_t robot, std::span<const VoxelKey> blocked = {}) {
     TravelCorridor corridor(robots[robot].travel, grid.lattice(), bounds);
+    corridor.block(blocked);
     corridor.update({grid}, cells[robot]);
     const auto caster = make_grid_ray_caster(grid);
     const FrontierSet frontiers(grid, bounds);
@@ -356,6 +384,26 @@ TEST(TourPlanning, LeavesFlatPatchesThatKeepNobodyFromAnything) {
   ASSERT_FALSE(hall.planning->tour(1).empty());
   hall.plan(0);
   EXPECT_TRUE(hall.planning->tour(0).empty());
+}
+
+// One robot sees nothing, and another one can get nowhere: that smaller clusters are worth a stop from now on
+// is decided once it stays so.
+TEST(TourPlanning, AsksForNoLessWhileARobotIsStuckForAMoment) {
+  const TourPlanning::Options options{.least_gain = 30.0};
+  ShutIn hall(Occupancy::kOccupied, options);
+  test::fill(hall.grid,
+             {make_key(32798, 32757, ShutIn::kFloor + 12), make_key(32810, 32761, ShutIn::kFloor + 14)},
+             Occupancy::kUnknown);
+  hall.plan(1);
+  ASSERT_FALSE(hall.planning->tour(1).empty());
+  const double before = hall.planning->least_gain(0);
+  hall.plan(1, {&hall.cells[1], 1});
+  ASSERT_TRUE(hall.planning->tour(1).empty());
+  hall.plan(0);
+  EXPECT_EQ(hall.planning->least_gain(0), before);
+  for (int planning = 0; planning < 10; ++planning) hall.plan(1, {&hall.cells[1], 1});
+  hall.plan(0);
+  EXPECT_LT(hall.planning->least_gain(0), before);
 }
 
 }  // namespace
