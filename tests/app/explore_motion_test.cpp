@@ -269,6 +269,22 @@ TEST_F(ExploreMotion, RobotsFailAndDriftAndAreHeardLateAsAsked) {
 
 // After 28 s, when it had mapped a twelfth, this team once ended its run: two robots rested in the third
 // one's way.
+// Half of what the voxels around a body leave it to each side, so that no voxel more has to be free.
+TEST_F(ExploreMotion, TheTeamKeepsMarginsForWhichItsVoxelsHaveRoom) {
+  const auto margins = [&](const std::string& resolution, const std::vector<std::string>& more) {
+    const std::string name = "margins" + resolution + std::to_string(more.size());
+    expect_answer(joined({"room", "--resolution", resolution, "--report", "off", "-o", path(name)}, more));
+    std::vector<double> found;
+    for (const planner::RobotDescription& robot : read_recording(path(name + "/run.frontlux")).head.robots)
+      found.push_back(robot.robot.travel.margin);
+    return found;  // of the UGV, which comes first, and the UAV
+  };
+  const std::vector<std::string> short_run{"--stop-time", "0.5"};
+  EXPECT_EQ(margins("0.3", short_run), (std::vector<double>{0.05, 0.025}));
+  EXPECT_EQ(margins("0.2", short_run), (std::vector<double>{0.0, 0.05}));
+  EXPECT_EQ(margins("0.3", {"--lockstep", "--max-steps", "1"}), (std::vector<double>{0.0, 0.0}));
+}
+
 TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
   expect_answer({"maze", "--seed", "1", "--team", "3uav", "--latency", "0.25", "--stop-time", "45",
                  "--report", "off", "-o", path("run")});

@@ -3,11 +3,13 @@
 #include "bad_input.hpp"
 #include "text.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -40,6 +42,20 @@ void number_equal_names(std::span<RobotDescription> robots) {
   }
 }
 
+// [m] Half of what the voxels around a body leave it to its sides, so that no passage is closed by it: off
+// the middles of voxels a body comes near to surfaces in voxels that the map has as free.
+double margin_in_voxels(const planner::TravelOptions& travel, double resolution) {
+  constexpr double kMost = 0.05, kWhole = 0.001;  // [m]
+  const planner::BodyStencil stencil(travel, resolution);
+  double room = 4 * kMost;
+  for (const int axis : {0, 1, 2}) {
+    if (axis == 2 && travel.drives()) continue;
+    const auto a = static_cast<std::size_t>(axis);
+    room = std::min(room, (stencil.high()[a] - stencil.low()[a] + 1) * resolution - travel.extents[axis]);
+  }
+  return std::max(0.0, std::floor(room / 4 / kWhole + 1e-6) * kWhole);
+}
+
 // Those on the ground come first, since they choose first.
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
   std::vector<RobotDescription> robots;
@@ -48,13 +64,11 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   } catch (const BadInput& error) {
     throw BadInput(std::string("--team: ") + error.what());
   }
-  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground. They
-  // leave the middles of voxels: there a voxel that is taken for free may hold the edge of a surface.
-  constexpr double kMargin = 0.05;  // [m]
+  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground.
   if (!options.lockstep && method == Method::kDefault)
     for (RobotDescription& robot : robots) {
       planner::TravelOptions& travel = robot.robot.travel;
-      travel.margin = kMargin;
+      travel.margin = margin_in_voxels(travel, options.source.resolution);
       if (travel.motion == Motion::kSpace) travel.min_height = travel.extents.z() / 2;
     }
   for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);

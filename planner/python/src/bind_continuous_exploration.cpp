@@ -167,7 +167,7 @@ void bind_continuous_exploration(py::module_& module) {
       module, "ContinuousExploration",
       R"(Robots that explore without stops: scans go in when they are taken, trajectories come out.
 
-Nothing in here waits, reads a clock or starts a thread of its own. Each robot plans for itself: when it is about to arrive,
+Nothing in here waits, reads a clock or starts a thread of its own. Each robot plans for itself: when it has looked from its goal,
 when what it was going for has been mapped, when it is blocked, and at least every `period`. Robots know each other's plans.
 The same robots, scans and times give the same trajectories, on any number of cores.
 

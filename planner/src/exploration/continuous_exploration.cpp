@@ -89,6 +89,7 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   member.sensed.push_back(pose);
   if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) {
     member.last_look = pose;
+    state.stay_on_plane(robot, *member.last_look, member.motion.now.begin());
     member.looked = true;
   }
   return change;

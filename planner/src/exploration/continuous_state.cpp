@@ -83,17 +83,17 @@ bool ContinuousExploration::State::has_looked_from_end(const Member& member) con
          is_near(*member.last_look, end_of(member.motion.last()), team.lattice().resolution() / 2, kAligned);
 }
 
-// Whether a robot has taken a scan at its goal, or a few scans since it has arrived none of which is from
-// there. One that is told that it is a little beside its trajectory's end will not get nearer; scans may be
-// rare, or late.
+// Whether a robot has taken a scan at its goal, or rests and takes scans all of which are from beside it. One
+// that is told that it is a little beside its trajectory's end will not get nearer; scans may be rare, or
+// late.
 bool ContinuousExploration::State::has_looked(const Member& member, double time) const {
   constexpr double kNear = 0.01, kAligned = 0.01, kSoon = 0.5;  // [m], [rad], [s]
   constexpr int kMostMissed = 3;
   const Trajectory& trajectory = member.motion.last();
   if (!member.looked) return false;
   if (is_near(*member.last_look, end_of(trajectory), kNear, kAligned)) return true;
-  return time >= trajectory.end() + kSoon &&
-         (member.missed_looks >= kMostMissed || has_looked_from_end(member));
+  return member.missed_looks >= kMostMissed ||
+         (time >= trajectory.end() + kSoon && has_looked_from_end(member));
 }
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
@@ -235,9 +235,10 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
 
 // Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has
 // arrived these are also the ones for which it came: planning, between the middles of voxels, may see past an
-// edge that hides them from where it is. So are they if no scan comes from there.
+// edge that hides them from where it is. So are they if all scans come from beside it.
 void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
+  constexpr double kNear = 0.05, kAligned = 0.05;  // [m], [rad] of two scans of a robot at rest
   RobotStep& now = step.robots[robot];
   Member& member = members[robot];
   if (!std::exchange(member.looked, false)) return;
@@ -254,8 +255,10 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
   const Trajectory& last = member.motion.last();
   const bool goes_there = member.goal.pose && team.lattice().key(member.goal.pose->position) ==
                                                   team.lattice().key(end_of(last).position);
-  const bool waits = goes_there && reason != PlanReason::kArrival && step.time >= last.end();
-  member.missed_looks = waits ? member.missed_looks + 1 : 0;
+  const bool rests = member.look_before && is_near(pose, *member.look_before, kNear, kAligned);
+  member.look_before = pose;
+  const bool missed = goes_there && rests && reason != PlanReason::kArrival && step.time >= last.end();
+  member.missed_looks = missed ? member.missed_looks + 1 : 0;
   if (goes_there && reason == PlanReason::kArrival) {
     for (const VoxelKey& key : member.goal_frontiers)
       if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
@@ -330,7 +333,10 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     team.select_goals(step, robot);
   if (team.tours) team.note_assignment(step);
   team.count_frontiers(step);
-  if (!keeps) member.chosen = time;
+  if (!keeps) {
+    member.chosen = time;
+    member.missed_looks = 0;
+  }
 
   const bool rested = rests(member);
   member.others_rest = false;

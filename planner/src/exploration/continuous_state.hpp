@@ -3,6 +3,7 @@
 #include "exploration/exploration_state.hpp"
 #include "motion/separation.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/continuous_exploration.hpp>
 
 #include <algorithm>
@@ -54,7 +55,8 @@ struct ContinuousExploration::State {
     std::size_t samples = 0;        // of its trajectory that its trail has, or passes near by
     std::optional<Pose> last_look = {};    // where it took its last scan that shows something
     bool looked = false;                   // it has taken it since it planned last
-    int missed_looks = 0;                  // plannings in a row at its goal before it has looked from there
+    std::optional<Pose> look_before = {};  // the same at the planning before with such a scan
+    int missed_looks = 0;  // plannings in a row at its goal with scans from where it rests, beside that
     std::optional<Request> request = {};   // by another one, while it has no goal
     bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
     bool asks = true;                      // when it plans next without a goal: others to make room
@@ -121,7 +123,8 @@ struct ContinuousExploration::State {
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory, double from,
                                  std::size_t other) const;
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
-  [[nodiscard]] Keys voxels_on(std::size_t robot, const Trajectory& trajectory, double from) const;
+  [[nodiscard]] Keys cells_on(const BodyStencil& stencil, const Trajectory& trajectory, double since,
+                              bool retreats) const;
   [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
 };
 

@@ -6,7 +6,6 @@
 #include "mapping/sort_once.hpp"
 #include "motion/departure.hpp"
 
-#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
@@ -41,16 +40,15 @@ SegmentTest ContinuousExploration::State::segment_test(std::size_t robot) const 
   };
 }
 
-// The voxels in which a robot will be from a time [s] on. Of a retreat only those of the sensor: it need not
-// be free for the body, since the robot came on it, but may not be shut.
-Keys ContinuousExploration::State::voxels_on(std::size_t robot, const Trajectory& trajectory,
-                                             double since) const {
+// The cells through which a robot goes from a time [s] on; sorted. A retreat need not be free for the body,
+// since the robot came on it, but may not be shut.
+Keys ContinuousExploration::State::cells_on(const BodyStencil& stencil, const Trajectory& trajectory,
+                                            double since, bool retreats) const {
   constexpr double kStep = 0.05;  // [s]
-  const BodyStencil stencil(team.travel_by_voxels(robot), team.lattice().resolution());
-  const bool retreats = members[robot].activity == Activity::kRetreats;
   const Eigen::Vector3d reach = retreats ? Eigen::Vector3d::Zero() : stencil.reach();
   Keys cells;
-  const double begin = std::max(trajectory.begin(), since);
+  // Where it has arrived it is still in the last one.
+  const double begin = std::max(trajectory.begin(), std::min(since, trajectory.end() - kStep));
   Eigen::Vector3d from = trajectory.at(begin).pose.position;
   for (double time = begin; time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
@@ -62,11 +60,19 @@ Keys ContinuousExploration::State::voxels_on(std::size_t robot, const Trajectory
     from = to;
   }
   sort_once(cells);
+  return cells;
+}
+
+// What has to stay free for a trajectory.
+Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+  const BodyStencil stencil(team.travel_by_voxels(robot), team.lattice().resolution());
+  const bool retreats = members[robot].activity == Activity::kRetreats;
+  Keys cells = cells_on(stencil, trajectory, trajectory.begin(), retreats);
   if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
   Keys voxels;
   for (const VoxelKey& cell : cells) {
     static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
-      voxels.push_back(key);
+      if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
       return true;
     }));
   }
@@ -74,25 +80,19 @@ Keys ContinuousExploration::State::voxels_on(std::size_t robot, const Trajectory
   return voxels;
 }
 
-// What has to stay free for a trajectory.
-Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
-  Keys voxels = voxels_on(robot, trajectory, trajectory.begin());
-  if (members[robot].activity != Activity::kRetreats)
-    std::erase_if(voxels,
-                  [&](const VoxelKey& key) { return team.mapping.grid().at(key) != Occupancy::kFree; });
-  return voxels;
-}
-
 // What has been closed behind a robot does not stop it.
 void ContinuousExploration::State::look_for_blocked(double time) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
-    if (member.closed.empty()) continue;
-    const Keys ahead = voxels_on(r, member.motion.last(), time);
-    member.blocked = member.blocked || std::ranges::any_of(member.closed, [&](const VoxelKey& key) {
-                       return std::ranges::binary_search(ahead, key);
-                     });
-    member.closed.clear();
+    const Keys closed = std::exchange(member.closed, {});
+    if (closed.empty() || member.blocked) continue;
+    const BodyStencil stencil(team.travel_by_voxels(r), team.lattice().resolution());
+    const bool retreats = member.activity == Activity::kRetreats;
+    const auto needs = [&](const VoxelKey& cell) {
+      return std::ranges::any_of(
+          closed, [&](const VoxelKey& key) { return retreats ? cell == key : stencil.contains(cell, key); });
+    };
+    member.blocked = std::ranges::any_of(cells_on(stencil, member.motion.last(), time, retreats), needs);
   }
 }
 

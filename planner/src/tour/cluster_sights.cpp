@@ -3,6 +3,7 @@
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -37,15 +38,16 @@ bool ClusterSights::needs_a_look(const Changes& changes, const FrontierCluster& 
   return changes.meet(is_seen ? *sight.depend_on : grown(cluster.box, changes.reach));
 }
 
-// Of each node around a cluster a cell that the robot cannot get to, or a few: it may be a wall that is in
-// the way, or another robot.
-std::vector<VoxelKey> ClusterSights::cells_beyond(const Query& query, const FrontierCluster& cluster) {
+// Of each node around a cluster a cell that the robot cannot get to, or a few.
+void ClusterSights::note_unreached(const Query& query, const FrontierCluster& cluster, Sight& sight) {
   const TravelGraph& graph = query.view.graph;
   std::vector<VoxelKey> cells = graph.spread_cells(grown(cluster.box, query.view.region.reach()));
   std::erase_if(cells, query.reaches);
   const auto node_of = [&](const VoxelKey& cell) { return graph.node(cell); };
   cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());
-  return cells;
+  const auto connected = std::ranges::partition(cells, std::not_fn(query.connects));
+  sight.behind_others.assign(connected.begin(), connected.end());
+  sight.beyond.assign(cells.begin(), connected.begin());
 }
 
 // Of the viewpoints that were found those that the robot can get to.
@@ -62,9 +64,14 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
   sight.found_beyond =
       std::ranges::any_of(sight.found, [&](const ClusterViewpoint& v) { return !query.connects(v.cell); });
   sight.pause = std::max(0, sight.pause - 1);
-  if ((sight.stale && sight.faces_stale) || std::ranges::none_of(sight.beyond, query.reaches)) return;
+  if (sight.stale && sight.faces_stale) return;
+  // Others open something whenever they move: it is not looked again each time.
+  if (std::ranges::none_of(sight.beyond, query.connects) &&
+      (sight.pause > 0 || std::ranges::none_of(sight.behind_others, query.reaches)))
+    return;
   sight.stale = sight.faces_stale = true;
   sight.beyond.clear();
+  sight.behind_others.clear();
 }
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
@@ -104,7 +111,7 @@ void ClusterSights::look_from_anywhere(const Query& query, std::span<const Hidde
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
     sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kMiddle, query.reaches);
-    sight->beyond = cells_beyond(query, *cluster);
+    note_unreached(query, *cluster, *sight);
     sight->found.insert(sight->found.end(), sight->viewpoints.begin(), sight->viewpoints.end());
     sight->depend_on.reset();
     sight->stale = false;
@@ -130,7 +137,7 @@ void ClusterSights::look_at_faces(const Query& query) {
   for_each_index(hidden.size(), [&](std::size_t i) {
     const auto& [cluster, sight] = hidden[i];
     sight->viewpoints = viewpoints_anywhere(query.view, *cluster, Aim::kFace, query.reaches);
-    sight->beyond = cells_beyond(query, *cluster);
+    note_unreached(query, *cluster, *sight);
     sight->faces_stale = false;
     if (sight->viewpoints.empty()) return;
     sight->found = sight->viewpoints;

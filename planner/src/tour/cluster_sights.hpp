@@ -56,8 +56,9 @@ class ClusterSights {
     std::vector<ClusterViewpoint> viewpoints;  // those that it can get to
     bool stale = false;                        // since it was looked for all over the graph
     bool faces_stale = true;                   // since its faces were looked for
-    // A cell of each node from which it might be seen, and which the robot could not get to then.
-    std::vector<VoxelKey> beyond;
+    // A cell of each node from which it might be seen, and which did not connect with the robot then, or was
+    // kept closed by other robots.
+    std::vector<VoxelKey> beyond, behind_others;
     bool found_beyond = false;  // where it has no viewpoints: some of what is found does not connect
     int in_vain = 0;            // that often, in a row
     int pause = 0;              // plannings until the next time
@@ -65,7 +66,7 @@ class ClusterSights {
   using Hidden = std::pair<const FrontierCluster*, Sight*>;
 
   struct Changes;
-  [[nodiscard]] static std::vector<VoxelKey> cells_beyond(const Query& query, const FrontierCluster& cluster);
+  static void note_unreached(const Query& query, const FrontierCluster& cluster, Sight& sight);
   [[nodiscard]] static bool needs_a_look(const Changes& changes, const FrontierCluster& cluster,
                                          const Sight& sight);
   [[nodiscard]] std::vector<Hidden> look_from_usual_places(const Query& query);

@@ -317,7 +317,8 @@ void TourPlanning::update_map(const Query& query) {
   };
   const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
   member.sights.update(sights(view));
-  member.stuck = can_move ? 0 : std::min(member.stuck + 1, kStuck);
+  member.sees_some = can_move ? member.sights.sees_any() : member.sees_some && !member.stuck;
+  member.stuck = !can_move;
   if (!can_move) return;
   // A flat patch of unknown floor may be all that keeps a robot from where it would see something.
   if (!nobody_sees_any() && !member.sights.sees_any() && member.sights.would_see_any())

@@ -127,7 +127,8 @@ class TourPlanning {
     GraphDistances distances;  // from where it is when its trajectory begins
     bool planned = false;      // before
     bool lost = false;
-    int stuck = 0;                       // its last plannings, in a row, in which it could get nowhere
+    bool stuck = false;      // it could get nowhere, when it planned last
+    bool sees_some = false;  // clusters: when it planned last, or before if it has been stuck only since then
     std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
@@ -184,8 +185,6 @@ class TourPlanning {
                                        std::size_t b) const;
   [[nodiscard]] double seconds_to(const Robot& robot, const MotionState& start,
                                   const ClusterViewpoint& viewpoint, double distance) const;
-
-  static constexpr int kStuck = 5;  // [plannings] after which it is not for a moment that a robot is stuck
 
   Lattice lattice_;
   Options options_;

@@ -32,11 +32,11 @@ double TourPlanning::least_gain(std::size_t robot) const {
   return std::max(1.0, std::min({options_.least_gain, least_left_, most}));
 }
 
-// As far as they have planned. A robot that can get nowhere for a moment sees what it saw before.
+// As far as they have planned. For one planning a robot that can get nowhere counts as seeing what it saw
+// before.
 bool TourPlanning::nobody_sees_any() const {
   return std::ranges::all_of(members_, [](const Member& member) {
-    const bool for_a_moment = member.stuck > 0 && member.stuck < kStuck;
-    return member.lost || (member.planned && !for_a_moment && !member.sights.sees_any());
+    return member.lost || (member.planned && !member.sees_some && !member.sights.sees_any());
   });
 }
 

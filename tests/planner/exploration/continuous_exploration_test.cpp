@@ -295,9 +295,11 @@ Scan empty_scan(const Pose& pose) { return scan_with(pose, std::numeric_limits<f
 // Planning takes for visible what the camera, which looks the other way, does not see. Also if the robot
 // comes to rest beside the middle of the voxel, and so in another one, where its trajectory ends.
 TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
-  for (const double off : {0.0, 0.2}) {
+  for (const auto& [off, period] : {std::pair{0.0, 1.0}, {0.2, 1.0}, {0.2, 0.5}}) {
     const TeamInWorld team("room", 1, {small_uav()});
-    ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+    ExplorationOptions options = TeamInMotion::options(team, GetParam());
+    options.period = period;
+    ContinuousExploration exploration(options, team.empty_map());
     exploration.begin(team.starts, 0.0);
     for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
       Pose pose = exploration.at(0, time).pose;
@@ -307,7 +309,7 @@ TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
       while (exploration.plan(time)) {
       }
     }
-    EXPECT_TRUE(exploration.end()) << off;
+    EXPECT_TRUE(exploration.end()) << off << ' ' << period;
   }
 }
 

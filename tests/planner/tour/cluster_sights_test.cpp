@@ -41,8 +41,10 @@ struct Scene {
   ClusterSights sights;
   bool is_shut_in = false, is_in_the_way = false;  // whatever the map says; another robot
   const std::function<bool(const VoxelKey&)> connects = [this](const VoxelKey& cell) {
+    ++asked_if_connected;
     return !is_shut_in && corridor.contains(cell);
   };
+  std::atomic<int> asked_if_connected = 0;
   std::atomic<int> asked = 0;  // whether the robot gets to a cell
   const std::function<bool(const VoxelKey&)> reaches = [this](const VoxelKey& cell) {
     ++asked;
@@ -170,7 +172,9 @@ TEST(ClusterSights, FindsWhatTheRobotGetsToLater) {
     };
     EXPECT_FALSE(look());
     closed = false;
-    EXPECT_TRUE(look()) << faces << another;
+    int looks = 1;
+    while (!look() && looks < 20) ++looks;
+    EXPECT_LE(looks, another ? 9 : 1) << faces;
     EXPECT_TRUE(look()) << "they stay";
   }
 }
@@ -193,7 +197,7 @@ TEST(ClusterSights, TellWhatTheRobotWouldSee) {
   EXPECT_FALSE(scene.sights.would_see_any()) << "another robot does not shut it in";
 }
 
-// It is asked for each part of the graph's cubes whether it gets there now, not for each cell.
+// It is asked for each part of the graph's cubes whether it connects now, not for each cell.
 TEST(ClusterSights, CostLittleOfARobotThatIsShutIn) {
   Scene scene;
   scene.is_shut_in = true;
@@ -201,10 +205,11 @@ TEST(ClusterSights, CostLittleOfARobotThatIsShutIn) {
   for (std::uint32_t i = 0; i < 10; ++i)
     clusters.push_back(cluster_of(i + 1, at(30, static_cast<int>(i), 8)));
   for (int planning = 0; planning < 3; ++planning) scene.look(clusters, {});
-  scene.asked = 0;
+  scene.asked = scene.asked_if_connected = 0;
   scene.look(clusters, {});
-  EXPECT_GT(scene.asked, 0);
-  EXPECT_LE(scene.asked, 10 * static_cast<int>(2 * scene.graph.size()));
+  EXPECT_EQ(scene.asked, 0);
+  EXPECT_GT(scene.asked_if_connected, 0);
+  EXPECT_LE(scene.asked_if_connected, 10 * static_cast<int>(2 * scene.graph.size()));
 }
 
 // The layer under the room, of which the camera sees no middle.

@@ -15,7 +15,7 @@ namespace frontlux::planner {
 /// Why a robot plans.
 enum class PlanReason : std::uint8_t {
   kStart,     ///< it has no trajectory yet
-  kArrival,   ///< its trajectory is about to end
+  kArrival,   ///< it has looked from its goal, or its trajectory is about to end and it has nothing to see there
   kGoalSeen,  ///< most of what it was going for is mapped
   kBlocked,   ///< its trajectory leads through what is no longer known to be free, or where another robot
               ///< has stopped
@@ -42,7 +42,7 @@ struct PlannedMotion {
 
 /// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.
 /// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
-/// thread. Each robot plans for itself: when it is about to arrive, when what it was going for has been
+/// thread. Each robot plans for itself: when it has looked from its goal, when what it was going for has been
 /// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period`. It knows the
 /// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
 /// others for all time to come. If there is none such, the robot keeps the one it has; it brakes if something
@@ -105,8 +105,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   [[nodiscard]] MotionState at(std::size_t robot, double time) const;
 
   /// Why the exploration is over; nothing while it goes on. A robot has nothing to do if it has found no goal
-  /// and has rested for one and a half periods, in which what closed its way for a moment is seen to be free;
-  /// if it has waited for others more than ten times in a row; or if it is lost. Of low gain is an
+  /// and has rested for one and a half periods, in which what closed its way for a moment is seen to be free,
+  /// or for ten as long as no scan has come from where it rests; if it has waited for others more than ten times in a row; or if it is lost. Of low gain is an
   /// exploration without tours in which each robot has chosen a goal of low gain, or found none,
   /// `low_gain_steps` times in a row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
