@@ -63,7 +63,7 @@ Peer make_nanovdb_peer(const VoxelGrid& grid) {
       for (std::size_t i = begin; i != end; ++i) answers[i] = visible(segments[i], accessor) ? 1 : 0;
     });
   };
-  return {{"nanovdb", seconds, static_cast<double>(handle->size())}, query};
+  return {{"nanovdb", seconds, 0.0, static_cast<std::size_t>(handle->size())}, query};
 }
 
 }  // namespace frontlux::bench

@@ -135,7 +135,7 @@ void print_table(const Session& session, const std::vector<int>& threads, const 
 voxels: entered per ray. hits: visible, or stopped by an occupied voxel. times castRay: ratio of the medians on most
 threads. agrees: with castRay bit for bit, or between voxel keys with the integer rule. pays off: number of rays after
 which building and casting together is faster than castRay. The lines of the maps have build times and memory, from the
-octree to the caster, the grid included.
+octree to the caster, the grid included; of fast without Embree's scene, and of peers without the grid.
 )";
   timed.print_cautions(std::cout);
 }

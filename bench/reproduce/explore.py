@@ -13,6 +13,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import NamedTuple
 
+KILLED = (-signal.SIGKILL, -signal.SIGTERM, 128 + signal.SIGINT)  # by its machine, as for want of memory: no crash
 LONGEST = 3600  # [s] of the machine's time, after which a run counts as hanging
 # Of run.json: what is the same on every machine, and what is not.
 FACTS = ("version", "end", "steps", "coverage_observable", "coverage_box", "unseen", "time_s", "auc", "explored_m3",
@@ -39,9 +40,12 @@ class Program(NamedTuple):
 
 
 def program_of(command):
-    """The version that `frontlux --version` prints, and the hash of its file."""
+    """The version that `frontlux --version` prints, and the hash of its file. Raises OSError."""
     file = find_program(command)
-    said = subprocess.run([file, "--version"], capture_output=True, text=True, timeout=60, check=True)
+    try:
+        said = subprocess.run([file, "--version"], capture_output=True, text=True, timeout=60, check=True)
+    except subprocess.SubprocessError as error:
+        raise OSError(f"{file} on {socket.gethostname()} does not run: {error}") from error
     return Program(said.stdout.split(",")[0].strip().removeprefix("frontlux "),
                    hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12])
 
@@ -125,7 +129,7 @@ def explore(command, program, task, world, threads=1, folder=None):
 
 
 def run_in(folder, program, task, threads):
-    """explore() with its files in this folder."""
+    """explore() with its files in this folder. Raises OSError if its machine ends it."""
     file, run, log = folder / "task.json", folder / "run", folder / "log"
     file.write_text(json.dumps(task), encoding="utf-8")
     arguments = [program, "explore", "--task", str(file), "--threads", str(threads), "--report", "off", "--quiet",
@@ -143,6 +147,8 @@ def run_in(folder, program, task, threads):
         finally:
             process.kill()
             process.wait()
+    if code in KILLED:
+        raise OSError(f"{socket.gethostname()} has ended the run")
     if code != 0:
         said = last_line(log.read_text(encoding="utf-8", errors="replace"))
         ended = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"

@@ -215,7 +215,9 @@ def main():
             raise ValueError(f"--like: no run in {options.runs} is of program {', '.join(sorted(unknown))}; there are " +
                              (", ".join(sorted(there)) or "none"))
         lost, program = 0, None
-        if not options.tables_only:
+        if options.tables_only:  # what others are like
+            program = program_of(options.command).sha256 if options.like else None
+        else:
             for file in absent:
                 say(f"left out: {file} is in none of the folders given by --worlds")
             lost, program = execute(experiments, runs, options)

@@ -119,8 +119,9 @@ def programs_in(folder):
 
 
 def same_everywhere(result):
-    """What does not depend on the machine, nor on what the run is called."""
-    return {key: result.get(key) for key in ("failure", "facts", "gains", "curve")}
+    """What does not depend on the machine, nor on what the run and its program are called."""
+    facts = {key: value for key, value in result.get("facts", {}).items() if key != "version"}
+    return {"facts": facts, **{key: result.get(key) for key in ("failure", "gains", "curve")}}
 
 
 def unlike(folder, other):
@@ -136,7 +137,8 @@ def unlike(folder, other):
         except (OSError, ValueError) as error:
             lines.append(str(error))
             continue
-        parts = [key for key in sorted({*one, *two} - {"measured"}) if one.get(key) != two.get(key)]
+        one, two = ({"task": result["task"], **same_everywhere(result)} for result in (one, two))
+        parts = [key for key in sorted(one) if one[key] != two[key]]
         if parts:
             lines.append(f"{name}: not the same {', '.join(parts)}")
     return len(names), lines

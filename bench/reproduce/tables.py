@@ -84,8 +84,10 @@ def unseen_table(results, tasks):
                  rows_of(results, tasks, lambda runs, done: [parts(done, lambda r: r.coverage), why_unseen(done)]), texts=2)
 
 
-def failed_of(results, tasks, *methods):
-    return " / ".join(str(sum(len(results.failed(task, m)) for task in tasks)) for m in methods)
+def failed_of(results, tasks, method, other):
+    """Of the pairs, by method."""
+    pairs = [pair for task in tasks for pair in results.pairs(task, method, other)]
+    return " / ".join(str(sum(bool(pair[i].failure) for pair in pairs)) for i in (0, 1))
 
 
 def pairs_table(results, first="tour"):
