@@ -60,6 +60,7 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
     for (const planner::ExplorationStart& start : setup_.head.starts)
       count({exploration_.mapping().grid(), start.known_free}, mapped);
     note_numbers(mapped);
+    note_end();  // with a limit of no plannings
     return first;
   }
   std::optional<Stopwatch> waiting;  // since somebody wants the run to stop
@@ -97,6 +98,7 @@ bool ContinuousLoop::lose_robots() {
   for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
     if (!setup_.failures[r] || *setup_.failures[r] > time_ || numbers_.robots[r].failed) continue;
     exploration_.lose(r, robots_.believed(r), time_);
+    robots_.fail(r);
     numbers_.robots[r].failed = time_;
     any = true;
   }

@@ -179,7 +179,10 @@ class PlyReader {
     }
   }
 
-  static void add_fan(const std::vector<std::uint64_t>& polygon, RawMesh& mesh) {
+  void add_fan(const std::vector<std::uint64_t>& polygon, RawMesh& mesh) const {
+    constexpr std::size_t kMost = std::size_t{1} << 28U;
+    if (mesh.triangles.size() + polygon.size() > kMost)
+      fail_here("holds more than " + std::to_string(kMost) + " triangles", "simplify the mesh");
     for (std::size_t i = 2; i < polygon.size(); ++i)
       mesh.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
   }

@@ -375,6 +375,53 @@ TEST(MovingRobots, DriftByAPartOfTheirWayUntilTheyKnowTheirPlace) {
   }
 }
 
+// A robot learns that it is not in the wall that it believed to fly into, and a bumper keeps it from going
+// there.
+TEST(MovingRobots, ThatAreHeldOnTheWayBackToTheirTrajectoryGoOn) {
+  constexpr double kFix = 4.0;
+  const BoxRoom room;
+  const Vector3d middle(3, 3, 1.5);
+  int held = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Moving scene(room, {small(planner::uav_description(), 5.0)}, {{middle, 0.0}}, AtContact::kStay, {}, seed,
+                 {0.3, kFix});
+    std::optional<std::pair<double, Vector3d>> back;  // from when, and from where
+    const auto where = [&](std::size_t, double time) {
+      if (back) return at(on_the_way(back->second, middle, time - back->first));
+      return at({3 - 0.675 * std::min(time, kFix), 3, 1.5});
+    };
+    scene.go_on(kFix, where);
+    if (!scene.stopped.empty()) continue;  // it has drifted towards the wall
+    std::size_t stops = 0;
+    for (double time = kFix; time < 12.0; time += 0.2) {
+      scene.go_on(time, where);
+      if (scene.stopped.empty()) continue;
+      ++stops;
+      back = {scene.stopped.back().time, scene.stopped.back().pose.position};
+      scene.stopped.clear();
+    }
+    if (stops == 0) continue;
+    ++held;
+    EXPECT_LE(stops, 3U) << seed;
+    EXPECT_NEAR((scene.robots.believed(0).position - middle).norm(), 0.0, 1e-9) << seed;
+  }
+  EXPECT_GT(held, 5);
+}
+
+TEST(MovingRobots, ThatHaveFailedStay) {
+  const BoxRoom room;
+  Moving scene(room, {small(planner::uav_description(), 5.0)}, {{Vector3d(2, 2, 1.5), 0.0}}, AtContact::kGoOn,
+               {}, 1, {0.2, 2.0});
+  const auto where = [&](std::size_t, double time) { return at({2, 2 + 0.5 * time, 1.5}); };
+  scene.go_on(1.9, where);
+  const Pose rests = scene.robots.believed(0);
+  scene.robots.fail(0);
+  const double length = scene.record().length;
+  scene.go_on(5.0, where);
+  EXPECT_EQ(scene.record().length, length);
+  EXPECT_EQ(scene.robots.believed(0).position, rests.position);
+}
+
 TEST(MovingRobots, ThatDriveStayOnTheirFloorWhateverTheirErrors) {
   const BoxRoom room;
   for (const planner::Motion motion : {planner::Motion::kPlane, planner::Motion::kGround}) {

@@ -133,7 +133,7 @@ constexpr const char* kNoMemory = "takes more memory to import than ";
 }  // namespace
 
 void limit_import(std::uint64_t bytes) {
-  const std::uint64_t already = address_space();
+  static const std::uint64_t already = address_space();  // before the first file
   if (kLimitsAddresses && already > 0) set_limit(RLIMIT_AS, already + kFewBytes + kBytesOfMemory * bytes);
   set_limit(RLIMIT_CPU, kFewSeconds + bytes / kBytesInSecond);
 }

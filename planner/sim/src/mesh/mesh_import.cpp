@@ -21,6 +21,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -64,7 +65,8 @@ class MeshFolder : public Assimp::IOSystem {
       refused_ = ", which names " + quote(file) + ", and that " + reason;
       return nullptr;
     }
-    bytes_ += std::filesystem::file_size(file);
+    // Once each: what names itself again and again gets no more time by that.
+    if (opened_.insert(std::filesystem::canonical(file)).second) bytes_ += std::filesystem::file_size(file);
     limit_import(bytes_);
     const std::string bytes = read_file(file);
     auto* const copy = new std::uint8_t[bytes.size() + 1];
@@ -88,6 +90,7 @@ class MeshFolder : public Assimp::IOSystem {
 
   std::filesystem::path file_, folder_;
   std::string refused_;
+  std::set<std::filesystem::path> opened_;
   std::uint64_t bytes_ = 0;
 };
 

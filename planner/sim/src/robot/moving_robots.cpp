@@ -63,9 +63,10 @@ MovingRobots::MovingRobots(const World& world, const GroundTruth& truth,
   if (starts.size() != robots_.size())
     refuse(std::to_string(starts.size()) + " starts for " + std::to_string(robots_.size()) + " robots");
   for (std::size_t r = 0; r < robots_.size(); ++r) {
-    if (!(std::isfinite(robots_[r].rate) && robots_[r].rate > 0.0))
+    constexpr double kLeastRate = 0.01;  // [Hz]
+    if (!(std::isfinite(robots_[r].rate) && robots_[r].rate >= kLeastRate))
       refuse("robot '" + robots_[r].robot.name + "' takes " + std::to_string(robots_[r].rate) +
-             " scans a second, but it has to be a positive number");
+             " scans a second, but it has to be a number of at least 0.01");
     sensors_.push_back(sensor_of(robots_[r], errors));
     progress_.push_back({.pose = starts[r], .believed = starts[r], .path = PathRevisits(starts[r].position)});
     draw_direction(r);
@@ -107,7 +108,7 @@ void MovingRobots::draw_phases(std::size_t robot) {
 // How far a robot is from where it believes to be [m]. What it has learnt of is gone after a second.
 Eigen::Vector3d MovingRobots::error(std::size_t robot, double time) const {
   const Progress& now = progress_[robot];
-  const double since = time - static_cast<double>(now.fixes) * pose_errors_.fix_every;
+  const double since = time - now.fixed_at;
   return pose_errors_.drift * now.since_fix * now.direction + std::max(0.0, 1.0 - since) * now.known_error;
 }
 
@@ -133,10 +134,13 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   Progress& now = progress_[robot];
   MotionRecord& record = records_[robot];
   const double seconds = time - time_;
-  if (pose_errors_.fix_every > 0.0 && time >= static_cast<double>(now.fixes + 1) * pose_errors_.fix_every) {
+  const double every = pose_errors_.fix_every;
+  if (every > 0.0 && time >= static_cast<double>(now.fixes + 1) * every) {
     now.known_error = error(robot, time);
     now.since_fix = 0.0;
-    ++now.fixes;
+    // Of several that were due while it was held back it learns of the last one, and now.
+    now.fixes = std::max(now.fixes + 1, static_cast<std::uint64_t>(time / every));
+    now.fixed_at = std::max(static_cast<double>(now.fixes) * every, time_);
     draw_direction(robot);
   }
   const Pose believed = swayed(robot, to, time);
@@ -148,11 +152,17 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   const bool contact = !motion.isZero(0.0) && solids_.count(swept) > 0;
   if (contact && at_contact_ == AtContact::kStay) {
     now.since_fix -= step;
+    Eigen::Vector3d ahead = believed.position - now.believed.position;
+    if (!now.known_error.isZero(0.0)) {  // it does not get back to where it believed to be, and knows it
+      now.believed.position = now.pose.position - pose_errors_.drift * now.since_fix * now.direction;
+      now.known_error.setZero();
+      ahead = motion;
+    }
     ++record.held_back;
     record.idle += seconds;
     now.halted = true;
-    stopped.push_back({robot, time_, now.believed,
-                       cells_ahead(truth_->lattice(), now.believed.position, believed.position)});
+    const Eigen::Vector3d& here = now.believed.position;
+    stopped.push_back({robot, time_, now.believed, cells_ahead(truth_->lattice(), here, here + ahead)});
     return;
   }
   if (contact && !now.touching) record.contacts.push_back({time, swept.bounds()});
@@ -204,12 +214,12 @@ void MovingRobots::measure_separation() {
 MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopped>& stopped) {
   const double next = next_time();
   const double begin = time_;
-  const int ticks = static_cast<int>(std::ceil((next - begin) / kTick));
+  const auto ticks = static_cast<std::int64_t>(std::ceil((next - begin) / kTick));
   for (Progress& robot : progress_) robot.halted = false;
-  for (int i = 1; i <= ticks; ++i) {
-    const double time = begin + (next - begin) * i / ticks;
+  for (std::int64_t i = 1; i <= ticks; ++i) {
+    const double time = begin + (next - begin) * static_cast<double>(i) / static_cast<double>(ticks);
     for (std::size_t r = 0; r < robots_.size(); ++r)
-      if (progress_[r].halted)
+      if (progress_[r].halted || progress_[r].failed)
         records_[r].idle += time - time_;
       else
         move(r, where(r, time), time, stopped);

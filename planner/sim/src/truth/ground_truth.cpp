@@ -90,18 +90,23 @@ KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) 
   return {make_key(low[0], low[1], low[2]), make_key(high[0], high[1], high[2])};
 }
 
+void GroundTruth::check_size() const {
+  if (bounding_voxels() > kMostVoxels)
+    refuse("the world has ", bounding_voxels(), " voxels of ", lattice_.resolution(),
+           " m within its bounds, but 2^31 is the limit; use larger voxels or scale the world down");
+}
+
 GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vector3d& start)
     : lattice_(resolution), bounds_(voxels_within(world.bounds, lattice_)) {
   check(world.mesh);
-  if (bounding_voxels() > kMostVoxels)
-    refuse("the world has ", bounding_voxels(), " voxels of ", resolution,
-           " m within its bounds, but 2^31 is the limit; use larger voxels or scale the world down");
+  check_size();
   const auto first = lattice_.key(start);
   if (!first || !bounds_.contains(*first))
     refuse("the start (", start.transpose(), ") m lies outside of the world's bounds, (",
            world.bounds.min().transpose(), ") to (", world.bounds.max().transpose(), ") m");
 
   const KeyBox inside = std::exchange(bounds_, with_voxels_behind(bounds_, world, lattice_));
+  check_size();
   const CellFrame frame = make_frame(bounds_, lattice_);
   cells_.resize(bounding_voxels());
   paint(world.mesh, frame, cells_);

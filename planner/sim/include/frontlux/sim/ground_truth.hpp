@@ -70,6 +70,7 @@ class GroundTruth {
 
  private:
   [[nodiscard]] std::size_t index(const VoxelKey& key) const { return place_in(bounds_, key); }
+  void check_size() const;
   void flood(std::size_t start);
   void drop_layers_that_show_nothing(const KeyBox& inside);
 

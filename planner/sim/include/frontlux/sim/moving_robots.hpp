@@ -92,6 +92,9 @@ class MovingRobots {
   /// it is until the end of the call, whatever `where` says.
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
+  /// A robot moves no more, whatever `where` says. @pre it is one of them
+  void fail(std::size_t robot) { progress_[robot].failed = true; }
+
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
   /// Where a robot believes to be. @pre it is one of them
   [[nodiscard]] const planner::Pose& believed(std::size_t robot) const { return progress_[robot].believed; }
@@ -105,9 +108,10 @@ class MovingRobots {
     double since_fix = 0.0;                                 // [m] of path since it last knew its place
     Eigen::Vector3d known_error = Eigen::Vector3d::Zero();  // [m] which it learnt of then
     std::uint64_t fixes = 0;
+    double fixed_at = 0.0;  // [s] when it has learnt of that
     std::uint64_t scans = 0;
     Eigen::Vector3d phases = Eigen::Vector3d::Zero();  // [rad] of its swaying
-    bool touching = false, halted = false;
+    bool touching = false, halted = false, failed = false;
     PathRevisits path;
   };
 
