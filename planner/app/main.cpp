@@ -29,7 +29,8 @@ namespace {
 constexpr int kBadInput = 2, kFailure = 1;
 
 int complain(const std::string& message, int code) {
-  std::cerr << frontlux::app::in_red("frontlux: " + message, STDERR_FILENO) << '\n';
+  std::cerr << frontlux::app::in_red("frontlux: " + frontlux::app::without_controls(message), STDERR_FILENO)
+            << '\n';
   return code;
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/ioctl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <fcntl.h>
@@ -17,6 +18,12 @@ std::size_t columns() {
 }
 
 }  // namespace
+
+std::string without_controls(std::string text) {
+  const auto commands = [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == 0x7F; };
+  std::ranges::replace_if(text, commands, '?');
+  return text;
+}
 
 std::string in_red(const std::string& text, int stream) {
   const char* const no_color = std::getenv("NO_COLOR");

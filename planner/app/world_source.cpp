@@ -30,7 +30,7 @@ WorldKind kind_of(const std::string& name) {
                    " is a directory; name a built-in world (see frontlux world), or a file in it");
   const auto ending = std::filesystem::path(name).extension();
   if (ending == ".bt" || ending == ".ot") return WorldKind::kMap;
-  if (ending.empty() && !std::filesystem::exists(name)) {
+  if (ending.empty() && !std::filesystem::exists(name, ignored)) {
     std::vector<std::string> words;
     std::string names;
     for (const auto& world : sim::built_in_worlds()) {

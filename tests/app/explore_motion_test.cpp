@@ -285,6 +285,13 @@ TEST_F(ExploreMotion, TheTeamKeepsMarginsForWhichItsVoxelsHaveRoom) {
   EXPECT_EQ(margins("0.3", {"--lockstep", "--max-steps", "1"}), (std::vector<double>{0.0, 0.0}));
 }
 
+TEST_F(ExploreMotion, ALimitOfNoPlanningsIsKept) {
+  expect_answer(joined(quick("run", "60"), {"--max-steps", "0"}), {"step_limit"});
+  EXPECT_EQ(json_in("run").at("steps"), 0);
+  expect_answer({"--resume", path("run"), "--max-steps", "2"});
+  EXPECT_EQ(json_in("run").at("steps"), 2);
+}
+
 TEST_F(ExploreMotion, RobotsInEachOthersWayDoNotEndARun) {
   expect_answer({"maze", "--seed", "1", "--team", "3uav", "--latency", "0.25", "--stop-time", "45",
                  "--report", "off", "-o", path("run")});

@@ -202,6 +202,8 @@ TEST_F(ReportCommandTest, SaysWhatIsWrongWithRunJson) {
            {"\"stopped\"", "\"step_limit\"", "does not fit the recording: end is not \"stopped\""},
            {"\"steps\": 3", "\"steps\": 4", "does not fit the recording: steps is not 3"},
            {"\"room\"", "\"maze\"", "does not fit the recording: world is not \"room\""},
+           {"0.25", "0.25, \"coverage_observable\": 0.5",
+            "does not fit the recording: coverage_observable is not"},
            {"\"uav\"]", "\"car\"]", "does not fit the recording: robots is not"}}) {
     const std::string said = warning(test::replaced(good, from, to));
     if (what.empty())
@@ -212,6 +214,22 @@ TEST_F(ReportCommandTest, SaysWhatIsWrongWithRunJson) {
   std::filesystem::remove(path("one/run.json"));
   std::filesystem::create_directory(path("one/run.json"));
   test::expect_parts(CommandTest::run({"one"}, in_folder_).err, {"warning: one/run.json: is a directory"});
+}
+
+TEST_F(ReportCommandTest, RefusesPicturesOfTwoRunsInOneFolder) {
+  std::filesystem::copy_file(path("two/run.frontlux"), path("one/two.frontlux"));
+  for (const char* picture : {"--png", "--svg", "--pdf", "--video"})
+    expect_refused({"one/run.frontlux", "one/two.frontlux", "-o", "all.html", picture}, "are in one folder");
+  expect_answer({"one/run.frontlux", "one/two.frontlux", "-o", "all.html"});
+}
+
+TEST_F(ReportCommandTest, SendsNoCommandsToTheTerminal) {
+  const std::string name = "\x1B[31m\x07";
+  std::filesystem::copy_file(path("one/run.frontlux"), path(name + ".frontlux"));
+  std::filesystem::resize_file(path(name + ".frontlux"), 20);
+  const std::string said = CommandTest::run({name + ".frontlux"}, in_folder_).err;
+  EXPECT_NE(said.find("?[31m?"), std::string::npos) << said;
+  EXPECT_EQ(said.find('\x07'), std::string::npos);
 }
 
 TEST_F(ReportCommandTest, LeavesNoFramesWhenStopped) {

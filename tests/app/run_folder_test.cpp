@@ -216,6 +216,14 @@ TEST_F(RunFolder, LosesTheViewsOfAnOlderState) {
   fs::remove(path("run/video/mine"));
   expect_explored("run", {"--force"});
   EXPECT_FALSE(fs::exists(path("run/video")));
+  // A file of that name is none of frontlux's, nor is what a link points to.
+  write("run/video", "mine");
+  fs::create_directories(path("other"));
+  write("other/frame_0001.png", "mine");
+  fs::create_directory_symlink(path("other"), path("run/video.unfinished"));
+  expect_explored("run", {"--force"});
+  EXPECT_EQ(content_of(path("run/video")), "mine");
+  EXPECT_EQ(content_of(path("other/frame_0001.png")), "mine");
 }
 
 TEST_F(RunFolder, LosesWhatKilledRunsLeftUnfinished) {

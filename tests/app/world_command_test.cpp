@@ -78,6 +78,7 @@ TEST_F(WorldCommand, TakesMaps) {
 }
 
 TEST_F(WorldCommand, RefusesBadInput) {
+  expect_refused({std::string(300, 'x')}, "is neither a file nor a built-in world");
   box("box.ply");
   expect_refused({"-o", path("of_none.ply")}, {"--output: give the WORLD"});
   expect_refused({""}, {"''", "maze, factory, station, storage, room"});

@@ -205,7 +205,8 @@ MappingOptions mapping_options(const Options& options) {
 void map(const Options& options) {
   Mapping mapping(mapping_options(options));
   check_output(options.output, {".bt", ".ot"}, std::array{options.scans, options.poses});
-  const Recording recording = std::filesystem::is_directory(options.scans)
+  std::error_code ignored;  // what is wrong with it, reading says
+  const Recording recording = std::filesystem::is_directory(options.scans, ignored)
                                   ? open_folder(options.scans, options.poses)
                                   : open_graph(options.scans, options.poses);
   const Points points = map_scans(recording, options, mapping);
@@ -217,7 +218,8 @@ void map(const Options& options) {
                                          to_text(Lattice::kOrigin * options.resolution) +
                                          " m of the origin along each axis"));
   mapping.write(options.output);
-  if (!recording.warning.empty()) std::cerr << "frontlux: warning: " << recording.warning << '\n';
+  if (!recording.warning.empty())
+    std::cerr << "frontlux: warning: " << without_controls(recording.warning) << '\n';
   std::string left_out;
   if (points.beyond > 0)
     left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " +

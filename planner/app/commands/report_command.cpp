@@ -7,6 +7,7 @@
 #include "explore/explore_run.hpp"
 #include "explore/run_json.hpp"
 #include "interrupt.hpp"
+#include "terminal.hpp"
 
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/report/report.hpp>
@@ -16,6 +17,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -69,7 +71,8 @@ std::vector<Run> read_runs(const Options& options, const std::vector<std::string
     runs.push_back({file, std::move(name), planner::read_recording(file)});
     const planner::Recording& recording = runs.back().recording;
     if (recording.truncated)
-      std::cerr << "frontlux: " << file.string() << ": the last step is not complete and is left out\n";
+      std::cerr << "frontlux: " << without_controls(file.string())
+                << ": the last step is not complete and is left out\n";
     if (recording.steps.empty()) throw BadInput(file.string() + ": the recording holds no step");
   }
   return runs;
@@ -84,6 +87,19 @@ std::vector<const char*> still_endings(const Options& options) {
   return endings;
 }
 
+// Pictures and films lie beside their recordings, by fixed names.
+void check_folders(const std::vector<std::string>& files) {
+  std::map<std::filesystem::path, std::string> taken;
+  for (const std::string& file : files) {
+    const auto [other, is_new] = taken.emplace(std::filesystem::weakly_canonical(file).parent_path(), file);
+    if (!is_new)
+      throw BadInput(
+          other->second + " and " + file +
+          " are in one folder, where their pictures would have the same names; move one, or leave the "
+          "pictures out");
+  }
+}
+
 // Before the recordings are read. @return the page to write
 std::filesystem::path check_outputs(const Options& options, const std::vector<std::string>& files) {
   if (options.output.empty() && files.size() > 1)
@@ -92,6 +108,7 @@ std::filesystem::path check_outputs(const Options& options, const std::vector<st
                                            ? std::filesystem::path(files.front()).parent_path() / kReport
                                            : std::filesystem::path(options.output);
   check_output(output, {".html"}, files);
+  if (options.video || options.gif || !still_endings(options).empty()) check_folders(files);
   for (const std::filesystem::path file : files) {
     const std::filesystem::path folder = file.parent_path();
     for (const std::string ending : still_endings(options))
@@ -118,7 +135,8 @@ std::string run_json_of(const std::filesystem::path& folder, const planner::Reco
     wrong = error.what();
   }
   if (wrong.empty()) return json;
-  std::cerr << "frontlux: warning: " << wrong << "; the report leaves out what only run.json tells\n";
+  std::cerr << "frontlux: warning: " << without_controls(wrong)
+            << "; the report leaves out what only run.json tells\n";
   return {};
 }
 

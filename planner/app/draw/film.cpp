@@ -49,6 +49,8 @@ int ffmpeg(const std::filesystem::path& folder, std::vector<std::string> words) 
 
 void remove_frames(const std::filesystem::path& folder) {
   std::error_code ignored;
+  // A file of that name, or what a link points to, is none of ours.
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder, ignored))) return;
   for (int i = 1; i <= kGrowing + kLast; ++i) std::filesystem::remove(folder / frame_name(i), ignored);
   for (const char* film : kFilms) std::filesystem::remove(folder / unfinished_film(film), ignored);
   std::filesystem::remove(folder, ignored);  // unless it holds other files
@@ -99,7 +101,7 @@ void write_film(const std::filesystem::path& file, const std::filesystem::path& 
   words.insert(words.end(), format.begin(), format.end());
   words.insert(words.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact", made});
   const int code = ffmpeg(folder, words);  // which Ctrl-C reaches as well
-  if (InterruptNote::taken()) throw Interrupted("stopped; no film was written");
+  if (InterruptNote::taken()) throw Interrupted("stopped; " + file.string() + " was not written");
   if (code != 0) throw std::runtime_error(file.string() + ": cannot be made by ffmpeg");
   std::error_code error;
   std::filesystem::rename(folder / made, file, error);

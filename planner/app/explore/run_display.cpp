@@ -3,6 +3,7 @@
 #include "explore/explore_run.hpp"
 #include "explore/run_warnings.hpp"
 #include "setup/explore_setup.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 
 #include <frontlux/planner/exploration.hpp>
@@ -106,7 +107,7 @@ void RunDisplay::result(const RunResult& result, const std::optional<RunEnd>& en
     print_summary(result, end);
   if (!run_.json) give_up_broken_output();  // the result is in the folder
   for (const std::string& warning : result.warnings)
-    std::cerr << in_red("warning: " + warning, STDERR_FILENO) << '\n';
+    std::cerr << in_red("warning: " + without_controls(warning), STDERR_FILENO) << '\n';
 }
 
 void RunDisplay::print_summary(const RunResult& result, const std::optional<RunEnd>& end) const {

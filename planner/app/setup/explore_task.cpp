@@ -182,7 +182,8 @@ std::string task_text(const ExploreOptions& options, const ExploreSetup& setup) 
   if (sourced.kind == WorldKind::kBuiltIn)
     task.world_seed = sourced.seed;
   else
-    task.world = fs::absolute(task.world).lexically_normal().string();
+    task.world = options.world_path.text.empty() ? fs::absolute(task.world).lexically_normal().string()
+                                                 : options.world_path.text;
   task.box = options.source.box;
   task.resolution = setup.head.resolution;
   task.seed = options.seed;

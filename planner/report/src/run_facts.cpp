@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -155,6 +157,14 @@ std::string misfit(const std::string& run_json, const planner::Recording& record
     if (member(all, name) != recorded)
       return std::string("does not fit the recording: ") + name + " is not " +
              recorded.dump(-1, ' ', true, json::error_handler_t::replace);
+  std::uint64_t mapped = 0;
+  for (const planner::KnownVoxels& known : recording.steps.back().known) mapped += known.observable;
+  const json coverage = member(all, "coverage_observable");
+  const double all_there = static_cast<double>(recording.head.observable);
+  if (all_there > 0.0 && coverage.is_number() &&
+      std::abs(coverage.get<double>() - static_cast<double>(mapped) / all_there) > 1e-9)
+    return "does not fit the recording: coverage_observable is not " +
+           std::to_string(static_cast<double>(mapped) / all_there);
   bool whole = true;
   const auto check = [&](const json& object, const char* name) {
     whole = whole && is_number_or_null(member(object, name));
