@@ -128,7 +128,7 @@ export function details(run, written) {
     milestones(numbers),
     table("The team", ["", ...facts.robots.map((robot) => robot.name)], [
       ["moves", ...facts.robots.map((robot) => (robot.plane ? "on the ground" : "in the air"))],
-      ["collision box", ...facts.robots.map((robot) => `${robot.extents.map((k) => k.toFixed(1)).join(" × ")} m`)],
+      ["collision box", ...facts.robots.map((robot) => `${robot.extents.map((k) => String(Number(k.toFixed(3)))).join(" × ")} m`)],
       ["sensor", ...facts.robots.map(sensor)],
       ["path length", ...result.lengths.map(metres)],
       ...(facts.measured ? [["idle", ...result.idle.map(clockTime)], ["held back", ...result.heldBack.map((times) => (Number.isFinite(times) ? `${whole(times)} times` : "unknown"))]] : []),

@@ -4,7 +4,9 @@ const TURN = 0.08, MOVE = 0.06, ZOOM = 1.12;
 export function addKeys(page) {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { target } = event, field = target.closest?.("input, select, textarea, summary, button, a");
+    const { target } = event;
+    if (target.closest?.(".table-scroll") && /^(Arrow|Home$|End$|Page| $)/.test(event.key)) return; // they scroll it
+    const field = target.closest?.("input, select, textarea, summary, button, a");
     const typed = field && !(field.type === "checkbox" && event.key !== " ");
     if (typed && !(field.tagName === "BUTTON" && event.key !== " " && event.key !== "Enter")) return;
     const act = actions(page)[event.key.length === 1 ? event.key.toLowerCase() : event.key];

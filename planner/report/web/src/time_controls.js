@@ -28,7 +28,7 @@ export function makeTimeControls(timeline, current) {
     timeline.seek(Number(slider.value));
   } } });
   const speed = el("select", { id: "speed", "aria-label": "Speed", on: { change: () => (timeline.speed = Number(speed.value)) } }, ...SPEEDS.map((value) => el("option", { value })));
-  const label = el("output", { id: "step-label", for: "time" });
+  const label = el("output", { id: "step-label", for: "time", "aria-live": "off" });
   const update = () => {
     const { facts, numbers } = current(), { step } = timeline;
     const number = facts.steps[step]?.number ?? 0, last = facts.steps.at(-1)?.number ?? 0;

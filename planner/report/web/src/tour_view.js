@@ -13,7 +13,7 @@ export class TourView {
   constructor(run, r, dash) {
     this.run = run;
     this.r = r;
-    const most = Math.max(1, ...run.tours.filter((tour, i) => tour && i % run.robots === r).map((tour) => tour.count));
+    const most = run.tours.reduce((count, tour, i) => (tour && i % run.robots === r ? Math.max(count, tour.count) : count), 1);
     this.points = new Float32Array(6 * most);
     this.distances = new Float32Array(2 * most);
     this.material = new LineMaterial({ linewidth: 2.4, dashed: true, dashSize: dash, gapSize: 0.7 * dash });
