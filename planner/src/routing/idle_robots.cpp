@@ -22,8 +22,9 @@ Place nearest_stop_that_waits(const TourProblem& problem, const Tours& tours, st
       const std::uint32_t stop = tours[r][i];
       arrival += i == 0 ? other.first[stop] : other.between(tours[r][i - 1], stop);
       const double seconds = problem.robots[idle].first[stop];
-      if (i == 0 || i < other.fixed || seconds >= nearest.seconds) continue;
-      if (2 * seconds <= arrival && seconds + kSooner <= arrival) nearest = {seconds, r, i};
+      if (seconds >= nearest.seconds) continue;
+      const bool waits = i > 0 && i >= other.fixed && 2 * seconds <= arrival && seconds + kSooner <= arrival;
+      if (other.rests || waits) nearest = {seconds, r, i};
     }
   }
   return nearest;

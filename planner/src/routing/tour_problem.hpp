@@ -18,6 +18,7 @@ struct TourProblem {
     std::vector<double> first;  ///< from where it is to each stop
     NumberTable between;        ///< from stop to stop; the same in both directions
     std::size_t fixed = 0;      ///< so many stops at the begin of its tour stay there
+    bool rests = false;  ///< it had no stop when it planned last: those that it has were left to it since
   };
   std::size_t stops = 0;
   std::vector<Robot> robots;

@@ -349,6 +349,7 @@ Tours TourPlanning::tours_before(const Query& query, std::span<const StopCluster
     if (r == query.robot) continue;
     take(r, members_[r].going_for);
     problem.robots[r].fixed = before[r].size();
+    problem.robots[r].rests = members_[r].planned && !members_[r].lost && members_[r].going_for.empty();
   }
   for (std::size_t r = 0; r < members_.size(); ++r)
     for (const TourStop& stop : members_[r].tour) take(r, stop.clusters);

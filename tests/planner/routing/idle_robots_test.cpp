@@ -57,6 +57,17 @@ TEST(IdleRobots, LeaveWhatTheOtherOneSetsOutFor) {
   EXPECT_EQ(tours, (Tours{{0, 1}, {2}}));
 }
 
+TEST(IdleRobots, TakeWhatIsLeftToOneThatRests) {
+  TourProblem problem = Line{{10, 40}, {0, 45}}.problem();
+  Tours tours{{0, 1}, {}};
+  problem.robots[0].rests = true;
+  give_idle_robot_a_stop(problem, 1, tours);
+  EXPECT_EQ(tours, (Tours{{0}, {1}})) << "the nearest one";
+  tours = {{0}, {}};
+  give_idle_robot_a_stop(problem, 1, tours);
+  EXPECT_EQ(tours, (Tours{{}, {0}})) << "the first one, and though the other is nearer";
+}
+
 TEST(IdleRobots, LeaveWhatIsNotForThem) {
   TourProblem problem = Line{{10, 40, 44}, {0, 45}}.problem();
   problem.robots[1].first[2] = TourProblem::kNever;
