@@ -37,7 +37,8 @@ struct MotionRecord {
   double revisited = 0.0;  ///< the part of that, 0 to 1, which led to where it had been: `PathRevisits`
   double idle = 0.0;       ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown, on all sides or, if it drives, sideways, without
-  /// touching a surface; up to a metre. A cylinder grows by it in radius and on both ends.
+  /// touching a surface, where it was every 20 ms; up to a metre. A cylinder grows by it in radius and on both
+  /// ends. In between it may have been nearer, by about half of its way in that time.
   double clearance = 1.0;
 };
 
