@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, control_lines, end_of, is_endless, our_lines, paper_lines, relative, seconds_mapped, teams,
+from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, control_lines, end_of, is_endless, our_lines, paper_lines, seconds_mapped, teams,
                     to_a_level)
 from explore import LONGEST
 from intervals import FEWEST, LEVEL, RESAMPLES, mean
@@ -95,8 +95,7 @@ def in_short(results):
             who = other if found.found.value == 0 else method
             return [f"{as_first_word(experiments.title(who))}: at least half of the runs never got there "
                     f"({where(tasks)}, {found.said})."]
-        return [said.format(interval(found.found, 2, unit="×"), f"{where(tasks)}, {found.said}",
-                            interval(relative(found, -1).found, 0, 100, " %"))] if found.found else []
+        return [said.format(interval(found.found, 2, unit="×"), f"{where(tasks)}, {found.said}")] if found.found else []
 
     built_in = experiments.tasks_of(of_files=False)
     lines = [
@@ -109,7 +108,7 @@ def in_short(results):
     if touched and 0 < touched.value < 1 and touched.low is not None:
         lines.append(f"In {interval(touched, 1, 100, ' %')} of {counted(len(of_tours), 'run')} of tours a body touched a "
                      "surface, without bumpers.")
-    lines += against("As printed, in lock-step, the team takes {2} fewer steps to 90 % than the UAV alone ({1}).",
+    lines += against("As printed, in lock-step, the team takes {} the steps of the UAV alone to 90 % ({}).",
                      built_in, "steps", "steps_uav", lambda r: r.steps_until(0.9))
     for task in experiments.tasks_of(of_files=True):
         if published := experiments.tasks[task].get("published"):
