@@ -15,7 +15,8 @@ namespace frontlux::planner {
 /// Why a robot plans.
 enum class PlanReason : std::uint8_t {
   kStart,     ///< it has no trajectory yet
-  kArrival,   ///< it has looked from its goal, or its trajectory is about to end and it has nothing to see there
+  kArrival,   ///< it has looked from its goal, or its trajectory is about to end and it has nothing to see
+              ///< there
   kGoalSeen,  ///< most of what it was going for is mapped
   kBlocked,   ///< its trajectory leads through what is no longer known to be free, or where another robot
               ///< has stopped
@@ -106,9 +107,9 @@ class FRONTLUX_EXPORT ContinuousExploration {
 
   /// Why the exploration is over; nothing while it goes on. A robot has nothing to do if it has found no goal
   /// and has rested for one and a half periods, in which what closed its way for a moment is seen to be free,
-  /// or for ten as long as no scan has come from where it rests; if it has waited for others more than ten times in a row; or if it is lost. Of low gain is an
-  /// exploration without tours in which each robot has chosen a goal of low gain, or found none,
-  /// `low_gain_steps` times in a row.
+  /// or for ten as long as no scan has come from where it rests; if it has waited for others more than ten
+  /// times in a row; or if it is lost. Of low gain is an exploration without tours in which each robot has
+  /// chosen a goal of low gain, or found none, `low_gain_steps` times in a row.
   [[nodiscard]] std::optional<ExplorationEnd> end() const;
 
   /// As given.
