@@ -25,17 +25,15 @@ bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::Aligned
     return gap_between(body.translated(trajectory.at(time).pose.position),
                        other_body.translated(other.at(time).pose.position));
   };
-  const double least = std::min(gap, gap_at(from)) - kRounding;
-  // No sooner than after so much of a way can they be too near.
-  const auto next = [&](double time, double now) {
-    return time + std::max(std::max(kLeast, now - least) / speeds, kShortest);
-  };
-  double time = from;
-  for (double now = gap_at(from); time < end; now = gap_at(time)) {
+  double now = gap_at(from);
+  const double least = std::min(gap, now) - kRounding;
+  for (double time = from; time < end;) {
+    // No sooner than after so much of a way can they be too near.
+    time = std::min(time + std::max(std::max(kLeast, now - least) / speeds, kShortest), end);
+    now = gap_at(time);
     if (now < least) return false;
-    time = std::min(next(time, now), end);
   }
-  return gap_at(std::max(from, end)) >= least;
+  return true;
 }
 
 }  // namespace frontlux::planner::detail

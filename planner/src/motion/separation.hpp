@@ -35,7 +35,8 @@ struct RobotMotion {
 };
 
 /// Whether a robot on its trajectory keeps a gap [m] to another, to a millimetre if they move at up to 20 m/s
-/// together, from a time [s] on and for all time to come. Robots that are nearer to each other already may not come nearer yet.
+/// together, from a time [s] on and for all time to come. Robots that are nearer to each other already may
+/// not come nearer yet.
 /// @param speeds  [m/s] of both robots along an axis, at most and together
 [[nodiscard]] bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::AlignedBox3d& body,
                                const RobotMotion& other, const Eigen::AlignedBox3d& other_body, double gap,

@@ -110,7 +110,6 @@ TEST_P(ContinuousExplorationBy, MapsWhatLockStepMapsOnWaysThatAreFreeAndWithinLi
   EXPECT_GT(share_mapped(team, grid), 0.9);
 }
 
-// Steps tell all that happened: numbers, times, scans and changes.
 // Also where it brakes and goes back on its way.
 TEST_P(ContinuousExplorationBy, RecordsTrajectoriesToCentimetres) {
   TeamInMotion scene("room", {small_uav(), planner::ugv_description()}, sim::AtContact::kGoOn, GetParam());
@@ -135,6 +134,7 @@ TEST_P(ContinuousExplorationBy, RecordsTrajectoriesToCentimetres) {
   EXPECT_LT(most, 0.05);
 }
 
+// Steps tell all that happened: numbers, times, scans and changes.
 TEST_P(ContinuousExplorationBy, StepsAddUpToTheMap) {
   TeamInMotion scene("room", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
   scene.explore(6.0);
