@@ -169,6 +169,14 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
                                                  {"--samples", "32"},
                                                  {"--renderer", "rays"}})
     expect_refused(with(option), {option.front() + " is not for tours", "--goal render"});
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--advance", "2"}, {"--samples", "32"}, {"--renderer", "rays"}}) {
+    std::vector<std::string> words = with(option);
+    words.insert(words.end(), {"--goal", "nearest"});
+    expect_refused(words, {option.front() + " is not for --goal nearest", "--goal render or cluster"});
+  }
+  expect_refused(with({"--goal", "render", "--renderer", "exact", "--samples", "32"}),
+                 {"--samples is not for --renderer exact", "--renderer rays"});
   expect_refused(with({"--fix-every", "3"}), {"--fix-every is for --drift"});
   expect_refused(with({"--tours-without", "zones", "--goal", "render"}),
                  {"--tours-without is for robots on tours"});

@@ -4,6 +4,7 @@
 
 #include <frontlux/planner/recording.hpp>
 
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <csignal>
@@ -233,11 +234,14 @@ TEST_F(RunFolder, LosesWhatKilledRunsLeftUnfinished) {
   test::status_of(gone);
   const std::string dead = ".part-frontlux-" + std::to_string(gone) + "-0",
                     alive = ".part-frontlux-" + std::to_string(getpid()) + "-0";
+  const int locked =
+      open(write("run/map.bt" + alive, "another process still writes it").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(flock(locked, LOCK_EX | LOCK_NB), 0);
   write("run/map.ot" + dead, "half a map");
   write("run/run.json" + dead, "half");
-  write("run/map.bt" + alive, "another process still writes it");
   write("run/map.ot.part" + std::to_string(gone), "mine, as `split` names it");
   expect_resumed("run");
+  close(locked);
   EXPECT_FALSE(fs::exists(path("run/map.ot" + dead)));
   EXPECT_FALSE(fs::exists(path("run/run.json" + dead)));
   EXPECT_TRUE(fs::exists(path("run/map.bt" + alive)));

@@ -81,6 +81,7 @@ TEST_F(WorldCommand, RefusesBadInput) {
   expect_refused({std::string(300, 'x')}, "is neither a file nor a built-in world");
   box("box.ply");
   expect_refused({"-o", path("of_none.ply")}, {"--output: give the WORLD"});
+  expect_refused({"--seed", "3"}, {"--seed: give the WORLD"});
   expect_refused({""}, {"''", "maze, factory, station, storage, room"});
   expect_refused({"hangar"}, {"'hangar'", "maze, factory, station, storage, room"});
   expect_refused({path("none.ply")}, {path("none.ply"), "no such file"});

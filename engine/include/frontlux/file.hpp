@@ -32,7 +32,8 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 [[nodiscard]] FRONTLUX_EXPORT std::string read_file(const std::filesystem::path& file,
                                                     std::uint64_t max_bytes = kMaxFileBytes);
 
-/// Removes what processes that were killed while they wrote this file have left beside it.
+/// Removes what processes that were killed while they wrote this file have left beside it. What is being
+/// written is locked (flock), here and in other containers; a file system without locks keeps what is left.
 FRONTLUX_EXPORT void remove_unfinished(const std::filesystem::path& file);
 
 /// Removes what this process has begun to write and not ended, for the handler of a signal that ends the

@@ -1,14 +1,17 @@
 #include <frontlux/file.hpp>
 
+#include <sys/file.h>
+#include <sys/stat.h>
+
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <fcntl.h>
 #include <fstream>
 #include <stdexcept>
 #include <unistd.h>
+#include <utility>
 
 namespace frontlux {
 namespace {
@@ -22,34 +25,81 @@ constexpr std::size_t kAtOnce = 64;
 std::array<std::atomic<const char*>, kAtOnce> being_written{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-// Removed, unless the file got its name.
+// Locked for as long as somebody writes it, whatever his number is: processes of two containers may have the
+// same one. Removed, unless it gets its name.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& file) {
-    static std::atomic<std::size_t> further{kAtOnce};
+    constexpr std::size_t kNames = 10'000;
     const std::string begin = file.string().append(kUnfinished) + std::to_string(::getpid()) + "-";
-    for (std::size_t number = 0; number < kAtOnce && place_ == nullptr; ++number) {
+    bool taken = true;
+    for (std::size_t number = 0; taken && number < kNames; ++number) {
       path_ = begin + std::to_string(number);
-      const char* none = nullptr;
-      if (being_written[number].compare_exchange_strong(none, path_.c_str())) place_ = &being_written[number];
+      descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+      taken = descriptor_ < 0 ? errno == EEXIST : !is_ours();
     }
-    if (place_ == nullptr) path_ = begin + std::to_string(further++);
+    if (descriptor_ >= 0) note();
   }
   ~UnfinishedFile() {
+    if (descriptor_ < 0) return;
     std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-    // A signal has taken the name, and ends the process soon: it needs the name until then.
-    if (place_ != nullptr && place_->exchange(nullptr) == nullptr)
-      for (;;) ::pause();
+    if (!named_) std::filesystem::remove(path_, ignored);
+    forget();
+    ::close(descriptor_);
   }
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  /// @return false if it could not be made; errno says why
+  [[nodiscard]] bool exists() const { return descriptor_ >= 0; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
+  [[nodiscard]] std::error_code take_name(const std::filesystem::path& file) {
+    std::error_code error;
+    forget();  // from here on another thread may make a file of the same name
+    std::filesystem::rename(path_, file, error);
+    named_ = !error;
+    return error;
+  }
+
  private:
+  // Whether it is locked, and nobody removed it before that. File systems without locks do without.
+  [[nodiscard]] bool is_ours() {
+    struct stat status {};
+    const bool removing = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!removing && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return true;
+    ::close(std::exchange(descriptor_, -1));
+    return false;
+  }
+
+  void note() {
+    for (std::atomic<const char*>& place : being_written)
+      if (const char* none = nullptr; place.compare_exchange_strong(none, path_.c_str())) {
+        place_ = &place;
+        return;
+      }
+  }
+
+  // A signal that has taken the name ends the process soon: it needs the name until then.
+  void forget() {
+    if (place_ != nullptr && std::exchange(place_, nullptr)->exchange(nullptr) == nullptr)
+      for (;;) ::pause();
+  }
+
   std::filesystem::path path_;
+  int descriptor_ = -1;
+  bool named_ = false;
   std::atomic<const char*>* place_ = nullptr;
 };
+
+// Whether nobody is writing an unfinished file. Where files cannot be locked, nobody knows.
+bool is_abandoned(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool abandoned = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return abandoned;
+}
 
 // Else a loss of power after a file got its name could leave it empty.
 // @return false if the disk says why it cannot, with errno; some file systems have nothing to say
@@ -108,10 +158,9 @@ void remove_unfinished(const std::filesystem::path& file) {
     const std::string name = entry->path().filename().string();
     if (!name.starts_with(begin)) continue;
     const std::string_view rest = std::string_view(name).substr(begin.size());
-    const auto process = number_from<::pid_t>(rest.substr(0, rest.find('-')));
-    const bool gone = process && *process > 0 && ::kill(*process, 0) != 0 && errno == ESRCH;
     std::error_code ignored;
-    if (gone) std::filesystem::remove(entry->path(), ignored);
+    if (number_from<::pid_t>(rest.substr(0, rest.find('-'))) && is_abandoned(entry->path()))
+      std::filesystem::remove(entry->path(), ignored);
   }
 }
 
@@ -130,16 +179,17 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
     cannot("it is not a regular file", "name a file");
   remove_unfinished(file);
-  const UnfinishedFile part(file);
   errno = 0;
-  std::ofstream stream(part.path(), std::ios::binary | std::ios::trunc);
-  if (!stream)
+  UnfinishedFile part(file);
+  std::ofstream stream;
+  if (part.exists()) stream.open(part.path(), std::ios::binary | std::ios::trunc);
+  if (!stream.is_open())
     cannot(std::generic_category().message(errno), "check that its folder exists and may be written to");
   write(stream);
   stream.close();
   if (!stream || !reach_disk(part.path()))
     cannot(std::generic_category().message(errno), "check the space left on the disk");
-  std::filesystem::rename(part.path(), file, error);
+  error = part.take_name(file);
   if (error) cannot(error.message(), "check the permissions of the folder and of the file that is there");
 }
 

@@ -102,6 +102,8 @@ prints the measures of the seventh factory and writes it as a mesh.)");
   command.run([options, world] {
     const bool writes = !options->output.empty();
     if (!world.given() && writes) throw BadInput("--output: give the WORLD that is to be written");
+    if (!world.given() && options->source.seed)
+      throw BadInput("--seed: give the WORLD of which it is the layout");
     if (!world.given()) return print_list();
     if (writes) check_output(options->output, {".ply"}, std::array{options->source.world});
     const SourcedWorld sourced = make_world(options->source);

@@ -90,8 +90,8 @@ struct ExploreOptions {
 /// The options given, by their names, of errors that only robots in motion have.
 [[nodiscard]] std::vector<std::string_view> errors_in_motion(const ExploreOptions& options);
 
-/// The options given, by their names, that choose goals one by one: tours have other stops.
-[[nodiscard]] std::vector<std::string_view> ignored_on_tours(const ExploreOptions& options);
+/// The options given, by their names, that would change nothing, since goals are chosen otherwise.
+[[nodiscard]] std::vector<std::string_view> ignored_by_goals(const ExploreOptions& options);
 
 /// Notes the absolute paths of the world's and the robots' files, as they are named from here.
 void note_paths(ExploreOptions& options);

@@ -242,17 +242,24 @@ planner::GoalOptions goal_options(const ExploreOptions& options, const planner::
   return goal;
 }
 
+// And what to give instead.
+std::string how_goals_are_chosen(const ExploreOptions& options) {
+  if (makes_tours(options))
+    return "tours, which choose their stops otherwise; give --goal render, cluster or nearest";
+  return options.goal == GoalSearch::kNearest
+             ? "--goal nearest, which goes by the way alone; give --goal render or cluster"
+             : "--renderer exact, which counts all frontiers; give --renderer rays";
+}
+
 planner::ExplorationOptions exploration_options(const ExploreOptions& options,
                                                 std::span<const RobotDescription> robots) {
   if (options.goal == GoalSearch::kTour && (options.lockstep || options.mode == Method::kPaper))
     throw BadInput(std::string("--goal tour is not for ") +
                    (options.lockstep ? "--lockstep" : "--mode paper") +
                    "; give another goal, or leave it out" + or_in_task(options));
-  if (const auto ignored = ignored_on_tours(options); makes_tours(options) && !ignored.empty())
-    throw BadInput("--" + std::string(ignored.front()) +
-                   " is not for tours, which choose their stops otherwise; give --goal render, cluster or "
-                   "nearest with it, or leave it out" +
-                   or_in_task(options));
+  if (const auto ignored = ignored_by_goals(options); !ignored.empty())
+    throw BadInput("--" + std::string(ignored.front()) + " is not for " + how_goals_are_chosen(options) +
+                   " with it, or leave it out" + or_in_task(options));
   if (options.tours_without != planner::TourPart::kNone && !makes_tours(options))
     throw BadInput("--tours-without is for robots on tours; leave it out, or give --goal tour in motion" +
                    or_in_task(options));

@@ -2,11 +2,13 @@
 
 #include <frontlux/file.hpp>
 
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <atomic>
 #include <csignal>
+#include <fcntl.h>
 #include <ranges>
 #include <thread>
 #include <unistd.h>
@@ -64,7 +66,6 @@ TEST_F(FileTest, RefusesWhatIsTooLargeOrNoFile) {
   EXPECT_NE(said([&] { static_cast<void>(read_file(folder_)); }).find("is a directory"), std::string::npos);
 }
 
-// A pipe or a device does not become a file by being named as one.
 // A process that a signal ends in the middle of a file.
 TEST_F(FileTest, RemovesWhatAHandlerFindsUnfinished) {
   write("table.csv", "old");
@@ -107,6 +108,30 @@ TEST_F(FileTest, IsWholeWhoeverWritesItAtOnce) {
   EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_)), 1);
 }
 
+// Processes of two containers may have the same number: the lock says who writes, not the number.
+TEST_F(FileTest, RemovesOnlyWhatNobodyWrites) {
+  const std::string file = path("map.ot"), left = ".part-frontlux-" + std::to_string(getpid()) + "-";
+  write("map.ot" + left + "0", "of one that had this number and was killed");
+  write("map.ot" + left + "1", "of one that has this number and writes");
+  write("map.ot.part-frontlux-notes", "somebody's own");
+  const int locked = open((file + left + "1").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(flock(locked, LOCK_EX | LOCK_NB), 0);
+  write_file(file, [&](std::ostream& stream) {
+    stream << "whole";
+    EXPECT_FALSE(std::filesystem::exists(file + left + "2"));  // 0 is free again
+    remove_unfinished(file);
+    EXPECT_TRUE(std::filesystem::exists(file + left + "0"));  // this one, which is being written
+  });
+  EXPECT_EQ(test::content_of(file), "whole");
+  EXPECT_FALSE(std::filesystem::exists(file + left + "0"));
+  EXPECT_EQ(test::content_of(file + left + "1"), "of one that has this number and writes");
+  EXPECT_TRUE(std::filesystem::exists(path("map.ot.part-frontlux-notes")));
+  close(locked);
+  remove_unfinished(file);
+  EXPECT_FALSE(std::filesystem::exists(file + left + "1"));
+}
+
+// A pipe or a device does not become a file by being named as one.
 TEST_F(FileTest, LeavesWhatIsNoFileAsItIs) {
   const std::string pipe = path("pipe"), link = path("link");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

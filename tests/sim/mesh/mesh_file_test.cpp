@@ -6,9 +6,11 @@
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <chrono>
+#include <csignal>
 #include <unistd.h>
 
 namespace frontlux::sim {
@@ -371,13 +373,21 @@ TEST_F(MeshFile, WritesWholeOrNotAtAll) {
   EXPECT_THROW(write_ply(file("no") / "folder.ply", room.mesh), std::runtime_error);
   EXPECT_THROW(write_ply(folder_, room.mesh), std::runtime_error);
   EXPECT_THROW(write_ply("", room.mesh), std::runtime_error);
-  if (std::filesystem::exists("/dev/full")) {
-    std::filesystem::create_symlink("/dev/full",
-                                    file("full.ply.part-frontlux-" + std::to_string(getpid()) + "-0"));
-    static_cast<void>(save("full.ply", "as it was"));
-    EXPECT_THROW(write_ply(file("full.ply"), room.mesh), std::runtime_error);
-    EXPECT_EQ(content_of(file("full.ply")), "as it was");
-  }
+}
+
+TEST_F(MeshFile, KeepsWhatIsThereOnAFullDisk) {
+  static_cast<void>(save("full.ply", "as it was"));
+  struct rlimit before {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  struct rlimit full = before;
+  full.rlim_cur = 1000;  // bytes
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  EXPECT_THROW(write_ply(file("full.ply"), make_world("room", 1).mesh), std::runtime_error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(content_of(file("full.ply")), "as it was");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
 }  // namespace
