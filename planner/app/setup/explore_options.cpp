@@ -219,15 +219,15 @@ std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {
 
 std::vector<std::string_view> ignored_by_goals(const ExploreOptions& options) {
   const bool tours = makes_tours(options);
-  const bool by_way = tours || options.goal == planner::GoalSearch::kNearest;  // not by view quality
+  const bool by_distance = tours || options.goal == planner::GoalSearch::kNearest;
   const bool exact = options.renderer == ViewQualityOptions::Renderer::kExact;
   std::vector<std::string_view> names;
   for (const auto& [given, name] : {std::pair(tours && !options.assign, "assign"),
                                     {tours && options.lambda, "lambda"},
                                     {tours && options.min_distance, "min-distance"},
-                                    {by_way && options.advance, "advance"},
-                                    {by_way && options.renderer, "renderer"},
-                                    {(by_way || exact) && options.samples, "samples"}})
+                                    {by_distance && options.advance, "advance"},
+                                    {by_distance && options.renderer, "renderer"},
+                                    {(by_distance || exact) && options.samples, "samples"}})
     if (given) names.emplace_back(name);
   return names;
 }

@@ -247,7 +247,7 @@ std::string how_goals_are_chosen(const ExploreOptions& options) {
   if (makes_tours(options))
     return "tours, which choose their stops otherwise; give --goal render, cluster or nearest";
   return options.goal == GoalSearch::kNearest
-             ? "--goal nearest, which goes by the way alone; give --goal render or cluster"
+             ? "--goal nearest, which goes by distance alone; give --goal render or cluster"
              : "--renderer exact, which counts all frontiers; give --renderer rays";
 }
 
