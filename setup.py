@@ -27,10 +27,18 @@ class CMakeBuild(build_ext):
                    "FRONTLUX_BUILD_PLANNER": "ON" if PLANNER else "OFF", "FRONTLUX_BUILD_COMMAND": "OFF",
                    "FRONTLUX_BUILD_TESTS": "OFF", "FRONTLUX_BUILD_BENCH": "OFF", "FRONTLUX_INSTALL": "OFF",
                    "FRONTLUX_PYTHON_OUTPUT": package, "Python3_EXECUTABLE": sys.executable}
-        subprocess.run(["cmake", "-S", SOURCE, "-B", build, *(f"-D{key}={value}" for key, value in options.items())],
-                       check=True)
+        try:
+            import pybind11  # pip's own, where CMake does not look
+            options["pybind11_DIR"] = pybind11.get_cmake_dir()
+        except ImportError:
+            pass  # the system's
+        new = not (build / "CMakeCache.txt").exists()  # what is configured keeps its generator
+        ninja = ["-G", "Ninja"] if new and "CMAKE_GENERATOR" not in os.environ and shutil.which("ninja") else []
+        subprocess.run(["cmake", "-S", SOURCE, "-B", build, *ninja,
+                        *(f"-D{key}={value}" for key, value in options.items())], check=True)
         targets = ["frontlux_python"] + (["frontlux_python_planner"] if PLANNER else [])
-        subprocess.run(["cmake", "--build", build, "--parallel", "--target", *targets], check=True)
+        jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count())  # make alone starts all at once
+        subprocess.run(["cmake", "--build", build, "--parallel", jobs, "--target", *targets], check=True)
 
 
 version = re.search(r"project\(frontlux VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]

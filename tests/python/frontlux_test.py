@@ -2,6 +2,7 @@
 import copy
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -96,14 +97,49 @@ class Casting(unittest.TestCase):
 
     def test_others_run_meanwhile(self):
         caster = frontlux.RayCaster(self.grid, "grid")
-        origins, directions = np.ones((3_000_000, 3), np.float32), random_rays(3_000_000)[1]
-        worker = threading.Thread(target=caster.cast, args=(origins, directions))
-        worker.start()
-        turns = 0
-        while worker.is_alive():
-            time.sleep(0.001)
-            turns += 1
-        self.assertGreater(turns, 3)
+        points, directions = np.ones((3_000_000, 3), np.float32), random_rays(3_000_000)[1]
+        keys, view = np.full((8_000_000, 3), 32769, np.uint16), frontlux.FieldOfView.spinning(0.5, 10.0)
+        for function, args in [(caster.cast, (points, directions)), (self.grid.keys_of, (points,)), (self.grid.centers, (keys,)),
+                               (self.grid.at, (keys,)), (view.directions, (1000, 1000)),
+                               (frontlux.pinhole_directions, (np.eye(3), 1000, 1000))]:
+            worker = threading.Thread(target=function, args=args)
+            worker.start()
+            turns = 0
+            while worker.is_alive():
+                time.sleep(0.001)
+                turns += 1
+            self.assertGreater(turns, 3, function)
+
+    def test_python_exits_while_a_thread_casts(self):
+        script = """
+import threading, time
+import numpy as np
+import frontlux
+caster = frontlux.RayCaster(frontlux.VoxelGrid.from_occupancy(np.zeros((30, 30, 30), bool), 0.1))
+directions = np.random.default_rng(1).normal(size=(100_000, 3))
+def cast():
+    while True:
+        caster.cast((1.5, 1.5, 1.5), directions)
+for _ in range(2):
+    threading.Thread(target=cast, daemon=True).start()
+time.sleep(0.1)
+"""
+        for _ in range(10):
+            done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_signal_stops_a_long_cast(self):
+        caster = frontlux.RayCaster(self.grid, "grid")
+        out = {"distance": np.full(5_000_000, np.nan, np.float32)}
+        directions = np.full((5_000_000, 3), (0.5, 1.0, 0.2), np.float32)
+        def interrupt():
+            while np.isnan(out["distance"][0]):
+                time.sleep(0.001)
+            os.kill(os.getpid(), signal.SIGINT)
+        threading.Thread(target=interrupt).start()
+        with self.assertRaises(KeyboardInterrupt):
+            caster.cast((1.05, 1.05, 1.05), directions, out=out)
+        self.assertTrue(np.isnan(out["distance"][-1]))
 
 
 class Refusals(unittest.TestCase):
@@ -130,6 +166,24 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "unknown: 'stop', but has to be 'block' or 'pass'", cast, p, p, unknown="stop")
         unaligned = np.frombuffer(b"\0" * 97, np.uint8)[1:].view(np.float64).reshape(4, 3)
         self.refuses(ValueError, "not contiguous", cast, unaligned, p)
+
+    def test_what_is_no_number(self):
+        cast, p = self.caster.cast, self.points
+        self.refuses(TypeError, "origins: no array of numbers", cast, ("1.05", "1", "1"), p)
+        self.refuses(TypeError, "max_range: no array of numbers", cast, p, p, None)
+        self.refuses(TypeError, "directions: no array of numbers", cast, p, [[1.0, None, 0.0]])
+        self.refuses(TypeError, "origins: no array of numbers", cast, [True, False, True], p)
+        self.refuses(TypeError, "origins: no array", cast, [[1.0, 2.0], [3.0]], p)
+        self.refuses(TypeError, "keys: ", self.caster.grid.at, None)
+        class Broken:
+            def __init__(self, error):
+                self.error = error
+            def __array__(self, *_, **__):
+                raise self.error
+        for error in (KeyboardInterrupt, MemoryError, ZeroDivisionError):
+            self.refuses(error, "", cast, Broken(error), p)
+        self.refuses(TypeError, "origins: no array: ValueError: it has none", cast, Broken(ValueError("it has none")), p)
+        np.testing.assert_array_equal(cast((1, 1, 1), p)["key"], cast([1.0, np.float32(1), np.int8(1)], p)["key"])
 
     def test_read_only_arguments_are_read(self):
         self.points.flags.writeable = False
@@ -174,7 +228,38 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, "max_range", live.insert, self.points, (0, 0, 0), np.nan)
         self.refuses(ValueError, r"pose: has to be of shape \(4, 4\)", live.insert_scan, self.points, np.ones((3, 4)))
         self.refuses(ValueError, "rotation", live.insert_scan, self.points, 2 * np.eye(4))
+        shifted = np.eye(4)
+        shifted[:3, 3] = 1.0, 2.0, 3.0
+        for wrong in (np.diag([1.0, 1.0, -1.0, 1.0]), np.ascontiguousarray(shifted.T), np.diag([1.0, 1.0, 1.0, 2.0]),
+                      np.full((4, 4), np.nan)):
+            self.refuses(ValueError, r"pose: .*rotation.*\(0, 0, 0, 1\)", live.insert_scan, self.points, wrong)
+        live.insert_scan(self.points, shifted)
         self.refuses(ValueError, r"ends in \.bt or \.ot", live.write, "map.txt")
+
+    def test_changes_that_do_not_follow(self):
+        a, b = frontlux.LiveMap(0.1), frontlux.LiveMap(0.1)
+        frontiers, image = frontlux.FrontierSet(a.grid), frontlux.ViewQualityImage(0.1, frontlux.FieldOfView.cone(1.0, 3.0))
+        insert = lambda live, x: live.insert([[x, 0.05, 0.05]], (0.05, 0.05, 0.05))
+        def update(change):
+            image.update(a.caster, a.grid.keys(Occupancy.FREE), frontiers.keys, change)
+        first = insert(a, 1.0)
+        frontiers.update(first)
+        update(first)
+        other, _, third = insert(b, -1.0), insert(a, 2.0), insert(a, 3.0)
+        keys, gain = frontiers.keys, image.gain
+        for change in (other, third, insert(frontlux.LiveMap(0.2), 1.0)):
+            self.refuses(ValueError, "", frontiers.update, change)
+            self.refuses(ValueError, "", update, change)
+        self.refuses(ValueError, "change: .*another map", frontiers.update, other)
+        np.testing.assert_array_equal(frontiers.keys, keys)
+        np.testing.assert_array_equal(image.gain, gain)
+        # Whoever begins anew goes on; so does who takes every change.
+        frontiers = frontlux.FrontierSet(a.grid)
+        image.render(a.caster, a.grid.keys(Occupancy.FREE), frontiers.keys)
+        last = insert(a, 4.0)
+        frontiers.update(last)
+        update(last)
+        np.testing.assert_array_equal(frontiers.keys, frontlux.FrontierSet(a.grid).keys)
 
     def test_rays_that_octomap_cannot_follow(self):
         fine = frontlux.LiveMap(0.001)
@@ -284,6 +369,10 @@ class Maps(unittest.TestCase):
         yaw, hits = frontlux.best_window(exact.bin_hits[exact.best], 1.5)
         self.assertLessEqual(hits, exact.gain[exact.best])
         self.assertLessEqual(abs(yaw), np.pi)
+        for wrong, error in (([1, -2, 3, 4], ValueError), ([2**32, 1], ValueError), ([0.5, 1.0], TypeError), ("many", TypeError)):
+            with self.assertRaisesRegex(error, "bin_hits"):
+                frontlux.best_window(wrong, 2.0)
+        self.assertEqual(frontlux.best_window([1, 2, 3, 4], 2.0)[1], 4)
         # By hand, for the best one.
         seen = caster.visible(free[exact.best], targets)
         self.assertGreaterEqual(seen.sum(), exact.gain[exact.best])
@@ -292,6 +381,13 @@ class Maps(unittest.TestCase):
         intrinsics = np.array([[500.0, 0, 320], [0, 510, 240], [0, 0, 1]])
         directions = frontlux.pinhole_directions(intrinsics, 640, 480)
         self.assertEqual(directions.shape, (480, 640, 3))
+        fine = np.array([[500.0, 0, 320.1], [0, 510, 240.1], [0, 0, 1]])
+        v, u = np.indices((480, 640)) + 0.5
+        centers = np.stack([(u - 320.1) / 500, (v - 240.1) / 510, np.ones_like(u)], axis=-1)
+        centers /= np.sqrt((centers**2).sum(axis=-1, keepdims=True))
+        ours = frontlux.pinhole_directions(fine, 640, 480)
+        # Some are rounded to the other neighbour in float32; with intrinsics in float32 two fifths would be.
+        self.assertLess((ours != np.float32(centers)).mean(), 1e-3)
         pixels = directions[17, 5] @ intrinsics.T
         np.testing.assert_allclose(pixels[:2] / pixels[2], [5.5, 17.5], atol=1e-3)
         self.assertEqual(frontlux.FieldOfView.cone(0.3, 2.0).directions(10, 3).shape, (3, 10, 3))
@@ -300,6 +396,16 @@ class Maps(unittest.TestCase):
 class Module(unittest.TestCase):
     def test_everything_is_documented_and_typed(self):
         public_names.expect_documented_and_typed(self, frontlux, {"IntEnum"})
+
+    def test_its_version_is_that_of_the_project(self):
+        project = (pathlib.Path(__file__).parents[2] / "CMakeLists.txt").read_text()
+        self.assertIn(f"project(frontlux VERSION {frontlux.__version__} ", project.replace("\n", " "))
+
+    @unittest.skipUnless(np.__version__.startswith("1."), "may be built for numpy 2")
+    def test_a_numpy_that_it_cannot_read_is_refused(self):
+        script = "import sys, types; numpy = sys.modules['numpy'] = types.ModuleType('numpy'); numpy.__version__ = '2.0.1'; import frontlux"
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertIn("ImportError: numpy 2.0.1, but this frontlux", done.stderr)
 
     def test_import_is_quick(self):
         def seconds(code):

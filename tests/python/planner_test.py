@@ -104,6 +104,9 @@ class Robots(unittest.TestCase):
                 ("ground", (0.0, 1.0), ValueError), ("min_height", -1.0, ValueError)]:
             with self.assertRaisesRegex(error, name if error is ValueError else ""):
                 planner.Robot(**{**good, name: value})
+        planner.Robot(**{**good, "name": 20 * "é"})
+        with self.assertRaisesRegex(ValueError, "name: .*40 bytes"):
+            planner.Robot(**{**good, "name": 21 * "é"})
         with self.assertRaisesRegex(ValueError, "max_range: 2000"):
             planner.Robot(**{**good, "view": frontlux.FieldOfView.cone(0.5, 2000.0)})
         with self.assertRaisesRegex(RuntimeError, "no_robot.json"):
@@ -146,6 +149,14 @@ class Scans(unittest.TestCase):
             self.assertEqual(grids[0], other)
         states = [grid.states(*grids[0].known_bounds) for grid in (grids[0], grids[3])]
         self.assertLess((states[0] != states[1]).mean(), 1e-3)  # ranges of points are rounded
+
+    def test_a_range_of_the_sensors_own_is_a_hit_in_either_precision(self):
+        robot = planner.Robot("drone", "space", (0.6, 0.6, 0.4), frontlux.FieldOfView.cone(0.1, 1.1), 8, 8)
+        for dtype in (np.float32, np.float64):
+            exploration = planner.ContinuousExploration([robot], room().bounds, 0.2)
+            exploration.begin([room().start])
+            exploration.insert(0, room().start, np.array([[1.0, 0.0, 0.0]]), np.array([1.1], dtype))
+            self.assertEqual(exploration.grid.count()[2], 1, dtype)
 
     def test_what_was_not_measured_changes_nothing(self):
         exploration = in_motion()
@@ -218,6 +229,47 @@ class InMotion(unittest.TestCase):
         np.testing.assert_array_equal(by_run.at(0, times)["pose"], by_hand.at(0, times)["pose"])
         self.assertEqual(by_hand.finish(3.5).time, 3.5)
 
+    def test_runs_in_parts_are_one_run(self):
+        runs = []
+        for parts in ([4.0], [0.0, 0.1, 1.0, 1.0, 2.0, 2.9, 3.0, 4.0]):
+            exploration = planner.ContinuousExploration([drone("quick"), drone("slow", 3.0)], room().bounds, 0.2)
+            exploration.begin([room().start, np.add(room().start, (0.0, 2.0, 0.0, 0.0))], time=0.7)
+            scans = []
+            def sense(robot, pose, now):
+                scans.append((robot, now, *pose))
+                return room().measure(exploration.robots[robot], pose)
+            ends = [planner.run(exploration, sense, until=0.7 + part) for part in parts]
+            self.assertEqual(sorted(ends), ends)
+            runs.append((ends[-1], scans, exploration.grid))
+        self.assertEqual(len(scans), 17 + 13)
+        self.assertEqual(runs[0], runs[1])
+
+    def test_a_run_goes_on_after_an_exception_and_after_calls_of_ones_own(self):
+        exploration, scans = in_motion(2), []
+        def sense(robot, pose, now):
+            if robot == 1 and now == 0.5 and scans.count((1, 0.25)) and not broken:
+                broken.append(now)
+                raise KeyboardInterrupt
+            scans.append((robot, now))
+            return room().measure(exploration.robots[robot], pose)
+        broken = []
+        with self.assertRaises(KeyboardInterrupt):
+            planner.run(exploration, sense, until=1.0)
+        planner.run(exploration, sense, until=1.0)
+        expected = [(robot, scan / 4) for scan in range(5) for robot in (0, 1)]
+        self.assertEqual(scans, expected)
+        exploration.plan(1.6)
+        planner.run(exploration, sense, until=2.0)
+        self.assertEqual(scans, [*expected, (0, 1.75), (1, 1.75), (0, 2.0), (1, 2.0)])
+
+    def test_frontiers_follow_the_scans(self):
+        exploration = in_motion(2)
+        frontiers = frontlux.FrontierSet(exploration.grid)
+        def sense(robot, pose, now):
+            frontiers.update(exploration.insert(robot, pose, *room().measure(exploration.robots[robot], pose)))
+        planner.run(exploration, sense, until=3.0)
+        np.testing.assert_array_equal(frontiers.keys, frontlux.FrontierSet(exploration.grid).keys)
+
     def test_two_robots_share_the_room(self):
         exploration = in_motion(2, goal="render")
         senders = []
@@ -244,6 +296,25 @@ class InMotion(unittest.TestCase):
         exploration.lose(0, pose, 1.2)
         np.testing.assert_array_equal(exploration.at(0, 9.0)["pose"], pose)
         self.assertIsNone(exploration.plan(9.0))
+        self.assertIsNotNone(exploration.end)
+
+    def test_lost_robots_take_no_scans(self):
+        exploration, scans = in_motion(2), []
+        def sense(robot, pose, now):
+            scans.append(robot)
+            return room().measure(exploration.robots[robot], pose)
+        planner.run(exploration, sense, until=1.0)
+        self.assertEqual(exploration.lost, [])
+        exploration.lose(0, exploration.at(0, 1.1)["pose"], 1.1)
+        self.assertEqual(exploration.lost, [0])
+        scans.clear()
+        self.assertEqual(planner.run(exploration, sense, until=2.0), 2.0)
+        self.assertEqual(scans, [1] * 4)
+        exploration.lose(1, exploration.at(1, 2.0)["pose"], 2.0)
+        self.assertEqual(exploration.lost, [0, 1])
+        scans.clear()
+        self.assertEqual(planner.run(exploration, sense), 2.0)
+        self.assertEqual(scans, [])
         self.assertIsNotNone(exploration.end)
 
     def test_a_ground_robot(self):
@@ -310,8 +381,74 @@ class InLockStep(unittest.TestCase):
         exploration.step(lambda robot, pose: None)
         np.testing.assert_array_equal(exploration.poses[:, :3], before[:, :3])
 
+    def test_a_map_outlives_its_drive(self):
+        def broken(robot, pose):
+            raise KeyboardInterrupt
+        for scans in (0, 1, 2):
+            exploration, count = self.exploration(), iter(range(scans))
+            def drive(robot, pose):
+                return self.drive(robot, pose) if next(count, None) is not None else broken(robot, pose)
+            with self.assertRaises(KeyboardInterrupt):
+                exploration.begin([room().start], drive)
+            self.assertEqual(exploration.end, "interrupted")
+            self.assertIn("drive", exploration.end_reason)
+            self.assertEqual(exploration.poses.shape[1], 4)
+            self.assertEqual(exploration.frontiers.shape[1], 3)
+            counts = exploration.grid.count()
+            self.assertEqual(counts[1] > 1000, scans > 0)
+            self.assertAlmostEqual(exploration.known_volume, (counts[1] + counts[2]) * 0.2**3)
+            with tempfile.TemporaryDirectory() as folder:
+                exploration.write(os.path.join(folder, "map.bt"))
+                self.assertEqual(frontlux.VoxelGrid.read(os.path.join(folder, "map.bt")), exploration.grid)
+            for call in (lambda: exploration.begin([room().start], self.drive), lambda: exploration.step(self.drive)):
+                with self.assertRaisesRegex(RuntimeError, "unfinished, since drive raised"):
+                    call()
+
+    def test_drive_may_return_any_pair(self):
+        grids = []
+        for kind in (tuple, list):
+            exploration = self.exploration()
+            exploration.begin([room().start], lambda robot, pose: kind(self.drive(robot, pose)))
+            grids.append(exploration.grid)
+        self.assertEqual(*grids)
+
+    def test_what_is_refused_before_it_drives_breaks_nothing(self):
+        exploration = self.exploration()
+        with self.assertRaisesRegex(ValueError, "before its beginning"):
+            exploration.step(self.drive)
+        exploration.begin([room().start], self.drive)
+        with self.assertRaisesRegex(ValueError, "begun already"):
+            exploration.begin([room().start], self.drive)
+        self.assertIsNone(exploration.end)
+        exploration.step(self.drive)
+
+    def test_python_exits_while_robots_drive(self):
+        script = """
+import threading, time
+import numpy as np
+from frontlux import planner
+robot = planner.Robot("drone", "space", (0.6, 0.6, 0.4), planner.uav().view, 40, 30)
+directions = robot.view.directions(40, 30)
+def drive(robot, pose):
+    time.sleep(0.001)
+    return directions, np.full((30, 40), 1.5)
+def explore():
+    while True:
+        exploration = planner.Exploration([robot], ((0.0, 0.0, 0.0), (6.0, 5.0, 3.0)), 0.2)
+        exploration.begin([(3.0, 2.5, 1.5, 0.0)], drive)
+        exploration.step(drive)
+for _ in range(2):
+    threading.Thread(target=explore, daemon=True).start()
+time.sleep(0.2)
+"""
+        for _ in range(5):
+            done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_wrong_drives(self):
         for wrong, error, pattern in [(lambda r, p: 3, TypeError, "drive: has to return"),
+                                      (lambda r, p: [np.ones((4, 3))], TypeError, "drive: has to return"),
+                                      (lambda r, p: "ab", TypeError, "directions: no array of numbers"),
                                       (lambda r, p: (np.ones((4, 3)), np.ones(4)), ValueError, "not of unit length"),
                                       (lambda r, p: 1 / 0, ZeroDivisionError, "")]:
             exploration = self.exploration()
@@ -381,6 +518,9 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, r"pose: shape \(3, 4\), but has to be \(4,\)", insert, 0, np.ones((3, 4)), ahead, [1.0])
         self.refuses(ValueError, "pose: .*rotation", insert, 0, 2 * np.eye(4), ahead, [1.0])
         self.refuses(ValueError, "pose: .*rotation", insert, 0, np.diag([1.0, 1.0, -1.0, 1.0]), ahead, [1.0])
+        self.refuses(ValueError, r"pose: .*\(0, 0, 0, 1\)", insert, 0, np.ascontiguousarray(matrix(start).T), ahead, [1.0])
+        self.refuses(TypeError, "ranges: no array of numbers", insert, 0, start, ahead, None)
+        self.refuses(TypeError, "pose: no array of numbers", insert, 0, ("1", "1", "1", "0"), ahead, [1.0])
         self.refuses(ValueError, "pose: not finite", insert, 0, (0.0, 0.0, NAN, 0.0), ahead, [1.0])
         self.refuses(ValueError, "pose: .*outside the key range", insert, 0, (1e9, 0.0, 0.0, 0.0), ahead, [1.0])
         self.refuses(ValueError, "ranges and directions", insert, 0, start, ahead, [1.0, 2.0])

@@ -44,6 +44,14 @@ class Recordings(unittest.TestCase):
         self.assertEqual(self.recording.starts.shape, (2, 4))
         self.assertEqual((self.recording.end, self.recording.truncated), ("nothing_to_do", False))
 
+    def test_recordings_are_told_apart_and_shown_in_short(self):
+        other = frontlux.read_recording(self.run_folder / "run.frontlux")
+        self.assertEqual(self.recording, self.recording)
+        self.assertNotEqual(self.recording, other)
+        self.assertEqual(len({self.recording, self.recording, other}), 2)
+        self.assertRegex(repr(other), r"^<frontlux.Recording of 'room': \d+ steps of ugv, uav; nothing_to_do>$")
+        self.assertRegex(repr(dataclasses.replace(other, end=None)), "; unfinished>$")
+
     def test_steps_are_those_of_the_table(self):
         steps = self.recording.steps
         self.assertGreater(len(steps["number"]), 3)

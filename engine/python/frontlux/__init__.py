@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from ._engine import (FieldOfView, FrontierSet, LiveMap, MapChange, RayCaster, ViewQualityImage, VoxelGrid,
+from ._engine import (FieldOfView, FrontierSet, LiveMap, MapChange, RayCaster, ViewQualityImage, VoxelGrid, __version__,
                       best_window, instruction_set, pinhole_directions)
 from ._recording import Recording, read_recording
 

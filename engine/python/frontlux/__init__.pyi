@@ -19,6 +19,8 @@ Keys = Union[UInt16, Sequence[int]]
 Unknown = Literal["block", "pass"]
 File = Union[str, PathLike[str]]
 
+__version__: str
+
 class Occupancy(IntEnum):
     UNKNOWN = 0
     FREE = 1
@@ -133,7 +135,8 @@ class ViewQualityImage:
     @property
     def best(self) -> int: ...
 
-def best_window(bin_hits: UInt32, opening: float, containing: Optional[float] = ...) -> Tuple[float, int]: ...
+def best_window(bin_hits: Union[NDArray[np.integer[Any]], Sequence[int]], opening: float,
+                containing: Optional[float] = ...) -> Tuple[float, int]: ...
 def instruction_set() -> str: ...
 def pinhole_directions(intrinsics: Floats, columns: int, rows: int) -> Float32: ...
 

@@ -19,7 +19,7 @@ _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "conta
 _ROBOT_COUNTS = ("gain_tangent", "gain_predicted", "gain_sum", "gained", "travelled")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Recording:
     """A run: n steps (in motion: plannings) of r robots. Step 0 is the start. Times are in seconds on the run's clock,
     lengths in metres, poses (x, y, z, yaw) of sensors in metres and radians in the map's frame.
@@ -64,6 +64,10 @@ class Recording:
     reassigned: Dict[str, np.ndarray]
     end: Optional[str]
     truncated: bool
+
+    def __repr__(self):
+        return (f"<frontlux.Recording of {self.world!r}: {len(self.steps['number'])} steps of {', '.join(self.robots)}; "
+                f"{self.end or 'unfinished'}>")
 
     def grid(self, step: Optional[int] = None) -> VoxelGrid:
         """The map after a step, counted from 0; without one, after the last step. ValueError if there is no such step."""

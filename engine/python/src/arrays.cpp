@@ -6,30 +6,30 @@ namespace frontlux::python {
 namespace {
 
 // An ndarray as it is, anything else as numpy makes an array of it.
-py::array array_of(const char* name, const py::object& object, const py::object& dtype) {
+py::array array_of(const char* name, const py::object& object) {
   if (py::isinstance<py::array>(object)) return py::reinterpret_borrow<py::array>(object);
   try {
-    return py::module_::import("numpy").attr("asarray")(object, dtype);
+    return py::module_::import("numpy").attr("asarray")(object);
   } catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError) && !error.matches(PyExc_ValueError)) throw;
     throw py::type_error(std::string(name) + ": no array: " + error.what());
   }
 }
 
-// A list of integers as numpy makes an array of it, which would wrap what is no key.
+// Other than ndarrays as float64: what numpy itself would make a number of, as text and None, is none.
+py::array numbers_of(const char* name, const py::object& object) {
+  py::array array = array_of(name, object);
+  if (array.is(object)) return array;
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u' && kind != 'f')
+    throw py::type_error(std::string(name) + ": no array of numbers, but of dtype " +
+                         py::str(array.dtype()).cast<std::string>());
+  return array.attr("astype")(py::dtype::of<double>(), py::arg("order") = "C", py::arg("copy") = false);
+}
+
 py::array keys_of(const char* name, const py::object& object) {
   if (py::isinstance<py::array>(object)) return py::reinterpret_borrow<py::array>(object);
-  const py::array numbers = array_of(name, object, py::none());
-  const char kind = numbers.dtype().kind();
-  if (numbers.size() != 0) {
-    if (kind != 'i' && kind != 'u') throw py::type_error(std::string(name) + ": a voxel key holds integers");
-    const auto least = numbers.attr("min")().cast<double>(), greatest = numbers.attr("max")().cast<double>();
-    if (least < 0 || greatest > 65535)
-      throw py::value_error(std::string(name) +
-                            ": a voxel key is from 0 to 65535, but there are numbers from " +
-                            py::str(numbers.attr("min")()).cast<std::string>() + " to " +
-                            py::str(numbers.attr("max")()).cast<std::string>());
-  }
-  return numbers.attr("astype")(py::dtype::of<std::uint16_t>());
+  return integers_of<std::uint16_t>(name, object);
 }
 
 [[noreturn]] void wrong_type(const char* name, const py::array& array, const char* expected) {
@@ -69,6 +69,26 @@ Shape with(Shape shape, py::ssize_t last) {
   return shape;
 }
 
+namespace detail {
+
+py::array integers_of(const char* name, const py::object& object, const py::dtype& dtype, double greatest) {
+  const py::array numbers = array_of(name, object);
+  const char kind = numbers.dtype().kind();
+  if (numbers.size() != 0) {
+    if (kind != 'i' && kind != 'u')
+      throw py::type_error(std::string(name) + ": dtype " + py::str(numbers.dtype()).cast<std::string>() +
+                           ", but has to be of integers");
+    const py::object least = numbers.attr("min")(), most = numbers.attr("max")();
+    if (least.cast<double>() < 0 || most.cast<double>() > greatest)
+      throw py::value_error(std::string(name) + ": numbers from " + py::str(least).cast<std::string>() +
+                            " to " + py::str(most).cast<std::string>() + ", but they have to be from 0 to " +
+                            std::to_string(static_cast<std::uint64_t>(greatest)));
+  }
+  return numbers.attr("astype")(dtype, py::arg("order") = "C");
+}
+
+}  // namespace detail
+
 void check_memory(const char* name, const py::array& array) {
   constexpr int kNeeded =
       py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
@@ -79,7 +99,7 @@ void check_memory(const char* name, const py::array& array) {
 }
 
 Numbers::Numbers(const char* name, const py::object& object, py::ssize_t width)
-    : name_(name), array_(array_of(name, object, py::dtype::of<double>())) {
+    : name_(name), array_(numbers_of(name, object)) {
   if (py::isinstance<py::array_t<float>>(array_))
     floats_ = static_cast<const float*>(array_.data());
   else if (py::isinstance<py::array_t<double>>(array_))
@@ -102,6 +122,18 @@ Shape common_shape(std::initializer_list<const Numbers*> arguments) {
                             " (without the last axis of points), which have to be equal, or of one of them");
   }
   return first == nullptr ? Shape{} : first->shape();
+}
+
+Eigen::Isometry3d pose_of(const Numbers& numbers) {
+  constexpr double kRounding = 1e-4;
+  const Eigen::Isometry3d T_map_sensor(matrix_of<4>(numbers));
+  const Eigen::Matrix3d turn = T_map_sensor.linear();
+  const Eigen::RowVector4d last = T_map_sensor.matrix().row(3) - Eigen::RowVector4d::Unit(3);
+  if (!T_map_sensor.matrix().allFinite() || !(turn * turn.transpose()).isIdentity(kRounding) ||
+      turn.determinant() < 0.0 || !last.isZero(kRounding))
+    throw py::value_error(std::string(numbers.name()) +
+                          ": its upper left (3, 3) has to be a rotation, and its last row (0, 0, 0, 1)");
+  return T_map_sensor;
 }
 
 bool are_keys(const py::object& object) { return py::isinstance<py::array_t<std::uint16_t>>(object); }

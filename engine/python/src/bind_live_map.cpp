@@ -57,7 +57,7 @@ bool can_follow(const Lattice& lattice, const octomap::point3d& origin, const oc
 }
 
 // A scan whose points are in a frame of their own.
-ChangePointer insert(const Self& self, const Numbers& points, const Eigen::Affine3d& T_map_points,
+ChangePointer insert(const Self& self, const Numbers& points, const Eigen::Isometry3d& T_map_points,
                      const Eigen::Vector3f& origin, double max_range) {
   if (std::isnan(max_range)) throw py::value_error("max_range: not a number");
   const std::size_t size = size_of(points.shape());
@@ -85,21 +85,15 @@ ChangePointer insert_points(const Self& self, const py::object& points, const py
                             double max_range) {
   const Numbers sensor("origin", origin, 3);
   if (!sensor.shape().empty()) throw py::value_error("origin: has to be one point, of shape (3,)");
-  return insert(self, Numbers("points", points, 3), Eigen::Affine3d::Identity(), sensor.point(0), max_range);
+  return insert(self, Numbers("points", points, 3), Eigen::Isometry3d::Identity(), sensor.point(0),
+                max_range);
 }
 
 ChangePointer insert_scan(const Self& self, const py::object& points, const py::object& pose,
                           double max_range) {
   const Numbers numbers("pose", pose, 4);
   if (numbers.shape() != Shape{4}) throw py::value_error("pose: has to be of shape (4, 4)");
-  Eigen::Affine3d T_map_sensor;
-  for (Eigen::Index row = 0; row < 4; ++row)
-    for (Eigen::Index column = 0; column < 4; ++column)
-      T_map_sensor.matrix()(row, column) =
-          numbers.number(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
-  const Eigen::Matrix3d turn = T_map_sensor.linear();
-  if (!T_map_sensor.matrix().allFinite() || !(turn * turn.transpose()).isIdentity(1e-4))
-    throw py::value_error("pose: its upper left (3, 3) has to be a rotation");
+  const Eigen::Isometry3d T_map_sensor = pose_of(numbers);
   return insert(self, Numbers("points", points, 3), T_map_sensor, T_map_sensor.translation().cast<float>(),
                 max_range);
 }
@@ -135,7 +129,7 @@ Methods may be called from several threads; insertions wait for each other, and 
       .def_static(
           "read",
           [](const std::filesystem::path& file) {
-            const py::gil_scoped_release others_run;
+            const OthersRun others_run;
             return std::make_shared<Guarded<Map>>(read_octree(file));
           },
           py::arg("file"),
@@ -149,7 +143,9 @@ ray ends outside the key range, or in another voxel with no length in float32. o
 max_range: [m] rays are free up to there, and points beyond it do not count as hits; <= 0: no limit. Raises ValueError, with
 nothing inserted, if a ray passes more than 99,990 voxels. Returns a MapChange.)")
       .def("insert_scan", &insert_scan, py::arg("points"), py::arg("pose"), py::arg("max_range") = -1.0,
-           "The same for points in the sensor's frame. pose: (4, 4), maps the sensor's frame into the map's.")
+           "The same for points in the sensor's frame. pose: (4, 4), maps the sensor's frame into the map's: "
+           "a rotation, "
+           "a translation [m] and (0, 0, 0, 1).")
       .def(
           "write",
           [](const Self& self, const std::filesystem::path& file) {

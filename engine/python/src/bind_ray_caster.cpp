@@ -45,17 +45,24 @@ class Buffer {
 };
 
 // Answers queries a part at a time, so that what lies between numpy's arrays and the caster stays in the
-// cache: queries[i] = make(i); ask(queries, begin), where begin is the number of the first.
+// cache: queries[i] = make(i); ask(queries, begin), where begin is the number of the first. Python's signals,
+// such as Ctrl-C, are looked at from time to time; what they raise ends it.
 template <class Make, class Ask>
 void ask_in_parts(std::size_t size, const Make& make, const Ask& ask) {
   using Query = decltype(make(std::size_t{0}));
-  const py::gil_scoped_release others_run;
-  for_each_chunk(size, Buffer<Query>::kSize, [&](std::size_t begin, std::size_t end) {
+  const auto ask_some = [&](std::size_t begin, std::size_t end) {
     Buffer<Query> buffer;
     const std::span<Query> queries = buffer.first(end - begin);
     for (std::size_t i = begin; i < end; ++i) queries[i - begin] = make(i);
     ask(std::span<const Query>(queries), begin);
-  });
+  };
+  constexpr std::size_t kBetweenSignals = std::size_t{1} << 20;
+  for (std::size_t first = 0; first < size; first += kBetweenSignals) {
+    if (first > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const OthersRun others_run;
+    for_each_chunk(std::min(kBetweenSignals, size - first), Buffer<Query>::kSize,
+                   [&](std::size_t begin, std::size_t end) { ask_some(first + begin, first + end); });
+  }
 }
 
 // The memory of an array of answers' fields, if it is wanted; enumerations are of 8 bits, keys and points
@@ -207,7 +214,7 @@ VoxelGrid snapshot_of(const Held<VoxelGrid>& grid) {
 
 Self make(const Held<VoxelGrid>& held, const std::string& kind) {
   const VoxelGrid grid = snapshot_of(held);
-  const py::gil_scoped_release others_run;
+  const OthersRun others_run;
   std::shared_ptr<RayCaster> caster;
   if (kind == "fast")
     caster = make_ray_caster(grid);
@@ -224,7 +231,7 @@ void update(const Self& self, const Held<VoxelGrid>& held) {
   if (self->own == nullptr)
     throw py::value_error("this caster belongs to a LiveMap, which keeps it up to date");
   const VoxelGrid grid = snapshot_of(held);
-  const py::gil_scoped_release others_run;
+  const OthersRun others_run;
   const std::lock_guard lock(self->updating);
   self->own->update(grid);
 }
@@ -267,7 +274,8 @@ out: a dict with some of these names and arrays to write to; nothing else is com
           "visible", &visible, py::arg("from_points"), py::arg("to_points"), py::arg("unknown") = "block",
           R"(bool (...): whether the line from one point reaches the voxel of the other, and nothing between blocks it.
 
-from_points, to_points: (..., 3) or (3,) points [m]; or uint16 keys, whose centres are then joined in exact integers.)")
+from_points, to_points: (..., 3) or (3,), of the same kind: points [m], float32 or float64; or keys, uint16, whose centres
+are then joined in exact integers. Lists of numbers are points, unless the other argument is an array of keys.)")
       .def("count", &count, py::arg("origins"), py::arg("directions"), py::arg("max_range") = -1.0,
            py::arg("unknown") = "block", py::arg("out") = py::none(),
            R"(How many voxels each ray crosses before it stops, from the voxel of its origin on.

@@ -14,26 +14,30 @@ View make_view(FieldOfView::Shape shape, double horizontal, double vertical, dou
   return std::make_shared<FieldOfView>(view);
 }
 
-py::array_t<float> to_array(const std::vector<Eigen::Vector3d>& directions, std::size_t columns,
-                            std::size_t rows) {
+// An image of the directions that `make()` returns.
+template <class Make>
+py::array_t<float> image_of(std::size_t columns, std::size_t rows, const Make& make) {
+  const std::vector<Eigen::Vector3d> directions = [&] {
+    const OthersRun others_run;
+    return make();
+  }();
   py::array_t<float> array(Shape{static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns), 3});
   float* data = array.mutable_data();
+  const OthersRun others_run;
   for (std::size_t i = 0; i < directions.size(); ++i)
     Eigen::Map<Eigen::Vector3f>(data + 3 * i) = directions[i].cast<float>();
   return array;
 }
 
 py::array_t<float> directions(const View& self, std::size_t columns, std::size_t rows) {
-  return to_array(sensor_directions(*self, columns, rows), columns, rows);
+  return image_of(columns, rows, [&] { return sensor_directions(*self, columns, rows); });
 }
 
 py::array_t<float> pinhole(const py::object& object, std::size_t columns, std::size_t rows) {
   const Numbers numbers("intrinsics", object, 3);
   if (numbers.shape() != Shape{3}) throw py::value_error("intrinsics: has to be of shape (3, 3)");
-  Eigen::Matrix3d intrinsics;
-  for (Eigen::Index row = 0; row < 3; ++row)
-    intrinsics.row(row) = numbers.point(static_cast<std::size_t>(row)).cast<double>();
-  return to_array(pinhole_directions(intrinsics, columns, rows), columns, rows);
+  const Eigen::Matrix3d intrinsics = matrix_of<3>(numbers);
+  return image_of(columns, rows, [&] { return pinhole_directions(intrinsics, columns, rows); });
 }
 
 }  // namespace

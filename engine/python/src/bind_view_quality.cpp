@@ -8,7 +8,12 @@
 namespace frontlux::python {
 namespace {
 
-using Self = Held<ViewQualityImage>;
+// An image, and the map that it shows; none before it shows any.
+struct Shown : ViewQualityImage {
+  using ViewQualityImage::ViewQualityImage;
+  std::optional<VoxelGrid> grid{};
+};
+using Self = Held<Shown>;
 
 Self make(double resolution, const std::shared_ptr<FieldOfView>& view, const std::string& renderer,
           std::optional<int> samples, int azimuth_bins, std::uint64_t seed) {
@@ -20,14 +25,14 @@ Self make(double resolution, const std::shared_ptr<FieldOfView>& view, const std
   options.samples = samples.value_or(ViewQualityOptions::kAll);
   options.azimuth_bins = azimuth_bins;
   options.seed = seed;
-  return std::make_shared<Guarded<ViewQualityImage>>(Lattice(resolution), *view, options);
+  return std::make_shared<Guarded<Shown>>(Lattice(resolution), *view, options);
 }
 
 // Calls use(image, viewpoints, targets).
 template <class Use>
 auto with_keys(const Self& self, const py::object& viewpoints, const py::object& targets, const Use& use) {
   const Keys places("viewpoints", viewpoints), seen("targets", targets);
-  return self->use([&](ViewQualityImage& image) { return use(image, places.span(), seen.span()); });
+  return self->use([&](Shown& image) { return use(image, places.span(), seen.span()); });
 }
 
 // An array of one number of each value.
@@ -53,8 +58,8 @@ py::array_t<std::uint32_t> bin_hits(const Self& self) {
   return py::array_t<std::uint32_t>(Shape{static_cast<py::ssize_t>(rows), bins}, hits.data());
 }
 
-AzimuthWindow window(const py::array_t<std::uint32_t, py::array::c_style>& hits, double opening,
-                     std::optional<double> containing) {
+AzimuthWindow window(const py::object& object, double opening, std::optional<double> containing) {
+  const py::array_t<std::uint32_t> hits = integers_of<std::uint32_t>("bin_hits", object);
   if (hits.ndim() != 1) throw py::value_error("bin_hits: has to be of shape (bins,)");
   return best_window({hits.data(), static_cast<std::size_t>(hits.size())}, opening, containing);
 }
@@ -62,8 +67,8 @@ AzimuthWindow window(const py::array_t<std::uint32_t, py::array::c_style>& hits,
 }  // namespace
 
 void bind_view_quality(py::module_& module) {
-  py::class_<Guarded<ViewQualityImage>, Self>(
-      module, "ViewQualityImage", R"(How many targets each of many viewpoints sees, updated with the map.
+  py::class_<Guarded<Shown>, Self>(module, "ViewQualityImage",
+                                   R"(How many targets each of many viewpoints sees, updated with the map.
 
 Arrays have one entry for each viewpoint, in the order in which these were given.)")
       .def(py::init(&make), py::arg("resolution"), py::arg("field_of_view"), py::arg("renderer") = "rays",
@@ -76,10 +81,11 @@ all, many viewpoints at once. azimuth_bins: sectors of the horizon in which visi
           "render",
           [](const Self& self, const std::shared_ptr<Caster>& caster, const py::object& viewpoints,
              const py::object& targets) {
-            with_keys(self, viewpoints, targets,
-                      [&](ViewQualityImage& image, const auto& places, const auto& seen) {
-                        image.render(*caster->answers, places, seen);
-                      });
+            with_keys(self, viewpoints, targets, [&](Shown& image, const auto& places, const auto& seen) {
+              const VoxelGrid grid = caster->answers->grid().value();
+              image.render(*caster->answers, places, seen);
+              image.grid = grid;
+            });
           },
           py::arg("caster"), py::arg("viewpoints"), py::arg("targets"),
           "Renders every viewpoint. viewpoints, targets: uint16 keys (..., 3).")
@@ -87,15 +93,19 @@ all, many viewpoints at once. azimuth_bins: sectors of the horizon in which visi
           "update",
           [](const Self& self, const std::shared_ptr<Caster>& caster, const py::object& viewpoints,
              const py::object& targets, const std::shared_ptr<Change>& change) {
-            return with_keys(self, viewpoints, targets,
-                             [&](ViewQualityImage& image, const auto& places, const auto& seen) {
-                               return image.update(*caster->answers, places, seen, change->change());
-                             });
+            return with_keys(
+                self, viewpoints, targets, [&](Shown& image, const auto& places, const auto& seen) {
+                  if (image.grid) change->expect_from(*image.grid);
+                  const std::size_t rendered = image.update(*caster->answers, places, seen, change->change());
+                  image.grid = change->grid;
+                  return rendered;
+                });
           },
           py::arg("caster"), py::arg("viewpoints"), py::arg("targets"), py::arg("change"),
           R"(Renders only what is new, and what a change since the last call may concern; the same values as `render`'s.
 
-Returns the number of viewpoints that were rendered.)")
+change: every one since the last call, in their order. Returns the number of viewpoints that were rendered. Raises
+ValueError for a change of another map, or if one before it was left out: `render` begins anew.)")
       .def("__len__",
            [](const Self& self) {
              return self->use([](const ViewQualityImage& image) { return image.size(); });
@@ -130,15 +140,15 @@ Returns the number of viewpoints that were rendered.)")
           "The place of the viewpoint with the greatest gain. Raises ValueError if there are no viewpoints.");
   module.def(
       "best_window",
-      [](const py::array_t<std::uint32_t, py::array::c_style>& hits, double opening,
-         std::optional<double> containing) {
+      [](const py::object& hits, double opening, std::optional<double> containing) {
         const AzimuthWindow best = window(hits, opening, containing);
         return py::make_tuple(best.yaw, best.hits);
       },
       py::arg("bin_hits"), py::arg("opening"), py::arg("containing") = py::none(),
       R"((yaw [rad], hits): the neighbouring sectors within an opening angle [rad] that have the most hits.
 
-bin_hits: uint32 (bins,), as a row of `ViewQualityImage.bin_hits`. containing: [rad] only windows with this azimuth.)");
+bin_hits: integers (bins,), from 0 to 2^32 - 1, as a row of `ViewQualityImage.bin_hits`. containing: [rad]
+only windows with this azimuth.)");
 }
 
 }  // namespace frontlux::python

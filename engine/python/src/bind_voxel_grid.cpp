@@ -117,6 +117,7 @@ py::array_t<std::uint16_t> keys_of(const Held<VoxelGrid>& self, const py::object
   const std::size_t size = size_of(points.shape());
   py::array_t<std::uint16_t> result(with(points.shape(), 3));
   auto* keys = reinterpret_cast<VoxelKey*>(result.mutable_data());
+  const OthersRun others_run;
   for (std::size_t i = 0; i < size; ++i) {
     const auto key = lattice.key(points.point(i));
     if (!key)
@@ -132,6 +133,7 @@ py::array_t<float> centers(const Held<VoxelGrid>& self, const py::object& object
   const Lattice lattice = self->use([](const VoxelGrid& grid) { return grid.lattice(); });
   py::array_t<float> result(with(keys.shape(), 3));
   float* data = result.mutable_data();
+  const OthersRun others_run;
   for (std::size_t i = 0; i < keys.span().size(); ++i)
     Eigen::Map<Eigen::Vector3f>(data + 3 * i) = lattice.center(keys.span()[i]);
   return result;
@@ -155,7 +157,7 @@ map's origin. A copy is a snapshot and costs nothing.)")
       .def_static(
           "read",
           [](const std::filesystem::path& file) {
-            const py::gil_scoped_release others_run;
+            const OthersRun others_run;
             return std::make_shared<Guarded<VoxelGrid>>(make_voxel_grid(read_octree(file)));
           },
           py::arg("file"),

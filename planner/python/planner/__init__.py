@@ -1,7 +1,10 @@
 """Robots that explore: scans go in as numpy arrays, trajectories come out. See docs/python.md."""
 import math
+import weakref
 
 from ._planner import ContinuousExploration, Exploration, Plan, Robot, Step, Trajectory, uav, ugv
+
+_TAKEN = weakref.WeakKeyDictionary()  # by an exploration's runs: of each robot, the number of scans
 
 
 def run(exploration, sense, until=math.inf, planned=None):
@@ -9,24 +12,37 @@ def run(exploration, sense, until=math.inf, planned=None):
 
     exploration: ContinuousExploration that has begun. sense(robot, pose, time): called for each scan with the robot's number,
     the pose of its sensor, float64 (4,), and the time [s]; returns (directions, ranges) as `insert` takes them, or None for no
-    scan. until: [s] of the clock. planned(plan): called with each Plan. Exceptions of both end the run; it can go on with another
-    call. Returns the time [s] of the last scan.
+    scan. Robots that are lost take none. until: [s] of the clock. planned(plan): called with each Plan. Exceptions of both end the
+    run. Returns the time [s] of the last scan, or `exploration.time` if there was none.
+
+    Scans are due at multiples of their periods since the exploration's begin, so that some runs one after the other are the same
+    as one. What was due before `exploration.time` is left out; a scan whose `sense` raised an exception is due again.
     """
-    begin = now = exploration.time
+    begin, now = exploration.begin_time, exploration.time
+    if begin is None:
+        raise ValueError("the exploration has not begun: call begin first")
     rates = [robot.rate for robot in exploration.robots]
-    taken = [0] * len(rates)
-    while exploration.end is None:
-        due = [begin + count / rate for count, rate in zip(taken, rates)]
-        if min(due) > until:
-            break
-        now = min(due)
-        for robot in (robot for robot, time in enumerate(due) if time == now):
+    taken = _TAKEN.setdefault(exploration, [0] * len(rates))
+    for robot, rate in enumerate(rates):
+        taken[robot] = max(taken[robot], math.floor((now - begin) * rate) - 1)  # rounding may have added one
+        while begin + taken[robot] / rate < now:
             taken[robot] += 1
+    while exploration.end is None:
+        lost = exploration.lost
+        due = {robot: begin + taken[robot] / rate for robot, rate in enumerate(rates) if robot not in lost}
+        earliest = min(due.values(), default=now)
+        if due and earliest > until:
+            break
+        now = earliest
+        for robot in [robot for robot, time in due.items() if time == now]:
             pose = exploration.at(robot, now)["pose"]
             scan = sense(robot, pose, now)
             if scan is not None:
                 exploration.insert(robot, pose, *scan)
+            taken[robot] += 1
         while exploration.end is None and (plan := exploration.plan(now)):
             if planned is not None:
                 planned(plan)
+        if not due:
+            break
     return now

@@ -16,7 +16,7 @@ Floats = Union[NDArray[np.float32], Float64, Sequence[float], Sequence[Sequence[
 Keys = Union[UInt16, Sequence[int]]
 File = Union[str, PathLike[str]]
 Scan = Tuple[Floats, Floats]  # directions, ranges
-Drive = Callable[[int, Float64], Optional[Scan]]
+Drive = Callable[[int, Float64], Optional[Union[Scan, Sequence[Floats]]]]
 
 @final
 class Robot:
@@ -118,6 +118,10 @@ class ContinuousExploration:
     def write(self, file: File) -> None: ...
     @property
     def robots(self) -> List[Robot]: ...
+    @property
+    def lost(self) -> List[int]: ...
+    @property
+    def begin_time(self) -> Optional[float]: ...
     @property
     def time(self) -> float: ...
     @property

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace frontlux::python {
 namespace {
@@ -20,7 +21,9 @@ struct Continuous {
   Team team;
   ContinuousExploration exploration;
   bool begun = false;
-  double time = 0.0;          // [s] the last that was given
+  double begin_time = 0.0;
+  double time = 0.0;  // [s] the last that was given
+  std::set<std::size_t> lost{};
   std::size_t frontiers = 0;  // at the last planning
 
   explicit Continuous(Team given) : team(std::move(given)), exploration(team.options, Mapping(team.map)) {}
@@ -50,7 +53,7 @@ Self make(const std::vector<std::shared_ptr<planner::RobotDescription>>& robots,
           std::optional<double> epsilon, std::optional<int> max_steps, const std::string& sensor_model) {
   const Team team = team_in_motion({robots, bounds, resolution, goal, seed, epsilon, max_steps, sensor_model},
                                    latency, period);
-  const py::gil_scoped_release others_run;
+  const OthersRun others_run;
   return std::make_shared<Guarded<Continuous>>(team);
 }
 
@@ -62,6 +65,7 @@ StepPointer begin(const Self& self, const py::object& object, double time, doubl
     state.pass(time);
     auto step = std::make_shared<ExplorationStep>(state.exploration.begin(starts, time));
     state.begun = true;
+    state.begin_time = time;
     return step;
   });
 }
@@ -100,7 +104,7 @@ void at_rest(const Self& self, std::size_t robot, const py::object& pose_object,
   const SensorPose pose = sensor_pose("pose", pose_object, lattice);
   self->use([&](Continuous& state) {
     state.pass(time);
-    tell(state.exploration, pose.upright);
+    tell(state, pose.upright);
   });
 }
 
@@ -108,17 +112,16 @@ void stopped(const Self& self, std::size_t robot, const py::object& pose, double
              const py::object& blocked) {
   std::optional<Keys> cells;
   if (!blocked.is_none()) cells.emplace("blocked", blocked);
-  at_rest(self, robot, pose, time,
-          [&](planner::ContinuousExploration& exploration, const planner::Pose& rests) {
-            exploration.stopped(robot, rests, time, cells ? cells->span() : std::span<const VoxelKey>());
-          });
+  at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
+    state.exploration.stopped(robot, rests, time, cells ? cells->span() : std::span<const VoxelKey>());
+  });
 }
 
 void lose(const Self& self, std::size_t robot, const py::object& pose, double time) {
-  at_rest(self, robot, pose, time,
-          [&](planner::ContinuousExploration& exploration, const planner::Pose& rests) {
-            exploration.lose(robot, rests, time);
-          });
+  at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
+    state.exploration.lose(robot, rests, time);
+    state.lost.insert(robot);
+  });
 }
 
 PlanPointer plan(const Self& self, double time) {
@@ -188,8 +191,9 @@ does not go back. Methods may be called from several threads; they wait for each
 robots: list of Robot. bounds: (2, 3) [m], lower and upper corner of what is explored, bottom included; memory grows with it.
 resolution: [m] edge of a voxel. goal: 'tour', through clusters of frontiers for all robots together; 'render', the best view
 quality; 'cluster'; 'nearest'. seed: of all that is random. latency: [s] from a planning to its trajectory's begin.
-period: [s] after which a robot plans anew at the latest. epsilon: frontiers that a goal has to show, else the end is near;
-None: 10, but not less than 0.3 m2 nor more than 0.9 m2 of them, with 'nearest' 1. max_steps: plannings at most; None: any number.
+period: [s] after which a robot plans anew at the latest. epsilon: frontiers that a stop of a
+tour shows at least; without tours, that a goal has to show, else the end is near. None: 10, with 'nearest' 1, with 'tour' not
+less than 0.3 m2 nor more than 0.9 m2 of them. max_steps: plannings at most; None: any number.
 sensor_model: what a scan says of a voxel: 'octomap', its own weights; 'cautious', a ray that ends in it outweighs five scans
 that pass it: fewer walls are freed at grazing angles, but stray returns close more of the space.)")
       .def("begin", &begin, py::arg("starts"), py::arg("time") = 0.0, py::arg("free_radius") = 0.0,
@@ -271,6 +275,14 @@ blocked: uint16 (..., 3), cells that it could not enter; None: the one that it i
           "Writes the map as an OctoMap file: all log-odds to .ot, free and occupied only to .bt.")
       .def_property_readonly("robots", property([](const Continuous& state) { return state.team.robots; }),
                              "As given: list of Robot.")
+      .def_property_readonly("lost", property([](const Continuous& state) {
+                               return std::vector<std::size_t>(state.lost.begin(), state.lost.end());
+                             }),
+                             "Numbers of the robots that were lost, sorted: list of int.")
+      .def_property_readonly("begin_time", property([](const Continuous& state) {
+                               return state.begun ? std::optional(state.begin_time) : std::nullopt;
+                             }),
+                             "[s] That was given to begin; None before.")
       .def_property_readonly("time", property([](const Continuous& state) { return state.time; }),
                              "[s] The latest time that was given.")
       .def_property_readonly(

@@ -17,7 +17,7 @@ using planner::Drive, planner::Exploration, planner::ExplorationStep, planner::M
 using StepPointer = std::shared_ptr<ExplorationStep>;
 
 /// An exploration whose steps call Python. What they call must not use the exploration itself, and when it
-/// raises, the exploration is over.
+/// raises, the exploration is over: it keeps what it has mapped until then.
 class LockStep {
  public:
   explicit LockStep(Team team) : team_(std::move(team)), exploration_(team_.options, Mapping(team_.map)) {}
@@ -29,30 +29,40 @@ class LockStep {
   auto use(const Use& use) {
     if (user_ == std::this_thread::get_id())
       throw std::invalid_argument("the exploration is in a step: drive cannot use it");
-    const py::gil_scoped_release others_run;
+    const OthersRun others_run;
     const std::lock_guard lock(mutex_);
-    if (broken_)
-      throw std::runtime_error(
-          "the exploration is unfinished, since drive raised an exception; make a new one");
     return use(exploration_);
+  }
+
+  /// Why it is over, in one word and in many; nothing while it goes on.
+  [[nodiscard]] std::optional<std::pair<std::string, std::string>> end() {
+    return use([this](const Exploration& exploration) -> std::optional<std::pair<std::string, std::string>> {
+      if (broken_) return std::pair("interrupted", "drive raised an exception");
+      const auto end = exploration.end();
+      if (!end) return std::nullopt;
+      return std::pair(std::string(name_of(*end)), describe(*end, exploration.options()));
+    });
   }
 
   /// The same for what drives robots: `use(exploration, drive)`.
   template <class Use>
   auto drive(const py::object& function, const Use& work) {
     return use([&](Exploration& exploration) {
+      if (broken_)
+        throw std::runtime_error(
+            "the exploration is unfinished, since drive raised an exception; its map can still be used");
       user_ = std::this_thread::get_id();
+      bool driven = false;
       const Drive drive = [&](std::size_t robot, const Pose& viewpoint) {
-        broken_ = true;  // unless this returns
-        std::optional<planner::Scan> scan = call(function, robot, viewpoint);
-        broken_ = false;
-        return scan;
+        driven = true;
+        return call(function, robot, viewpoint);
       };
       try {
         auto result = work(exploration, drive);
         user_ = std::thread::id();
         return result;
       } catch (...) {
+        broken_ = driven;
         user_ = std::thread::id();
         throw;
       }
@@ -62,14 +72,24 @@ class LockStep {
  private:
   [[nodiscard]] std::optional<planner::Scan> call(const py::object& function, std::size_t robot,
                                                   const Pose& viewpoint) const {
-    const py::gil_scoped_acquire python;
-    const py::object answer = function(robot, to_array(viewpoint));
+    const PythonRuns python;
+    return rest_if_python_exits([&] { return measure(function, robot, viewpoint); });
+  }
+
+  [[nodiscard]] std::optional<planner::Scan> measure(const py::object& function, std::size_t robot,
+                                                     const Pose& viewpoint) const {
+    const py::tuple arguments = py::make_tuple(robot, to_array(viewpoint));
+    PyObject* result = nullptr;
+    // Rests before an object of Python's would be released.
+    rest_if_python_exits([&] { result = PyObject_Call(function.ptr(), arguments.ptr(), nullptr); });
+    if (result == nullptr) throw py::error_already_set();
+    const auto answer = py::reinterpret_steal<py::object>(result);
     if (answer.is_none()) return std::nullopt;
-    if (!py::isinstance<py::tuple>(answer) || py::len(answer) != 2)
+    if (!py::isinstance<py::sequence>(answer) || py::len(answer) != 2)
       throw py::type_error("drive: has to return (directions, ranges), or None if the robot could not go");
-    const auto scan = py::reinterpret_borrow<py::tuple>(answer);
+    const auto scan = py::reinterpret_borrow<py::sequence>(answer);
     const SensorPose pose = sensor_pose("viewpoint", to_array(viewpoint), team_.lattice());
-    return scan_of(pose, scan[0], scan[1], team_.robot(robot).robot.view.max_range);
+    return scan_of(pose, py::object(scan[0]), py::object(scan[1]), team_.robot(robot).robot.view.max_range);
   }
 
   Team team_;
@@ -97,7 +117,7 @@ Self make(const std::vector<std::shared_ptr<planner::RobotDescription>>& robots,
     throw py::value_error("method: '" + method + "', but has to be 'default' or 'paper'");
   const Team team =
       team_in_lockstep({robots, bounds, resolution, goal, seed, epsilon, max_steps}, method == "paper");
-  const py::gil_scoped_release others_run;
+  const OthersRun others_run;
   return std::make_shared<LockStep>(team);
 }
 
@@ -116,15 +136,16 @@ void bind_exploration(py::module_& module) {
       R"(The paper's Alg. 1, step by step: all robots plan, go from viewpoint to viewpoint, and measure at each.
 
 It reaches the world through one function: drive(robot, pose) moves the sensor of robot number `robot` straight to a pose,
-float64 (4,), x, y, z [m] and yaw [rad] in the map's frame, and returns what it measures there, (directions, ranges) as
-ContinuousExploration.insert takes them; or None if it could not go, and is where it was.
+float64 (4,), x, y, z [m] and yaw [rad] in the map's frame, and returns what it measures there, a sequence of directions and
+ranges as ContinuousExploration.insert takes them; or None if it could not go, and is where it was.
 
     exploration.begin(starts, drive)
     while exploration.end is None:
         exploration.step(drive)
 
-The same robots and scans give the same steps, on any number of cores. drive must not use the exploration. An exception in it
-ends the exploration. Methods may be called from several threads; they wait for each other.)")
+The same robots and scans give the same steps, on any number of cores. drive must not use the exploration. An exception in it,
+or a scan that is refused, ends the exploration: step and begin raise RuntimeError from then on, and the map and all else stay
+as they are at that moment. Methods may be called from several threads; they wait for each other.)")
       .def(py::init(&make), py::arg("robots"), py::arg("bounds"), py::arg("resolution") = 0.3,
            py::arg("method") = "default", py::arg("goal") = py::none(), py::arg("seed") = 1,
            py::arg("epsilon") = py::none(), py::arg("max_steps") = py::none(),
@@ -169,21 +190,21 @@ fewer frontiers end it, three in a row; None: 10, with 'paper' and 'nearest' 1. 
             }));
           },
           "float64 (r, 4): where the robots' sensors are; empty before begin.")
-      .def_property_readonly("end",
-                             property([](const Exploration& exploration) -> std::optional<std::string> {
-                               const auto end = exploration.end();
-                               if (!end) return std::nullopt;
-                               return std::string(name_of(*end));
-                             }),
-                             "Why it is over: 'low_gain', 'nothing_to_do', 'step_limit' or 'cut_off'; None "
-                             "while it goes on.")
-      .def_property_readonly("end_reason",
-                             property([](const Exploration& exploration) -> std::optional<std::string> {
-                               const auto end = exploration.end();
-                               if (!end) return std::nullopt;
-                               return describe(*end, exploration.options());
-                             }),
-                             "The same in words.")
+      .def_property_readonly(
+          "end",
+          [](const Self& self) -> std::optional<std::string> {
+            const auto end = self->end();
+            return end ? std::optional(end->first) : std::nullopt;
+          },
+          "Why it is over: 'low_gain', 'nothing_to_do', 'step_limit' or 'cut_off'; "
+          "'interrupted' if drive raised an exception; None while it goes on.")
+      .def_property_readonly(
+          "end_reason",
+          [](const Self& self) -> std::optional<std::string> {
+            const auto end = self->end();
+            return end ? std::optional(end->second) : std::nullopt;
+          },
+          "The same in words.")
       .def_property_readonly("grid", property([](const Exploration& exploration) {
                                return std::make_shared<Guarded<VoxelGrid>>(exploration.mapping().grid());
                              }),

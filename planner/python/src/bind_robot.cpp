@@ -52,7 +52,7 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
           bool per_axis) {
   constexpr std::size_t kLongestName = 40;
   if (name.empty() || name.size() > kLongestName)
-    throw py::value_error("name: has to have 1 to 40 characters");
+    throw py::value_error("name: has to have 1 to 40 bytes in UTF-8");
   const auto known = planner::motion_named(motion);
   if (!known) throw py::value_error("motion: '" + motion + "', but has to be 'plane', 'ground' or 'space'");
   RobotDescription robot;
@@ -98,7 +98,7 @@ docs/robots.md says more of each value.)")
            py::arg("per_axis") = false,
            R"(A robot of these values.
 
-name: in messages. motion: 'plane', on the floor that it starts on, 'ground', up and down slopes and steps as well, or 'space'.
+name: in messages, 1 to 40 bytes in UTF-8. motion: 'plane', on the floor that it starts on, 'ground', up and down slopes and steps as well, or 'space'.
 box: (3,) [m] its body along x, y and z, whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
 margin: [m] kept free around the body; of a robot that drives to its sides.
 On a plane and on the ground: sensor_height: [m] above the floor; ground: (2,) [m] along x and y, the area of the floor that
@@ -110,7 +110,7 @@ Raises ValueError naming the value that is out of bounds.)")
       .def_static(
           "read",
           [](const std::filesystem::path& file) {
-            const py::gil_scoped_release others_run;
+            const OthersRun others_run;
             return std::make_shared<RobotDescription>(io::read_robot(file));
           },
           py::arg("file"),

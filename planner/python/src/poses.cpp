@@ -8,20 +8,6 @@ namespace {
 
 using planner::Pose;
 
-Eigen::Isometry3d matrix_of(const char* name, const Numbers& numbers) {
-  Eigen::Isometry3d T_map_sensor;
-  for (Eigen::Index row = 0; row < 4; ++row)
-    for (Eigen::Index column = 0; column < 4; ++column)
-      T_map_sensor.matrix()(row, column) =
-          numbers.number(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
-  constexpr double kRounding = 1e-4;
-  const Eigen::Matrix3d turn = T_map_sensor.linear();
-  if (!T_map_sensor.matrix().allFinite() || !(turn * turn.transpose()).isIdentity(kRounding) ||
-      turn.determinant() < 0.0)
-    throw py::value_error(std::string(name) + ": its upper left (3, 3) has to be a rotation");
-  return T_map_sensor;
-}
-
 void write(const Pose& pose, double* numbers) {
   Eigen::Map<Eigen::Vector4d>(numbers) << pose.position, pose.yaw;
 }
@@ -32,7 +18,7 @@ SensorPose sensor_pose(const char* name, const py::object& object, const Lattice
   const Numbers numbers(name, object, 4);
   SensorPose pose;
   if (numbers.shape() == Shape{4}) {
-    pose.T_map_sensor = matrix_of(name, numbers);
+    pose.T_map_sensor = pose_of(numbers);
     const Eigen::Vector3d forward = pose.T_map_sensor.linear().col(0);
     pose.upright = {pose.T_map_sensor.translation(), std::atan2(forward.y(), forward.x())};
   } else if (numbers.shape().empty()) {

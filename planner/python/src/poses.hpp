@@ -17,8 +17,8 @@ struct SensorPose {
 };
 
 /// (4,): x, y, z [m] and yaw [rad]; or (4, 4), which maps the sensor's frame into the map's.
-/// @throws py::value_error naming the argument if it is neither, not finite, no rotation, or outside the
-///         key range
+/// @throws py::value_error naming the argument if it is neither, not finite, no rotation and translation, or
+///         outside the key range
 [[nodiscard]] SensorPose sensor_pose(const char* name, const py::object& object, const Lattice& lattice);
 
 /// float64 (n, 4): x, y, z [m] and yaw [rad].

@@ -12,8 +12,10 @@ Eigen::Vector3d row_of(const Numbers& numbers, std::size_t i) {
   return {numbers.number(i, 0), numbers.number(i, 1), numbers.number(i, 2)};
 }
 
+// In float, as scans have it: a range that was float32 all along would lie beyond a limit that is not.
 float range_within(double range, double max_range) {
-  return range > max_range ? std::numeric_limits<float>::infinity() : static_cast<float>(range);
+  const auto rounded = static_cast<float>(range);
+  return rounded > static_cast<float>(max_range) ? std::numeric_limits<float>::infinity() : rounded;
 }
 
 Scan empty_scan(const SensorPose& pose, double max_range) {

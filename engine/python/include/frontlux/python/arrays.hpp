@@ -3,12 +3,14 @@
 #include <frontlux/ray.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -67,6 +69,34 @@ class Numbers {
 
 /// The shape of the answers. @throws py::value_error naming two arguments whose shapes differ
 [[nodiscard]] Shape common_shape(std::initializer_list<const Numbers*> arguments);
+
+/// A matrix of n x n numbers. @pre the shape is {n}
+template <int n>
+[[nodiscard]] Eigen::Matrix<double, n, n> matrix_of(const Numbers& numbers) {
+  Eigen::Matrix<double, n, n> matrix;
+  for (Eigen::Index row = 0; row < n; ++row)
+    for (Eigen::Index column = 0; column < n; ++column)
+      matrix(row, column) = numbers.number(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+  return matrix;
+}
+
+/// What maps the sensor's frame into the map's.
+/// @throws py::value_error naming the argument unless it is a rotation, a translation and (0, 0, 0, 1)
+/// @pre the shape is {4}
+[[nodiscard]] Eigen::Isometry3d pose_of(const Numbers& numbers);
+
+namespace detail {
+[[nodiscard]] py::array integers_of(const char* name, const py::object& object, const py::dtype& dtype,
+                                    double greatest);
+}
+
+/// A contiguous copy of an array or a sequence of integers, which numpy itself would wrap to fit.
+/// @throws py::type_error unless they are integers, py::value_error unless they fit; both name the argument
+template <class Integer>
+[[nodiscard]] py::array_t<Integer> integers_of(const char* name, const py::object& object) {
+  return detail::integers_of(name, object, py::dtype::of<Integer>(),
+                             static_cast<double>(std::numeric_limits<Integer>::max()));
+}
 
 /// Whether an argument is an array of voxel keys and not of points.
 [[nodiscard]] bool are_keys(const py::object& object);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <frontlux/python/others_run.hpp>
+
 #include <pybind11/pybind11.h>
 
 #include <memory>
@@ -7,8 +9,6 @@
 #include <utility>
 
 namespace frontlux::python {
-
-namespace py = pybind11;
 
 /// A value that Python's threads share: whoever uses it waits for the others, without Python's lock, so that
 /// they can go on.
@@ -21,7 +21,7 @@ class Guarded {
   /// What `use(value)` returns. It must not touch Python's objects.
   template <class Use>
   auto use(const Use& use) {
-    const py::gil_scoped_release others_run;
+    const OthersRun others_run;
     const std::lock_guard lock(mutex_);
     return use(value_);
   }

@@ -6,8 +6,10 @@
 #include <frontlux/ray_caster.hpp>
 #include <frontlux/voxel_grid.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <vector>
 
 namespace frontlux::python {
@@ -26,6 +28,12 @@ struct Change {
   explicit Change(const MapChange& change)
       : grid(change.grid), keys(change.keys.begin(), change.keys.end()) {}
   [[nodiscard]] MapChange change() const { return {grid, keys}; }
+  /// @throws std::invalid_argument unless it leads from this map to its own, which costs about as much as the
+  ///         change itself if it does
+  void expect_from(const VoxelGrid& before) const {
+    if (!std::ranges::includes(keys, changed_keys(before, grid)))
+      throw std::invalid_argument("change: of another map, or one before it was left out");
+  }
 };
 
 }  // namespace frontlux::python
