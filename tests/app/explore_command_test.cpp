@@ -120,6 +120,8 @@ TEST_F(ExploreCommand, ItsFilesAgree) {
   EXPECT_EQ(json.at("coverage_box"), std::stod(rows.back()[4]));
   EXPECT_EQ(json.at("path_length_m").at("ugv"), travelled[0]);
   EXPECT_EQ(json.at("path_length_m").at("uav"), travelled[1]);
+  EXPECT_NEAR(json.at("path_length_total_m"), travelled[0] + travelled[1], 1e-9);
+  EXPECT_EQ(json.at("unseen"), nullptr) << "it has not ended by itself";
   double sum = 0.0, most = 0.0;
   for (std::size_t i = 1; i < recording.steps.size(); ++i) {
     sum += recording.steps[i].step.planning_seconds();

@@ -39,21 +39,6 @@ class Table {
 /// Runs in motion.
 class ExploreMotion : public ExploreCommand {
  protected:
-  /// The words for a quick run: two UAVs of few pixels.
-  [[nodiscard]] std::vector<std::string> quick(const std::string& seconds) const {
-    std::string robots;
-    for (const char* name : {"one", "two"})
-      robots += (robots.empty() ? "" : ", ") + (R"({"name": ")" + std::string(name) + R"(", "motion": "space",
-        "body": {"kind": "box", "size_m": [0.7, 0.7, 0.5]},
-        "limits": {"speed_m_s": 2, "acceleration_m_s2": 3, "yaw_rate_deg_s": 90},
-        "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72, "range_m": 6, "columns": 48,
-                   "rows": 36, "rate_hz": 8}})");
-    return {"--task", write("quick.json", R"({"world": "room", "robots": [)" + robots + "]}"), "--stop-time",
-            seconds};
-  }
-  [[nodiscard]] std::vector<std::string> quick(const std::string& output, const std::string& seconds) const {
-    return joined(quick(seconds), {"--report", "off", "-o", path(output)});
-  }
   /// All but the times that it took is that of another run, to the last bit.
   void expect_same_motions(const std::string& a, const std::string& b) const {
     expect_same_runs(a, b);

@@ -54,8 +54,7 @@ TEST_F(ExploreCommand, KeepsALargerLimitThanItsOwnThatARunWentOnWith) {
 
 // With the same errors of its sensors, and with what their scans say.
 TEST_F(ExploreCommand, GoesOnWithItsSensorModel) {
-  const std::vector<std::string> words = {"room",     "--stop-time", "6",  "--noise",    "0.02",
-                                          "--report", "off",         "-o", path("whole")};
+  const std::vector<std::string> words = test::joined(quick("whole", "6"), {"--noise", "0.02"});
   expect_answer(test::joined(words, {"--sensor-model", "cautious"}));
   EXPECT_EQ(json_in("whole").at("sensor_model"), "cautious");
   const std::string bytes = content_of(path("whole/run.frontlux"));
@@ -115,7 +114,7 @@ TEST_F(ExploreCommand, CountsBlockedPathsFromBeforeItWasResumed) {
 // Whether it was stopped in lock-step or in motion, or has ended.
 TEST_F(ExploreCommand, RefusesALimitBelowTheRecordedSteps) {
   expect_explored("lockstep");
-  expect_answer({"room", "--stop-time", "3", "--report", "off", "-o", path("moving")});
+  expect_answer(quick("moving", "3"));
   for (const std::string folder : {"lockstep", "moving"}) {
     const int steps = json_in(folder).at("steps");
     ASSERT_GT(steps, 1) << folder;

@@ -35,10 +35,11 @@ class UnfinishedFile {
     bool taken = true;
     for (std::size_t number = 0; taken && number < kNames; ++number) {
       path_ = begin + std::to_string(number);
+      note();
       descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
       taken = descriptor_ < 0 ? errno == EEXIST : !is_ours();
+      if (descriptor_ < 0) forget();
     }
-    if (descriptor_ >= 0) note();
   }
   ~UnfinishedFile() {
     if (descriptor_ < 0) return;
@@ -72,6 +73,7 @@ class UnfinishedFile {
     return false;
   }
 
+  // Before it is there, so that no signal comes between.
   void note() {
     for (std::atomic<const char*>& place : being_written)
       if (const char* none = nullptr; place.compare_exchange_strong(none, path_.c_str())) {

@@ -1,5 +1,6 @@
 // After every update the grid, the caster, the keys and what they update are as if made anew.
 
+#include "support/floating_point_control.hpp"
 #include "support/maps.hpp"
 #include "support/plain_frontiers.hpp"
 #include "support/random.hpp"
@@ -105,10 +106,21 @@ TEST(LiveMap, IsTheSameWhateverFloatingPointModeItIsMadeIn) {
   octomap::OcTree tree(0.1);
   for (std::uint16_t x = 32768; x < 32798; ++x)
     tree.updateNode(octomap::OcTreeKey(x, 32768, 32768), x == 32777);
+  // What each of them leaves the caller's mode at.
+  std::vector<std::uint64_t> modes;
   std::fesetround(FE_TOWARDZERO);
+  modes.push_back(floating_point_control());
   LiveMap made(tree), made_anew(tree);
+  modes.push_back(floating_point_control());
   made_anew.rebuild();
+  modes.push_back(floating_point_control());
+  tree.updateNode(octomap::OcTreeKey(32768, 32778, 32768), false);  // beside the ray below
+  const std::size_t changed = made.update().keys.size();
+  modes.push_back(floating_point_control());
   std::fesetround(FE_TONEAREST);
+  EXPECT_EQ(changed, 1U);
+  EXPECT_NE(modes[0], floating_point_control()) << "it is another mode";
+  EXPECT_EQ(modes, std::vector(4, modes[0])) << "the mode is the caller's";
   octomap::point3d end;
   const bool hits = tree.castRay({1.0F, 0.05F, 0.05F}, {1, 0, 0}, end, false, 5.0);
   for (const LiveMap* map : {&made, &made_anew}) {

@@ -340,8 +340,12 @@ TEST(RayCaster, AnswersAreThoseOfTheStandardFloatingPointModeInAnyOther) {
       const Answers expected = questions.ask(*caster, batch);
       for (const std::fenv_t& other : others) {
         ASSERT_EQ(std::fesetenv(&other), 0);
+        const std::uint64_t before = floating_point_control();
         const Answers answers = questions.ask(*caster, batch);
+        const std::uint64_t after = floating_point_control();
         ASSERT_EQ(std::fesetenv(&standard), 0);
+        EXPECT_NE(before, floating_point_control()) << "it is another mode";
+        EXPECT_EQ(after, before) << "the mode is the caller's";
         expect_equal(expected, answers);
       }
     }

@@ -301,15 +301,26 @@ TEST_P(ContinuousExplorationBy, GivesUpWhatItDoesNotSeeFromItsGoal) {
     options.period = period;
     ContinuousExploration exploration(options, team.empty_map());
     exploration.begin(team.starts, 0.0);
+    std::set<VoxelKey> given_up;
+    std::size_t goals = 0, abandoned = 0;
     for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
       Pose pose = exploration.at(0, time).pose;
       pose.position.x() += off;
       pose.yaw = turn(std::numbers::pi, pose.yaw);
       exploration.insert(0, pose, empty_scan(pose));
-      while (exploration.plan(time)) {
+      while (const auto now = exploration.plan(time)) {
+        const RobotStep& robot = now->step.robots[0];
+        goals += robot.goal.pose ? 1 : 0;
+        given_up.insert(robot.still_unknown.begin(), robot.still_unknown.end());
+        abandoned = now->step.abandoned;
       }
     }
-    EXPECT_TRUE(exploration.end()) << off << ' ' << period;
+    SCOPED_TRACE(std::to_string(off) + " m, " + std::to_string(period) + " s");
+    EXPECT_EQ(exploration.end(),
+              GetParam() == GoalChoice::kGoals ? ExplorationEnd::kLowGain : ExplorationEnd::kNothingToDo);
+    EXPECT_GT(goals, 20U);
+    EXPECT_GT(abandoned, 80U);
+    EXPECT_LE(abandoned, given_up.size());
   }
 }
 
@@ -343,13 +354,30 @@ TEST_P(ContinuousExplorationBy, GivesUpWhatEitherRobotDoesNotSee) {
 // A sensor that has failed for a while shows nothing of what is in its view.
 TEST_P(ContinuousExplorationBy, GivesNothingUpForScansWithoutRanges) {
   const TeamInWorld team("room", 1, {small_uav()});
-  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
-  exploration.begin(team.starts, 0.0);
-  for (double time = 0.0; time < 20.0; time += 0.1) {
-    const Pose pose = exploration.at(0, time).pose;
-    exploration.insert(0, pose, scan_with(pose, std::numeric_limits<float>::quiet_NaN(), 10.0));
-    while (const auto now = exploration.plan(time)) EXPECT_TRUE(now->step.robots[0].still_unknown.empty());
-  }
+  const auto given_up = [&](float range, double max_range) {
+    ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+    exploration.begin(team.starts, 0.0);
+    std::size_t keys = 0, plannings = 0, looks = 0;
+    std::optional<Pose> goal;
+    for (double time = 0.0; time < 20.0; time += 0.1) {
+      const Pose pose = exploration.at(0, time).pose;
+      exploration.insert(0, pose, scan_with(pose, range, max_range));
+      looks +=
+          goal && (pose.position - goal->position).norm() < 0.01 && std::abs(turn(goal->yaw, pose.yaw)) < 0.01
+              ? 1
+              : 0;
+      while (const auto now = exploration.plan(time)) {
+        goal = now->step.robots[0].goal.pose;
+        keys += now->step.robots[0].still_unknown.size();
+        ++plannings;
+      }
+    }
+    EXPECT_GT(plannings, 10U);
+    EXPECT_GT(looks, 3U) << "it has been at its goals";
+    return keys;
+  };
+  EXPECT_EQ(given_up(std::numeric_limits<float>::quiet_NaN(), 10.0), 0U);
+  EXPECT_GT(given_up(std::numeric_limits<float>::infinity(), 0.01), 0U) << "a sensor that sees nothing";
 }
 
 // Where a robot starts there is nothing, whatever a map from before says.

@@ -183,8 +183,12 @@ TEST_P(TeamInMotionBy, EndsWhereALostRobotIsInTheWay) {
   TeamInMotion scene(team_with_a_robot_between(), sim::AtContact::kGoOn, GetParam());
   scene.exploration().lose(1, scene.team().starts[1].pose, 0.0);
   scene.explore(200.0);
-  EXPECT_TRUE(scene.exploration().end());
-  EXPECT_LT(share_mapped(scene.team(), scene.grid()), 0.9);
+  EXPECT_EQ(scene.exploration().end(),
+            GetParam() == GoalChoice::kGoals ? ExplorationEnd::kLowGain : ExplorationEnd::kNothingToDo);
+  const double share = share_mapped(scene.team(), scene.grid());
+  EXPECT_GT(share, 0.7) << "its own room, and what it sees of the rest from there";
+  EXPECT_LT(share, 0.9);
+  EXPECT_GT(scene.robots().records()[0].length, 5.0);
 }
 
 TEST_P(TeamOnTours, MakesRoomForWhoeverHasSomethingToSee) {

@@ -49,6 +49,7 @@ std::optional<Found> naive_cluster_goal(const Decision& decision, const std::vec
 }
 
 TEST(GoalSelection, ClustersAsANaiveSearchFindsThem) {
+  int goals = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     GoalRoom room(18, 9, seed);
     room.clear(9, 9, 5);
@@ -61,13 +62,14 @@ TEST(GoalSelection, ClustersAsANaiveSearchFindsThem) {
       if (room.grid.at(key) == Occupancy::kUnknown) frontiers.push_back(key);
     sort(frontiers);
     const Decision decision(room, member, room.key(9, 9, 5), frontiers);
-    if (decision.cells().empty()) continue;
+    ASSERT_FALSE(decision.cells().empty()) << seed;
     const auto truth = naive_cluster_goal(decision, decision.assigned());
     expect_goal(decision.goal(), truth);
-    if (truth) {
-      EXPECT_NEAR(decision.goal().pose->yaw, truth->yaw, 1e-9);
-    }
+    if (!truth || !decision.goal().pose) continue;
+    ++goals;
+    EXPECT_NEAR(decision.goal().pose->yaw, truth->yaw, 1e-9);
   }
+  EXPECT_EQ(goals, 6);
 }
 
 TEST(GoalSelection, TheWindowHoldsTheClustersTargetWhateverElseCouldBeSeen) {
@@ -149,6 +151,10 @@ Sees expect_nearest(const GoalRoom& room, TeamMember member, const VoxelKey& sta
   const Sees sees = of_middle ? Sees::kMiddle : Sees::kFrontier;
   EXPECT_EQ(goal.cell, *nearest);
   EXPECT_NEAR(goal.distance, steps.at(*nearest) * kResolution, 1e-9);
+  EXPECT_GE(goal.gain, 1.0);
+  Found found{*nearest};
+  found.yaw = goal.pose->yaw;
+  EXPECT_EQ(goal.gain, in_true_view(found, decision.seen_from(*nearest, assigned), member.robot.view).gain);
   if (member.robot.name == "ugv") return sees;
   const auto seen = decision.seen_from(*nearest, wanted);
   const auto length = [&](const VoxelKey& key) { return offset_between(*nearest, key, 1.0).norm(); };
@@ -158,11 +164,11 @@ Sees expect_nearest(const GoalRoom& room, TeamMember member, const VoxelKey& sta
     const Eigen::Vector3d to = offset_between(*nearest, key, 1.0);
     return length(key) == least && std::abs(goal.pose->yaw - std::atan2(to.y(), to.x())) < 1e-12;
   }));
-  EXPECT_GE(goal.gain, 1.0);
   return sees;
 }
 
 TEST(GoalSelection, NearestIsTheFirstCellByStepsThatSeesTheMiddleOfACluster) {
+  std::array<int, 2> of_middle{};  // by robot
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     GoalRoom room(26, 6, seed);
     room.clear(5, 20, 2);
@@ -170,24 +176,76 @@ TEST(GoalSelection, NearestIsTheFirstCellByStepsThatSeesTheMiddleOfACluster) {
       // Everything, or only what lies at the other side of the room.
       auto frontiers = room.frontiers();
       std::erase_if(frontiers, [&](const VoxelKey& key) { return key.x < GoalRoom::kLow + from; });
-      expect_nearest(room, seed % 2 == 0 ? ground_robot() : aerial_robot(), room.key(5, 20, 2), frontiers);
+      const Sees sees = expect_nearest(room, seed % 2 == 0 ? ground_robot() : aerial_robot(),
+                                       room.key(5, 20, 2), frontiers);
+      of_middle.at(seed % 2) += sees == Sees::kMiddle ? 1 : 0;
     }
   }
+  for (const int count : of_middle) EXPECT_EQ(count, 6);
 }
 
 TEST(GoalSelection, NearestSeesAnyFrontierWhereAllMiddlesAreHidden) {
-  int of_any = 0;
+  std::array<int, 2> of_any{}, of_middle{};  // by robot
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     GoalRoom room(12, 4, seed);
-    room.clear(5, 5, 1);
+    const bool flies = seed / 6 % 2 != 0;
+    const int z = flies ? 1 : 2;
+    room.clear(5, 5, z);
     auto frontiers = room.frontiers();
     Random random(seed);
     const int kept = 2 + 6 * static_cast<int>(seed % 6);  // of 40
     std::erase_if(frontiers, [&](const VoxelKey&) { return static_cast<int>(random.below(40)) >= kept; });
-    const TeamMember robot = seed / 6 % 2 == 0 ? ground_robot() : aerial_robot();
-    if (expect_nearest(room, robot, room.key(5, 5, 1), frontiers) == Sees::kFrontier) ++of_any;
+    const Sees sees =
+        expect_nearest(room, flies ? aerial_robot() : ground_robot(), room.key(5, 5, z), frontiers);
+    of_any.at(flies ? 1 : 0) += sees == Sees::kFrontier ? 1 : 0;
+    of_middle.at(flies ? 1 : 0) += sees == Sees::kMiddle ? 1 : 0;
   }
-  EXPECT_GT(of_any, 0);
+  for (const int count : of_any) EXPECT_GT(count, 0);
+  for (const int count : of_middle) EXPECT_GT(count, 100);
+}
+
+// One frontier that is in view from every cell: the goal is the nearest cell that is far enough.
+TEST(GoalSelection, NoGoalIsNearerThanTheLeastDistance) {
+  GoalRoom room(13, 6);
+  const VoxelKey start = room.key(6, 6, 2), frontier = room.unknown(12, 12, 2);
+  TeamMember member = ground_robot();
+  member.robot.view.max_range = 10.0;
+  member.options.advance = 0.0;
+  member.options.rendering.samples = ViewQualityOptions::kAll;
+  for (const GoalRule rule : {GoalRule::kViewQuality, GoalRule::kClusters, GoalRule::kNearest})
+    for (const DistanceMeasure distance : {DistanceMeasure::kPath, DistanceMeasure::kStraight}) {
+      if (rule == GoalRule::kNearest && distance == DistanceMeasure::kStraight) continue;
+      member.options.rule = rule;
+      member.options.distance = distance;
+      for (const auto& [least, expected] :
+           {std::pair(0.2, 0.3), {0.4, 0.6}, {0.6, 0.6}, {0.8, 0.9}, {1.15, 1.2}}) {
+        SCOPED_TRACE(std::to_string(static_cast<int>(rule)) + " from " + std::to_string(least));
+        member.options.min_distance = least;
+        const Decision decision(room, member, start, {frontier});
+        ASSERT_GT(decision.cells().size(), 40U);
+        ASSERT_EQ(decision.seen_from(start, {frontier}).size(), 1U);
+        // By plain loops as well: straight, there are cells between the multiples of a voxel.
+        const auto steps = naive_steps(decision.cells(), start);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const VoxelKey& cell : decision.cells()) {
+          const double d = distance == DistanceMeasure::kPath
+                               ? steps.at(cell) * kResolution
+                               : offset_between(start, cell, kResolution).norm();
+          if (d > least - 1e-9 && !decision.seen_from(cell, {frontier}).empty())
+            nearest = std::min(nearest, d);
+        }
+        if (distance == DistanceMeasure::kPath) {
+          EXPECT_NEAR(nearest, expected, 1e-9);
+        }
+        ASSERT_TRUE(decision.goal().pose) << decision.goal().reason;
+        const double away = distance == DistanceMeasure::kPath
+                                ? steps.at(decision.goal().cell) * kResolution
+                                : offset_between(start, decision.goal().cell, kResolution).norm();
+        EXPECT_NEAR(away, nearest, 1e-9);
+      }
+      member.options.min_distance = 10.0;
+      EXPECT_FALSE(Decision(room, member, start, {frontier}).goal().pose);
+    }
 }
 
 }  // namespace

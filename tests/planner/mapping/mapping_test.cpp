@@ -21,30 +21,42 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
 
 octomap::point3d to_octomap(const Eigen::Vector3f& p) { return {p.x(), p.y(), p.z()}; }
 
-struct Node {
-  octomap::OcTreeKey key;
-  unsigned depth;
-  float log_odds;
-  bool leaf;
-  friend bool operator==(const Node&, const Node&) = default;
-};
+// Two trees, node by node, inner ones included.
+struct SameNodes {
+  const OcTree &tree, &expected;
+  std::size_t count = 0;     // of nodes compared
+  std::string way{}, why{};  // to the first difference: the number of the child at each level
 
-// Every node, inner ones included.
-std::vector<Node> nodes_of(const OcTree& tree) {
-  std::vector<Node> nodes;
-  for (auto it = tree.begin_tree(), end = tree.end_tree(); it != end; ++it)
-    nodes.push_back({it.getKey(), it.getDepth(), it->getLogOdds(), it.isLeaf()});
-  return nodes;
-}
+  bool below(const octomap::OcTreeNode& a, const octomap::OcTreeNode& b) {
+    ++count;
+    if (a.getLogOdds() != b.getLogOdds()) {
+      why = std::to_string(a.getLogOdds()) + " and " + std::to_string(b.getLogOdds());
+      return false;
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+      const bool has = tree.nodeChildExists(&a, i);
+      if (has != expected.nodeChildExists(&b, i)) {
+        why = (has ? "one child too many: " : "no child ") + std::to_string(i);
+        return false;
+      }
+      if (!has) continue;
+      way += static_cast<char>('0' + i);
+      if (!below(*tree.getNodeChild(&a, i), *expected.getNodeChild(&b, i))) return false;
+      way.pop_back();
+    }
+    return true;
+  }
+};
 
 void expect_same_nodes(const OcTree& tree, const OcTree& expected, const std::string& where) {
   ASSERT_EQ(tree.size(), expected.size()) << where;
-  const auto a = nodes_of(tree), b = nodes_of(expected);
-  ASSERT_EQ(a.size(), tree.size()) << where;  // the count that the tree keeps is true
-  for (std::size_t i = 0; i < a.size(); ++i)
-    ASSERT_TRUE(a[i] == b[i]) << where << ": node " << i << " at " << a[i].key[0] << " " << a[i].key[1] << " "
-                              << a[i].key[2] << ", depth " << a[i].depth << ": " << a[i].log_odds << " and "
-                              << b[i].log_odds;
+  ASSERT_EQ(tree.getRoot() == nullptr, expected.getRoot() == nullptr) << where;
+  SameNodes same{tree, expected};
+  if (tree.getRoot() != nullptr) {
+    ASSERT_TRUE(same.below(*tree.getRoot(), *expected.getRoot()))
+        << where << ": node " << same.way << ": " << same.why;
+  }
+  ASSERT_EQ(same.count, tree.size()) << where;  // the count that the tree keeps is true
 }
 
 // Where most rays go wrong if any does: ends on faces, edges and corners, along axes and diagonals, in the

@@ -46,6 +46,19 @@ TEST(IdleRobots, RestWhereTheyWouldBeBarelySooner) {
   EXPECT_EQ(tours, (Tours{{0, 1}, {}}));
 }
 
+// 5 s sooner, and in half of the time: what is just so, and what just not.
+TEST(IdleRobots, TakeWhatTheyReachFiveSecondsSoonerInHalfOfTheTime) {
+  const auto takes = [](const std::vector<double>& stops, double idle) {
+    Tours tours{{0, 1}, {}};
+    give_idle_robot_a_stop(Line{stops, {0, idle}}.problem(), 1, tours);
+    return tours == Tours{{0}, {1}};
+  };
+  EXPECT_TRUE(takes({1, 7}, 7 + 1.9)) << "5.1 s sooner";
+  EXPECT_FALSE(takes({1, 7}, 7 + 2.1)) << "4.9 s sooner";
+  EXPECT_TRUE(takes({20, 40}, 40 + 19.9));
+  EXPECT_FALSE(takes({20, 40}, 40 + 20.1)) << "19.9 s sooner, but in more than half of the time";
+}
+
 TEST(IdleRobots, LeaveWhatTheOtherOneSetsOutFor) {
   TourProblem problem = Line{{40, 41, 42}, {0, 45}}.problem();
   Tours tours{{0}, {}};

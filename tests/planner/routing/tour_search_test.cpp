@@ -5,6 +5,7 @@
 #include "support/random.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace frontlux::planner::detail {
@@ -35,6 +36,49 @@ TourProblem random_problem(Random& random, std::size_t robots, std::size_t stops
   return problem;
 }
 
+// [s] The times of the tours by the docs: the longest one, and a tenth of the sum of all.
+double plain_cost(const TourProblem& problem, const Tours& tours) {
+  double longest = 0.0, sum = 0.0;
+  for (std::size_t r = 0; r < tours.size(); ++r) {
+    const TourProblem::Robot& robot = problem.robots[r];
+    double length = 0.0;
+    for (std::size_t i = 0; i < tours[r].size(); ++i)
+      length += i == 0 ? robot.first[tours[r][0]] : robot.between(tours[r][i - 1], tours[r][i]);
+    longest = std::max(longest, length);
+    sum += length;
+  }
+  return longest + 0.1 * sum;
+}
+
+// [s] Of one robot's order: its length, and three times the mean arrival.
+double plain_cost_of_order(const TourProblem::Robot& robot, const std::vector<double>& weights,
+                           const std::vector<std::uint32_t>& order) {
+  double time = 0.0, arrivals = 0.0, all = 0.0;
+  std::optional<std::uint32_t> before;
+  for (const std::uint32_t stop : order) {
+    time += before ? robot.between(*before, stop) : robot.first[stop];
+    arrivals += weights[stop] * time;
+    all += weights[stop];
+    before = stop;
+  }
+  return time + 3.0 * arrivals / all;
+}
+
+// Stops and robots along a line; a robot takes a second for each metre.
+TourProblem along_a_line(const std::vector<double>& stops, const std::vector<double>& robots) {
+  TourProblem problem;
+  problem.stops = stops.size();
+  for (const double at : robots) {
+    TourProblem::Robot robot{std::vector<double>(stops.size()), NumberTable(stops.size(), stops.size())};
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+      robot.first[i] = std::abs(stops[i] - at);
+      for (std::size_t j = 0; j < stops.size(); ++j) robot.between(i, j) = std::abs(stops[i] - stops[j]);
+    }
+    problem.robots.push_back(std::move(robot));
+  }
+  return problem;
+}
+
 // All orders of all ways to share the stops out.
 double least_cost(const TourProblem& problem) {
   std::vector<std::uint32_t> order(problem.stops);
@@ -47,7 +91,7 @@ double least_cost(const TourProblem& problem) {
       const auto middle = order.begin() + static_cast<std::ptrdiff_t>(cut);
       if (robots > 1) tours[1].assign(order.begin(), middle);
       tours[0].assign(middle, order.end());
-      least = std::min(least, cost_of(problem, tours));
+      least = std::min(least, plain_cost(problem, tours));
     }
   } while (std::next_permutation(order.begin(), order.end()));
   return least;
@@ -73,7 +117,7 @@ TEST(TourSearch, IsCloseToTheBestOfAllTours) {
         random_problem(random, robots, static_cast<std::size_t>(4 + random.below(3)), false);
     const Tours tours = shortened_tours(problem, {});
     EXPECT_EQ(stops_in(tours), problem.stops);
-    ratios.push_back(cost_of(problem, tours) / least_cost(problem));
+    ratios.push_back(plain_cost(problem, tours) / least_cost(problem));
     EXPECT_GE(ratios.back(), 1.0 - 1e-9);
   }
   std::ranges::sort(ratios);
@@ -92,8 +136,34 @@ TEST(TourSearch, NeverMakesToursLonger) {
       given[static_cast<std::size_t>(random.below(static_cast<int>(given.size())))].push_back(i);
     const Tours tours = shortened_tours(problem, given);
     EXPECT_EQ(stops_in(tours), problem.stops);
-    EXPECT_LE(cost_of(problem, tours), cost_of(problem, given) + 1e-9);
+    EXPECT_LE(plain_cost(problem, tours), plain_cost(problem, given) + 1e-9);
     EXPECT_EQ(shortened_tours(problem, tours), tours);  // nothing is left to shorten
+  }
+}
+
+// Two robots with stops at 5 and 10 m between them. Shared out, they cost max(5, d) + (5 + d) / 10 where d is
+// from the second robot to the stop at 10 m; the first robot alone needs 10 + 10 / 10. They are equal at
+// d = 10.5 / 1.1 = 9.55.
+TEST(TourSearch, WeighsTheLongestTourAgainstATenthOfAll) {
+  const auto tours = [](double d) { return shortened_tours(along_a_line({5, 10}, {0, 10 + d}), {}); };
+  for (const double d : {9.0, 9.4}) EXPECT_EQ(tours(d), (Tours{{0}, {1}})) << d;
+  for (const double d : {9.7, 9.8}) EXPECT_EQ(tours(d), (Tours{{0, 1}, {}})) << d;
+}
+
+TEST(TourSearch, SaysWhatToursCost) {
+  Random random(38);
+  for (int round = 0; round < 50; ++round) {
+    const auto robots = static_cast<std::size_t>(1 + random.below(4));
+    const TourProblem problem = random_problem(random, robots, 12, false);
+    Tours tours(robots);
+    for (std::uint32_t i = 0; i < problem.stops; ++i)
+      tours[static_cast<std::size_t>(random.below(static_cast<int>(robots)))].push_back(i);
+    EXPECT_NEAR(cost_of(problem, tours), plain_cost(problem, tours), 1e-9);
+    const std::vector<double> weights(problem.stops, 2.0);
+    if (!tours[0].empty()) {
+      EXPECT_NEAR(cost_of_order(problem.robots[0], weights, tours[0]),
+                  plain_cost_of_order(problem.robots[0], weights, tours[0]), 1e-9);
+    }
   }
 }
 
@@ -109,9 +179,10 @@ TEST(TourSearch, FindsNothingMoreToImprove) {
     TourProblem problem = random_problem(random, robots, stops, robots > 1);
     if (i % 3 == 0) problem.robots.front().fixed = 2;
     const Tours tours = shortened_tours(problem, {{0, 1}});
-    const double cost = cost_of(problem, tours);
+    const double cost = plain_cost(problem, tours);
     const auto expect_no_better = [&](const Tours& changed, auto... what) {
-      EXPECT_GE(cost_of(problem, changed), cost - kRounding) << ::testing::PrintToString(std::tuple(what...));
+      EXPECT_GE(plain_cost(problem, changed), cost - kRounding)
+          << ::testing::PrintToString(std::tuple(what...));
     };
     for (std::size_t r = 0; r < tours.size(); ++r)
       for (std::size_t begin = problem.robots[r].fixed; begin < tours[r].size(); ++begin)
@@ -190,9 +261,9 @@ TEST(SoonestOrder, IsCloseToTheBestOfAllOrders) {
     std::vector<std::uint32_t> order(6);
     std::iota(order.begin(), order.end(), 0u);
     double least = TourProblem::kNever;
-    do least = std::min(least, cost_of_order(robot, weights, order));
+    do least = std::min(least, plain_cost_of_order(robot, weights, order));
     while (std::next_permutation(order.begin(), order.end()));
-    const double found = cost_of_order(robot, weights, order_by_arrival(robot, weights, order));
+    const double found = plain_cost_of_order(robot, weights, order_by_arrival(robot, weights, order));
     EXPECT_GE(found, least - 1e-9);
     EXPECT_LT(found, 1.3 * least);
     best += found < least + 1e-9 ? 1 : 0;
@@ -212,7 +283,7 @@ TEST(SoonestOrder, KeepsAllStopsAndNeverGetsWorse) {
       std::swap(given[i - 1], given[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
     const auto order = order_by_arrival(robot, weights, given);
     EXPECT_EQ(stops_in({order}), 30u);
-    EXPECT_LE(cost_of_order(robot, weights, order), cost_of_order(robot, weights, given));
+    EXPECT_LE(plain_cost_of_order(robot, weights, order), plain_cost_of_order(robot, weights, given));
     EXPECT_EQ(order_by_arrival(robot, weights, order), order);  // nothing is left to improve
   }
 }
@@ -220,17 +291,27 @@ TEST(SoonestOrder, KeepsAllStopsAndNeverGetsWorse) {
 // Along a line: a far stop on one side, three on the other side, a little farther each. A short tour begins
 // with the single one, a soon one with the three.
 TEST(SoonestOrder, TakesManyStopsBeforeOne) {
-  const std::vector<double> places = {-1.0, 1.2, 1.3, 1.4};
-  TourProblem::Robot robot{std::vector<double>(4), NumberTable(4, 4)};
-  for (std::size_t i = 0; i < 4; ++i) {
-    robot.first[i] = std::abs(places[i]);
-    for (std::size_t j = 0; j < 4; ++j) robot.between(i, j) = std::abs(places[i] - places[j]);
-  }
-  EXPECT_EQ(shortened_tours({4, {robot}}, {}).front(), (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  const TourProblem problem = along_a_line({-1.0, 1.2, 1.3, 1.4}, {0.0});
+  const TourProblem::Robot& robot = problem.robots[0];
+  EXPECT_EQ(shortened_tours(problem, {}).front(), (std::vector<std::uint32_t>{0, 1, 2, 3}));
   EXPECT_EQ(order_by_arrival(robot, std::vector<double>(4, 1.0), {0, 1, 2, 3}),
             (std::vector<std::uint32_t>{1, 2, 3, 0}));
   EXPECT_EQ(order_by_arrival(robot, std::vector<double>{9.0, 1.0, 1.0, 1.0}, {1, 2, 3, 0}),
             (std::vector<std::uint32_t>{0, 1, 2, 3}));
+}
+
+// A stop at -1 m, and three times as much to see at d. That first costs d - 1 more of length, and
+// (2 d - 6) / 4 less of the mean arrival, which counts three times: d = 5.5 / 2.5 = 2.2 is as good either
+// way.
+TEST(SoonestOrder, WeighsTheLengthAgainstThreeMeanArrivals) {
+  const auto order = [](double d, std::vector<std::uint32_t> given) {
+    return order_by_arrival(along_a_line({-1.0, d}, {0.0}).robots[0], std::vector<double>{1.0, 3.0},
+                            std::move(given));
+  };
+  for (const auto& given : {std::vector<std::uint32_t>{0, 1}, {1, 0}}) {
+    EXPECT_EQ(order(2.12, given), (std::vector<std::uint32_t>{1, 0}));
+    EXPECT_EQ(order(2.28, given), (std::vector<std::uint32_t>{0, 1}));
+  }
 }
 
 TEST(SoonestOrder, OfNothingIsNothing) { EXPECT_TRUE(order_by_arrival({}, {}, {}).empty()); }
