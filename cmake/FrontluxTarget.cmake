@@ -12,11 +12,14 @@ function(frontlux_target name)
   # Without a macro of its own for that, the library is compiled with the precompiled header of another one.
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     DEFINE_SYMBOL "")
+  # Ours is compiled file by file even if the project around it is not.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   # The ray contract is bit for bit: a fused multiply-add rounds once where castRay rounds twice
-  # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do.
+  # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do. -ffast-math of the
+  # project around us is undone.
   # Nobody reads errno or the flags of floating-point exceptions here; without them more loops become vectors.
-  target_compile_options(${name} PRIVATE -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+  target_compile_options(${name} PRIVATE -fPIC -fno-fast-math -ffp-contract=off -fno-math-errno
+    -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
   # GCC 12 sees an overlap in an inlined `"text" + std::string` where there is none (its bug 105651), and GCC 14 a write
   # beyond a vector that has just grown.
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow>)
@@ -66,11 +69,22 @@ function(frontlux_shared_twin name)
   set_target_properties(frontlux_${name}_shared PROPERTIES LINKER_LANGUAGE CXX)
 endfunction()
 
+# frontlux_find_libraries_from(TARGET folder): wherever they are installed together, the target in this folder of the prefix
+# finds our shared libraries.
+function(frontlux_find_libraries_from target folder)
+  if(NOT DEFINED CMAKE_INSTALL_RPATH AND NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+    file(RELATIVE_PATH libraries /prefix/${folder} /prefix/${CMAKE_INSTALL_LIBDIR})
+    string(REGEX REPLACE "/$" "" libraries "$ORIGIN/${libraries}")
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "${libraries}")
+  endif()
+endfunction()
+
 # frontlux_install(NAME EXPORT): installs the library frontlux_NAME and its public headers as frontlux::NAME.
 function(frontlux_install name export)
   # Before 1.0 a new minor version may break users, so it is a new library name.
   set_target_properties(frontlux_${name} PROPERTIES EXPORT_NAME ${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  frontlux_find_libraries_from(frontlux_${name} ${CMAKE_INSTALL_LIBDIR})
   if(FRONTLUX_INSTALL)
     install(TARGETS frontlux_${name} EXPORT ${export})
     install(DIRECTORY include/frontlux DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -31,7 +31,7 @@ using namespace frontlux::planner;
 
 namespace {
 
-bool is_near(const Eigen::Isometry3d& T_world_sensor, const Pose& viewpoint) {
+bool is_near(const io::SensorFrame& T_world_sensor, const Pose& viewpoint) {
   constexpr double kMetres = 0.05, kRadians = 0.05;
   const double turn = yaw_of(T_world_sensor) - viewpoint.yaw;
   return (T_world_sensor.translation() - viewpoint.position).norm() < kMetres &&

@@ -28,7 +28,7 @@ inline frontlux::planner::Scan scan_of(const frontlux::io::RecordedPose& recorde
 }
 
 /// Which way a sensor looks [rad].
-inline double yaw_of(const Eigen::Isometry3d& T_world_sensor) {
+inline double yaw_of(const frontlux::io::SensorFrame& T_world_sensor) {
   const Eigen::Vector3d forward = T_world_sensor.linear().col(0);
   return std::atan2(forward.y(), forward.x());
 }

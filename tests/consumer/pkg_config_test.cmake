@@ -7,6 +7,6 @@ execute_process(COMMAND ${PKG_CONFIG} --cflags --libs "frontlux-planner >= 0.1"
 separate_arguments(said UNIX_COMMAND "${said}")
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
 set(program ${FOLDER}/pkg_config_consumer)
-execute_process(COMMAND ${COMPILER} -std=c++20 -O2 ${flags} ${SOURCE} -o ${program} ${said} -Wl,-rpath,${where}/..
+execute_process(COMMAND ${COMPILER} -std=c++20 ${flags} ${SOURCE} -o ${program} ${said} -Wl,-rpath,${where}/..
   COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${program} ${ROOM} COMMAND_ERROR_IS_FATAL ANY)

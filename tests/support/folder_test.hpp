@@ -2,7 +2,7 @@
 
 #include "support/test.hpp"
 
-#include <unistd.h>
+#include <cstdlib>
 
 namespace frontlux::test {
 
@@ -12,10 +12,17 @@ inline std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// A new, empty folder.
+inline std::filesystem::path new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "frontlux_test_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+  return name;
+}
+
 /// Tests with a folder of their own, which is deleted with them.
 class FolderTest : public testing::Test {
  protected:
-  FolderTest() { std::filesystem::create_directories(folder_); }
+  FolderTest() = default;
   ~FolderTest() override { std::filesystem::remove_all(folder_); }
   FolderTest(const FolderTest&) = delete;
   FolderTest& operator=(const FolderTest&) = delete;
@@ -30,8 +37,7 @@ class FolderTest : public testing::Test {
     return path(name);
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("frontlux_test_" + std::to_string(getpid()));
+  std::filesystem::path folder_ = new_folder();
 };
 
 }  // namespace frontlux::test

@@ -6,6 +6,10 @@
 #include <optional>
 #include <type_traits>
 
+#ifdef __FAST_MATH__
+#error "castRay is answered bit for bit: compile frontlux without -ffast-math (cmake/FrontluxTarget.cmake)"
+#endif
+
 namespace frontlux::detail {
 namespace {
 

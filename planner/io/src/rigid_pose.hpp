@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <frontlux/io/sensor_frame.hpp>
 
 #include <cmath>
 #include <optional>
@@ -8,12 +8,12 @@
 namespace frontlux::io {
 
 /// Nothing unless all numbers are finite and the quaternion has length 1, give or take a thousandth.
-[[nodiscard]] inline std::optional<Eigen::Isometry3d> rigid_pose(const Eigen::Vector3d& position,
-                                                                 const Eigen::Quaterniond& orientation) {
+[[nodiscard]] inline std::optional<SensorFrame> rigid_pose(const Eigen::Vector3d& position,
+                                                           const Eigen::Quaterniond& orientation) {
   constexpr double kTolerance = 1e-3;
   if (!position.allFinite() || !orientation.coeffs().allFinite()) return std::nullopt;
   if (!(std::fabs(orientation.norm() - 1.0) <= kTolerance)) return std::nullopt;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  SensorFrame pose = SensorFrame::Identity();
   pose.linear() = orientation.normalized().toRotationMatrix();
   pose.translation() = position;
   return pose;

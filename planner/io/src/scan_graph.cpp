@@ -75,7 +75,7 @@ class GraphReader {
     return {x, y, z};
   }
 
-  Eigen::Isometry3d take_pose() {
+  SensorFrame take_pose() {
     const Eigen::Vector3d position = take_vector();
     take_size(4, "quaternion");
     const auto w = take<double>(), x = take<double>(), y = take<double>(), z = take<double>();

@@ -19,6 +19,7 @@
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace frontlux::test {
@@ -179,7 +180,8 @@ void expect_visibility_conforms(const Subject& subject, std::size_t count, std::
 void report(const NamedMap& map, const Disagreements& bad) {
   std::cout << map.name << ": " << bad.found() << " disagreements in " << bad.checked() << " rays\n";
   if (bad.found() == 0) return;
-  const std::string file = testing::TempDir() + "conformance_" + map.name + ".ot";
+  const std::string file =
+      testing::TempDir() + "conformance_" + std::to_string(getpid()) + "_" + map.name + ".ot";
   ADD_FAILURE() << bad.found() << " of " << bad.checked() << "; the map is in " << file
                 << (map.tree->write(file) ? "" : ", which could not be written");
 }

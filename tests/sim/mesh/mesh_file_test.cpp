@@ -9,7 +9,6 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <chrono>
 #include <csignal>
 #include <unistd.h>
 
@@ -307,21 +306,15 @@ TEST_F(MeshFile, ImportersFallAlone) {
                                     "<library_nodes>" + nodes + "</library_nodes><library_visual_scenes>"),
                      "<instance_geometry url=\"#g\"/></node></visual_scene>",
                      "<instance_node url=\"#n0\"/></node></visual_scene>");
-  const auto begin = std::chrono::steady_clock::now();
   expect_refused(save("many.dae", many), "to import");
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
-// A file whose materials are in itself, again and again: reading it once more is no new file.
-TEST_F(MeshFile, WhatNamesItselfGetsNoMoreTime) {
+// A file whose materials are in itself, again and again: reading it once more is no new file, so that the time
+// is up although reading terabytes would take hours.
+TEST_F(MeshFile, LongWhatNamesItselfGetsNoMoreTime) {
   std::string self = house_obj();
-  for (int i = 0; i < 40'000; ++i) self += "mtllib self.obj\n";
-  const auto begin = std::chrono::steady_clock::now();
-  try {
-    static_cast<void>(read_mesh_world(save("self.obj", self)));
-  } catch (const std::runtime_error&) {  // as soon as the time is up, if it is not fast enough
-  }
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(40));
+  for (int i = 0; i < 400'000; ++i) self += "mtllib self.obj\n";
+  expect_refused(save("self.obj", self), "takes longer to import");
 }
 
 TEST_F(MeshFile, OtherFilesAreReadOnlyInItsFolder) {

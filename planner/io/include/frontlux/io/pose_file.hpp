@@ -1,9 +1,8 @@
 #pragma once
 
 #include <frontlux/export.hpp>
+#include <frontlux/io/sensor_frame.hpp>
 #include <frontlux/planner/pose.hpp>
-
-#include <Eigen/Geometry>
 
 #include <cmath>
 #include <cstddef>
@@ -22,7 +21,7 @@ struct RecordedPose {
   std::string file;      ///< as the pose file names it
   std::size_t line = 0;  ///< of the pose file, from 1
   /// Pose of the sensor in the world.
-  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  SensorFrame T_world_sensor = SensorFrame::Identity();
 };
 
 /// Whether a yaw [rad] is no more than a turn; a larger one is likely in degrees.

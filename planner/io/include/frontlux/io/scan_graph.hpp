@@ -1,9 +1,9 @@
 #pragma once
 
 #include <frontlux/export.hpp>
+#include <frontlux/io/sensor_frame.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include <filesystem>
 #include <vector>
@@ -13,7 +13,7 @@ namespace frontlux::io {
 /// A scan as it was recorded: the end points of its rays in the sensor's frame, and where the sensor was.
 struct RecordedScan {
   /// Pose of the sensor in the world.
-  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  SensorFrame T_world_sensor = SensorFrame::Identity();
   std::vector<Eigen::Vector3f> points;  ///< [m] a point that is not finite is no measurement
 };
 
