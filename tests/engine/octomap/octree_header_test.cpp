@@ -15,7 +15,7 @@ TEST_F(OctreeFileTest, RefusesBadHeaders) {
   refuses(with("id OcTree\nsize 1\nsize 1\nres 0.1\n"), {"second 'size' line"});
   refuses(with("id OcTree\nsize 1\nres 0.1\nsighs 1\n"), {"unknown line", "'sighs 1'"});
   refuses(with("\x1b[2J\x01\n"), {"unknown line", "'?[2J?'"});
-  refuses(with(std::string(1000, 'x') + "\n"), {"'" + std::string(40, 'x') + "...'"});
+  refuses(with(std::string(1000, 'x') + "\n"), {std::string("'").append(40, 'x').append("...'")});
   refuses(std::string(kFull) + "id OcTree\nsize 1\nres 0.1\ndata 5\n" + leaf, {"'5' behind 'data'"});
   refuses(std::string(kFull) + "id OcTree\nsize 1\nres 0.1\n", {"before the 'data' line"});
   refuses(std::string(kFull) + std::string(100000, '#'), {"before the 'data' line"});
