@@ -15,7 +15,7 @@ function(frontlux_target name)
   # Ours is compiled file by file even if the project around it is not.
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   # The ray contract is bit for bit: a fused multiply-add rounds once where castRay rounds twice
-  # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do. -ffast-math of the
+  # (docs/ray_contract.md). x86-64 has none by default; other machines, or a user's flags, do. Fast maths of the
   # project around us is undone.
   # Nobody reads errno or the flags of floating-point exceptions here; without them more loops become vectors.
   target_compile_options(${name} PRIVATE -fPIC -fno-fast-math -ffp-contract=off -fno-math-errno

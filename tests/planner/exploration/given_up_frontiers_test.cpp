@@ -1,0 +1,117 @@
+// Robots in motion give up frontiers that their planning takes for visible and their sensors do not show.
+
+#include "planner/exploration/team_in_motion.hpp"
+
+namespace frontlux::planner {
+namespace {
+
+using test::GoalChoice;
+using test::small_uav;
+using test::TeamInMotion;
+using test::TeamInWorld;
+
+constexpr double kLong = 300.0;  // [s]
+
+double turn(double from, double to) { return std::remainder(to - from, 2 * std::numbers::pi); }
+
+// A scan of one ray.
+Scan scan_with(const Pose& pose, float range, double max_range) {
+  return {pose.position.cast<float>(), max_range, {Eigen::Vector3f::UnitX()}, {range}};
+}
+// It changes nothing.
+Scan empty_scan(const Pose& pose) { return scan_with(pose, std::numeric_limits<float>::infinity(), 0.01); }
+
+class GivenUpFrontiersBy : public testing::TestWithParam<GoalChoice> {};
+INSTANTIATE_TEST_SUITE_P(Each, GivenUpFrontiersBy, testing::ValuesIn(test::kGoalChoices),
+                         test::name_of_choice);
+
+// Planning takes for visible what the camera, which looks the other way, does not see. Also if the robot
+// comes to rest beside the middle of the voxel, and so in another one, where its trajectory ends.
+TEST_P(GivenUpFrontiersBy, AreThoseThatItDoesNotSeeFromItsGoal) {
+  for (const auto& [off, period] : {std::pair{0.0, 1.0}, {0.2, 1.0}, {0.2, 0.5}}) {
+    const TeamInWorld team("room", 1, {small_uav()});
+    ExplorationOptions options = TeamInMotion::options(team, GetParam());
+    options.period = period;
+    ContinuousExploration exploration(options, team.empty_map());
+    exploration.begin(team.starts, 0.0);
+    std::set<VoxelKey> given_up;
+    std::size_t goals = 0, abandoned = 0;
+    for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
+      Pose pose = exploration.at(0, time).pose;
+      pose.position.x() += off;
+      pose.yaw = turn(std::numbers::pi, pose.yaw);
+      exploration.insert(0, pose, empty_scan(pose));
+      while (const auto now = exploration.plan(time)) {
+        const RobotStep& robot = now->step.robots[0];
+        goals += robot.goal.pose ? 1 : 0;
+        given_up.insert(robot.still_unknown.begin(), robot.still_unknown.end());
+        abandoned = now->step.abandoned;
+      }
+    }
+    SCOPED_TRACE(std::to_string(off) + " m, " + std::to_string(period) + " s");
+    EXPECT_EQ(exploration.end(),
+              GetParam() == GoalChoice::kGoals ? ExplorationEnd::kLowGain : ExplorationEnd::kNothingToDo);
+    EXPECT_GT(goals, 20U);
+    EXPECT_GT(abandoned, 80U);
+    EXPECT_LE(abandoned, given_up.size());
+  }
+}
+
+// Each robot gives up what it has not seen, also if both plan at the same times.
+TEST_P(GivenUpFrontiersBy, AreThoseThatEitherRobotDoesNotSee) {
+  const TeamInWorld team("room", 1, {small_uav(), small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  std::array<std::size_t, 2> given_up{};
+  std::set<VoxelKey> all;
+  std::size_t abandoned = 0;
+  for (double time = 0.0; time < 30.0 && !exploration.end(); time += 1.0) {
+    for (std::size_t r = 0; r < 2; ++r) {
+      const Pose pose = exploration.at(r, time).pose;
+      exploration.insert(r, pose, empty_scan(pose));
+    }
+    while (const auto now = exploration.plan(time)) {
+      const std::vector<VoxelKey>& keys = now->step.robots[now->robot].still_unknown;
+      given_up.at(now->robot) += keys.size();
+      all.insert(keys.begin(), keys.end());
+      EXPECT_GE(now->step.abandoned, abandoned) << "nothing is mapped";
+      abandoned = now->step.abandoned;
+    }
+  }
+  EXPECT_GT(given_up[0], 0U);
+  EXPECT_GT(given_up[1], 0U);
+  EXPECT_GT(abandoned, 0U);
+  EXPECT_LE(abandoned, all.size());
+}
+
+// A sensor that has failed for a while shows nothing of what is in its view.
+TEST_P(GivenUpFrontiersBy, AreNoneForScansWithoutRanges) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  const auto given_up = [&](float range, double max_range) {
+    ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+    exploration.begin(team.starts, 0.0);
+    std::size_t keys = 0, plannings = 0, looks = 0;
+    std::optional<Pose> goal;
+    for (double time = 0.0; time < 20.0; time += 0.1) {
+      const Pose pose = exploration.at(0, time).pose;
+      exploration.insert(0, pose, scan_with(pose, range, max_range));
+      looks +=
+          goal && (pose.position - goal->position).norm() < 0.01 && std::abs(turn(goal->yaw, pose.yaw)) < 0.01
+              ? 1
+              : 0;
+      while (const auto now = exploration.plan(time)) {
+        goal = now->step.robots[0].goal.pose;
+        keys += now->step.robots[0].still_unknown.size();
+        ++plannings;
+      }
+    }
+    EXPECT_GT(plannings, 10U);
+    EXPECT_GT(looks, 3U) << "it has been at its goals";
+    return keys;
+  };
+  EXPECT_EQ(given_up(std::numeric_limits<float>::quiet_NaN(), 10.0), 0U);
+  EXPECT_GT(given_up(std::numeric_limits<float>::infinity(), 0.01), 0U) << "a sensor that sees nothing";
+}
+
+}  // namespace
+}  // namespace frontlux::planner
