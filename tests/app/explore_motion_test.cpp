@@ -10,7 +10,6 @@
 #include <frontlux/planner/recording.hpp>
 #include <frontlux/sim/mesh_file.hpp>
 
-#include <map>
 #include <variant>
 
 namespace frontlux::planner {
@@ -369,80 +368,6 @@ TEST_F(ExploreMotion, EndsInTimeIfNoScanArrives) {
   EXPECT_GT(recording.steps[0].step.robots[0].changed.size(), 0U);
   const auto map = std::get<std::shared_ptr<octomap::OcTree>>(read_octree(path("run/map.ot")));
   EXPECT_TRUE(make_voxel_grid(*map) == start.grid());
-}
-
-TEST_F(ExploreMotion, ScansArriveAfterTheirDelay) {
-  expect_answer(joined(quick("run", "2"), {"--scan-delay", "1"}));
-  const Recording recording = read_recording(path("run/run.frontlux"));
-  std::size_t early = 0, late = 0;  // steps
-  for (const RecordedStep& step : recording.steps) {
-    if (step.step.number == 0) continue;
-    std::size_t changed = 0;
-    for (const RobotStep& robot : step.step.robots) changed += robot.changed.size();
-    if (step.step.time < 1.0) {
-      ++early;
-      EXPECT_EQ(changed, 0U) << step.step.time << " s";
-    } else {
-      late += changed > 0 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(early, 0U);
-  EXPECT_GT(late, 0U);
-}
-
-// Each of them makes another run of the same one, and no two the same.
-TEST_F(ExploreMotion, ItsOptionsHaveAnEffect) {
-  const std::vector<std::vector<std::string>> of_tours = {
-      {"--noise", "0.05"},          {"--dropout", "0.3"},        {"--stray", "0.002"},
-      {"--drift", "0.05"},          {"--tracking-error", "0.1"}, {"--optimize", "off"},
-      {"--tours-without", "tours"}, {"--world-seed", "2"}};
-  const std::vector<std::vector<std::string>> of_goals = {{"--lambda", "1"},
-                                                          {"--advance", "20"},
-                                                          {"--min-distance", "2"},
-                                                          {"--assign", "off"},
-                                                          {"--samples", "2"}};
-  for (const auto& [search, changes] : {std::pair("tour", of_tours), {"render", of_goals}}) {
-    std::map<std::string, std::string> options;  // by what has been mapped and gone with them
-    // The distance of the nearest goal.
-    const auto explore = [&, goal = search](const std::vector<std::string>& words) {
-      expect_answer(joined(quick("run", "2.5"), joined({"--goal", goal, "--force"}, words)));
-      std::string option = goal;
-      for (const std::string& word : words) option += " " + word;
-      const std::string run = content_of(path("run/map.ot")) + content_of(path("run/motion.csv"));
-      const auto [same, is_new] = options.emplace(run, option);
-      EXPECT_TRUE(is_new) << option << " is the same run as " << same->second;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const RecordedStep& step : read_recording(path("run/run.frontlux")).steps)
-        for (const RobotStep& robot : step.step.robots)
-          if (robot.goal.pose && !robot.image.empty()) nearest = std::min(nearest, robot.goal.distance);
-      return nearest;
-    };
-    const double without = explore({});
-    for (const auto& words : changes) {
-      const double nearest = explore(words);
-      if (words.front() != "--min-distance") continue;
-      EXPECT_LT(without, 2.0);
-      EXPECT_GE(nearest, 2.0 - 1e-6);
-    }
-  }
-}
-
-// By rays to drawn frontiers gains are estimates.
-TEST_F(ExploreMotion, ExactRenderingCountsFrontiers) {
-  const auto uncertain = [&](const std::string& renderer) {
-    expect_answer(joined(quick("run", "0.5"), {"--goal", "render", "--renderer", renderer, "--force"}));
-    std::size_t cells = 0, estimated = 0;
-    for (const RecordedStep& step : read_recording(path("run/run.frontlux")).steps)
-      for (const RobotStep& robot : step.step.robots)
-        for (const RenderedCell& cell : robot.image) {
-          ++cells;
-          estimated += cell.standard_error > 0.0 ? 1 : 0;
-        }
-    EXPECT_GT(cells, 10U) << renderer;
-    return estimated;
-  };
-  EXPECT_EQ(uncertain("exact"), 0U);
-  EXPECT_GT(uncertain("rays"), 10U);
 }
 
 TEST_F(ExploreMotion, GoesOnWithARecordingThatWasCutOffAnywhere) {
