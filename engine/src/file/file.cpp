@@ -94,13 +94,16 @@ class UnfinishedFile {
   std::atomic<const char*>* place_ = nullptr;
 };
 
-// Whether nobody is writing an unfinished file. Where files cannot be locked, nobody knows.
-bool is_abandoned(const std::filesystem::path& file) {
+// Removes an unfinished file that nobody is writing. It is locked until it is gone: whoever has just made it
+// looks whether it is still there once he has the lock himself. Where files cannot be locked, it stays.
+void remove_if_abandoned(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool abandoned = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (descriptor < 0) return;
+  struct stat locked = {}, named = {};  // another one may have the name by now
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &locked) == 0 &&
+      ::lstat(file.c_str(), &named) == 0 && locked.st_dev == named.st_dev && locked.st_ino == named.st_ino)
+    ::unlink(file.c_str());
   ::close(descriptor);
-  return abandoned;
 }
 
 // Else a loss of power after a file got its name could leave it empty.
@@ -160,9 +163,7 @@ void remove_unfinished(const std::filesystem::path& file) {
     const std::string name = entry->path().filename().string();
     if (!name.starts_with(begin)) continue;
     const std::string_view rest = std::string_view(name).substr(begin.size());
-    std::error_code ignored;
-    if (number_from<::pid_t>(rest.substr(0, rest.find('-'))) && is_abandoned(entry->path()))
-      std::filesystem::remove(entry->path(), ignored);
+    if (number_from<::pid_t>(rest.substr(0, rest.find('-')))) remove_if_abandoned(entry->path());
   }
 }
 
