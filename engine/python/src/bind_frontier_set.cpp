@@ -43,8 +43,7 @@ void bind_frontier_set(py::module_& module) {
 corners: voxels that share an edge or a corner are neighbours too, not only those that share a face.)")
       .def("update", &update, py::arg("change"),
            "Takes in a change of the map: every one, in their order. Raises ValueError for one of another "
-           "map, or if one "
-           "before it was left out.")
+           "map, or if one before it was left out.")
       .def_property_readonly(
           "keys",
           [](const Self& self) {

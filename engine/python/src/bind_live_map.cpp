@@ -144,8 +144,7 @@ max_range: [m] rays are free up to there, and points beyond it do not count as h
 nothing inserted, if a ray passes more than 99,990 voxels. Returns a MapChange.)")
       .def("insert_scan", &insert_scan, py::arg("points"), py::arg("pose"), py::arg("max_range") = -1.0,
            "The same for points in the sensor's frame. pose: (4, 4), maps the sensor's frame into the map's: "
-           "a rotation, "
-           "a translation [m] and (0, 0, 0, 1).")
+           "a rotation, a translation [m] and (0, 0, 0, 1).")
       .def(
           "write",
           [](const Self& self, const std::filesystem::path& file) {
