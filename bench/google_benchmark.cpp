@@ -100,7 +100,7 @@ GoogleBenchmark::~GoogleBenchmark() {
 
 void GoogleBenchmark::add(const std::string& name, int threads, std::size_t items, std::function<void()> pass,
                           std::map<std::string, double> counters) {
-  threads_[name] = threads;
+  if (!threads_.emplace(name, threads).second) throw std::logic_error("two rows are named " + name);
   const auto run = [=](benchmark::State& state) {
     tbb::task_arena arena(threads);
     const Stopwatch watch;
@@ -124,8 +124,8 @@ bool GoogleBenchmark::may_run(bool agreed) {
 
 void GoogleBenchmark::run() {
   std::cout << "Timing " << threads_.size() << " rows, repetitions of all in random order ..." << std::endl;
-  benchmark::RunSpecifiedBenchmarks(recorder_.get());
-  if (!json_.empty()) std::filesystem::rename(unfinished_, json_);
+  if (benchmark::RunSpecifiedBenchmarks(recorder_.get()) == 0) throw_no_row_passes();
+  if (!json_.empty() && !recorder_->rates.empty()) std::filesystem::rename(unfinished_, json_);
 }
 
 std::optional<double> GoogleBenchmark::rate(const std::string& row) const {
@@ -139,7 +139,8 @@ std::optional<double> GoogleBenchmark::busy_processors(const std::string& row) c
 void GoogleBenchmark::print_cautions(std::ostream& out) const {
   int most = 0;
   for (const auto& [row, threads] : threads_) most = std::max(most, threads);
-  std::vector<double> busy, spreads;
+  std::vector<double> busy;
+  std::vector<std::pair<double, std::string>> spreads;  // [%] of each row
   for (const auto& [row, threads] : threads_)
     if (const auto processors = busy_processors(row); processors && threads == most)
       busy.push_back(*processors);
@@ -148,12 +149,18 @@ void GoogleBenchmark::print_cautions(std::ostream& out) const {
         << " processors busy. The machine had other work, or the batches are small.\n";
   for (const auto& [row, rates] : recorder_->rates) {
     const auto [low, high] = std::minmax_element(rates.begin(), rates.end());
-    if (rates.size() > 1) spreads.push_back(100 * (*high - *low) / median(rates));
+    if (rates.size() > 1) spreads.emplace_back(100 * (*high - *low) / median(rates), row);
   }
-  if (!spreads.empty())
-    out << "The repetitions of a row differ by " << format("%.0f %%", median(spreads))
-        << " (median of all rows; at most "
-        << format("%.0f %%", *std::max_element(spreads.begin(), spreads.end())) << ").\n";
+  if (spreads.empty()) return;
+  std::ranges::sort(spreads);
+  const auto each = [](const auto& spread) { return format("%.0f %%", spread.first); };
+  out << "The repetitions of a row differ by " << each(spreads[spreads.size() / 2])
+      << " (median of all rows; most: " << each(spreads.back()) << " in " << spreads.back().second << ").\n";
+}
+
+void throw_no_row_passes() {
+  throw std::runtime_error("--benchmark_filter: no row's name contains '" + benchmark::GetBenchmarkFilter() +
+                           "'");
 }
 
 bool passes_filter(const std::string& row) {

@@ -31,6 +31,7 @@ class GoogleBenchmark {
   /// @param pass      what is timed, in an arena of so many threads
   /// @param items     processed by a pass
   /// @param counters  added to the row's JSON
+  /// @throws std::logic_error if there is a row of this name
   void add(const std::string& name, int threads, std::size_t items, std::function<void()> pass,
            std::map<std::string, double> counters);
 
@@ -39,6 +40,7 @@ class GoogleBenchmark {
   [[nodiscard]] static bool may_run(bool agreed);
 
   /// Times all rows that pass the filter. The JSON file appears when all have been timed.
+  /// @throws std::runtime_error if none passes
   void run();
 
   /// Median over the repetitions [items/s]; nothing if the row did not run.
@@ -62,5 +64,8 @@ class GoogleBenchmark {
 /// Whether a row passes the option --benchmark_filter.
 /// @throws std::runtime_error if that is not an extended regular expression
 [[nodiscard]] bool passes_filter(const std::string& row);
+
+/// @throws std::runtime_error  that no row passes the option --benchmark_filter
+[[noreturn]] void throw_no_row_passes();
 
 }  // namespace frontlux::bench

@@ -107,7 +107,7 @@ give the same answers. The casters:
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   line.add_flag("--peers", options.peers, "also measure NanoVDB and Open3D, as far as built with them");
   line.add_google_benchmark(
-      "only check that it works: few rays, one repetition, the coarse generated map only");
+      "only check that it works: few rays, one repetition, of the generated maps the coarse one only");
   line.read(argc, argv);
   if (options.maps.empty() || generated) {
     options.generated = {"building_0.3m"};

@@ -46,7 +46,7 @@ struct MapTrial {
 /// @throws std::runtime_error if the map has no room for such a path
 [[nodiscard]] MapTrial run_ablation(const std::string& name, const VoxelGrid& grid, int seeds);
 
-/// Every method on a path of 12 viewpoints along a free box of 15 x 5.4 x 2.4 m, surrounded by unknown space:
+/// Every method on a path of 12 viewpoints along a free box of 18 x 5.6 x 4 m, surrounded by unknown space:
 /// more than 20,000 pairs.
 [[nodiscard]] PathTrial run_large_path();
 

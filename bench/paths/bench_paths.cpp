@@ -6,6 +6,7 @@
 #include "table.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/machine.hpp>
 #include <frontlux/octomap.hpp>
 
 #include <tbb/task_arena.h>
@@ -109,8 +110,8 @@ std::string page_of(std::span<const MapTrial> maps, const PathTrial& large) {
   };
   return R"(# What each part of the path optimiser contributes
 
-Written by `./dev ablation`. Times are medians of processor time on one core of an x86-64 machine that also did other
-work.
+Written by `./dev ablation`. Times are medians of processor time on one core ()" +
+         processor_name() + R"().
 
 )" + std::to_string(maps.front().paths.size()) +
          R"( random walks on each map, through known free space, with 12 viewpoints 1.2 m apart and a free cube of 0.8 m

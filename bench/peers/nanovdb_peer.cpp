@@ -1,7 +1,6 @@
 #include "peers/nanovdb_peer.hpp"
 
 #include <frontlux/parallel.hpp>
-#include <frontlux/stopwatch.hpp>
 
 #include <nanovdb/util/GridBuilder.h>
 #include <nanovdb/util/HDDA.h>
@@ -53,9 +52,8 @@ bool visible(const KeySegment& segment, nanovdb::DefaultReadAccessor<float>& vox
 }  // namespace
 
 Peer make_nanovdb_peer(const VoxelGrid& grid) {
-  const Stopwatch watch;
-  const auto handle = std::make_shared<nanovdb::GridHandle<>>(build(grid));
-  const double seconds = watch.seconds();
+  const auto handle = std::make_shared<nanovdb::GridHandle<>>();
+  const double seconds = median_seconds([&] { *handle = build(grid); });
   const auto query = [handle](std::span<const KeySegment> segments, std::span<std::uint8_t> answers) {
     const nanovdb::NanoGrid<float>& voxels = *handle->grid<float>();
     for_each_chunk(segments.size(), 256, [&](std::size_t begin, std::size_t end) {

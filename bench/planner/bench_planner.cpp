@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct Row {
   std::size_t items = 0;
   std::function<void()> pass;
   Counters counters;
+  std::size_t times = 1;  // that a pass does the work
 
   [[nodiscard]] std::string name(const std::string& by, int threads) const {
     return row_name(work + "/" + map, by + detail, threads);
@@ -61,7 +63,7 @@ std::vector<Rendering> by_casters(const Subject& subject, const std::vector<cons
 class Session {
  public:
   void prepare(const std::filesystem::path& file, const PlannerOptions& options) {
-    subjects_.push_back(load_subject(file, file.stem().string()));
+    subjects_.push_back(load_subject(file, unique_name(file, names_)));
     const Subject& subject = *subjects_.back();
     std::cout << describe(subject) << std::endl;
     scenes_.push_back(
@@ -105,9 +107,11 @@ class Session {
   }
 
   void add(const PlannerScene& scene, const std::string& work, const std::string& caster,
-           const std::string& detail, std::size_t items, std::function<void()> pass, Counters counters) {
+           const std::string& detail, std::size_t items, std::function<void()> pass, Counters counters,
+           std::size_t times = 1) {
     counters["frontiers"] = static_cast<double>(scene.frontiers.size());
-    rows_.push_back({work, scene.subject.name, caster, detail, items, std::move(pass), std::move(counters)});
+    rows_.push_back(
+        {work, scene.subject.name, caster, detail, items, std::move(pass), std::move(counters), times});
   }
 
   // The ground robot's viewpoints, rendered anew in each pass.
@@ -130,41 +134,57 @@ class Session {
     }
   }
 
-  // The aerial robot's viewpoints, from scratch and after one scan.
+  // The aerial robot's viewpoints, from scratch and after one scan. A pass of the latter takes the scan into
+  // the map and out again.
   void add_in_space(const PlannerScene& scene, const std::string& suffix, const std::string& detail,
                     const std::vector<Rendering>& renderings) {
-    std::optional<ViewQualityImage> truth;
+    std::optional<ViewQualityImage> truth, scanned_truth;
     for (const Rendering& rendering : renderings) {
       // A caster of its own for the map after the scan, so that only rendering is timed.
       std::shared_ptr<RayCaster> after = make_grid_ray_caster(scene.scanned);
       if (rendering.name == kFast || rendering.name == kExact) after = make_ray_caster(scene.scanned);
       if (rendering.name == kEmbree) after = make_embree_ray_caster(scene.scanned);
-      const auto render = [&scene, rendering] {
+      const auto render = [&scene, rendering](const RayCaster& rays, const std::vector<VoxelKey>& frontiers) {
         ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, rendering.options);
-        image.render(*rendering.caster, scene.aerial_viewpoints, scene.frontiers);
+        image.render(rays, scene.aerial_viewpoints, frontiers);
         return image;
       };
-      const ViewQualityImage image = render();
-      if (!truth) truth = image;
-      const auto updated = std::make_shared<ViewQualityImage>(image);
-      const auto update = [&scene, rendering, after, updated, scanned = std::make_shared<bool>(false)] {
-        *scanned = !*scanned;
-        return updated->update(*scanned ? *after : *rendering.caster, scene.aerial_viewpoints,
-                               *scanned ? scene.scanned_frontiers : scene.frontiers,
-                               {*scanned ? scene.scanned : scene.subject.grid, scene.changed});
+      const auto render_anew = [&scene, rendering, render] {
+        return render(*rendering.caster, scene.frontiers);
       };
-      const auto again = static_cast<double>(update());
-      update();
+      const ViewQualityImage image = render_anew();
+      if (!truth) truth = image;
+      if (!scanned_truth) scanned_truth = render(*after, scene.scanned_frontiers);
+      const auto updated = std::make_shared<ViewQualityImage>(image);
+      const auto take_in = [&scene, after, updated] {
+        return updated->update(*after, scene.aerial_viewpoints, scene.scanned_frontiers,
+                               {scene.scanned, scene.changed});
+      };
+      const auto take_out = [&scene, rendering, updated] {
+        return updated->update(*rendering.caster, scene.aerial_viewpoints, scene.frontiers,
+                               {scene.subject.grid, scene.changed});
+      };
+      const auto again = static_cast<double>(take_in());
+      const std::size_t scanned_differ = differing(*scanned_truth, *updated);
+      take_out();
       compare("render_space" + suffix, rendering.name, differing(*truth, image), image.size());
-      compare("update_space" + suffix, rendering.name, differing(*truth, *updated), image.size());
+      compare("update_space" + suffix + ", scan taken in", rendering.name, scanned_differ, image.size());
+      compare("update_space" + suffix + ", scan taken out", rendering.name, differing(*truth, *updated),
+              image.size());
       const Counters counters = {{"viewpoints", static_cast<double>(image.size())},
                                  {"pairs", total(image, &ViewQuality::population)},
                                  {"changed_voxels", static_cast<double>(scene.changed.size())},
                                  {"rendered_again", again}};
       add(
           scene, "render_space" + suffix, rendering.name, detail, image.size(),
-          [render] { benchmark::DoNotOptimize(render()); }, counters);
-      add(scene, "update_space" + suffix, rendering.name, detail, image.size(), update, counters);
+          [render_anew] { benchmark::DoNotOptimize(render_anew()); }, counters);
+      add(
+          scene, "update_space" + suffix, rendering.name, detail, image.size(),
+          [take_in, take_out] {
+            take_in();
+            take_out();
+          },
+          counters, 2);
     }
   }
 
@@ -189,6 +209,7 @@ class Session {
     }
   }
 
+  std::set<std::string> names_;  // of the maps
   std::vector<std::unique_ptr<Subject>> subjects_;
   std::vector<std::unique_ptr<PlannerScene>> scenes_;
   std::vector<Row> rows_;
@@ -209,7 +230,8 @@ int run(int argc, char** argv) {
   if (!google_benchmark.may_run(session.agreed())) return 1;
   for (const Row& row : session.rows())
     for (const int threads : options.threads)
-      google_benchmark.add(row.name(row.caster, threads), threads, row.items, row.pass, row.counters);
+      google_benchmark.add(row.name(row.caster, threads), threads, row.items * row.times, row.pass,
+                           row.counters);
   google_benchmark.run();
   Table table;
   table.add_columns("", {"median of the repetitions", "ms", "CPU ms", "times castRay", "times embree"});

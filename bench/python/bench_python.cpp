@@ -61,6 +61,12 @@ void compare(const std::string& name, bench::Table& table, const InCpp& in_cpp, 
                  bench::format("%.2f", rate(python_work) / rate(cpp_work))});
 }
 
+bench::Workload made(bench::WorkloadSource& source, const char* name) {
+  bench::Workload workload = source.make(name, kQueries);
+  if (workload.size() == 0) throw std::runtime_error(std::string(name) + ": " + workload.skipped);
+  return workload;
+}
+
 void run(const std::string& file) {
   const py::object module = py::module_::import("frontlux");
   const VoxelGrid grid = make_voxel_grid(read_octree(file));
@@ -72,7 +78,7 @@ void run(const std::string& file) {
 
   for (const char* name : {"cast_lidar", "cast_random"}) {
     std::vector<Ray> rays;
-    const bench::Workload workload = source.make(name, kQueries);
+    const bench::Workload workload = made(source, name);
     for (const bench::RayBatch& batch : workload.batches)
       rays.insert(rays.end(), batch.rays.begin(), batch.rays.end());
     for (std::size_t i = 0; rays.size() < kQueries; ++i) rays.push_back(rays[i]);
@@ -101,7 +107,7 @@ void run(const std::string& file) {
     compare(std::string(name) + ", out", table, in_cpp, [&] { in_python(out); });
   }
 
-  std::vector<KeySegment> segments = source.make("visible_uav", kQueries).segments;
+  std::vector<KeySegment> segments = made(source, "visible_uav").segments;
   for (std::size_t i = 0; segments.size() < kQueries; ++i) segments.push_back(segments[i]);
   segments.resize(kQueries);
   const auto from = to_array<std::uint16_t>(segments, 3, [](const KeySegment& s) { return &s.from.x; });

@@ -19,6 +19,7 @@
 #include <iostream>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,15 +30,35 @@ namespace {
 struct Session {
   std::vector<std::unique_ptr<Subject>> subjects;
   std::vector<std::unique_ptr<Trial>> trials;
-  bool agreed = true;
+  bool any_wanted = false, agreed = true;
 };
 
 /// Whether a row of a trial passes the filter, so that the others need not be prepared.
-bool wanted(const std::string& trial, const std::vector<int>& threads) {
-  for (const char* caster : {kOctomap, kFast, kEmbree, kGrid, "nanovdb"})
+bool wanted(const std::string& trial, const std::vector<std::string>& casters,
+            const std::vector<int>& threads) {
+  for (const std::string& caster : casters)
     for (const int count : threads)
       if (passes_filter(row_name(trial, caster, count) + "/real_time")) return true;
   return false;
+}
+
+/// Those that this program was built with, and says what they cost.
+std::vector<Peer> make_peers([[maybe_unused]] const Subject& subject) {
+  std::vector<Peer> peers;
+#ifdef FRONTLUX_BENCH_NANOVDB
+  peers.push_back(make_nanovdb_peer(subject.grid));
+#endif
+#ifdef FRONTLUX_BENCH_OPEN3D
+  if (auto peer = make_open3d_peer(subject.grid))
+    peers.push_back(*std::move(peer));
+  else
+    std::cout << "  open3d left out: with this Embree its rays hit nothing" << std::endl;
+#endif
+  for (Peer& peer : peers) {
+    peer.build_seconds += subject.grid_seconds;  // they are made from the grid, as ours are
+    std::cout << "  " << peer.caster << ": " << describe(peer) << std::endl;
+  }
+  return peers;
 }
 
 /// Reads a map, draws its workloads, and checks all answers on them.
@@ -47,21 +68,13 @@ void prepare(const std::filesystem::path& file, const std::string& name, const R
   const Subject& subject = *session.subjects.back();
   std::cout << describe(subject) << std::endl;
 
-  std::vector<Peer> peers;
-#ifdef FRONTLUX_BENCH_NANOVDB
-  if (options.peers) peers.push_back(make_nanovdb_peer(subject.grid));
-#endif
-#ifdef FRONTLUX_BENCH_OPEN3D
-  if (options.peers) {
-    if (auto peer = make_open3d_peer(subject.grid))
-      peers.push_back(*std::move(peer));
-    else
-      std::cout << "  open3d left out: with this Embree its rays hit nothing" << std::endl;
-  }
-#endif
+  const std::vector<Peer> peers = options.peers ? make_peers(subject) : std::vector<Peer>{};
+  std::vector<std::string> casters{kOctomap, kFast, kEmbree, kGrid};
+  for (const Peer& peer : peers) casters.push_back(peer.caster);
   WorkloadSource source(subject.grid, subject.caster(kGrid));
   for (const std::string_view query : kWorkloads) {
-    if (!wanted(std::string(query) + "/" + name, options.threads)) continue;
+    if (!wanted(std::string(query) + "/" + name, casters, options.threads)) continue;
+    session.any_wanted = true;
     Workload workload = source.make(query, options.rays);
     if (workload.size() == 0) {
       std::cout << "  " << query << " skipped: " << workload.skipped << std::endl;
@@ -72,14 +85,6 @@ void prepare(const std::filesystem::path& file, const std::string& name, const R
     std::cout.flush();
     session.trials.push_back(std::move(trial));
   }
-}
-
-/// A map's name is its file's stem, with a number if several have the same.
-std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken) {
-  const std::string stem = file.stem().string();
-  std::string name = stem;
-  for (int number = 2; !taken.insert(name).second; ++number) name = stem + "_" + std::to_string(number);
-  return name;
 }
 
 std::string ray_count(double count) {
@@ -98,7 +103,7 @@ void print_table(const Session& session, const std::vector<int>& threads, const 
   table.add_columns("", {"", "voxels", "hits"});
   for (const int count : threads) table.add_columns("Mrays/s, " + thread_count(count), casters);
   table.add_columns("times castRay", ours);
-  table.add_columns("agrees", ours);
+  table.add_columns("agrees", casters);
   table.add_columns("pays off after rays", ours);
   for (const auto& trial : session.trials) {
     std::vector<std::string> row{trial->name(), format("%.1f", trial->mean_voxels()),
@@ -111,19 +116,19 @@ void print_table(const Session& session, const std::vector<int>& threads, const 
         const auto found = rate(caster, count);
         row.push_back(found ? digits(*found * 1e-6) : "-");
       }
-    const auto add = [&](auto text) {
-      for (const std::string& caster : ours) {
+    const auto add = [&](const std::vector<std::string>& columns, auto text) {
+      for (const std::string& caster : columns) {
         const auto entry = std::ranges::find(trial->entries(), caster, &Entry::caster);
         row.push_back(entry == trial->entries().end() ? "-" : text(*entry));
       }
     };
     const auto base = rate(kOctomap, threads.back());
-    add([&](const Entry& entry) -> std::string {
+    add(ours, [&](const Entry& entry) -> std::string {
       const auto own = rate(entry.caster, threads.back());
       return own && base ? digits(*own / *base) : "-";
     });
-    add([](const Entry& entry) { return percent(entry.agreement); });
-    add([&](const Entry& entry) -> std::string {
+    add(casters, [](const Entry& entry) { return percent(entry.agreement); });
+    add(ours, [&](const Entry& entry) -> std::string {
       const auto own = rate(entry.caster, threads.back());
       if (!own || !base) return "-";
       return *own <= *base ? "never" : ray_count(entry.build_seconds / (1 / *base - 1 / *own));
@@ -133,9 +138,10 @@ void print_table(const Session& session, const std::vector<int>& threads, const 
   std::cout << '\n'
             << table.text() << R"(
 voxels: entered per ray. hits: visible, or stopped by an occupied voxel. times castRay: ratio of the medians on most
-threads. agrees: with castRay bit for bit, or between voxel keys with the integer rule. pays off: number of rays after
-which building and casting together is faster than castRay. The lines of the maps have build times and memory, from the
-octree to the caster, the grid included; of fast without Embree's scene, and of peers without the grid.
+threads, of passes that follow each other. agrees: with castRay bit for bit, or between voxel keys with the integer rule,
+from which castRay itself differs by rounding. pays off: number of rays after which building and casting together is
+faster than castRay. The lines of the maps have build times and memory, from the octree to the caster, the grid's time
+included; of fast without Embree's scene, which the first rays that need it build.
 )";
   timed.print_cautions(std::cout);
 }
@@ -144,6 +150,10 @@ octree to the caster, the grid included; of fast without Embree's scene, and of 
 
 int run(int argc, char** argv) {
   const RaysOptions options = read_rays_options(argc, argv);
+#if !defined(FRONTLUX_BENCH_NANOVDB) && !defined(FRONTLUX_BENCH_OPEN3D)
+  if (options.peers)
+    throw std::runtime_error("--peers: built without NanoVDB (Debian: libnanovdb-dev) and without Open3D");
+#endif
   GoogleBenchmark google_benchmark(argv[0], options);
   Session session;
   tbb::task_arena(options.threads.back()).execute([&] {
@@ -153,6 +163,7 @@ int run(int argc, char** argv) {
     for (const auto& file : options.maps) prepare(file, unique_name(file, names), options, session);
   });
   if (!google_benchmark.may_run(session.agreed)) return 1;
+  if (!session.any_wanted) throw_no_row_passes();
   if (session.trials.empty()) {
     std::cout << "Nothing to measure.\n";
     return 0;

@@ -1,6 +1,6 @@
 #include "rays/castray_loop.hpp"
 
-#include "octomap/quiet_octomap.hpp"
+#include "octomap/own_castray.hpp"
 
 #include <frontlux/parallel.hpp>
 
@@ -14,8 +14,9 @@ void in_blocks(std::size_t count, const CastOne& cast_one) {
   });
 }
 
-template <class Caster>
-void loop(const Caster& caster, std::span<const Ray> rays, UnknownPolicy unknown, CastRayAnswers& answers) {
+// `cast` has the arguments and the answer of castRay.
+template <class Cast>
+void loop(std::span<const Ray> rays, UnknownPolicy unknown, CastRayAnswers& answers, const Cast& cast) {
   const bool ignore_unknown = unknown == UnknownPolicy::kPass;
   in_blocks(rays.size(), [&](std::size_t i) {
     const Ray& ray = rays[i];
@@ -23,7 +24,7 @@ void loop(const Caster& caster, std::span<const Ray> rays, UnknownPolicy unknown
     const octomap::point3d direction(ray.direction.x(), ray.direction.y(), ray.direction.z());
     octomap::point3d end(CastRayAnswers::kUntouched.x(), CastRayAnswers::kUntouched.y(),
                          CastRayAnswers::kUntouched.z());
-    answers.occupied[i] = caster.castRay(origin, direction, end, ignore_unknown, ray.max_range) ? 1 : 0;
+    answers.occupied[i] = cast(origin, direction, end, ignore_unknown, ray.max_range) ? 1 : 0;
     answers.end[i] = {end.x(), end.y(), end.z()};
   });
 }
@@ -32,12 +33,16 @@ void loop(const Caster& caster, std::span<const Ray> rays, UnknownPolicy unknown
 
 void cast_ray_loop(const Octree& tree, std::span<const Ray> rays, UnknownPolicy unknown,
                    CastRayAnswers& answers) {
-  std::visit([&](const auto& octree) { loop(*octree, rays, unknown, answers); }, tree);
+  std::visit(
+      [&](const auto& octree) {
+        loop(rays, unknown, answers, [&](auto&... ray) { return detail::own_castray(*octree, ray...); });
+      },
+      tree);
 }
 
 void cast_ray_loop(const OctreeRayCaster& caster, std::span<const Ray> rays, UnknownPolicy unknown,
                    CastRayAnswers& answers) {
-  loop(caster, rays, unknown, answers);
+  loop(rays, unknown, answers, [&](auto&... ray) { return caster.castRay(ray...); });
 }
 
 void cast_ray_loop(const RayCaster& caster, std::span<const Ray> rays, UnknownPolicy unknown,

@@ -24,17 +24,8 @@ constexpr double kLookRange = 6.0;                    // [m]
 constexpr double kMostVoxels = 60.0;                  // of the range, in maps finer than 0.1 m
 constexpr std::uint64_t kLookPlace = 301;             // stream of random numbers
 
-template <class Build>
-double median_seconds(Build&& build) {
-  // The first time pays for pages that the allocator keeps afterwards.
-  std::vector<double> seconds(3);
-  for (double& s : seconds) {
-    const Stopwatch watch;
-    build();
-    s = watch.seconds();
-  }
-  return median(std::move(seconds));
-}
+// With more, the surfaces of free space alone would fill the memory; such a file is not the map of a place.
+constexpr std::uint64_t kMaxKnownVoxels = std::uint64_t{1} << 34U;
 
 // [voxels]
 double look_range(const VoxelGrid& grid) { return std::min(kLookRange / grid.resolution(), kMostVoxels); }
@@ -105,6 +96,8 @@ double update_seconds(CasterKind kind, const Subject& subject, const Looks& look
   return seconds.empty() ? 0.0 : median(std::move(seconds));
 }
 
+std::string megabytes(std::size_t bytes) { return format("%.1f MB", static_cast<double>(bytes) * 1e-6); }
+
 }  // namespace
 
 const RayCaster& Subject::caster(const std::string& caster) const {
@@ -113,14 +106,31 @@ const RayCaster& Subject::caster(const std::string& caster) const {
   throw std::invalid_argument("no caster named " + caster);
 }
 
+std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken) {
+  const std::string stem = file.stem().string();
+  std::string name = stem;
+  for (int number = 2; !taken.insert(name).second; ++number) name = stem + "_" + std::to_string(number);
+  return name;
+}
+
+double median_seconds(const std::function<void()>& build) {
+  std::vector<double> seconds(3);
+  for (double& s : seconds) {
+    const Stopwatch watch;
+    build();
+    s = watch.seconds();
+  }
+  return median(std::move(seconds));
+}
+
 std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   std::optional<VoxelGrid> grid;
   const double grid_seconds = median_seconds([&] {
     grid.reset();
     grid = make_voxel_grid(tree);
   });
-  auto subject =
-      std::make_unique<Subject>(Subject{std::move(name), std::move(tree), *std::move(grid), {}, 0, {}});
+  auto subject = std::make_unique<Subject>(
+      Subject{std::move(name), std::move(tree), *std::move(grid), grid_seconds, {}, 0, {}});
   const Looks looks = make_looks(subject->grid);
   if (!looks.voxels.empty()) subject->look_voxels = median(looks.voxels);
   // The baseline first: the others are compared with it.
@@ -142,23 +152,31 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
 }
 
 std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
-  auto subject = make_subject(read_octree(file), std::move(name));
+  Octree tree = read_octree(file);
+  const auto count = make_voxel_grid(tree).count();
+  const std::uint64_t known = count[static_cast<std::size_t>(Occupancy::kFree)] +
+                              count[static_cast<std::size_t>(Occupancy::kOccupied)];
+  if (known > kMaxKnownVoxels)
+    throw std::runtime_error(file.string() + ": declares " + std::to_string(known) +
+                             " voxels, too many to be a place; give another map");
+  auto subject = make_subject(std::move(tree), std::move(name));
   subject->drop_in = std::make_unique<OctreeRayCaster>(subject->tree);
   return subject;
 }
 
+std::string describe(const CasterCost& cost) {
+  return format("built in %.1f ms, ", cost.build_seconds * 1e3) + megabytes(cost.bytes);
+}
+
 std::string describe(const Subject& subject) {
   const auto millions = [](auto count) { return format("%.2f M", static_cast<double>(count) * 1e-6); };
-  const auto megabytes = [](std::size_t bytes) {
-    return format("%.1f MB", static_cast<double>(bytes) * 1e-6);
-  };
   const auto count = subject.grid.count();
   std::string text = subject.name + ": voxels of " + format("%.2f m, ", subject.grid.resolution()) +
                      millions(count[1]) + " free, " + millions(count[2]) + " occupied, " +
                      megabytes(memory_bytes(subject.tree)) + " as OctoMap";
   for (const Contender& c : subject.contenders) {
     if (c.caster == kOctomap) continue;
-    text += "; " + c.caster + ": built in " + format("%.1f ms, ", c.build_seconds * 1e3) + megabytes(c.bytes);
+    text += "; " + c.caster + ": " + describe(static_cast<const CasterCost&>(c));
     // The grid is the map itself.
     if (c.caster != kGrid) text += format(", follows a look in %.2f ms", c.update_seconds * 1e3);
   }

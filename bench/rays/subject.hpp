@@ -6,7 +6,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,7 @@ struct Subject {
   std::string name;
   Octree tree;
   VoxelGrid grid;
+  double grid_seconds = 0;            ///< from the octree to the grid
   std::vector<Contender> contenders;  ///< octomap, fast, embree, grid
   double look_voxels =
       0;  ///< that a look all around shows from some place, within 6 m or 60 voxels; the median
@@ -49,8 +52,17 @@ struct Subject {
 [[nodiscard]] std::unique_ptr<Subject> make_subject(Octree tree, std::string name);
 
 /// Reads a map, and builds the casters and the drop-in for single calls.
-/// @throws std::runtime_error naming the file
+/// @throws std::runtime_error naming the file, if it cannot be read or declares more voxels than a place has
 [[nodiscard]] std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name);
+
+/// A map's name: its file's stem, with a number if that is taken.
+[[nodiscard]] std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken);
+
+/// The median of three builds: the first one pays for pages that the allocator keeps afterwards.
+[[nodiscard]] double median_seconds(const std::function<void()>& build);
+
+/// How a caster's costs are printed: "built in 1.0 ms, 2.0 MB"
+[[nodiscard]] std::string describe(const CasterCost& cost);
 
 /// One paragraph: size of the map, time and memory of every caster.
 [[nodiscard]] std::string describe(const Subject& subject);

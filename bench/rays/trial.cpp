@@ -1,11 +1,13 @@
 #include "rays/trial.hpp"
 
 #include "rays/castray_loop.hpp"
+#include "rays/exact_visibility.hpp"
 #include "table.hpp"
 
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <ostream>
@@ -19,15 +21,20 @@ bool same_bits(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
 
 Answer answer_of(const Hit& hit) {
   const bool untouched = hit.stop == RayStop::kInvalid;
-  return {hit.occupied(), untouched ? CastRayAnswers::kUntouched : hit.end, true, hit.stop, hit.key};
+  return {hit.occupied(), untouched ? CastRayAnswers::kUntouched : hit.end, hit};
 }
 
 std::string describe(const Answer& a) {
   std::string text =
       format("%s, end %.9g %.9g %.9g", a.positive ? "true" : "false", static_cast<double>(a.end.x()),
              static_cast<double>(a.end.y()), static_cast<double>(a.end.z()));
-  if (a.detailed)
-    text += format(", stop %d, key %d %d %d", static_cast<int>(a.stop), a.key.x, a.key.y, a.key.z);
+  if (a.hit) {
+    const Eigen::Vector3d entry = a.hit->entry.cast<double>();
+    text += format(", stop %d, key %d %d %d, state %d, entry %.9g %.9g %.9g, distance %.9g",
+                   static_cast<int>(a.hit->stop), a.hit->key.x, a.hit->key.y, a.hit->key.z,
+                   static_cast<int>(a.hit->state), entry.x(), entry.y(), entry.z(),
+                   static_cast<double>(a.hit->distance));
+  }
   return text;
 }
 
@@ -35,7 +42,10 @@ std::string describe(const Answer& a) {
 
 bool same(const Answer& a, const Answer& b) {
   return a.positive == b.positive && same_bits(a.end, b.end) &&
-         (!a.detailed || !b.detailed || (a.stop == b.stop && a.key == b.key));
+         (!a.hit || !b.hit ||
+          (a.hit->stop == b.hit->stop && a.hit->state == b.hit->state && a.hit->key == b.hit->key &&
+           same_bits(a.hit->entry, b.hit->entry) &&
+           std::bit_cast<std::uint32_t>(a.hit->distance) == std::bit_cast<std::uint32_t>(b.hit->distance)));
 }
 
 /// Where passes write. Shared by all entries, so that every caster writes to the same, already touched pages.
@@ -56,7 +66,7 @@ struct Trial::Buffers {
   [[nodiscard]] std::vector<Answer> read_visible() const {
     std::vector<Answer> answers;
     for (const std::uint8_t v : visible)
-      answers.push_back({v != 0, {static_cast<float>(v), 0.0F, 0.0F}, false, {}, {}});
+      answers.push_back({v != 0, {static_cast<float>(v), 0.0F, 0.0F}, std::nullopt});
     return answers;
   }
   [[nodiscard]] std::vector<Answer> read_hits() const {
@@ -69,7 +79,7 @@ struct Trial::Buffers {
     std::vector<Answer> answers;
     for (const CastRayAnswers& batch : castray) {
       for (std::size_t i = 0; i < batch.end.size(); ++i)
-        answers.push_back({batch.occupied[i] != 0, batch.end[i], false, {}, {}});
+        answers.push_back({batch.occupied[i] != 0, batch.end[i], std::nullopt});
     }
     return answers;
   }
@@ -113,8 +123,11 @@ void Trial::add_visible(std::span<const Peer> peers) {
     };
     // Between voxel centres castRay rounds, and may pass an edge or corner on either side.
     entries_.push_back({c, c.caster != kOctomap, pass, read});
-    if (c.caster == kGrid) reference_ = entries_.back();
   }
+  const auto by_definition = [this] {
+    exact_visibility(subject_.grid, workload_.segments, buffers_->visible);
+  };
+  reference_ = {{}, true, by_definition, read};
   for (const Peer& peer : peers) {
     const auto pass = [this, visible = peer.visible] { visible(workload_.segments, buffers_->visible); };
     entries_.push_back({peer, false, pass, read});

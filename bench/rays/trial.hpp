@@ -11,6 +11,7 @@
 #include <iosfwd>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,7 @@ namespace frontlux::bench {
 struct Answer {
   bool positive = false;  ///< visible, or castRay's return value
   Eigen::Vector3f end = Eigen::Vector3f::Zero();
-  bool detailed = false;  ///< whether `stop` and `key` are known
-  RayStop stop = RayStop::kInvalid;
-  VoxelKey key;
+  std::optional<Hit> hit;  ///< what a caster tells beside castRay's answer
 };
 
 /// Equal in every bit that both know.
@@ -49,8 +48,8 @@ class Trial {
   Trial(const Subject& subject, Workload workload, std::span<const Peer> peers);
   ~Trial();
 
-  /// Compares the answers of all entries with the reference: castRay for points; for keys the integer rule,
-  /// by the grid. Prints the result in one line, and one more for every entry that should agree and does not.
+  /// Compares the answers of all entries with the reference: castRay for points, `exact_visibility` for keys.
+  /// Prints the result in one line, and one more for every entry that should agree and does not.
   /// @return false if there is such an entry
   bool check(std::span<const int> threads, std::ostream& out);
 
@@ -76,7 +75,7 @@ class Trial {
   Workload workload_;
   std::unique_ptr<Buffers> buffers_;
   std::vector<Entry> entries_;
-  Entry reference_;
+  Entry reference_;  // its pass and what it read
   double positive_fraction_ = 0, mean_voxels_ = 0;
 };
 

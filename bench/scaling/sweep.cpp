@@ -157,7 +157,7 @@ class SweepMaker {
   void add(std::string axis, double x, std::string label, const Subject& subject, Workload workload) {
     const std::string where = axis + " " + label + " on " + subject.name;
     if (workload.size() == 0) {
-      out_ << "  " << where << workload.name << " skipped: "
+      out_ << "  " << where << ", " << workload.name << " skipped: "
            << (workload.skipped.empty() ? "no free voxels are so far apart" : workload.skipped) << std::endl;
       return;
     }

@@ -17,6 +17,7 @@
 #include <ctime>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -184,8 +185,9 @@ std::vector<VoxelKey> slab(const std::vector<VoxelKey>& keys, std::size_t count)
   return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
-bool run_map(const std::filesystem::path& file, const ViewErrorOptions& options, std::ostream& csv) {
-  const auto subject = load_subject(file, file.stem().string());
+bool run_map(const std::filesystem::path& file, std::set<std::string>& names, const ViewErrorOptions& options,
+             std::ostream& csv) {
+  const auto subject = load_subject(file, unique_name(file, names));
   const PlannerScene scene(*subject, Adjacency::kFaces, options.ground_viewpoints, 10'000'000);
   std::cout << subject->name << ": " << scene.frontiers.size() << " frontiers" << std::endl;
   const Case ground{"ugv", *subject, scene.ground.view, scene.ground_viewpoints, scene.frontiers, 0};
@@ -206,8 +208,10 @@ int run(int argc, char** argv) {
   if (options.maps.empty()) options.maps.push_back(generate_map("building_0.3m", options.cache));
   std::ostringstream csv;
   csv << kHeader;
+  std::set<std::string> names;
   const bool agreed = tbb::task_arena(options.threads.front()).execute([&] {
-    return std::ranges::all_of(options.maps, [&](const auto& map) { return run_map(map, options, csv); });
+    return std::ranges::all_of(options.maps,
+                               [&](const auto& map) { return run_map(map, names, options, csv); });
   });
   if (!agreed) {
     std::cerr

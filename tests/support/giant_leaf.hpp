@@ -19,8 +19,8 @@ inline std::string giant_leaf(unsigned depth, unsigned block = kFreeLeaf) {
   nodes(1, 0x4000);
   nodes(depth - 2, 0x0003);
   nodes(1, block);
-  return "# Octomap OcTree binary file\nid OcTree\nsize " + std::to_string(depth + 17) + "\nres 0.1\ndata\n" +
-         data;
+  std::string map = "# Octomap OcTree binary file\nid OcTree\nsize ";
+  return map.append(std::to_string(depth + 17)).append("\nres 0.1\ndata\n").append(data);
 }
 
 }  // namespace frontlux::test

@@ -1,4 +1,5 @@
 #include "octomap/octomap_adapter.hpp"
+#include "octomap/own_castray.hpp"
 #include "parallel/answer_each.hpp"
 #include "walk/path_count.hpp"
 #include "walk/plain_count.hpp"
@@ -24,18 +25,12 @@ class OctomapRayCaster final : public RayCaster {
   explicit OctomapRayCaster(const Tree& tree) : RayCaster(Lattice(tree.getResolution())), tree_(tree) {}
 
  private:
-  // Flattened, so that the code compiled here, with this project's flags, is what runs: castRay is a weak
-  // template symbol, and the linker could choose another copy.
-  [[gnu::flatten]] bool cast_ray(const octomap::point3d& origin, const octomap::point3d& direction,
-                                 octomap::point3d& end, UnknownPolicy unknown, double max_range) const {
-    return tree_.Tree::castRay(origin, direction, end, unknown == UnknownPolicy::kPass, max_range);
-  }
-
   Hit cast_one(const Ray& ray, UnknownPolicy unknown) const {
     const auto start = lattice().key(ray.origin);
     if (!start) return {};
     octomap::point3d end(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
-    const bool hit = cast_ray(to_octomap(ray.origin), to_octomap(ray.direction), end, unknown, ray.max_range);
+    const bool hit = detail::own_castray(tree_, to_octomap(ray.origin), to_octomap(ray.direction), end,
+                                         unknown == UnknownPolicy::kPass, ray.max_range);
     if (!(end.x() == end.x())) return {};  // castRay left it untouched
 
     // castRay answers no more than "hit" or "no hit", and the last voxel. The rest follows from its rules 6
@@ -56,13 +51,22 @@ class OctomapRayCaster final : public RayCaster {
     return answer;
   }
 
-  // True if castRay from `from` stops in the voxel of `to`, or gets further without a blocker.
   bool visible_one(const Eigen::Vector3f& from, const Eigen::Vector3f& to, UnknownPolicy unknown) const {
     const auto start = lattice().key(from), target = lattice().key(to);
     if (!start || !target) return false;
-    if (*start == *target) return true;
+    return *start == *target || reaches(from, to, *target, lattice().center(*target), unknown);
+  }
+
+  bool visible_one(const VoxelKey& from, const VoxelKey& to, UnknownPolicy unknown) const {
+    const Eigen::Vector3f center = lattice().center(to);
+    return from == to || reaches(lattice().center(from), center, to, center, unknown);
+  }
+
+  // Whether castRay from `from` stops in the target, the voxel of `to`, or gets further without a blocker.
+  bool reaches(const Eigen::Vector3f& from, const Eigen::Vector3f& to, const VoxelKey& target,
+               const Eigen::Vector3f& center, UnknownPolicy unknown) const {
     const octomap::point3d origin = to_octomap(from);
-    const octomap::point3d target_center = to_octomap(lattice().center(*target));
+    const octomap::point3d target_center = to_octomap(center);
     double distance_sq = 0.0;  // as castRay sums it, so that the target itself is never out of range
     for (unsigned i = 0; i < 3; ++i) {
       const float squared = (target_center(i) - origin(i)) * (target_center(i) - origin(i));
@@ -70,7 +74,8 @@ class OctomapRayCaster final : public RayCaster {
     }
     const double range = std::sqrt(distance_sq) * (1.0 + 1e-12);
     octomap::point3d end = origin;
-    if (cast_ray(origin, to_octomap(to) - origin, end, unknown, range))
+    if (detail::own_castray(tree_, origin, to_octomap(to) - origin, end, unknown == UnknownPolicy::kPass,
+                            range))
       return lattice().key(from_octomap(end)) == target;
     const auto last = lattice().key(from_octomap(end));
     if (last == target) return true;
@@ -86,9 +91,7 @@ class OctomapRayCaster final : public RayCaster {
   }
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
-    answer_each(segments, visible, [&](const KeySegment& s) {
-      return visible_one(lattice().center(s.from), lattice().center(s.to), unknown);
-    });
+    answer_each(segments, visible, [&](const KeySegment& s) { return visible_one(s.from, s.to, unknown); });
   }
 
   Occupancy state_at(const VoxelKey& key) const { return detail::state_at(tree_, key); }
