@@ -149,7 +149,7 @@ def main():
     try:
         document = json.loads(arguments.results.read_text(encoding="utf-8"))
         save(arguments.chart, draw(read_results(document), document.get("context", {})))
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         print(f"plot.py: {arguments.results}: {error}", file=sys.stderr)
         return 2
     return 0

@@ -1,5 +1,5 @@
-# cmake -DBENCH_RAYS=... -DBENCH_PLANNER=... -DMAP=... -P rays_smoke_test.cmake: what the programs write, and their exit
-# codes; never times.
+# cmake -DBENCH_RAYS=... -DBENCH_PLANNER=... -DMAP=... -DPLOT=... -DPYTHON=... -P rays_smoke_test.cmake: what the programs
+# write, and their exit codes; never times.
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -64,6 +64,20 @@ foreach(bench RAYS PLANNER)
   endif()
   run(2 ${quick} --map missing.bt)
 endforeach()
+
+if(PYTHON)
+  run(0 ${BENCH_RAYS} --quick --threads 1 --rays 200 --json results.json --map ${MAP})
+  run(0 ${PYTHON} ${PLOT} results.json speed.svg)
+  file(READ ${folder}/speed.svg svg)
+  expect("${svg}" "</svg>\n$")
+  foreach(bad "" "[]" "{\"benchmarks\": [1]}")
+    file(WRITE ${folder}/bad.json "${bad}")
+    run(2 ${PYTHON} ${PLOT} bad.json bad.svg)
+    if(EXISTS ${folder}/bad.svg)
+      message(FATAL_ERROR "a plot of '${bad}'")
+    endif()
+  endforeach()
+endif()
 
 file(GLOB left ${folder}/*.unfinished)
 if(left)
