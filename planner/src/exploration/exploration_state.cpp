@@ -143,9 +143,9 @@ void ExplorationState::select_goals(ExplorationStep& step, std::optional<std::si
   }
   unassigned = goals.unassigned;
   for (std::size_t r = 0; r < size(); ++r) {
+    if (choosing && *choosing != r) continue;
     targets[r].assign(selection->targets(r).begin(), selection->targets(r).end());
     step.robots[r].goal = std::move(goals.goals[r]);
-    if (choosing && *choosing != r) continue;
     const bool on_plane = options.team[r].robot.travel.motion == Motion::kPlane;
     std::vector<RenderedCell> cells = selection->rendered_cells(r);
     step.robots[r].image =

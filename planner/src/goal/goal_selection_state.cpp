@@ -56,6 +56,7 @@ void GoalSelection::State::update_corridor(std::size_t robot, const VoxelGrid& g
                                            CorridorExtent extent) {
   Member& member = members[robot];
   if (member.lost) return;
+  member.rendered = false;  // its cells may be none of the corridor's any more
   member.position = pose.position;
   const Keys missed = std::exchange(member.missed, {});
   const auto cell = lattice.key(member.position);
@@ -77,7 +78,6 @@ void GoalSelection::State::begin_step(std::optional<std::size_t> choosing) {
     Member& member = members[r];
     member.assigned.clear();
     member.released.clear();
-    member.rendered = false;
     if (!choosing || *choosing == r) member.targets.clear();
   }
 }
@@ -93,6 +93,7 @@ void GoalSelection::State::renew_corridor(std::size_t robot) {
 void GoalSelection::State::lose(std::size_t robot) {
   Member& member = members[robot];
   member.lost = true;
+  member.rendered = false;
   member.missed = member.changed = {};
   member.goal = {};
   member.assigned.clear();
@@ -129,7 +130,8 @@ void GoalSelection::State::assign(Step& step, const Keys& frontiers) {
     }
     step.result.unassigned = frontiers.size() - seen_by_any.size();
   }
-  for (std::size_t r = 0; r < members.size(); ++r) step.result.goals[r].assigned = members[r].assigned.size();
+  for (std::size_t r = 0; r < members.size(); ++r)
+    if (step.chooses(r)) step.result.goals[r].assigned = members[r].assigned.size();
 }
 
 GoalSelection::State::Keys GoalSelection::State::seen_by(const Step& step, std::size_t robot,
@@ -234,8 +236,10 @@ std::size_t GoalSelection::State::release(Step& step, std::size_t robot) {
     const Keys accepted = seen_by(step, other, offered);
     if (accepted.empty()) continue;
     members[other].assigned = united(members[other].assigned, accepted);
-    step.result.goals[other].received += accepted.size();
-    step.pending[other] = step.chooses(other);
+    if (step.chooses(other)) {
+      step.result.goals[other].received += accepted.size();
+      step.pending[other] = true;
+    }
     taken = united(taken, accepted);
   }
   step.result.unassigned += released.size() - taken.size();

@@ -93,6 +93,7 @@ TEST(ChoosingRobot, IsNobody) {
   const VoxelGrid old = scene.grow();
   static_cast<void>(all.grow());
   scene.selection.update_corridor({scene.room.grid, changed_keys(old, scene.room.grid)}, 0, scene.poses[0]);
+  EXPECT_TRUE(scene.selection.rendered_cells(0).empty()) << "they may be none of its cells any more";
   GoalSelection fresh(all.team, all.room.grid.lattice(), all.room.bounds());
   const TeamGoals wanted = all.first(fresh);
   EXPECT_EQ(cells(scene.selection, 0), cells(fresh, 0));

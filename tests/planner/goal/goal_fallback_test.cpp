@@ -53,6 +53,23 @@ TEST_P(GoalFallback, WhatOneCannotSeeThroughUnknownSpaceIsReleasedToTheOther) {
   EXPECT_EQ(result.unassigned, 0U);
 }
 
+TEST_P(GoalFallback, WhatIsReleasedToOneThatDoesNotChooseLeavesItsGoalAsItIs) {
+  GoalRoom room(40, 16);
+  fill(room.grid, {room.key(0, 0, 6), room.key(39, 39, 6)}, Occupancy::kUnknown);
+  const std::vector<VoxelKey> frontiers = {room.unknown(20, 36, 8)};
+  const std::array poses{room.pose(20, 20, 2), room.pose(20, 20, 10)};
+  const auto caster = make_grid_ray_caster(room.grid);
+  GoalSelection selection(team(), room.grid.lattice(), room.bounds());
+  const Goal before = selection.select(*caster, {room.grid}, frontiers, poses).goals[1];
+  EXPECT_EQ(before.received, 1U);
+  for (int times = 1; times <= 3; ++times) {
+    const TeamGoals result = selection.select(*caster, {room.grid}, frontiers, poses, 0);
+    EXPECT_EQ(result.goals[0].released, 1U);
+    EXPECT_EQ(result.goals[1].received, 1U);
+    EXPECT_EQ(result.goals[1].reason, before.reason);
+  }
+}
+
 TEST_P(GoalFallback, WhatNoRobotSeesIsReleasedByBothAndStaysUnassigned) {
   GoalRoom room(40, 16);
   fill(room.grid, {room.key(16, 27, 3), room.key(24, 35, 11)}, Occupancy::kUnknown);

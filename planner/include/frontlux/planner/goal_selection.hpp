@@ -177,7 +177,8 @@ class FRONTLUX_EXPORT GoalSelection {
                                  std::span<const VoxelKey> frontiers, std::span<const Pose> poses,
                                  std::optional<std::size_t> choosing = std::nullopt);
 
-  /// Instead of `select`: takes the change, and updates this robot's corridor only. No robot chooses a goal.
+  /// Instead of `select`: takes the change, and updates this robot's corridor only. No robot chooses a goal,
+  /// and what was rendered for this one is forgotten.
   /// @pre robot < team().size()
   void update_corridor(const MapChange& change, std::size_t robot, const Pose& pose,
                        CorridorExtent extent = CorridorExtent::kAllCells);
