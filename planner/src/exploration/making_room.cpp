@@ -53,11 +53,13 @@ void ContinuousExploration::State::tell_of_loss(std::size_t robot) {
   }
 }
 
+// Those whose next trajectories have not begun yet are on the ones before until then.
 void ContinuousExploration::State::tell_of_stop(std::size_t robot, double time) {
+  const Trajectory& stop = members[robot].motion.last();
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];
     if (other != robot && !member.is_lost() && member.motion.last().end() > time)
-      member.meets_other = member.meets_other || !keeps_apart(other, member.motion.last(), time, robot);
+      member.meets_other = member.meets_other || !keeps_apart(robot, stop, time, other);
   }
 }
 
