@@ -209,7 +209,7 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
   }
   EXPECT_EQ(json.at("unseen").size(), 3U);
   EXPECT_NEAR(unseen, 1.0 - json.at("coverage_observable").get<double>(), 1e-6);
-  test::expect_parts(answer.out, {"low_gain: expected gain stayed below 1e+06 frontiers for 3 plannings\n"});
+  test::expect_parts(answer.out, {"low_gain: expected gain stayed below 1e+06 frontiers 3 times in a row\n"});
   test::expect_parts(answer.err, {"warning: the run has ended with ", " of the observable space mapped"});
   test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
 }

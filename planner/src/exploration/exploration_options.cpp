@@ -92,15 +92,15 @@ std::string_view name_of(ExplorationEnd end) {
 
 std::string describe(ExplorationEnd end, const ExplorationOptions& options, std::string_view steps) {
   if (end == ExplorationEnd::kNothingToDo)
-    return options.tours ? "no robot can see a cluster of frontiers worth a stop from anywhere it can go"
-                         : "no robot can see a frontier from anywhere it can go";
+    return options.tours ? "no robot gets to where it would see a cluster of frontiers worth a stop"
+                         : "no robot gets to where it would see a frontier";
   if (end == ExplorationEnd::kStepLimit)
     return "the limit of " + std::to_string(options.max_steps) + " " + std::string(steps) + " is reached";
   if (end == ExplorationEnd::kCutOff)
     return "a robot is where it cannot leave, and there is more to see from where it came from";
   std::ostringstream text;  // 10 without zeros behind it
-  text << "expected gain stayed below " << options.epsilon << " frontiers for " << options.low_gain_steps
-       << " " << steps;
+  text << "expected gain stayed below " << options.epsilon << " frontiers " << options.low_gain_steps
+       << " times in a row";
   return text.str();
 }
 

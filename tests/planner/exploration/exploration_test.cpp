@@ -109,9 +109,9 @@ TEST(Exploration, AStepOfEnoughGainBreaksTheRow) {
 TEST(Exploration, SaysInWordsWhyItIsOver) {
   const ExplorationOptions options;
   EXPECT_EQ(describe(ExplorationEnd::kLowGain, options),
-            "expected gain stayed below 10 frontiers for 3 steps");
-  EXPECT_EQ(describe(ExplorationEnd::kLowGain, options, "plannings"),
-            "expected gain stayed below 10 frontiers for 3 plannings");
+            "expected gain stayed below 10 frontiers 3 times in a row");
+  EXPECT_EQ(describe(ExplorationEnd::kNothingToDo, options),
+            "no robot gets to where it would see a frontier");
   EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options), "the limit of 1000 steps is reached");
   EXPECT_EQ(describe(ExplorationEnd::kStepLimit, options, "plannings"),
             "the limit of 1000 plannings is reached");

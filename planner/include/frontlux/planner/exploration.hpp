@@ -44,10 +44,12 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   PathOptimizerOptions optimizer;
   std::uint64_t seed = 1;  ///< of the path search; the rendering has its own in the team's options
 
-  /// A step has low gain if its paths are expected to see fewer frontiers than this: distinct ones, or with
-  /// `GainMode::kSum` summed over viewpoints. A stop of a tour shows at least so many.
+  /// [frontiers] In lock-step a step has low gain if all its paths together are expected to see fewer:
+  /// distinct ones, or with `GainMode::kSum` summed over viewpoints. In motion without tours a chosen goal
+  /// has low gain if fewer are expected to be in view at the goal itself (`Goal::gain`). On tours nothing has
+  /// low gain, since a stop shows at least so many.
   double epsilon = 10.0;
-  int low_gain_steps = 3;    ///< steps of low gain in a row end it; in motion chosen goals, without tours
+  int low_gain_steps = 3;    ///< of low gain in a row end it: steps, in motion goals that each robot chose
   int max_steps = 1000;      ///< so does this number of steps, in motion plannings
   double latency = 0.1;      ///< [s] that the clock charges for a planning
   double period = 1.0;       ///< [s] in motion: after at most this time a robot plans its path anew
@@ -102,14 +104,15 @@ struct RobotStep {
   std::vector<RenderedCell> image;
   /// How its path was found, or why there is none.
   PathOutcome path = PathOutcome::kNoCorridor;
-  /// Viewpoints from where it was to the goal; empty if it stays. In motion: where it took its scans since
-  /// the previous planning, after that planning's last one.
+  /// In lock-step its path: viewpoints from where it was to the goal; empty if it stays. In motion no path:
+  /// where it took its last scan before the previous planning, and then its scans since. Its path is
+  /// `trajectory`.
   std::vector<Pose> planned;
   std::uint64_t gain_tangent = 0;    ///< distinct frontiers of its own in the path's view, if it looked ahead
   std::uint64_t gain_predicted = 0;  ///< the same with the yaws as optimised
   std::uint64_t gain_sum = 0;        ///< of its own frontiers in view, summed over the path's viewpoints
   std::size_t travelled = 0;         ///< of `planned` that it reached, the first included; in motion all
-  double length = 0.0;               ///< [m] that it travelled
+  double length = 0.0;               ///< [m] along these
   std::uint64_t gained = 0;          ///< frontiers of the step's beginning that its scans mapped
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
   std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
@@ -148,15 +151,15 @@ struct FRONTLUX_EXPORT ExplorationStep {
 
 /// Why an exploration is over.
 enum class ExplorationEnd : std::uint8_t {
-  kLowGain,      ///< the expected gain stayed below `epsilon` for `low_gain_steps` steps or chosen goals
-  kNothingToDo,  ///< no robot has a goal, or waits any more for others to let it go to one
+  kLowGain,  ///< `low_gain_steps` times in a row too little was expected, see `ExplorationOptions::epsilon`
+  kNothingToDo,  ///< no robot has a goal to which it gets; in motion one waits ten times for others to let it
   kStepLimit,    ///< `max_steps` are done
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };
 /// One of the words "low_gain", "nothing_to_do", "step_limit", "cut_off".
 [[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(ExplorationEnd end);
-/// In words: "expected gain stayed below 10 frontiers for 3 steps".
-/// @param steps  what is counted: in motion, "plannings"
+/// In words: "expected gain stayed below 10 frontiers 3 times in a row".
+/// @param steps  what `max_steps` counts: in motion, "plannings"
 [[nodiscard]] FRONTLUX_EXPORT std::string describe(ExplorationEnd end, const ExplorationOptions& options,
                                                    std::string_view steps = "steps");
 
