@@ -144,12 +144,8 @@ TravelCorridor make_corridor(TravelOptions travel, const VoxelGrid& grid, const 
 void look_ahead(std::vector<Pose>& viewpoints) {
   Pose& goal = viewpoints.back();
   goal.yaw = viewpoints.front().yaw;
-  for (std::size_t i = viewpoints.size() - 1; i > 0; --i) {
-    const Eigen::Vector3d step = viewpoints[i].position - viewpoints[i - 1].position;
-    if (step.x() == 0.0 && step.y() == 0.0) continue;
-    goal.yaw = std::atan2(step.y(), step.x());
-    return;
-  }
+  for (std::size_t i = 1; i < viewpoints.size(); ++i)
+    goal.yaw = planner::yaw_along(viewpoints[i].position - viewpoints[i - 1].position, goal.yaw);
 }
 
 // The part of the known map from which frontiers can be in view somewhere along the path.

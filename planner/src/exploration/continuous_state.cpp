@@ -32,8 +32,6 @@ bool is_near(const Pose& pose, const Pose& other, double length, double angle) {
          std::abs(detail::turn(other.yaw, pose.yaw)) < angle;
 }
 
-Pose end_of(const Trajectory& trajectory) { return trajectory.at(trajectory.end()).pose; }
-
 // Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
 // about straight.
 std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
@@ -43,11 +41,11 @@ std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
   std::vector<Pose> all, some;
   for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
   const auto straight = [&](std::size_t a, std::size_t b) {
-    const Eigen::Vector3d way = all[b].position - all[a].position, along = way.stableNormalized();
+    const Eigen::Vector3d line = all[b].position - all[a].position, along = line.stableNormalized();
     for (std::size_t i = a + 1; i < b; ++i) {
       const Eigen::Vector3d to = all[i].position - all[a].position;
-      // Not of the line beyond: a robot may brake and turn back on its way.
-      if ((to - std::clamp(to.dot(along), 0.0, way.norm()) * along).norm() > kOff) return false;
+      // Not of the line beyond: a robot may brake and turn back.
+      if ((to - std::clamp(to.dot(along), 0.0, line.norm()) * along).norm() > kOff) return false;
     }
     return true;
   };
@@ -79,8 +77,8 @@ void ContinuousExploration::State::start_next_trajectories(double time) {
 // Whether its last scan was taken about where its trajectory ends.
 bool ContinuousExploration::State::has_looked_from_end(const Member& member) const {
   constexpr double kAligned = 0.1;  // [rad]
-  return member.last_look &&
-         is_near(*member.last_look, end_of(member.motion.last()), team.lattice().resolution() / 2, kAligned);
+  return member.last_look && is_near(*member.last_look, member.motion.last().end_pose(),
+                                     team.lattice().resolution() / 2, kAligned);
 }
 
 // Whether a robot has taken a scan at its goal, or rests and takes scans all of which are from beside it. One
@@ -91,7 +89,7 @@ bool ContinuousExploration::State::has_looked(const Member& member, double time)
   constexpr int kMostMissed = 3;
   const Trajectory& trajectory = member.motion.last();
   if (!member.looked) return false;
-  if (is_near(*member.last_look, end_of(trajectory), kNear, kAligned)) return true;
+  if (is_near(*member.last_look, trajectory.end_pose(), kNear, kAligned)) return true;
   return member.missed_looks >= kMostMissed ||
          (time >= trajectory.end() + kSoon && has_looked_from_end(member));
 }
@@ -147,7 +145,7 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
   const auto next = [&] { return trajectory.begin() + kStep * static_cast<double>(member.samples); };
   for (; next() < std::min(until, trajectory.end()); ++member.samples)
     add(trajectory.at(next()).pose, team.lattice().resolution());
-  if (until >= trajectory.end()) add(trajectory.at(trajectory.end()).pose, 0.0);
+  if (until >= trajectory.end()) add(trajectory.end_pose(), 0.0);
 }
 
 // A robot has come to rest before the end of its trajectory, some time ago perhaps: it has been nowhere
@@ -254,7 +252,7 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
   }
   const Trajectory& last = member.motion.last();
   const bool goes_there = member.goal.pose && team.lattice().key(member.goal.pose->position) ==
-                                                  team.lattice().key(end_of(last).position);
+                                                  team.lattice().key(last.end_pose().position);
   const bool rests = member.look_before && is_near(pose, *member.look_before, kNear, kAligned);
   member.look_before = pose;
   const bool missed = goes_there && rests && reason != PlanReason::kArrival && step.time >= last.end();

@@ -6,7 +6,6 @@
 #include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace frontlux::planner::detail {
@@ -49,9 +48,7 @@ std::vector<VoxelKey> cells_beyond(const Lattice& lattice, const Pose& from, con
 }
 
 Pose look_towards(const Pose& from, const Pose& to) {
-  const Eigen::Vector3d on = to.position - from.position;
-  const bool level = on.x() != 0.0 || on.y() != 0.0;
-  return {from.position, level ? std::atan2(on.y(), on.x()) : to.yaw};
+  return {from.position, yaw_along(to.position - from.position, to.yaw)};
 }
 
 // Those of some voxels, in any order, that differ between two maps. Sorted by key.

@@ -33,8 +33,7 @@ void ContinuousExploration::State::withdraw_requests(std::size_t robot) {
 // Who rests where it did before opens nothing that was closed: the others do not begin to wait anew.
 void ContinuousExploration::State::tell_others(std::size_t robot) {
   if (!team.tours) return;
-  const Trajectory& last = members[robot].motion.last();
-  const auto place = team.lattice().key(last.at(last.end()).pose.position);
+  const auto place = team.lattice().key(members[robot].motion.last().end_pose().position);
   const bool is_new = std::exchange(members[robot].told_from, place) != place;
   for (std::size_t other = 0; other < members.size(); ++other) {
     Member& member = members[other];

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -56,11 +55,6 @@ struct GoalQuery {
   [[nodiscard]] std::vector<std::uint8_t> visible_targets(const VoxelKey& from,
                                                           std::optional<double> yaw = {}) const;
 };
-
-/// The yaw [rad] of a robot that looks along an offset.
-[[nodiscard]] inline double yaw_along(const Eigen::Vector3d& offset) {
-  return std::atan2(offset.y(), offset.x());
-}
 
 /// `GoalRule::kClusters`, the paper's Sec. VI. Takes the clusters of targets by eq. 1 at their mean, the best
 /// first, and in each cluster the targets by their distance to that mean. The goal is for the first target

@@ -284,9 +284,9 @@ void GoalSelection::State::set_goal(Goal& goal, std::size_t robot, const Rendere
   goal.quality = best.quality;
   const Eigen::Vector3d center = lattice.exact_center(best.cell);
   // A robot that sees all around looks where it goes.
-  goal.pose = Pose{center, team[robot].robot.view.sees_all_around()
-                               ? detail::yaw_along(center - members[robot].position)
-                               : best.yaw};
+  goal.pose =
+      Pose{center,
+           team[robot].robot.view.sees_all_around() ? yaw_along(center - members[robot].position) : best.yaw};
 }
 
 }  // namespace frontlux::planner

@@ -7,6 +7,17 @@
 
 namespace frontlux::planner {
 
+double yaw_along(const Eigen::Vector3d& offset, double otherwise) {
+  return offset.x() != 0.0 || offset.y() != 0.0 ? std::atan2(offset.y(), offset.x()) : otherwise;
+}
+
+double path_length(std::span<const Pose> viewpoints) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < viewpoints.size(); ++i)
+    length += (viewpoints[i].position - viewpoints[i - 1].position).norm();
+  return length;
+}
+
 void check_finite(std::span<const Pose> viewpoints) {
   for (std::size_t i = 0; i < viewpoints.size(); ++i) {
     const auto& [position, yaw] = viewpoints[i];

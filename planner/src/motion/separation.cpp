@@ -28,7 +28,7 @@ bool keeps_apart(const Trajectory& trajectory, double from, const Eigen::Aligned
   double now = gap_at(from);
   const double least = std::min(gap, now) - kRounding;
   for (double time = from; time < end;) {
-    // No sooner than after so much of a way can they be too near.
+    // They cannot be too near before they have moved so far together.
     time = std::min(time + std::max(std::max(kLeast, now - least) / speeds, kShortest), end);
     now = gap_at(time);
     if (now < least) return false;

@@ -39,12 +39,9 @@ std::optional<Trajectory> Trajectory::through(const MotionState& start, double t
   check_finite(viewpoints);
   if (!start.velocity.allFinite()) throw std::invalid_argument("trajectory: the velocity is not finite");
   limits.check();
-  double way = 0.0;
-  for (std::size_t i = 1; i < viewpoints.size(); ++i)
-    way += (viewpoints[i].position - viewpoints[i - 1].position).norm();
-  if (way > kLongestWay)
-    throw std::length_error("trajectory: the way is longer than " +
-                            std::to_string(static_cast<int>(kLongestWay)) + " m; take it in parts");
+  if (path_length(viewpoints) > kLongestPath)
+    throw std::length_error("trajectory: the path is longer than " +
+                            std::to_string(static_cast<int>(kLongestPath)) + " m; take it in parts");
 
   Trajectory whole(start.pose, time);
   std::vector<Look> looks;
@@ -64,14 +61,13 @@ Trajectory Trajectory::after_stop(double time, std::span<const Pose> viewpoints,
                                   const SegmentTest& is_free) const {
   Trajectory whole = braking(time, limits);
   if (viewpoints.empty()) return whole;
-  const MotionState rest{whole.at(whole.end()).pose};
+  const MotionState rest{whole.end_pose()};
   if (const auto next = through(rest, whole.end(), viewpoints, limits, is_free)) whole.append(*next);
   return whole;
 }
 
 Pose Trajectory::stop(double time, const MotionLimits& limits) const {
-  const Trajectory stopping = braking(time, limits);
-  return stopping.at(stopping.end()).pose;
+  return braking(time, limits).end_pose();
 }
 
 // Appends pieces, taken as fast as the limits allow from a speed to rest. False if that is too fast.

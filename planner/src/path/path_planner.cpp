@@ -108,10 +108,7 @@ std::vector<Pose> with_yaws(const Polyline& path, const Pose& start, const Pose&
   std::vector<Pose> viewpoints;
   double yaw = start.yaw;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (i > 0 && i + 1 < path.size()) {
-      const Eigen::Vector3d on = path[i + 1] - path[i];
-      if (on.x() != 0.0 || on.y() != 0.0) yaw = std::atan2(on.y(), on.x());
-    }
+    if (i > 0 && i + 1 < path.size()) yaw = yaw_along(path[i + 1] - path[i], yaw);
     viewpoints.push_back({path[i], yaw});
   }
   viewpoints.front() = start;
@@ -221,13 +218,6 @@ bool segment_is_free(const TravelCorridor& corridor, const Lattice& lattice, con
   return SegmentVoxels(lattice, from, to, corridor.reach() + deviation).all_of([&](const VoxelKey& key) {
     return corridor.passable(key);
   });
-}
-
-double path_length(std::span<const Pose> viewpoints) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < viewpoints.size(); ++i)
-    length += (viewpoints[i].position - viewpoints[i - 1].position).norm();
-  return length;
 }
 
 PathPlan plan_path(const TravelCorridor& corridor, const Lattice& lattice, const Pose& start,

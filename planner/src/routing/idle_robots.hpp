@@ -10,7 +10,7 @@ namespace frontlux::planner::detail {
 /// other one, and in half of the time. It leaves what the other one has set out for. The shortest tours would
 /// rather let it rest beside a stop that another robot passes much later.
 ///
-/// Of a robot that rests it takes any stop: each knows its own way exactly and the others' about, so that
+/// Of a robot that rests it takes any stop: each knows its own path exactly and the others' about, so that
 /// each may find the other one to be nearer, and leave the stop to it for ever.
 void give_idle_robot_a_stop(const TourProblem& problem, std::size_t robot, Tours& tours);
 

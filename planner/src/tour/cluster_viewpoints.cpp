@@ -3,6 +3,7 @@
 #include "mapping/sort_once.hpp"
 
 #include <frontlux/parallel.hpp>
+#include <frontlux/planner/pose.hpp>
 
 #include <algorithm>
 #include <array>
@@ -107,7 +108,7 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
         if (visible[s] != 0) offsets.push_back(query.grid.lattice().exact_center(segments[s].to) - from);
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
-      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], std::atan2(sum.y(), sum.x()), 0, aim};
+      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], yaw_along(sum), 0, aim};
       for (const Eigen::Vector3d& offset : offsets)
         if (all_around || query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
     }

@@ -138,8 +138,7 @@ std::vector<double> tangent_yaws(std::span<const Pose> viewpoints) {
       continue;
     }
     const Eigen::Vector3d ahead = viewpoints[i + 1].position - viewpoints[i].position;
-    yaws.push_back(ahead.x() != 0.0 || ahead.y() != 0.0 ? std::atan2(ahead.y(), ahead.x())
-                                                        : detail::wrapped(yaws.back()));
+    yaws.push_back(yaw_along(ahead, detail::wrapped(yaws.back())));
   }
   return yaws;
 }

@@ -109,7 +109,4 @@ struct PathPlan {
     const TravelCorridor& corridor, const Lattice& lattice, const Eigen::Vector3d& from,
     const Eigen::Vector3d& to, const Eigen::Vector3d& deviation = Eigen::Vector3d::Zero());
 
-/// Sum of the distances between successive viewpoints [m].
-[[nodiscard]] FRONTLUX_EXPORT double path_length(std::span<const Pose> viewpoints);
-
 }  // namespace frontlux::planner

@@ -50,7 +50,7 @@ using SegmentTest = std::function<bool(const Eigen::Vector3d& from, const Eigen:
 /// acceleration, keeps its rate. A trajectory is a value.
 class FRONTLUX_EXPORT Trajectory {
  public:
-  static constexpr double kLongestWay = 1e5;  ///< [m]
+  static constexpr double kLongestPath = 1e5;  ///< [m]
 
   /// A robot that rests. @throws std::invalid_argument if the pose or the time is not finite
   Trajectory(const Pose& pose, double time);
@@ -62,7 +62,7 @@ class FRONTLUX_EXPORT Trajectory {
   /// @param viewpoints  at least one; the first is where the robot is
   /// @return nothing if the robot is too fast to take the corners ahead of it
   /// @throws std::invalid_argument if there is no viewpoint or a number is not finite
-  /// @throws std::length_error if the way is longer than `kLongestWay`, since speeds are kept every 5 cm
+  /// @throws std::length_error if the path is longer than `kLongestPath`, since speeds are kept every 5 cm
   [[nodiscard]] static std::optional<Trajectory> through(const MotionState& start, double time,
                                                          std::span<const Pose> viewpoints,
                                                          const MotionLimits& limits,
@@ -80,6 +80,7 @@ class FRONTLUX_EXPORT Trajectory {
   [[nodiscard]] double begin() const { return nodes_.front().time; }   ///< [s]
   [[nodiscard]] double end() const { return yaws_.back().time; }       ///< [s] from here on the robot rests
   [[nodiscard]] double length() const { return nodes_.back().along; }  ///< [m]
+  [[nodiscard]] Pose end_pose() const { return at(end()).pose; }       ///< where it rests
   /// Before its begin and after its end the robot rests.
   [[nodiscard]] MotionState at(double time) const;
 
