@@ -285,17 +285,14 @@ std::optional<KeyBox> ContinuousExploration::State::cells_too_near(std::size_t r
   return KeyBox{*low, *high};
 }
 
-// The cells that are too near to where others will come to rest. A robot whose path past the others has
-// turned out to be too near keeps out of all cells in which it might be; but every other time, since it may
-// rest in one of them.
+// The cells that are too near to where others will come to rest.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot, Others which) const {
   std::vector<KeyBox> places;
   for (std::size_t other = 0; other < members.size(); ++other) {
     if (other == robot || (which == Others::kThatDoNotRest && rests(members[other]))) continue;
-    const Trajectory& last = members[other].motion.last();
-    const double shrunk = members[robot].waits % 2 == 1 ? 0.0 : 0.5;
-    if (auto cells = cells_too_near(robot, other, last.at(last.end()).pose.position, shrunk))
-      places.push_back(*cells);
+    const Pose end = members[other].motion.last().end_pose();
+    const double shrunk = members[robot].keeps_out_of_all() ? 0.0 : 0.5;
+    if (auto cells = cells_too_near(robot, other, end.position, shrunk)) places.push_back(*cells);
   }
   return places;
 }
@@ -368,7 +365,7 @@ void ContinuousExploration::State::count_low_gain(std::size_t robot, const Robot
   else if (!member.idle_since)
     member.idle_since = member.planned;
   // That there is no goal outside of all cells in which others might be is no answer yet.
-  const bool kept_out = member.waits % 2 == 1 && !member.is_going();
+  const bool kept_out = member.keeps_out_of_all() && !member.is_going();
   member.waits = waits || kept_out ? member.waits + 1 : 0;
   if (member.waits > kMostWaits && member.request) end_request(robot);
 }

@@ -26,11 +26,12 @@ struct ContinuousExploration::State {
   };
 
   enum class Activity : std::uint8_t {
-    kRests,      ///< until something happens
-    kMoves,      ///< or plans again when it has come to rest: nothing ends before
-    kRetreats,   ///< on the path on which it came
-    kMakesRoom,  ///< by leaving the path of another one
-    kLost,       ///< takes no more part
+    kRests,       ///< until something happens
+    kMoves,       ///< on its trajectory
+    kTriesAgain,  ///< brakes, and plans anew as soon as it rests: nothing ends before
+    kRetreats,    ///< on the path on which it came
+    kMakesRoom,   ///< by leaving the path of another one
+    kLost,        ///< takes no more part
   };
 
   /// One robot in motion.
@@ -67,7 +68,11 @@ struct ContinuousExploration::State {
       if (std::ranges::binary_search(needed, key)) closed.push_back(key);
     }
     [[nodiscard]] bool is_lost() const { return activity == Activity::kLost; }
+    /// Whether it moves, or tries again at once.
     [[nodiscard]] bool is_going() const { return activity != Activity::kRests && !is_lost(); }
+    /// Whether it keeps out of all cells in which it might be too near to another one, as every other time
+    /// that it waits; else of those in whose middle it would be: it may rest in one of the others.
+    [[nodiscard]] bool keeps_out_of_all() const { return waits % 2 == 1; }
   };
 
   detail::ExplorationState team;

@@ -103,7 +103,7 @@ Trajectory ContinuousExploration::State::without_goal(std::size_t robot, double 
   RobotStep& now = step.robots[robot];
   const Trajectory& old = member.motion.last();
   const MotionState then = old.at(start);
-  member.activity = Activity::kMoves;
+  member.activity = Activity::kTriesAgain;
   std::vector<Pose> path;
   if (then.velocity.isZero()) {
     ask_for_room(robot, step);
@@ -154,9 +154,11 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
     };
     departure = detail::best_departure(old, start, path_from, limits, is_free);
   }
-  // Without a path it brakes; when it has come to rest, it plans again.
-  member.activity = departure || !old.at(start).velocity.isZero() ? Activity::kMoves : Activity::kRests;
-  if (!departure) return old.after_stop(start, {}, limits, is_free);
+  if (!departure) {
+    member.activity = old.at(start).velocity.isZero() ? Activity::kRests : Activity::kTriesAgain;
+    return old.after_stop(start, {}, limits, is_free);
+  }
+  member.activity = Activity::kMoves;
   const detail::PhaseClock clock(step, Phase::kOptimization);
   std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
   const InformationGain gain = team.optimize_path(robot, step);
@@ -177,6 +179,7 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   const detail::PhaseClock clock(step, Phase::kPaths);
   Member& member = members[robot];
   const bool apart = keeps_apart(robot, trajectory);
+  if (!apart) member.goal_frontiers.clear();  // it does not get there
   if (apart || brakes_instead(robot, start, trajectory)) {
     member.needed = voxels_needed(robot, trajectory);
     member.motion.next = trajectory;
@@ -191,7 +194,7 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   if (goes_on || !retreated || std::ranges::none_of(members, moves)) return false;
   // Another one may make room: it tries the retreat again.
   team.retreated_to[robot].pop_back();
-  member.activity = Activity::kMoves;
+  member.activity = Activity::kTriesAgain;
   return false;
 }
 
@@ -199,10 +202,9 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
 // can still get out of its way.
 bool ContinuousExploration::State::brakes_instead(std::size_t robot, double start, Trajectory& trajectory) {
   Member& member = members[robot];
-  member.goal_frontiers.clear();
   if (!member.blocked && !member.meets_other) return false;
   trajectory = member.motion.last().after_stop(start, {}, team.options.team[robot].robot.limits, {});
-  member.activity = Activity::kMoves;
+  member.activity = Activity::kTriesAgain;
   return true;
 }
 
