@@ -55,7 +55,7 @@ ExplorationStep Exploration::step(const Drive& drive) {
   state.execute_paths(gains, drive, step);                // Alg. 1, lines 8 to 11
   state.advance_clock(step);
   state.update_frontiers(step);
-  state.count_low_gain(step);  // Alg. 1, line 3
+  state.end_step(step);  // Alg. 1, line 3
   return step;
 }
 
@@ -70,7 +70,7 @@ bool Exploration::repeat(const ExplorationStep& recorded, const Drive& drive) {
   if (!state.execute_again(recorded, drive, step)) return false;
   state.advance_clock(step);
   state.update_frontiers(step);
-  state.count_low_gain(step);
+  state.end_step(step);
   return true;
 }
 

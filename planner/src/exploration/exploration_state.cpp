@@ -353,23 +353,30 @@ double ExplorationState::path_gain(const RobotStep& robot) const {
   return static_cast<double>(sum ? robot.gain_sum : robot.gain_predicted);
 }
 
-// Line 3.
+// A step in which a robot goes back is none of low gain.
 void ExplorationState::count_low_gain(const ExplorationStep& step) {
   double expected_gain = 0.0;
   bool retreats = false;
-  nothing_to_do = true;
-  last_goals.clear();
   for (const RobotStep& robot : step.robots) {
-    last_goals.push_back(robot.goal);
-    const bool moved = robot.travelled > 1;
-    if (robot.goal.pose || moved) nothing_to_do = false;
-    if (moved && robot.goal.pose) expected_gain += path_gain(robot);
-    retreats = retreats || (moved && !robot.goal.pose);
+    if (robot.travelled <= 1) continue;
+    if (robot.goal.pose)
+      expected_gain += path_gain(robot);
+    else
+      retreats = true;
   }
   if (expected_gain >= options.epsilon)
     low_gain_steps = 0;
   else if (!retreats)
     ++low_gain_steps;
+}
+
+// Line 3.
+void ExplorationState::end_step(const ExplorationStep& step) {
+  last_goals.clear();
+  for (const RobotStep& robot : step.robots) last_goals.push_back(robot.goal);
+  nothing_to_do = std::ranges::none_of(
+      step.robots, [](const RobotStep& robot) { return robot.goal.pose || robot.travelled > 1; });
+  count_low_gain(step);
   ++number;
 }
 

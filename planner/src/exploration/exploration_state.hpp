@@ -94,8 +94,8 @@ struct ExplorationState {
   void block(std::size_t robot, std::span<const VoxelKey> cells);
   void advance_clock(ExplorationStep& step);
   void update_frontiers(ExplorationStep& step);
-  /// Counts steps of low gain; `Exploration::end` decides by them.
-  void count_low_gain(const ExplorationStep& step);
+  /// Takes note of what `Exploration::end` decides by; what follows is the next step.
+  void end_step(const ExplorationStep& step);
 
   /// The one in which its paths are planned.
   [[nodiscard]] const TravelCorridor& path_corridor(std::size_t robot) const {
@@ -117,6 +117,7 @@ struct ExplorationState {
   bool find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
   [[nodiscard]] Goal first_stop(std::size_t robot) const;
   [[nodiscard]] double path_gain(const RobotStep& robot) const;
+  void count_low_gain(const ExplorationStep& step);
   [[nodiscard]] Keys frontiers_of_others(std::size_t robot) const;
   // The place of the robot's trail to which it retreats, but for cells that it has tried.
   [[nodiscard]] std::optional<std::size_t> place_to_retreat_to(std::size_t robot, const Goal& goal,
