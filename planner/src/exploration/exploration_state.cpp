@@ -219,11 +219,13 @@ ExplorationState::Gains ExplorationState::optimize_paths(ExplorationStep& step) 
   const PhaseClock clock(step, Phase::kOptimization);
   Gains gains(size());
   for (std::size_t r = 0; r < size(); ++r)
-    if (step.robots[r].goal.pose && !step.robots[r].planned.empty()) gains[r] = optimize_path(r, step);
+    if (std::vector<Pose>& path = step.robots[r].planned; step.robots[r].goal.pose && !path.empty())
+      gains[r] = optimize_path(r, path, step);
   return gains;
 }
 
-InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& step) const {
+InformationGain ExplorationState::optimize_path(std::size_t r, std::vector<Pose>& path,
+                                                ExplorationStep& step) const {
   PathOptimizerOptions turning = options.optimizer;
   if (!options.optimize) {
     turning.start = YawStart::kTangent;
@@ -239,19 +241,18 @@ InformationGain ExplorationState::optimize_path(std::size_t r, ExplorationStep& 
   RobotStep& robot = step.robots[r];
   const FieldOfView& view = options.team[r].robot.view;
   // Without tours what is in view is told by its place among all targets.
-  const Keys near =
-      tours ? frontiers_near_path(lattice(), targets[r], robot.planned, view.max_range) : targets[r];
+  const Keys near = tours ? frontiers_near_path(lattice(), targets[r], path, view.max_range) : targets[r];
   const auto target_centers = centers(lattice(), near);
-  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), robot.planned, near, view);
-  const OptimizedPath turned = planner::optimize_path(robot.planned, target_centers, pairs, view, turning);
-  for (std::size_t i = 1; i + 1 < robot.planned.size(); ++i) robot.planned[i].yaw = turned.yaws[i];
+  const VisiblePairs pairs = visible_pairs(counting, mapping.grid(), path, near, view);
+  const OptimizedPath turned = planner::optimize_path(path, target_centers, pairs, view, turning);
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) path[i].yaw = turned.yaws[i];
   robot.gain_tangent = turned.tangent.distinct;
   robot.gain_predicted = turned.result.distinct;
   step.rays += counting.rays();
-  InformationGain gain(robot.planned, target_centers, pairs, view, options.optimizer.gain);
+  InformationGain gain(path, target_centers, pairs, view, options.optimizer.gain);
   robot.gain_sum = 0;
-  for (std::size_t i = 0; i < robot.planned.size(); ++i)
-    robot.gain_sum += frontiers_in_view(gain, i, robot.planned[i].yaw).size();
+  for (std::size_t i = 0; i < path.size(); ++i)
+    robot.gain_sum += frontiers_in_view(gain, i, path[i].yaw).size();
   return gain;
 }
 

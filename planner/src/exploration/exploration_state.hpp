@@ -84,7 +84,10 @@ struct ExplorationState {
   void plan_tours(std::size_t robot, std::span<const MotionState> starts, ExplorationStep& step);
   void plan_paths(ExplorationStep& step);
   [[nodiscard]] Gains optimize_paths(ExplorationStep& step) const;
-  [[nodiscard]] InformationGain optimize_path(std::size_t robot, ExplorationStep& step) const;
+  /// Turns a robot along its path, and notes in the step what it is expected to see.
+  /// @return of the path with these yaws
+  [[nodiscard]] InformationGain optimize_path(std::size_t robot, std::vector<Pose>& path,
+                                              ExplorationStep& step) const;
   void execute_paths(const Gains& gains, const Drive& drive, ExplorationStep& step);
   [[nodiscard]] bool execute_again(const ExplorationStep& recorded, const Drive& drive,
                                    ExplorationStep& step);

@@ -160,15 +160,13 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   }
   member.activity = Activity::kMoves;
   const detail::PhaseClock clock(step, Phase::kOptimization);
-  std::vector<Pose> sensed = std::exchange(now.planned, departure->viewpoints);
-  const InformationGain gain = team.optimize_path(robot, step);
+  std::vector<Pose>& path = departure->viewpoints;
+  const InformationGain gain = team.optimize_path(robot, path, step);
   if (team.tours)
     member.goal_frontiers = team.tours->first_view(robot);
   else
-    for (const std::uint32_t i :
-         detail::frontiers_in_view(gain, now.planned.size() - 1, now.planned.back().yaw))
+    for (const std::uint32_t i : detail::frontiers_in_view(gain, path.size() - 1, path.back().yaw))
       member.goal_frontiers.push_back(team.targets[robot][i]);
-  departure->viewpoints = std::exchange(now.planned, std::move(sensed));
   return detail::depart(old, start, *departure, limits, is_free);
 }
 
