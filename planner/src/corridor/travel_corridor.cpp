@@ -355,6 +355,7 @@ bool TravelCorridor::fits(const VoxelKey& key) const {
   return state_->distances && state_->frame.place(key) && state_->fits(key);
 }
 
+const BodyStencil& TravelCorridor::stencil() const { return state_->stencil; }
 const Eigen::Vector3d& TravelCorridor::reach() const { return state_->stencil.reach(); }
 
 VoxelKey TravelCorridor::cell_of(const VoxelKey& voxel) const { return state_->cell_of(voxel); }

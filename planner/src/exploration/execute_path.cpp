@@ -25,23 +25,21 @@ bool leads_to_the_middle(const Lattice& lattice, const Eigen::Vector3d& from, co
 // The corridor is as old as the step; the map has changed since. A robot beside which something was found may
 // move to the middle of its voxel, where it is free: it enters no other voxel on that move, though a round
 // body may graze a corner.
-bool is_still_free(const VoxelGrid& grid, const TravelOptions& body, const Pose& from, const Pose& to) {
+bool is_still_free(const VoxelGrid& grid, const BodyStencil& body, const Pose& from, const Pose& to) {
   const Lattice& lattice = grid.lattice();
   const Eigen::Vector3d& begin =
       leads_to_the_middle(lattice, from.position, to.position) ? to.position : from.position;
-  const BodyStencil stencil(body, lattice.resolution());
-  return SegmentVoxels(lattice, begin, to.position, stencil.reach()).all_of([&](const VoxelKey& cell) {
-    return stencil.all_of(cell, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
+  return SegmentVoxels(lattice, begin, to.position, body.reach()).all_of([&](const VoxelKey& cell) {
+    return body.all_of(cell, [&](const VoxelKey& key) { return grid.at(key) == Occupancy::kFree; });
   });
 }
 
 // The voxels on a segment, but for that which it begins in. Sorted.
 std::vector<VoxelKey> cells_beyond(const Lattice& lattice, const Pose& from, const Pose& to) {
   std::vector<VoxelKey> cells;
-  static_cast<void>(SegmentVoxels(lattice, from.position, to.position).all_of([&](const VoxelKey& key) {
+  SegmentVoxels(lattice, from.position, to.position).for_each([&](const VoxelKey& key) {
     cells.push_back(key);
-    return true;
-  }));
+  });
   if (const auto own = lattice.key(from.position)) std::erase(cells, *own);
   sort_once(cells);
   return cells;
@@ -65,7 +63,7 @@ std::vector<VoxelChange> differences(const VoxelGrid& before, const VoxelGrid& a
 
 }  // namespace
 
-std::size_t execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body, const Drive& drive,
+std::size_t execute_path(std::size_t robot, RobotStep& step, const BodyStencil* body, const Drive& drive,
                          Mapping& mapping, std::span<const VoxelKey> known_free) {
   const VoxelGrid before = mapping.grid();
   std::vector<VoxelKey> touched;

@@ -16,7 +16,7 @@ namespace frontlux::planner::detail {
 /// @param body        of the robot, for which the path has to be free; null: the path is not checked
 /// @param known_free  marked free in the map before the robot moves
 /// @return how many viewpoints of the path it has been at, the first included, the look at an obstacle not
-std::size_t execute_path(std::size_t robot, RobotStep& step, const TravelOptions* body, const Drive& drive,
+std::size_t execute_path(std::size_t robot, RobotStep& step, const BodyStencil* body, const Drive& drive,
                          Mapping& mapping, std::span<const VoxelKey> known_free = {});
 
 }  // namespace frontlux::planner::detail

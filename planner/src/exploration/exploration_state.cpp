@@ -261,9 +261,9 @@ void ExplorationState::execute_paths(const Gains& gains, const Drive& drive, Exp
   const PhaseClock clock(step, Phase::kMoving);
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
-    const TravelOptions body = travel_by_voxels(r);
     // A retreat need not be free: the robot came on it.
-    const std::size_t reached = execute_path(r, robot, robot.goal.pose ? &body : nullptr, drive, mapping);
+    const BodyStencil* body = robot.goal.pose ? &path_corridor(r).stencil() : nullptr;
+    const std::size_t reached = execute_path(r, robot, body, drive, mapping);
     robot.gained = mapped_frontiers(robot.changed);
     if (gains[r])
       robot.still_unknown =

@@ -53,10 +53,9 @@ Keys ContinuousExploration::State::cells_on(const BodyStencil& stencil, const Tr
   for (double time = begin; time < trajectory.end(); time += kStep) {
     const Eigen::Vector3d to = trajectory.at(time + kStep).pose.position;
     // Between its cells' middles a body touches voxels that are none of its own cell's.
-    static_cast<void>(SegmentVoxels(team.lattice(), from, to, reach).all_of([&](const VoxelKey& key) {
+    SegmentVoxels(team.lattice(), from, to, reach).for_each([&](const VoxelKey& key) {
       if (cells.empty() || cells.back() != key) cells.push_back(key);
-      return true;
-    }));
+    });
     from = to;
   }
   sort_once(cells);
@@ -65,17 +64,15 @@ Keys ContinuousExploration::State::cells_on(const BodyStencil& stencil, const Tr
 
 // What has to stay free for a trajectory.
 Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
-  const BodyStencil stencil(team.travel_by_voxels(robot), team.lattice().resolution());
+  const BodyStencil& stencil = team.path_corridor(robot).stencil();
   const bool retreats = members[robot].activity == Activity::kRetreats;
   Keys cells = cells_on(stencil, trajectory, trajectory.begin(), retreats);
   if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
   Keys voxels;
-  for (const VoxelKey& cell : cells) {
-    static_cast<void>(stencil.all_of(cell, [&](const VoxelKey& key) {
+  for (const VoxelKey& cell : cells)
+    stencil.for_each(cell, [&](const VoxelKey& key) {
       if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
-      return true;
-    }));
-  }
+    });
   sort_once(voxels);
   return voxels;
 }
@@ -86,7 +83,7 @@ void ContinuousExploration::State::look_for_blocked(double time) {
     Member& member = members[r];
     const Keys closed = std::exchange(member.closed, {});
     if (closed.empty() || member.blocked) continue;
-    const BodyStencil stencil(team.travel_by_voxels(r), team.lattice().resolution());
+    const BodyStencil& stencil = team.path_corridor(r).stencil();
     const bool retreats = member.activity == Activity::kRetreats;
     const auto needs = [&](const VoxelKey& cell) {
       return std::ranges::any_of(

@@ -24,10 +24,9 @@ std::vector<VoxelKey> middles_of_clusters(const GoalQuery& query) {
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const VoxelKey key = cluster[i];
       sum += place(key);
-      static_cast<void>(all_of(grown({key, key}, 1), [&](const VoxelKey& neighbor) {
+      for_each_key(grown({key, key}, 1), [&](const VoxelKey& neighbor) {
         if (left.erase(neighbor) > 0) cluster.push_back(neighbor);
-        return true;
-      }));
+      });
     }
     const auto count = static_cast<double>(cluster.size());
     middles.push_back(std::ranges::min(cluster, {}, [&](const VoxelKey& key) {

@@ -2,6 +2,8 @@
 
 #include "support/voxel_keys.hpp"
 
+#include <frontlux/planner/body_stencil.hpp>
+
 namespace frontlux::planner {
 namespace {
 
@@ -25,7 +27,7 @@ class ExecutePathTest : public testing::Test {
         voxels_of(mapping.grid().lattice(), {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(6, 3, 3)})));
     return mapping;
   }
-  RobotStep execute(std::vector<Pose> path, const TravelOptions* body, const Drive& drive, Mapping& mapping,
+  RobotStep execute(std::vector<Pose> path, const BodyStencil* body, const Drive& drive, Mapping& mapping,
                     std::size_t robot = 0) {
     RobotStep step;
     step.planned = std::move(path);
@@ -35,7 +37,7 @@ class ExecutePathTest : public testing::Test {
 
   Mapping mapping_ = hall();
   std::vector<Pose> path_;
-  TravelOptions body_ = uav_travel();
+  BodyStencil body_{uav_travel(), mapping_.grid().resolution()};
   std::size_t reached_ = 0;  // viewpoints, by what was executed last
 };
 
@@ -89,7 +91,7 @@ TEST_F(ExecutePathTest, MeasuresAtEveryViewpointButTheFirst) {
 TEST_F(ExecutePathTest, StopsWhereAScanShowsAnObstacle) {
   // From its second place it finds something 1.5 m ahead, so in the box around the fourth, 1.8 m ahead, and
   // also in that around the third but for the voxel between: the third is 0.9 m ahead, 0.4 wide.
-  const auto run = [&](float distance, const TravelOptions* body) {
+  const auto run = [&](float distance, const BodyStencil* body) {
     Mapping mapping = hall();
     const Drive drive = [&](std::size_t, const Pose& to) {
       return to.position == path_[1].position ? scan_along(to, {1, 0, 0}, distance)

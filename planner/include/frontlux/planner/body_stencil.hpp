@@ -72,6 +72,12 @@ class FRONTLUX_EXPORT BodyStencil {
                             [&](const VoxelKey& key) { return !contains(cell, key) || holds(key); });
   }
 
+  /// Calls `visit(key)` for every voxel of a cell in the key range.
+  template <class Visit>
+  void for_each(const VoxelKey& cell, const Visit& visit) const {
+    static_cast<void>(all_of(cell, [&visit](const VoxelKey& key) { return visit(key), true; }));
+  }
+
  private:
   struct RoundBody;
 

@@ -53,6 +53,12 @@ class FRONTLUX_EXPORT SegmentVoxels {
     });
   }
 
+  /// Calls `visit(key)` for every voxel; for none if an end is not finite or beyond the key range.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    static_cast<void>(all_of([&visit](const VoxelKey& key) { return visit(key), true; }));
+  }
+
  private:
   static constexpr double kWiden = 1e-9;  // [voxels] rounding is below 1e-10, with keys of up to 65535
 

@@ -21,6 +21,8 @@
 
 namespace frontlux::planner {
 
+class BodyStencil;
+
 /// How a robot moves.
 enum class Motion : std::uint8_t {
   kPlane,   ///< on the layer of voxels that its sensor is in
@@ -226,6 +228,8 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// Whether a cell would be passable, wherever other robots are. In constant time.
   [[nodiscard]] bool fits(const VoxelKey& key) const;
 
+  /// The voxels around a cell that have to be free.
+  [[nodiscard]] const BodyStencil& stencil() const;
   /// `BodyStencil::reach` of the robot.
   [[nodiscard]] const Eigen::Vector3d& reach() const;
 
