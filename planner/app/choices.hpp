@@ -55,11 +55,7 @@ template <>
 inline constexpr auto kChoices<planner::GoalSearch> = choices_of(planner::kGoalSearchNames);
 
 template <>
-inline constexpr std::array<Choice<planner::PathSearch>, 4> kChoices<planner::PathSearch>{
-    {{"corridor", planner::PathSearch::kCorridor},
-     {"rrt", planner::PathSearch::kRrt},
-     {"rrt-connect", planner::PathSearch::kRrtConnect},
-     {"rrt-star", planner::PathSearch::kRrtStar}}};
+inline constexpr auto kChoices<planner::PathSearch> = choices_of(planner::kPathSearchNames);
 
 template <>
 inline constexpr auto kChoices<CasterKind> = choices_of(kCasterNames);

@@ -95,11 +95,8 @@ void check_options(const Options& options) {
 }
 
 PathOptions path_options(const Options& options) {
-  PathOptions path;
-  path.search = options.search;
-  constexpr int kOfRrtStar = 2000;
-  path.iterations =
-      options.iterations.value_or(path.search == PathSearch::kRrtStar ? kOfRrtStar : path.iterations);
+  PathOptions path = planner::path_options(options.search);
+  path.iterations = options.iterations.value_or(path.iterations);
   return path;
 }
 

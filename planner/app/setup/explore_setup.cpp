@@ -228,9 +228,10 @@ void check_travel(const RobotDescription& robot, const sim::GroundTruth& truth) 
   }
 }
 
-planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot) {
-  planner::GoalOptions goal = options.lockstep ? planner::goal_options(robot, options.mode)
-                                               : planner::motion_goal_options(robot, options.mode);
+planner::GoalOptions goal_options(const ExploreOptions& options, const planner::Robot& robot,
+                                  double epsilon) {
+  planner::GoalOptions goal = options.lockstep ? planner::goal_options(robot, options.mode, epsilon)
+                                               : planner::motion_goal_options(robot, options.mode, epsilon);
   if (options.goal) goal.rule = planner::rule_of(*options.goal).value_or(goal.rule);
   goal.lambda = options.lambda.value_or(goal.lambda);
   goal.advance = options.advance.value_or(goal.advance);
@@ -271,15 +272,9 @@ planner::ExplorationOptions exploration_options(const ExploreOptions& options,
   // With nearest goals each gain is small, so that small gains do not end the exploration.
   if (options.goal == GoalSearch::kNearest) exploration.epsilon = 1.0;
   exploration.epsilon = options.epsilon.value_or(exploration.epsilon);
-  for (const RobotDescription& robot : robots) {
-    planner::GoalOptions goal = goal_options(options, robot.robot);
-    // Steps have low gain only when there is no better goal.
-    if (options.mode == Method::kDefault) goal.min_gain = exploration.epsilon;
-    exploration.team.push_back({robot.robot, goal});
-  }
-  exploration.path.search = options.search.value_or(exploration.path.search);
-  constexpr int kOfRrtStar = 2000;
-  if (exploration.path.search == planner::PathSearch::kRrtStar) exploration.path.iterations = kOfRrtStar;
+  for (const RobotDescription& robot : robots)
+    exploration.team.push_back({robot.robot, goal_options(options, robot.robot, exploration.epsilon)});
+  exploration.path = planner::path_options(options.search.value_or(exploration.path.search));
   exploration.tours_without = options.tours_without;
   exploration.assign = options.assign;
   exploration.optimize = options.optimize;

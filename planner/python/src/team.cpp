@@ -73,10 +73,10 @@ Team make_team(const TeamArguments& arguments, bool lockstep, Method method) {
   for (const auto& description : arguments.robots) {
     const Robot robot = robot_above(*description, lattice, team.map.bounds);
     planner::GoalOptions goal =
-        lockstep ? planner::goal_options(robot, method) : planner::motion_goal_options(robot, method);
+        lockstep ? planner::goal_options(robot, method, options.epsilon)
+                 : planner::motion_goal_options(robot, method, options.epsilon);
     goal.rule = rule.value_or(goal.rule);
     goal.rendering.seed = arguments.seed;
-    if (method == Method::kDefault) goal.min_gain = options.epsilon;
     options.team.push_back({robot, goal});
   }
   return team;

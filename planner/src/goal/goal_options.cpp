@@ -54,7 +54,7 @@ int azimuth_bins(const FieldOfView& view) {
 
 }  // namespace
 
-GoalOptions goal_options(const Robot& robot, Method method) {
+GoalOptions goal_options(const Robot& robot, Method method, double epsilon) {
   const bool drives = robot.travel.drives();
   GoalOptions options;
   options.rendering.azimuth_bins = azimuth_bins(robot.view);
@@ -65,7 +65,7 @@ GoalOptions goal_options(const Robot& robot, Method method) {
     options.refined = drives ? 0 : 4096;  // all cells that see a frontier
   } else {
     options.advance = 4.0;
-    options.min_gain = 10.0;  // `ExplorationOptions::epsilon`
+    options.min_gain = epsilon;
     if (drives) {
       options.rendering.renderer = ViewQualityOptions::Renderer::kExact;
     } else {
@@ -80,8 +80,8 @@ GoalOptions goal_options(const Robot& robot, Method method) {
   return options;
 }
 
-GoalOptions motion_goal_options(const Robot& robot, Method method) {
-  GoalOptions options = goal_options(robot, method);
+GoalOptions motion_goal_options(const Robot& robot, Method method, double epsilon) {
+  GoalOptions options = goal_options(robot, method, epsilon);
   if (method == Method::kDefault) options.advance = 2.0;
   return options;
 }

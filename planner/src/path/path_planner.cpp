@@ -190,9 +190,12 @@ void PathOptions::check() const {
     refuse("shortcut_rounds is " + std::to_string(shortcut_rounds) + ", but has to be 0 or more");
 }
 
-std::string_view name_of(PathSearch search) {
-  constexpr std::array<std::string_view, 4> kNames = {"rrt", "rrt-connect", "rrt-star", "corridor"};
-  return kNames.at(static_cast<std::size_t>(search));
+PathOptions path_options(PathSearch search) {
+  constexpr int kOfRrtStar = 2000;
+  PathOptions options;
+  options.search = search;
+  if (search == PathSearch::kRrtStar) options.iterations = kOfRrtStar;
+  return options;
 }
 
 std::string_view name_of(PathOutcome outcome) {

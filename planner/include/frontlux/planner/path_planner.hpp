@@ -7,9 +7,10 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace frontlux::planner {
@@ -22,15 +23,24 @@ enum class PathSearch : std::uint8_t {
   kCorridor,    ///< no search: the shortest path through the corridor
 };
 
-/// "rrt", "rrt-connect", "rrt-star", "corridor"
-[[nodiscard]] FRONTLUX_EXPORT std::string_view name_of(PathSearch search);
+/// As options and files call them.
+inline constexpr std::array<std::pair<std::string_view, PathSearch>, 4> kPathSearchNames = {
+    {{"corridor", PathSearch::kCorridor},
+     {"rrt", PathSearch::kRrt},
+     {"rrt-connect", PathSearch::kRrtConnect},
+     {"rrt-star", PathSearch::kRrtStar}}};
+
+[[nodiscard]] constexpr std::string_view name_of(PathSearch search) {
+  for (const auto& [name, value] : kPathSearchNames)
+    if (value == search) return name;
+  return {};
+}
 
 /// How paths are searched.
 struct FRONTLUX_EXPORT PathOptions {
   /// The method.
   PathSearch search = PathSearch::kRrt;
-  /// Of the search, at most; 1 to a million. RRT* uses them all, which takes a hundred times as long as RRT;
-  /// 2,000 suit it well.
+  /// Of the search, at most; 1 to a million. RRT* uses them all.
   int iterations = 20'000;
   double range = 4.0;       ///< [m] longest edge of the search
   double goal_bias = 0.1;   ///< fraction of the samples that are the goal itself, 0 to 1; not for RRT-Connect
@@ -40,6 +50,9 @@ struct FRONTLUX_EXPORT PathOptions {
   /// @throws std::invalid_argument naming the value that is out of bounds
   void check() const;
 };
+
+/// What a search works well with: of RRT*, which else takes a hundred times as long as RRT, 2,000 iterations.
+[[nodiscard]] FRONTLUX_EXPORT PathOptions path_options(PathSearch search);
 
 /// The key of a random search. The same key gives the same path; another key may give another path.
 struct PathKey {
