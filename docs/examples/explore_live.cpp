@@ -3,9 +3,10 @@
 //
 //     explore_live ROBOT.json FOLDER X Y Z YAW SECONDS
 //
-// The robot's sensor begins at X, Y, Z [m], YAW [rad]. Scans come as in explore_recorded: a .ply or .pcd file
-// of points in the sensor's frame [m], and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where
-// it was taken. When it was taken is the file's name, in seconds on the robot's clock: 12.35.ply.
+// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free there.
+// Scans come as in explore_recorded: a .ply or .pcd file of points in the sensor's frame [m], x forward, y
+// left, z up, and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where it was taken. When it was
+// taken is the file's name, in seconds on the robot's clock: 12.35.ply.
 //
 // FOLDER/trajectory.csv is what the robot is to follow, `time,x,y,z,yaw`, twenty rows a second; it is
 // replaced as a whole after each scan, and its first line names that scan. Until a trajectory's first row the
@@ -17,8 +18,8 @@
 #include <frontlux/file.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
-#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/continuous_exploration.hpp>
+#include <frontlux/planner/exploration_start.hpp>
 
 #include <charconv>
 #include <chrono>
@@ -77,21 +78,10 @@ std::string rows_of(const Trajectory& trajectory) {
   return rows.str();
 }
 
-// What the robot knows to be free before its first scan: the voxels of its body.
-ExplorationStart start_of(const Pose& start, const Lattice& lattice, const TravelOptions& travel) {
-  ExplorationStart begin{start, {}};
-  const VoxelKey at = lattice.key(start.position).value();
-  static_cast<void>(BodyStencil(travel, lattice.resolution())
-                        .all_of(cell_of(travel, lattice, at), [&](const VoxelKey& key) {
-                          begin.known_free.push_back(key);
-                          return true;
-                        }));
-  return begin;
-}
-
-void explore(const Robot& robot, const std::filesystem::path& folder, const Pose& start, double seconds) {
+void explore(Robot robot, const std::filesystem::path& folder, const Pose& start, double seconds) {
   const Lattice lattice(0.3);
   const Eigen::Vector3d reach(20, 20, 5);  // [m] what may be explored around the start
+  robot.travel.floor = start.position.z() - reach.z();
   const MappingOptions map{.resolution = lattice.resolution(),
                            .bounds = voxels_of(lattice, {start.position - reach, start.position + reach})};
   ExplorationOptions options = tour_options(lattice.resolution());
@@ -101,7 +91,7 @@ void explore(const Robot& robot, const std::filesystem::path& folder, const Pose
   std::size_t taken = 0;
   std::optional<io::RecordedPose> scan = next_scan(folder, taken, std::chrono::duration<double>(seconds));
   if (!scan) throw std::runtime_error(folder.string() + ": there is no scan");
-  const ExplorationStart begin = start_of(start, lattice, robot.travel);
+  const ExplorationStart begin = start_at(lattice, robot, start, free_radius_of(robot));
   exploration.begin({&begin, 1}, time_of(*scan));
   std::string rows;
   for (; scan && !exploration.end();

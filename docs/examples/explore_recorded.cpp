@@ -2,13 +2,14 @@
 //
 //     explore_recorded ROBOT.json FOLDER X Y Z YAW SECONDS
 //
-// The robot's sensor begins at X, Y, Z [m], YAW [rad]. Where it has to go next is in FOLDER/next.csv, which
-// the robot removes. It answers with a scan, the .ply or .pcd file of its points in the sensor's frame
-// [m], and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where the scan was taken; rays that
-// met nothing are points beyond the sensor's range. The scan has to be complete before the line is there, and
-// poses.csv to be replaced as a whole. A robot that could not go there answers from where it is, or not at
-// all for SECONDS. What is in the folder already is taken at once: the same folder can be explored again
-// without a robot. The map comes to FOLDER/map.bt.
+// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free there.
+// Where it has to go next is in FOLDER/next.csv, which the robot removes. It answers with a scan, the .ply or
+// .pcd file of its points in the sensor's frame [m], x forward, y left, z up, and one more line
+// `file,x,y,z,yaw` in FOLDER/poses.csv that says where the scan was taken; rays that met nothing are points
+// beyond the sensor's range. The scan has to be complete before the line is there, and poses.csv to be
+// replaced as a whole. A robot that could not go there answers from where it is, or not at all for SECONDS.
+// What is in the folder already is taken at once: the same folder can be explored again without a robot. The
+// map comes to FOLDER/map.bt.
 
 #include "recorded_scan.hpp"
 
@@ -16,6 +17,7 @@
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/io/robot_file.hpp>
 #include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/exploration_start.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -58,17 +60,13 @@ std::optional<Scan> drive(const std::filesystem::path& folder, std::size_t& answ
   }
 }
 
-void explore(const RobotDescription& description, const std::filesystem::path& folder, const Pose& start,
-             double seconds) {
-  const Robot& robot = description.robot;
+void explore(Robot robot, const std::filesystem::path& folder, const Pose& start, double seconds) {
   const Lattice lattice(0.3);
-  // What may be explored, 20 m around the start; and what the robot knows to be free, the voxels of its body.
-  const Eigen::Vector3d reach(20, 20, 5), body = Eigen::Vector3d::Constant(0.35);
+  const Eigen::Vector3d reach(20, 20, 5);  // [m] what may be explored around the start
+  robot.travel.floor = start.position.z() - reach.z();
   const MappingOptions map{.resolution = lattice.resolution(),
                            .bounds = voxels_of(lattice, {start.position - reach, start.position + reach})};
-  ExplorationStart begin{start, {}};
-  const KeyBox own = voxels_of(lattice, {start.position - body, start.position + body});
-  frontlux::for_each_key(own, [&](const frontlux::VoxelKey& key) { begin.known_free.push_back(key); });
+  const ExplorationStart begin = start_at(lattice, robot, start, free_radius_of(robot));
 
   ExplorationOptions options = exploration_options();
   options.team.push_back({robot, goal_options(robot)});
@@ -97,7 +95,7 @@ int main(int argc, char** argv) {
   }
   try {
     const auto number = [&](int i) { return std::stod(argv[i]); };
-    explore(io::read_robot(argv[1]), argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
+    explore(io::read_robot(argv[1]).robot, argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
   } catch (const std::exception& error) {
     std::cerr << "explore_recorded: " << error.what() << '\n';
     return 2;

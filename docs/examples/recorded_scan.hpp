@@ -3,14 +3,16 @@
 #include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/planner/mapping.hpp>
+#include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/scan.hpp>
 
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
-/// The scan of a file, as the mapping takes it: points in the sensor's frame [m], those beyond the sensor's
-/// range for rays that met nothing.
+/// The scan of a file, as the mapping takes it: points in the sensor's frame [m], x forward, y left, z up, those
+/// beyond the sensor's range for rays that met nothing. Points and poses in an optical frame, x right, y down,
+/// z forward, have to be turned first: T_sensor_optical = (0 0 1, -1 0 0, 0 -1 0).
 inline frontlux::planner::Scan scan_of(const frontlux::io::RecordedPose& recorded,
                                        const std::filesystem::path& folder, double max_range) {
   frontlux::planner::Scan scan;
@@ -27,7 +29,13 @@ inline frontlux::planner::Scan scan_of(const frontlux::io::RecordedPose& recorde
   return scan;
 }
 
-/// Which way a sensor looks [rad].
+/// [m] What a robot takes for free around its start without having seen it, as `frontlux explore` does: one
+/// that drives sees no floor so near. Nothing may stand there.
+inline double free_radius_of(const frontlux::planner::Robot& robot) {
+  return robot.travel.drives() ? 2.3 : 0.0;
+}
+
+/// Where a sensor looks [rad]: along x.
 inline double yaw_of(const frontlux::io::SensorFrame& T_world_sensor) {
   const Eigen::Vector3d forward = T_world_sensor.linear().col(0);
   return std::atan2(forward.y(), forward.x());

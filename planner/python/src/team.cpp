@@ -1,6 +1,6 @@
 #include "team.hpp"
 
-#include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/exploration_start.hpp>
 #include <frontlux/planner/goal_search.hpp>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using planner::ExplorationOptions, planner::ExplorationStart, planner::GoalRule, planner::GoalSearch,
     planner::Method;
-using planner::Motion, planner::Robot, planner::TravelOptions;
+using planner::Robot;
 
 KeyBox given_bounds(const Lattice& lattice, const py::object& object) {
   const Numbers bounds("bounds", object, 3);
@@ -112,40 +112,14 @@ std::vector<ExplorationStart> starts_of(const Team& team, const py::object& obje
   if (numbers.shape() != Shape{robots})
     throw py::value_error("starts: shape " + text_of(with(numbers.shape(), 4)) + ", but has to be (" +
                           std::to_string(robots) + ", 4)");
-  constexpr double kWidest = 100.0;  // [m]
-  constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 24;
-  if (!(free_radius >= 0.0 && free_radius <= kWidest))
-    throw py::value_error("free_radius: has to be 0 to 100 m");
   std::vector<ExplorationStart> starts;
   for (std::size_t r = 0; r < team.robots.size(); ++r) {
-    const std::string name = "starts: number " + std::to_string(r);
-    const Eigen::Vector3d at(numbers.number(r, 0), numbers.number(r, 1), numbers.number(r, 2));
-    const auto key = lattice.key(at);
-    if (!key || !team.map.bounds.contains(*key) || !std::isfinite(numbers.number(r, 3)))
-      throw py::value_error(name + " is not finite, or outside the bounds");
-    ExplorationStart start{{at, numbers.number(r, 3)}, {}};
-    const TravelOptions& travel = team.options.team[r].robot.travel;
-    const planner::BodyStencil stencil(travel, lattice.resolution());
-    const VoxelKey cell = cell_of(travel, lattice, *key);
-    const KeyBox body = stencil.box_around(cell);
-    KeyBox box = body;
-    if (free_radius > 0.0) {
-      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(free_radius);
-      box = hull(body, planner::voxels_of(lattice, {at - reach, at + reach}));
-    }
-    if (size_of(box) > kMostVoxels)
-      throw py::value_error("free_radius: a box of " + std::to_string(size_of(box)) +
-                            " voxels around a start, but there may be at most 2^24");
-    const auto known = [&](const VoxelKey& voxel) {
-      if (stencil.contains(cell, voxel)) return true;
-      const Eigen::Vector3d offset = lattice.exact_center(voxel) - at;
-      if (travel.motion == Motion::kSpace) return offset.norm() <= free_radius;
-      return offset.head<2>().norm() <= free_radius && body.min.z <= voxel.z && voxel.z <= key->z;
-    };
-    for_each_key(box, [&](const VoxelKey& voxel) {
-      if (known(voxel)) start.known_free.push_back(voxel);
-    });
-    starts.push_back(start);
+    const planner::Pose pose{{numbers.number(r, 0), numbers.number(r, 1), numbers.number(r, 2)},
+                             numbers.number(r, 3)};
+    const auto key = lattice.key(pose.position);
+    if (!key || !team.map.bounds.contains(*key) || !std::isfinite(pose.yaw))
+      throw py::value_error("starts: number " + std::to_string(r) + " is not finite, or outside the bounds");
+    starts.push_back(start_at(lattice, team.options.team[r].robot, pose, free_radius));
   }
   return starts;
 }

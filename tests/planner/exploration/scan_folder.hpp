@@ -16,6 +16,14 @@ class ScanFolder : public FolderTest {
                          "columns": 60, "rows": 45}})");
   }
 
+  /// In the place of the one that flies.
+  void use_ground_robot() {
+    write("robot.json",
+          R"({"name": "cart", "motion": "plane", "box_m": [0.8, 0.8, 0.6], "mount_height_m": 0.75,
+              "ground_m": [0.3, 0.3],
+              "sensor": {"kind": "spinning", "vertical_deg": 50, "range_m": 6, "columns": 360, "rows": 32}})");
+  }
+
   [[nodiscard]] pid_t begin(const Pose& start, const std::string& seconds) const {
     std::vector<std::string> all = {program_, path("robot.json"), path("scans")};
     for (const double number : {start.position.x(), start.position.y(), start.position.z(), start.yaw})
