@@ -95,8 +95,8 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   return change;
 }
 
-void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double time,
-                                    std::span<const VoxelKey> blocked) {
+// A robot has left its trajectory and rests.
+void ContinuousExploration::rest(std::size_t robot, const Pose& pose, double time) {
   State& state = *state_;
   if (robot >= state.members.size()) refuse("there is no robot " + std::to_string(robot));
   check_time(time);
@@ -113,13 +113,27 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
   member.blocked = false;
   member.needed.clear();
   member.closed.clear();
+}
+
+void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double time,
+                                    std::span<const VoxelKey> blocked) {
+  rest(robot, pose, time);
+  State& state = *state_;
+  State::Member& member = state.members[robot];
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
   const bool learns = !cells.empty() && (!member.planned || std::ranges::any_of(cells, is_new));
-  if (const auto here = state.team.lattice().key(rests.position); here && !learns) cells.push_back(*here);
+  const auto here = state.team.lattice().key(at(robot, time).pose.position);
+  if (here && !learns) cells.push_back(*here);
   member.held_back_from.insert(member.held_back_from.end(), cells.begin(), cells.end());
   state.team.block(robot, cells);
   state.tell_of_stop(robot, time);
+}
+
+void ContinuousExploration::displaced(std::size_t robot, const Pose& pose, double time) {
+  rest(robot, pose, time);
+  state_->leave_trail(robot);
+  state_->tell_of_stop(robot, time);
 }
 
 void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double time) {

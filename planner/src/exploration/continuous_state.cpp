@@ -7,6 +7,8 @@
 #include "mapping/sort_once.hpp"
 #include "motion/yaw.hpp"
 
+#include <frontlux/planner/segment_voxels.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -163,6 +165,15 @@ void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vec
     if (i > 0) rest -= (trail[i].position - trail[i - 1].position).norm();
   }
   if (last < trail.size()) trail.resize(last + 1);
+}
+
+// A robot that is elsewhere than its trajectory had it goes back over its trail only if it can get there.
+void ContinuousExploration::State::leave_trail(std::size_t robot) {
+  std::vector<Pose>& trail = team.trails[robot];
+  if (trail.empty()) return;
+  const Eigen::Vector3d here = members[robot].motion.last().end_pose().position;
+  const auto is_free = [&](const VoxelKey& key) { return team.mapping.grid().at(key) == Occupancy::kFree; };
+  if (!SegmentVoxels(team.lattice(), trail.back().position, here).all_of(is_free)) trail.clear();
 }
 
 // Takes note of what a scan has changed.

@@ -347,6 +347,7 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   };
   refuses([&] { exploration.insert(0, pose, scan); }, "no robot 0");
   refuses([&] { exploration.stopped(0, pose, 0.0, {}); }, "no robot 0");
+  refuses([&] { exploration.displaced(0, pose, 0.0); }, "no robot 0");
   refuses([&] { exploration.lose(0, pose, 0.0); }, "no robot 0");
   refuses([&] { static_cast<void>(exploration.at(0, 0.0)); }, "no robot 0");
   refuses([&] { static_cast<void>(exploration.plan(0.0)); }, "before its beginning");
@@ -365,11 +366,13 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
   const Pose far{{1e5, 0.0, 0.0}, 0.0};
   refuses([&] { exploration.stopped(0, far, 0.0, {}); }, "outside the map's key range");
+  refuses([&] { exploration.displaced(0, far, 0.0); }, "outside the map's key range");
   refuses([&] { exploration.lose(0, far, 0.0); }, "outside the map's key range");
   for (const double time : {nan, 1.7e15, -1.7e15}) {  // microseconds since 1970
     refuses([&] { static_cast<void>(exploration.plan(time)); }, "the time is ");
     refuses([&] { static_cast<void>(exploration.finish(time)); }, "the time is ");
     refuses([&] { exploration.stopped(0, pose, time, {}); }, "the time is ");
+    refuses([&] { exploration.displaced(0, pose, time); }, "the time is ");
     refuses([&] { exploration.lose(0, pose, time); }, "the time is ");
   }
   ExplorationOptions options = TeamInMotion::options(team);

@@ -20,7 +20,7 @@ enum class PlanReason : std::uint8_t {
   kGoalSeen,  ///< most of what it was going for is mapped
   kBlocked,   ///< its trajectory leads through what is no longer known to be free, or where another robot
               ///< has stopped
-  kStopped,   ///< it could not follow its trajectory
+  kStopped,   ///< it could not follow its trajectory, or has left it
   kPeriod,    ///< its plan is as old as `ExplorationOptions::period`
 };
 /// "start", "arrival", "goal_seen", "blocked", "stopped", "period"
@@ -53,7 +53,10 @@ struct PlannedMotion {
 ///     exploration.begin(starts, now());
 ///     while (!exploration.end()) {
 ///       exploration.insert(robot, pose, scan);                     // as they come
-///       if (const auto planned = exploration.plan(now())) send(planned->robot, planned->trajectory);
+///       while (const auto planned = exploration.plan(now())) {     // until none has a reason to plan
+///         send(planned->robot, planned->trajectory);               // its poses at their times
+///         if (exploration.end()) break;
+///       }
 ///     }
 ///
 /// The result depends on the options, the starts, the scans and the times given only. Works in TBB's current
@@ -75,8 +78,10 @@ class FRONTLUX_EXPORT ContinuousExploration {
 
   /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map. Rays that end on
   /// a robot of the team are to be left out (NaN): what they hit would be closed until others pass there.
-  /// @param pose  where the robot has been, as it is believed: it may go back over all of these places. New
-  ///              trajectories begin on the one that it has; a robot that has left it reports `stopped`.
+  /// @param pose  where the robot was, as it is believed: by it is judged from where it has looked. Rays begin
+  ///              at the scan's own origin. It does not move the robot for the planner: new trajectories begin
+  ///              on the one that it has. One that is not on that reports `displaced`, or `stopped` if
+  ///              something is in its path.
   /// @throws std::invalid_argument before `begin`, if there is no such robot, for a pose that is not finite,
   ///         or for what `Mapping::insert` refuses
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);
@@ -85,8 +90,14 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// @param blocked  cells that it could not enter; if there are none, or it would not have entered any of
   ///                 them as it is, the cell that it is in will not be entered again
   /// @throws std::invalid_argument before `begin`, if there is no such robot, or for a pose or time out of
-  ///         bounds; so does `lose`
+  ///         bounds; so do `displaced` and `lose`
   void stopped(std::size_t robot, const Pose& pose, double time, std::span<const VoxelKey> blocked);
+
+  /// A robot rests at a pose that is not the one of its trajectory, and nothing blocks its path: its
+  /// controller lagged behind, it was halted, or its localization has jumped. It plans anew from there, as
+  /// soon as its turn comes. If what lies between its trajectory and the pose is not known to be free, it
+  /// does not go back over what it has travelled before.
+  void displaced(std::size_t robot, const Pose& pose, double time);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
   /// where the others keep apart from it, and what it was to see becomes theirs. It does not come back.
@@ -118,6 +129,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   [[nodiscard]] const Mapping& mapping() const;
 
  private:
+  void rest(std::size_t robot, const Pose& pose, double time);
+
   struct State;
   std::unique_ptr<State> state_;
 };
