@@ -19,6 +19,12 @@ TEST_F(RecordingTest, ReadsWhatWasWritten) {
   }
 }
 
+// Readers take the options for a JSON object, also of who has none.
+TEST_F(RecordingTest, OptionsAreAnObject) {
+  RecordingWriter(file_, RecordingHead{});
+  EXPECT_EQ(read_recording(file_).head.options, "{}");
+}
+
 TEST_F(RecordingTest, AnyNumberOfRobots) {
   for (const int robots : {0, 1, 5}) {
     Random random(3);

@@ -27,7 +27,7 @@ struct RecordingHead {
   std::vector<ExplorationStart> starts;  ///< of each of them
   std::uint64_t observable = 0;          ///< voxels that can be observed; 0: unknown
   std::uint64_t bounding = 0;            ///< voxels within the bounds; 0: unknown
-  std::string options;                   ///< JSON object of the run's options, as its maker writes it
+  std::string options = "{}";            ///< JSON object of the run's options, as its maker writes it
 };
 
 /// How many voxels of a world one robot has mapped first, up to the end of a step.
@@ -41,7 +41,8 @@ struct KnownVoxels {
 struct RecordedStep {
   /// As the exploration returned it.
   ExplorationStep step;
-  std::vector<KnownVoxels> known;  ///< of each robot; a voxel counts for the robot that mapped it first
+  /// One for each robot of the head, zeros if nobody counts; a voxel counts for the robot that mapped it first.
+  std::vector<KnownVoxels> known;
   std::uint64_t contacts = 0;      ///< of robots with the true world, in this step
 };
 
@@ -58,10 +59,14 @@ struct Recording {
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 
-/// Writes a recording step by step. After each call the file holds all steps, even if the process is killed.
+/// Writes a recording step by step: step 0, as `begin` returned it; then each as `Exploration::step` did, or
+/// in motion the step of each `ContinuousExploration::plan` and at last that of `finish`; then the end. After
+/// each call the file holds all steps, even if the process is killed.
 class FRONTLUX_EXPORT RecordingWriter {
  public:
   /// A new recording; a file of that name is replaced, unless another process is writing it.
+  /// @throws std::invalid_argument naming what a reader would refuse: in the head a value out of bounds, or
+  ///         not one start for each robot
   /// @throws std::runtime_error naming the file, if it cannot be written; so do the others, also if it is not
   ///         as this writer left it any more
   RecordingWriter(const std::filesystem::path& file, const RecordingHead& head);
@@ -73,8 +78,12 @@ class FRONTLUX_EXPORT RecordingWriter {
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
 
   /// The next step.
+  /// @throws std::invalid_argument naming what a reader would refuse: a step that is not the next by its number,
+  ///         `known` or robots that are not one for each robot of the head, a value out of bounds; or after the
+  ///         end
   void write(const RecordedStep& step);
   /// Why the run ended: one word of small letters and `_`.
+  /// @throws std::invalid_argument if it is no such word of up to 40 letters, or for a second end
   void write_end(const std::string& reason);
 
  private:
