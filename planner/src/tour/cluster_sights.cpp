@@ -76,7 +76,7 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
 
 // Returns the clusters that it sees from none, unless nothing has changed for them.
 std::vector<ClusterSights::Hidden> ClusterSights::look_from_usual_places(const Query& query) {
-  std::map<std::uint32_t, Sight> sights;
+  std::map<ClusterId, Sight> sights;
   std::vector<std::pair<const FrontierCluster*, Sight*>> search;
   const std::optional<KeyBox> extent = std::exchange(extent_, query.view.graph.extent());
   const bool same_extent = extent_ == extent;
@@ -163,7 +163,7 @@ void ClusterSights::look_again() {
   }
 }
 
-std::span<const ClusterViewpoint> ClusterSights::viewpoints(std::uint32_t cluster) const {
+std::span<const ClusterViewpoint> ClusterSights::viewpoints(ClusterId cluster) const {
   const auto sight = sights_.find(cluster);
   return sight == sights_.end() ? std::span<const ClusterViewpoint>() : sight->second.viewpoints;
 }

@@ -46,7 +46,7 @@ class ClusterSights {
   [[nodiscard]] bool would_see_any() const;
 
   /// Those of a cluster that the robot can get to, the best first.
-  [[nodiscard]] std::span<const ClusterViewpoint> viewpoints(std::uint32_t cluster) const;
+  [[nodiscard]] std::span<const ClusterViewpoint> viewpoints(ClusterId cluster) const;
 
  private:
   struct Sight {
@@ -73,8 +73,8 @@ class ClusterSights {
   static void find_reached(const Query& query, Sight& sight);
   static void look_from_anywhere(const Query& query, std::span<const Hidden> hidden);
 
-  std::map<std::uint32_t, Sight> sights_;  // by cluster
-  std::optional<KeyBox> extent_;           // of the graph
+  std::map<ClusterId, Sight> sights_;
+  std::optional<KeyBox> extent_;  // of the graph
 };
 
 }  // namespace frontlux::planner::detail

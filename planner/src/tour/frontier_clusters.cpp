@@ -155,22 +155,22 @@ std::vector<std::uint64_t> FrontierClusters::revisions_of(const Part& part) cons
 }
 
 // The id of the cluster in which most of the frontiers were before, unless a larger one has it.
-std::uint32_t FrontierClusters::name_for(const Keys& keys, const Ids& taken) {
-  std::vector<std::pair<std::uint32_t, std::size_t>> before;  // ids and how many were in them
+ClusterId FrontierClusters::name_for(const Keys& keys, const Ids& taken) {
+  std::vector<std::pair<ClusterId, std::size_t>> before;  // and how many were in them
   for (const VoxelKey& key : keys) {
-    const std::uint32_t id = cluster_[key];
-    if (id == 0) continue;
-    const auto known = std::ranges::find(before, id, &std::pair<std::uint32_t, std::size_t>::first);
+    const ClusterId id = cluster_[key];
+    if (id == ClusterId::kNone) continue;
+    const auto known = std::ranges::find(before, id, &std::pair<ClusterId, std::size_t>::first);
     if (known == before.end())
       before.emplace_back(id, 1);
     else
       ++known->second;
   }
   std::ranges::sort(before);
-  std::pair<std::size_t, std::uint32_t> best{0, 0};
+  std::pair best{std::size_t{0}, ClusterId::kNone};
   for (const auto& [id, count] : before)
     if (count > best.first && !taken.contains(id)) best = {count, id};
-  return best.second != 0 ? best.second : next_id_++;
+  return best.second != ClusterId::kNone ? best.second : ClusterId{next_id_++};
 }
 
 // Of pieces that were not together before, or were others.
@@ -192,7 +192,7 @@ FrontierCluster FrontierClusters::make_cluster(const Part& part, const Ids& take
 void FrontierClusters::make_clusters() {
   std::vector<Part> parts = joined_pieces();
   std::ranges::stable_sort(parts, [](const Part& a, const Part& b) { return a.size > b.size; });
-  for (Piece& piece : pieces_) piece.cluster = 0;
+  for (Piece& piece : pieces_) piece.cluster = ClusterId::kNone;
   std::vector<FrontierCluster> now;
   decltype(made_of_) made_of(parts.size());
   Ids taken(parts.size());
@@ -224,7 +224,7 @@ void FrontierClusters::make_clusters() {
   for (std::size_t i = 0; i < clusters_.size(); ++i) places_[clusters_[i].id] = i;
 }
 
-const FrontierCluster& FrontierClusters::cluster(std::uint32_t id) const { return clusters_[places_.at(id)]; }
+const FrontierCluster& FrontierClusters::cluster(ClusterId id) const { return clusters_[places_.at(id)]; }
 
 void FrontierClusters::set_least(std::size_t least) {
   least = std::max<std::size_t>(least, 1);

@@ -16,9 +16,12 @@
 
 namespace frontlux::planner::detail {
 
+/// What a cluster of frontiers is called; its place among all of them is a whole number.
+enum class ClusterId : std::uint32_t { kNone };
+
 /// Frontiers that touch each other, in a box of bounded size: what a robot looks at from one place.
 struct FrontierCluster {
-  std::uint32_t id = 0;        ///< stays the same while most of its frontiers do
+  ClusterId id = {};           ///< stays the same while most of its frontiers do
   std::uint64_t revision = 0;  ///< another one whenever its frontiers are others
   std::vector<VoxelKey> keys;  ///< sorted
   KeyBox box;                  ///< around them
@@ -46,10 +49,9 @@ class FrontierClusters {
   /// By their first key.
   [[nodiscard]] std::span<const FrontierCluster> clusters() const { return clusters_; }
   /// @pre there is a cluster with this id
-  [[nodiscard]] const FrontierCluster& cluster(std::uint32_t id) const;
-  static constexpr std::uint32_t kNone = 0;  ///< no cluster's id
-  /// The id of the cluster that holds a frontier; `kNone` if it is left out.
-  [[nodiscard]] std::uint32_t cluster_of(const VoxelKey& frontier) const {
+  [[nodiscard]] const FrontierCluster& cluster(ClusterId id) const;
+  /// The cluster that holds a frontier; `ClusterId::kNone` if it is left out.
+  [[nodiscard]] ClusterId cluster_of(const VoxelKey& frontier) const {
     return pieces_[piece_[frontier]].cluster;
   }
 
@@ -64,16 +66,16 @@ class FrontierClusters {
     KeyBox box = {};
     std::uint64_t revision = 0;  // another one whenever its keys may be others
     std::uint32_t joins = 0;     // of a small one: `piece_for`
-    std::uint32_t cluster = 0;   // id; 0 if it is in none
+    ClusterId cluster = {};      // `kNone` if it is in none
   };
   struct Part {
     std::vector<std::uint32_t> pieces;  // in their order
     std::size_t size = 0;               // [frontiers]
   };
-  using Ids = std::unordered_set<std::uint32_t>;
+  using Ids = std::unordered_set<ClusterId>;
   struct Made {
     std::vector<std::uint64_t> revisions;  // of a cluster's pieces
-    std::uint32_t id;                      // of the cluster
+    ClusterId id;                          // of the cluster
   };
 
   [[nodiscard]] VoxelKey cube_of(const VoxelKey& key) const {
@@ -87,20 +89,20 @@ class FrontierClusters {
   [[nodiscard]] std::vector<Part> joined_pieces() const;
   [[nodiscard]] std::vector<std::uint64_t> revisions_of(const Part& part) const;
   [[nodiscard]] FrontierCluster make_cluster(const Part& part, const Ids& taken);
-  [[nodiscard]] std::uint32_t name_for(const Keys& keys, const Ids& taken);
+  [[nodiscard]] ClusterId name_for(const Keys& keys, const Ids& taken);
   void make_clusters();
 
   int edge_;
   std::size_t least_;
   std::vector<FrontierCluster> clusters_;
   Keys frontiers_;
-  std::unordered_map<std::uint32_t, std::size_t> places_;  // of the ids among the clusters
-  std::unordered_map<std::uint64_t, Made> made_of_;        // by the revisions of the clusters' first pieces
-  std::map<VoxelKey, Cube> cubes_;                         // that hold frontiers
-  std::vector<Piece> pieces_ = {{}};                       // 0 is never in use
-  std::vector<std::uint32_t> free_;                        // numbers
-  BoxArray<std::uint32_t> piece_;                          // number of each frontier's; 0 elsewhere
-  BoxArray<std::uint32_t> cluster_;                        // that each voxel was in last
+  std::unordered_map<ClusterId, std::size_t> places_;  // among the clusters
+  std::unordered_map<std::uint64_t, Made> made_of_;    // by the revisions of the clusters' first pieces
+  std::map<VoxelKey, Cube> cubes_;                     // that hold frontiers
+  std::vector<Piece> pieces_ = {{}};                   // 0 is never in use
+  std::vector<std::uint32_t> free_;                    // numbers
+  BoxArray<std::uint32_t> piece_;                      // number of each frontier's; 0 elsewhere
+  BoxArray<ClusterId> cluster_;                        // that each voxel was in last
   std::uint32_t next_id_ = 1;
   std::uint64_t next_revision_ = 1;
   std::uint64_t next_piece_revision_ = 1;

@@ -190,7 +190,7 @@ const ClusterViewpoint* TourPlanning::best_viewpoint(const Member& member, std::
 
 // Those that some robot sees.
 std::vector<SeenCluster> TourPlanning::seen_clusters(std::span<const MotionState> starts) const {
-  std::set<std::uint32_t> first;  // ids of those to which a robot is going
+  std::set<ClusterId> first;  // to which a robot is going
   for (const Member& member : members_) first.insert(member.going_for.begin(), member.going_for.end());
   std::vector<SeenCluster> seen;
   const auto clusters = clusters_.clusters();
@@ -330,13 +330,13 @@ void TourPlanning::update_map(const Query& query) {
 // there is fixed.
 Tours TourPlanning::tours_before(const Query& query, std::span<const StopClusters> stops,
                                  TourProblem& problem) const {
-  std::map<std::uint32_t, std::uint32_t> stop_of;  // cluster
+  std::map<ClusterId, std::uint32_t> stop_of;
   for (std::uint32_t i = 0; i < stops.size(); ++i)
     for (const std::uint32_t cluster : stops[i]) stop_of[clusters_.clusters()[cluster].id] = i;
   Tours before(members_.size());
   std::vector<bool> taken(stops.size());
-  const auto take = [&](std::size_t r, std::span<const std::uint32_t> ids) {
-    for (const std::uint32_t id : ids) {
+  const auto take = [&](std::size_t r, std::span<const ClusterId> ids) {
+    for (const ClusterId id : ids) {
       const auto place = stop_of.find(id);
       if (place == stop_of.end() || taken[place->second] ||
           problem.robots[r].first[place->second] == TourProblem::kNever)
@@ -405,26 +405,26 @@ void TourPlanning::set_tours(const Query& query, std::span<const StopClusters> s
 
 // Of all tours, and of the first stop of the robot that plans.
 void TourPlanning::note_frontiers(const Query& query) {
-  std::unordered_map<std::uint32_t, Member*> whose;  // by the clusters' ids
+  std::unordered_map<ClusterId, Member*> whose;
   for (Member& member : members_) {
     member.frontiers.clear();
     for (const TourStop& stop : member.tour)
-      for (const std::uint32_t id : stop.clusters) whose[id] = &member;
+      for (const ClusterId id : stop.clusters) whose[id] = &member;
   }
-  std::vector<std::uint32_t> ids(query.frontiers.size());
+  std::vector<ClusterId> ids(query.frontiers.size());
   for_each_index(ids.size(), [&](std::size_t i) { ids[i] = clusters_.cluster_of(query.frontiers[i]); });
   left_ = {.enough = clusters_.least()};
   for (std::size_t i = 0; i < ids.size(); ++i)
     if (const auto owner = whose.find(ids[i]); owner != whose.end())
       owner->second->frontiers.push_back(query.frontiers[i]);
     else
-      ++(ids[i] == FrontierClusters::kNone ? left_.small : left_.unseen);
+      ++(ids[i] == ClusterId::kNone ? left_.small : left_.unseen);
   Member& member = members_[query.robot];
   member.first_view.clear();
   if (member.tour.empty()) return;
   const TourStop& first = member.tour.front();
   const ViewpointQuery view = sight_of(query.robot, query.caster, query.grid);
-  for (const std::uint32_t id : first.clusters) {
+  for (const ClusterId id : first.clusters) {
     const Keys seen = visible_from(view, clusters_.cluster(id).keys, first.cell, first.pose.yaw,
                                    member.sights.viewpoints(id).front().aim);
     member.first_view.insert(member.first_view.end(), seen.begin(), seen.end());
@@ -443,7 +443,7 @@ void TourPlanning::update(const Query& query) {
   set_tours(query, places, tours);
   join_next_stops(query);
   Member& member = members_[query.robot];
-  member.going_for = member.tour.empty() ? std::vector<std::uint32_t>{} : member.tour.front().clusters;
+  member.going_for = member.tour.empty() ? std::vector<ClusterId>{} : member.tour.front().clusters;
   note_frontiers(query);
 }
 

@@ -25,10 +25,10 @@ namespace frontlux::planner::detail {
 
 /// A place to which a robot's tour leads, to look at clusters of frontiers.
 struct TourStop {
-  std::vector<std::uint32_t> clusters;  ///< ids
-  Pose pose;                            ///< of the sensor
-  VoxelKey cell;                        ///< of the pose
-  std::size_t seen = 0;                 ///< frontiers of the clusters in view, about
+  std::vector<ClusterId> clusters;
+  Pose pose;             ///< of the sensor
+  VoxelKey cell;         ///< of the pose
+  std::size_t seen = 0;  ///< frontiers of the clusters in view, about
 };
 
 /// Who looks at which cluster of frontiers, and in what order: tours for all robots together. They are kept
@@ -132,8 +132,8 @@ class TourPlanning {
     std::vector<VoxelKey> changed = {};  // since its distances were updated
     ClusterSights sights = {};
     std::vector<TourStop> tour = {};
-    std::vector<std::uint32_t> going_for = {};  // ids of the clusters of its first stop, when it planned last
-    std::vector<VoxelKey> frontiers = {};       // of the clusters in the tour
+    std::vector<ClusterId> going_for = {};  // the clusters of its first stop, when it planned last
+    std::vector<VoxelKey> frontiers = {};   // of the clusters in the tour
     std::vector<VoxelKey> first_view = {};
   };
 
@@ -148,6 +148,7 @@ class TourPlanning {
                                         const VoxelGrid& grid) const;
   [[nodiscard]] std::vector<SeenCluster> seen_clusters(std::span<const MotionState> starts) const;
   [[nodiscard]] std::vector<StopClusters> stop_places(const Query& query) const;
+  /// @param cluster  its place among all
   [[nodiscard]] const ClusterViewpoint* best_viewpoint(const Member& member, std::uint32_t cluster) const;
   [[nodiscard]] TourProblem problem(const Query& query, std::span<const StopClusters> stops);
   [[nodiscard]] TourProblem::Robot travel_times(const Query& query, std::size_t robot,

@@ -24,7 +24,7 @@ TravelOptions flying_cube() {
 
 FrontierCluster cluster_of(std::uint32_t id, const VoxelKey& key) {
   FrontierCluster cluster;
-  cluster.id = id;
+  cluster.id = ClusterId{id};
   cluster.revision = 1;
   cluster.keys = {key};
   cluster.box = {key, key};
@@ -71,20 +71,20 @@ TEST(ClusterSights, FindsClustersThatNoUsualPlaceShows) {
   Scene scene;
   const FrontierCluster end = cluster_of(3, at(35, 7, 2));  // of the tunnel, farther than half the range
   scene.look({end}, {{kBounds}});
-  ASSERT_FALSE(scene.sights.viewpoints(3).empty());
-  for (const ClusterViewpoint& viewpoint : scene.sights.viewpoints(3)) {
+  ASSERT_FALSE(scene.sights.viewpoints(ClusterId{3}).empty());
+  for (const ClusterViewpoint& viewpoint : scene.sights.viewpoints(ClusterId{3})) {
     EXPECT_EQ(viewpoint.seen, 1U);
     EXPECT_TRUE(scene.corridor.contains(viewpoint.cell));
     EXPECT_EQ(viewpoint.cell.y, at(0, 7, 0).y) << "in line with the tunnel";
     EXPECT_NEAR(viewpoint.yaw, 0.0, 0.1);
   }
-  EXPECT_TRUE(scene.sights.viewpoints(4).empty());
+  EXPECT_TRUE(scene.sights.viewpoints(ClusterId{4}).empty());
   // It keeps them as long as they show it.
-  const auto before = scene.sights.viewpoints(3).front().cell;
+  const auto before = scene.sights.viewpoints(ClusterId{3}).front().cell;
   scene.look({end}, {{kBounds}});
-  EXPECT_EQ(scene.sights.viewpoints(3).front().cell, before);
+  EXPECT_EQ(scene.sights.viewpoints(ClusterId{3}).front().cell, before);
   scene.look({}, {});
-  EXPECT_TRUE(scene.sights.viewpoints(3).empty());
+  EXPECT_TRUE(scene.sights.viewpoints(ClusterId{3}).empty());
 }
 
 // With something else to look at, it tries again and again, with pauses of 2, 4, 8, 8, ... plannings.
@@ -95,8 +95,8 @@ TEST(ClusterSights, TriesHiddenClustersEverLessOften) {
   for (int planning = 1; planning <= 32; ++planning) {
     scene.asked = 0;
     scene.look({seen, hidden}, {{kBounds}});
-    ASSERT_FALSE(scene.sights.viewpoints(1).empty());
-    EXPECT_TRUE(scene.sights.viewpoints(2).empty());
+    ASSERT_FALSE(scene.sights.viewpoints(ClusterId{1}).empty());
+    EXPECT_TRUE(scene.sights.viewpoints(ClusterId{2}).empty());
     if (scene.asked > 20) tries.push_back(planning);
   }
   EXPECT_EQ(tries, (std::vector{1, 3, 7, 15, 23, 31}));
@@ -122,7 +122,7 @@ TEST(ClusterSights, AreThoseOfANewLook) {
       std::erase_if(anew, [&](const ClusterViewpoint& seen) { return !scene.corridor.contains(seen.cell); });
       if (anew.empty()) continue;  // it may know others
       const auto kept = scene.sights.viewpoints(cluster.id);
-      ASSERT_EQ(kept.size(), anew.size()) << round << " " << cluster.id;
+      ASSERT_EQ(kept.size(), anew.size()) << round;
       for (std::size_t i = 0; i < anew.size(); ++i) {
         EXPECT_EQ(kept[i].cell, anew[i].cell);
         EXPECT_EQ(kept[i].yaw, anew[i].yaw);
@@ -221,15 +221,15 @@ TEST(ClusterSights, LooksAtFaces) {
   for_each_key(floor.box, [&](const VoxelKey& key) { floor.keys.push_back(key); });
   const FrontierCluster open = cluster_of(2, at(15, 3, 3));
   scene.look({floor, open}, {{kBounds}});
-  ASSERT_TRUE(scene.sights.viewpoints(1).empty());
-  const VoxelKey seen_from = scene.sights.viewpoints(2).front().cell;
+  ASSERT_TRUE(scene.sights.viewpoints(ClusterId{1}).empty());
+  const VoxelKey seen_from = scene.sights.viewpoints(ClusterId{2}).front().cell;
   scene.look_at_faces({floor, open});
-  ASSERT_FALSE(scene.sights.viewpoints(1).empty());
-  EXPECT_EQ(scene.sights.viewpoints(1).front().aim, Aim::kFace);
-  EXPECT_EQ(scene.sights.viewpoints(2).front().cell, seen_from);
+  ASSERT_FALSE(scene.sights.viewpoints(ClusterId{1}).empty());
+  EXPECT_EQ(scene.sights.viewpoints(ClusterId{1}).front().aim, Aim::kFace);
+  EXPECT_EQ(scene.sights.viewpoints(ClusterId{2}).front().cell, seen_from);
   // What it has found it keeps.
   scene.look({floor, open}, {{kBounds}});
-  EXPECT_FALSE(scene.sights.viewpoints(1).empty());
+  EXPECT_FALSE(scene.sights.viewpoints(ClusterId{1}).empty());
   EXPECT_TRUE(scene.sights.sees_any());
   scene.look({}, {});
   EXPECT_FALSE(scene.sights.sees_any());

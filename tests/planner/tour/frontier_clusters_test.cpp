@@ -52,7 +52,7 @@ TEST(FrontierClusters, HoldEachFrontierOnceInConnectedPartsOfBoundedSize) {
     FrontierClusters clusters(kBounds, kEdge, kLeast);
     clusters.update(frontiers);
     std::set<VoxelKey> seen;
-    std::set<std::uint32_t> ids;
+    std::set<ClusterId> ids;
     for (const FrontierCluster& cluster : clusters.clusters()) {
       EXPECT_TRUE(ids.insert(cluster.id).second);
       EXPECT_GE(cluster.keys.size(), kLeast);
@@ -164,8 +164,8 @@ TEST(FrontierClusters, AreTheSameAsNewOnesAfterFewChanges) {
     FrontierClusters anew(kBounds, 6, 4);
     anew.update(now);
     ASSERT_EQ(kept.clusters().size(), anew.clusters().size());
-    std::map<VoxelKey, std::uint32_t> id_of;
-    std::set<std::uint32_t> ids;
+    std::map<VoxelKey, ClusterId> id_of;
+    std::set<ClusterId> ids;
     for (std::size_t i = 0; i < anew.clusters().size(); ++i) {
       const FrontierCluster& cluster = kept.clusters()[i];
       EXPECT_EQ(cluster.keys, anew.clusters()[i].keys);
@@ -179,7 +179,8 @@ TEST(FrontierClusters, AreTheSameAsNewOnesAfterFewChanges) {
       EXPECT_EQ(old->revision == cluster.revision, old->keys == cluster.keys);
       stayed += old->keys == cluster.keys ? 1 : 0;
     }
-    for (const VoxelKey& key : now) EXPECT_EQ(kept.cluster_of(key), id_of.contains(key) ? id_of[key] : 0);
+    for (const VoxelKey& key : now)
+      EXPECT_EQ(kept.cluster_of(key), id_of.contains(key) ? id_of[key] : ClusterId::kNone);
   }
   EXPECT_GT(stayed, 500u);
 }

@@ -46,8 +46,8 @@ struct OpenSpace {
     start.pose = pose;
     planning.update({0, *caster, grid, corridor, frontiers.keys(), {&start, 1}});
   }
-  [[nodiscard]] std::set<std::uint32_t> clusters() const {
-    std::set<std::uint32_t> ids;
+  [[nodiscard]] std::set<ClusterId> clusters() const {
+    std::set<ClusterId> ids;
     for (const TourStop& stop : planning.tour(0)) ids.insert(stop.clusters.begin(), stop.clusters.end());
     return ids;
   }
@@ -122,7 +122,7 @@ TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
   OpenSpace all({.joined = 0}), some({.joined = kJoined});
   for (OpenSpace* space : {&all, &some}) space->plan(space->corridor());
   const TravelCorridor corridor = all.corridor();
-  std::map<std::uint32_t, double> distances;  // [m] to each cluster's best viewpoint
+  std::map<ClusterId, double> distances;  // [m] to each cluster's best viewpoint
   for (const TourStop& stop : all.planning.tour(0)) {
     ASSERT_EQ(stop.clusters.size(), 1U);
     distances[stop.clusters.front()] = corridor.distance(stop.cell).value();
@@ -130,7 +130,7 @@ TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
   std::size_t clusters = 0;
   double farthest = 0.0, nearest = std::numeric_limits<double>::infinity();
   for (const TourStop& stop : some.planning.tour(0))
-    for (const std::uint32_t cluster : stop.clusters)
+    for (const ClusterId cluster : stop.clusters)
       if (clusters++ < kJoined)
         farthest = std::max(farthest, distances.at(cluster));
       else
@@ -140,11 +140,11 @@ TEST(TourPlanning, PutsTheStopsNearestToTheRobotFirst) {
 }
 
 // The stops of a tour: what is looked at, and from where.
-std::vector<std::pair<std::vector<std::uint32_t>, std::pair<VoxelKey, double>>> stops_of(
+std::vector<std::pair<std::vector<ClusterId>, std::pair<VoxelKey, double>>> stops_of(
     const TourPlanning::Options& options) {
   OpenSpace space(options);
   space.plan(space.corridor());
-  std::vector<std::pair<std::vector<std::uint32_t>, std::pair<VoxelKey, double>>> stops;
+  std::vector<std::pair<std::vector<ClusterId>, std::pair<VoxelKey, double>>> stops;
   for (const TourStop& stop : space.planning.tour(0))
     stops.push_back({stop.clusters, {stop.cell, stop.pose.yaw}});
   return stops;
@@ -167,19 +167,19 @@ TEST(TourPlanning, WithoutJoiningEachClusterIsAStop) {
   const auto is_one = [](const auto& stop) { return stop.first.size() == 1; };
   EXPECT_TRUE(std::ranges::all_of(single, is_one));
   EXPECT_FALSE(std::ranges::all_of(joined, is_one));
-  std::set<std::uint32_t> clusters;
+  std::set<ClusterId> clusters;
   for (const auto& stop : joined) clusters.insert(stop.first.begin(), stop.first.end());
   EXPECT_EQ(single.size(), clusters.size());
 }
 
 TEST(TourPlanning, WithoutArrivalStopsComeInTheOrderOfTheTour) {
-  std::map<std::uint32_t, std::size_t> place;  // of each cluster in the shortest tour
+  std::map<ClusterId, std::size_t> place;  // of each cluster in the shortest tour
   for (const auto& stop : stops_of({.joined = 0})) place.emplace(stop.first.at(0), place.size());
   const auto places = [&](const TourPlanning::Options& options) {
     std::vector<std::size_t> first;
     for (const auto& [clusters, at] : stops_of(options)) {
       first.push_back(place.at(clusters.front()));
-      for (const std::uint32_t cluster : clusters) first.back() = std::min(first.back(), place.at(cluster));
+      for (const ClusterId cluster : clusters) first.back() = std::min(first.back(), place.at(cluster));
     }
     return first;
   };
@@ -212,14 +212,14 @@ TEST(TourPlanning, WithoutToursNobodyGoesWhereAnotherOneIsGoing) {
     std::array<MotionState, 2> starts;
     for (MotionState& start : starts) start.pose = space.pose;
     const auto clusters = [&](std::size_t robot) {
-      std::set<std::uint32_t> ids;
+      std::set<ClusterId> ids;
       for (const TourStop& stop : both.tour(robot)) ids.insert(stop.clusters.begin(), stop.clusters.end());
       return ids;
     };
     for (const std::size_t robot : {0, 1, 0, 1}) {
       both.update({robot, *space.caster, space.grid, corridor, space.frontiers.keys(), starts});
       EXPECT_TRUE(near < 1.0 || !both.tour(robot).empty()) << "a far zone may hold all that there is";
-      std::vector<std::uint32_t> shared;
+      std::vector<ClusterId> shared;
       std::ranges::set_intersection(clusters(0), clusters(1), std::back_inserter(shared));
       EXPECT_TRUE(shared.empty()) << near;
     }
@@ -245,7 +245,7 @@ TEST(TourPlanning, LeavesToARobotWhatItGoesToSee) {
   starts[1].pose = stop.pose;
   for (int planning = 0; planning < 3; ++planning) {
     plan(1);
-    std::set<std::uint32_t> kept;
+    std::set<ClusterId> kept;
     for (const TourStop& next : both.tour(0).first(std::min(stop.clusters.size(), both.tour(0).size())))
       kept.insert(next.clusters.begin(), next.clusters.end());
     EXPECT_EQ(kept, std::set(stop.clusters.begin(), stop.clusters.end())) << planning;
