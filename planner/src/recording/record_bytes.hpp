@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,12 @@ class RecordBytes {
     varint(number);
     if (number > max) refuse(out_of_range(name, number, max));
     value = static_cast<Whole>(number);
+  }
+  /// An enumeration, up to the greatest of its values.
+  template <class Enumeration>
+  requires std::is_enum_v<Enumeration>
+  void whole(Enumeration& value, const char* name, Enumeration greatest) {
+    whole(value, name, static_cast<std::uint64_t>(greatest));
   }
   void number(double& value);
   void text(std::string& text);

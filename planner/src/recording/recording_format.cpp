@@ -58,7 +58,7 @@ bool passes(const Check& check) {
 }
 
 void code_view(RecordBytes& bytes, FieldOfView& view) {
-  bytes.whole(view.shape, "shape of view", 2);
+  bytes.whole(view.shape, "shape of view", FieldOfView::Shape::kCone);
   bytes.number(view.horizontal);
   bytes.number(view.vertical);
   bytes.number(view.max_range);
@@ -70,7 +70,8 @@ void code_view(RecordBytes& bytes, FieldOfView& view) {
 // Motion and shape as one number, `motion + 3 shape`: that of a box is its motion, as before there were
 // shapes.
 void code_motion_and_shape(RecordBytes& bytes, TravelOptions& travel) {
-  constexpr int kMotions = 3, kShapes = 3;
+  constexpr int kMotions = static_cast<int>(Motion::kGround) + 1,
+                kShapes = static_cast<int>(BodyShape::kSphere) + 1;
   int pair = static_cast<int>(travel.motion) + kMotions * static_cast<int>(travel.shape);
   bytes.whole(pair, "motion and shape of the body", kMotions * kShapes - 1);
   travel.motion = static_cast<Motion>(pair % kMotions);
@@ -86,7 +87,7 @@ void code_travel(RecordBytes& bytes, TravelOptions& travel) {
                 "the body is round, but not as long as wide");
   bytes.require(travel.shape != BodyShape::kSphere || travel.extents.x() == travel.extents.z(),
                 "the body is a sphere, but not as high as wide");
-  bytes.whole(travel.metric, "path metric", 1);
+  bytes.whole(travel.metric, "path metric", PathMetric::kSteps);
   code_length(bytes, travel.margin, "the margin around the body is no length");
   code_finite(bytes, travel.sensor_height, "the sensor's height is not finite");
   bytes.whole(travel.require_ground, "a flag", 1);
@@ -155,7 +156,7 @@ void code_head(RecordBytes& bytes, RecordingHead& head) {
 
 // The states before and after as one number, `3 before + after`.
 void code_states(RecordBytes& bytes, VoxelChange& change) {
-  constexpr int kStates = 3;
+  constexpr int kStates = static_cast<int>(Occupancy::kOccupied) + 1;
   int pair = kStates * static_cast<int>(change.before) + static_cast<int>(change.after);
   bytes.whole(pair, "change of a voxel", kStates * kStates - 1);
   change.before = static_cast<Occupancy>(pair / kStates);
@@ -188,7 +189,7 @@ void code_image(RecordBytes& bytes, std::vector<RenderedCell>& image) {
 }
 
 void code_goal(RecordBytes& bytes, Goal& goal) {
-  bytes.whole(goal.state, "state of the goal", 6);
+  bytes.whole(goal.state, "state of the goal", GoalState::kNothingVisible);
   bytes.maybe(goal.pose, [&](Pose& pose) { code_pose(bytes, pose); });
   bytes.require(goal.pose.has_value() == (goal.state <= GoalState::kUncovered),
                 "there is a goal, but its state says that there is none, or the other way round");
@@ -216,7 +217,7 @@ void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds, int 
   bytes.whole(robot.gained);
   bytes.whole(robot.travelled);
   code_length(bytes, robot.length, "what it travelled is no length");
-  bytes.whole(robot.path, "outcome of the path search", 6);
+  bytes.whole(robot.path, "outcome of the path search", PathOutcome::kOutOfReach);
   code_goal(bytes, robot.goal);
   bytes.length(robot.planned, 4 * sizeof(double));
   bytes.require(robot.travelled <= robot.planned.size(), "it reached more viewpoints than were planned");
