@@ -1,7 +1,7 @@
 #include "assignment/unseen_frontiers.hpp"
 
 #include "mapping/box_array.hpp"
-#include "mapping/sort_once.hpp"
+#include "mapping/cubes_of_keys.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,21 +10,7 @@
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr int kLog2Cube = 3;  // [voxels] of the cubes in which changes are noted
 constexpr std::uint64_t kMaxCubes = std::uint64_t{1} << 24;  // in the box around all changes
-
-// The cube of a key, by its place among all cubes.
-VoxelKey cube_of(const VoxelKey& key) {
-  return make_key(key.x >> kLog2Cube, key.y >> kLog2Cube, key.z >> kLog2Cube);
-}
-
-std::vector<VoxelKey> cubes_of(std::span<const VoxelKey> keys) {
-  std::vector<VoxelKey> cubes;
-  for (const VoxelKey& key : keys)
-    if (const VoxelKey cube = cube_of(key); cubes.empty() || cubes.back() != cube) cubes.push_back(cube);
-  sort_once(cubes);
-  return cubes;
-}
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include "assignment/corridor_blocks.hpp"
+#include "casting/visible_segments.hpp"
 #include "goal/goal_query.hpp"
 #include "goal/rendered_cell.hpp"
 
@@ -62,8 +63,7 @@ std::vector<VoxelKey> cells_seeing(const GoalQuery& query, const ViewRegion& reg
       for (std::uint64_t bits = cells.bits; bits != 0; bits &= bits - 1)
         segments.push_back({cells.key(std::countr_zero(bits)), target});
     });
-  std::vector<std::uint8_t> visible(segments.size());
-  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  const std::vector<std::uint8_t> visible = visible_segments(query.caster, segments);
   std::vector<VoxelKey> cells;
   for (std::size_t i = 0; i < segments.size(); ++i)
     if (visible[i] != 0 && query.far_enough(query.distance(segments[i].from)))

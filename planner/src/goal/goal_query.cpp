@@ -1,5 +1,7 @@
 #include "goal/goal_query.hpp"
 
+#include "casting/visible_segments.hpp"
+
 namespace frontlux::planner::detail {
 
 std::vector<std::uint8_t> GoalQuery::visible_targets(const VoxelKey& from, std::optional<double> yaw) const {
@@ -11,8 +13,8 @@ std::vector<std::uint8_t> GoalQuery::visible_targets(const VoxelKey& from, std::
     in_view.push_back(i);
     segments.push_back({from, targets[i]});
   }
-  std::vector<std::uint8_t> free(segments.size()), visible(targets.size());
-  caster.visible(std::span<const KeySegment>(segments), free, UnknownPolicy::kBlock);
+  const std::vector<std::uint8_t> free = visible_segments(caster, segments);
+  std::vector<std::uint8_t> visible(targets.size());
   for (std::size_t k = 0; k < in_view.size(); ++k) visible[in_view[k]] = free[k];
   return visible;
 }

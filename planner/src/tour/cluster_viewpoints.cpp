@@ -1,5 +1,6 @@
 #include "tour/cluster_viewpoints.hpp"
 
+#include "casting/visible_segments.hpp"
 #include "mapping/sort_once.hpp"
 
 #include <frontlux/parallel.hpp>
@@ -98,8 +99,7 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
             segments.push_back({cells[c], *end});
       begin.push_back(segments.size());
     }
-    std::vector<std::uint8_t> visible(segments.size());
-    query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+    const std::vector<std::uint8_t> visible = visible_segments(query.caster, segments);
     std::vector<Eigen::Vector3d> offsets;  // to what a cell sees
     for (std::size_t c = first; c < last; ++c) {
       const Eigen::Vector3d from = query.grid.lattice().exact_center(cells[c]);
@@ -165,8 +165,7 @@ NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewp
       }
     }
   }
-  std::vector<std::uint8_t> visible(segments.size());
-  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  const std::vector<std::uint8_t> visible = visible_segments(query.caster, segments);
   NumberTable parts(viewpoints.size(), clusters.size());
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const auto& [v, c] = pairs[s];
@@ -186,8 +185,7 @@ std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const 
     segments.push_back({cell, *end});
     shown.push_back(key);
   }
-  std::vector<std::uint8_t> visible(segments.size());
-  query.caster.visible(std::span<const KeySegment>(segments), visible, UnknownPolicy::kBlock);
+  const std::vector<std::uint8_t> visible = visible_segments(query.caster, segments);
   std::vector<VoxelKey> seen;
   for (std::size_t s = 0; s < segments.size(); ++s)
     if (visible[s] != 0) seen.push_back(shown[s]);

@@ -1,7 +1,7 @@
 #include "tour/tour_planning.hpp"
 
 #include "corridor/whole_voxels.hpp"
-#include "mapping/sort_once.hpp"
+#include "mapping/cubes_of_keys.hpp"
 #include "routing/complete_distances.hpp"
 #include "routing/idle_robots.hpp"
 #include "tour/travel_seconds.hpp"
@@ -108,14 +108,9 @@ std::function<bool(const VoxelKey&)> TourPlanning::around_path_to(std::size_t ro
 
 // Boxes that hold all voxels that have changed since the robot's last planning.
 std::vector<KeyBox> TourPlanning::take_changes(Member& member) const {
-  constexpr int kCube = 8;  // [voxels]
-  Keys cubes;
-  for (const VoxelKey& key : std::exchange(member.changed, {}))
-    cubes.push_back(make_key(key.x / kCube, key.y / kCube, key.z / kCube));
-  sort_once(cubes);
   std::vector<KeyBox> boxes;
-  for (const VoxelKey& at : cubes)
-    boxes.push_back(cube(make_key(at.x * kCube, at.y * kCube, at.z * kCube), kCube));
+  for (const VoxelKey& cube : cubes_of(std::exchange(member.changed, {})))
+    boxes.push_back(voxels_of_cube(cube));
   return boxes;
 }
 
