@@ -22,7 +22,7 @@ OrOpt::OrOpt(MeasuredTours& tours)
     : tours_(tours),
       after_(tours.tours.size()),
       new_links_(tours.tours.size()),
-      detours_(tours.tours.size(), std::vector<LeastDetour>(kMoved * tours.problem.stops)) {}
+      detours_(tours.tours.size(), std::vector<LeastDetour>(kMostMoved * tours.problem.stops)) {}
 
 OrOpt::Rest OrOpt::rest_of(const Move& move) const {
   const Tour& tour = tours_.tours[move.from];
@@ -149,7 +149,7 @@ double OrOpt::cost_of_move(const Move& move, const Rest& rest, double added) con
 // The best move of a stretch that begins at a stop, but for the place in the tour where it leads.
 OrOpt::Move OrOpt::best_move_from(std::size_t from, std::size_t begin) {
   Move best;
-  for (std::size_t count = 1; count <= kMoved && begin + count <= tours_.tours[from].size(); ++count) {
+  for (std::size_t count = 1; count <= kMostMoved && begin + count <= tours_.tours[from].size(); ++count) {
     Move move{.from = from, .begin = begin, .count = count};
     const Rest rest = rest_of(move);
     for (move.to = 0; move.to < tours_.tours.size(); ++move.to) {

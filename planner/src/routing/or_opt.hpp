@@ -20,8 +20,6 @@ class OrOpt {
   bool move_stops();
 
  private:
-  static constexpr std::size_t kMoved = 3;  // stops together, at most
-
   struct Move {
     std::size_t from = 0, begin = 0, count = 0, to = 0, at = 0;
     bool reversed = false;
@@ -39,7 +37,7 @@ class OrOpt {
   // What a robot needs more at least for a stretch between two stops of its tour that are not in the stretch.
   // As long as that link is there, only links that are new since then may be better.
   struct LeastDetour {
-    std::array<std::uint32_t, kMoved> stretch{};
+    std::array<std::uint32_t, kMostMoved> stretch{};
     double added = TourProblem::kNever;  // [s]
     Link in = {};
     std::size_t found = 0;  // when, by the count of `note_links`

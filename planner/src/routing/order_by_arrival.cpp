@@ -8,9 +8,7 @@
 namespace frontlux::planner::detail {
 namespace {
 
-constexpr double kSoon = 3.0;         // weight of the mean arrival, beside the length
-constexpr std::size_t kMoved = 3;     // stops moved together, at most
-constexpr std::size_t kRounds = 200;  // of changes, at most
+constexpr double kSoon = 3.0;  // weight of the mean arrival, beside the length
 
 }  // namespace
 
@@ -35,14 +33,14 @@ Tour order_by_arrival(const TourProblem::Robot& robot, std::span<const double> w
     best = changed;
   };
   const auto at = [&](std::size_t i) { return changed.begin() + static_cast<std::ptrdiff_t>(i); };
-  for (std::size_t round = 0; round < kRounds; ++round) {
+  for (std::size_t round = 0; round < kMostRounds; ++round) {
     best.clear();
     for (std::size_t begin = 0; begin < order.size(); ++begin)
       for (std::size_t end = begin + 1; end <= order.size(); ++end) {
         changed = order;
         std::reverse(at(begin), at(end));
         consider();
-        if (end - begin > kMoved) continue;
+        if (end - begin > kMostMoved) continue;
         // Both the stretch and the one turned round, on to each later place and back to each earlier one.
         for (const bool turned : {false, true}) {
           if (turned && end - begin == 1) continue;

@@ -11,6 +11,7 @@ namespace frontlux::planner::detail {
 
 /// Stops to be shared out to robots, each of which begins where it is and need not come back.
 struct TourProblem {
+  /// [s] or [m] where there is no path.
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   /// One robot's travel times [s]; `kNever` for stops that are not for it.
@@ -23,6 +24,9 @@ struct TourProblem {
   std::size_t stops = 0;
   std::vector<Robot> robots;
 };
+
+/// So many stops a search moves together at most, and so many rounds of changes it makes.
+inline constexpr std::size_t kMostMoved = 3, kMostRounds = 200;
 
 /// Stops in order.
 using Tour = std::vector<std::uint32_t>;

@@ -11,12 +11,11 @@
 namespace frontlux::planner::detail {
 
 Tours shortened_tours(const TourProblem& problem, Tours tours) {
-  constexpr std::size_t kRounds = 200;  // at most
   MeasuredTours measured(problem, std::move(tours));
   insert_missing_stops(measured);
   TwoOpt two_opt(measured);
   OrOpt or_opt(measured);
-  for (std::size_t round = 0; round < kRounds; ++round)
+  for (std::size_t round = 0; round < kMostRounds; ++round)
     if (!two_opt.reverse_stretches() && !or_opt.move_stops()) break;
   return std::move(measured.tours);
 }

@@ -24,7 +24,6 @@ constexpr std::array kHeights = {0.0, -0.15, 0.15};  // of the range, above the 
 constexpr std::size_t kSample = 48;                  // frontiers that candidates are compared by
 constexpr std::size_t kSmallSample = 16;  // of many candidates, or of other clusters than their own
 constexpr std::size_t kKept = 6;          // viewpoints
-constexpr double kAsGood = 0.7;           // of what the best one sees
 constexpr double kApart = 0.1;            // of the range
 
 Eigen::Vector3d middle_of(const Lattice& lattice, std::span<const VoxelKey> keys) {

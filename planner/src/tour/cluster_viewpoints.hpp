@@ -26,6 +26,9 @@ enum class Aim : std::uint8_t {
           ///< frontier.
 };
 
+/// A viewpoint is as good as the best one if it sees this part of what that one sees of a cluster.
+inline constexpr double kAsGood = 0.7;
+
 /// From where a robot sees a cluster, and how much of it.
 struct ClusterViewpoint {
   VoxelKey cell;         ///< of its sensor

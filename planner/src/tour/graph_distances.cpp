@@ -49,20 +49,21 @@ void GraphDistances::measure_from(std::span<const VoxelKey> cells) {
 
 bool GraphDistances::reaches(const VoxelKey& cell) const {
   const auto node = graph_.node(cell);
-  return node && start_ && from_start_[*node] != TravelGraph::kFar;
+  return node && start_ && from_start_[*node] != TourProblem::kNever;
 }
 
 double GraphDistances::from_start(const VoxelKey& cell) const {
-  return reaches(cell) ? straightened(*start_, cell, from_start_[*graph_.node(cell)]) : TravelGraph::kFar;
+  return reaches(cell) ? straightened(*start_, cell, from_start_[*graph_.node(cell)]) : TourProblem::kNever;
 }
 
 double GraphDistances::between(const VoxelKey& from, const VoxelKey& to) const {
   const auto a = graph_.node(from), b = graph_.node(to);
-  if (!a || !b) return TravelGraph::kFar;
+  if (!a || !b) return TourProblem::kNever;
   const auto& near = near_.at(graph_.name_of(*a)).distances;
   const TravelGraph::Name name = graph_.name_of(*b);
   const auto found = std::ranges::lower_bound(near, name, {}, &TravelGraph::Distance::to);
-  return found != near.end() && found->to == name ? straightened(from, to, found->length) : TravelGraph::kFar;
+  return found != near.end() && found->to == name ? straightened(from, to, found->length)
+                                                  : TourProblem::kNever;
 }
 
 NumberTable GraphDistances::between(std::span<const std::optional<VoxelKey>> cells) const {
@@ -71,7 +72,7 @@ NumberTable GraphDistances::between(std::span<const std::optional<VoxelKey>> cel
     if (const auto node = cells[i] ? graph_.node(*cells[i]) : std::nullopt)
       names.emplace_back(graph_.name_of(*node), i);
   std::ranges::sort(names);
-  NumberTable distances(cells.size(), cells.size(), TravelGraph::kFar);
+  NumberTable distances(cells.size(), cells.size(), TourProblem::kNever);
   for_each_index(names.size(), [&](std::size_t n) {
     const auto& [from, i] = names[n];
     const auto& known = near_.at(from).distances;

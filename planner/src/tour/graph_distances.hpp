@@ -33,13 +33,13 @@ class GraphDistances {
 
   /// Whether the robot can get to a cell from its start.
   [[nodiscard]] bool reaches(const VoxelKey& cell) const;
-  /// [m] from the start; `TravelGraph::kFar` if there is no path.
+  /// [m] from the start; `kNever` if there is no path.
   [[nodiscard]] double from_start(const VoxelKey& cell) const;
-  /// [m] `TravelGraph::kFar` if the cells are far from each other, or there is no path.
+  /// [m] `kNever` if the cells are far from each other, or there is no path.
   /// @param from  has been measured from
   [[nodiscard]] double between(const VoxelKey& from, const VoxelKey& to) const;
   /// The same from each of some cells to those before it.
-  /// @param cells  `kFar` from and to those that are left out; the others have been measured from
+  /// @param cells  `kNever` from and to those that are left out; the others have been measured from
   [[nodiscard]] NumberTable between(std::span<const std::optional<VoxelKey>> cells) const;
   /// On a short path from the start to some cell, as far [m] beyond where the robot is by now; nothing if the
   /// path is no longer.

@@ -1,13 +1,10 @@
 #include "tour/joined_stops.hpp"
 
+#include "tour/cluster_viewpoints.hpp"
+
 #include <algorithm>
 
 namespace frontlux::planner::detail {
-namespace {
-
-constexpr double kAsGood = 0.7;  // of what the best viewpoint sees of a cluster
-
-}  // namespace
 
 std::vector<JoinedStop> join_clusters(const SharedViews& views) {
   const std::size_t viewpoints = views.found_for.size(), clusters = views.sizes.size();
@@ -21,17 +18,18 @@ std::vector<JoinedStop> join_clusters(const SharedViews& views) {
   std::vector<bool> joined(clusters);
   std::vector<JoinedStop> stops;
   for (;;) {
-    JoinedStop stop;
+    double most_seen = 0.0;  // [frontiers]
     std::size_t best = viewpoints;
     for (std::size_t v = 0; v < viewpoints; ++v) {
       double seen = 0.0;
       for (std::size_t c = 0; c < clusters; ++c)
         if (!joined[c] && sees(v, c)) seen += std::max(1.0, views.parts(v, c) * views.sizes[c]);
-      if (seen <= stop.seen) continue;
-      stop.seen = seen;
+      if (seen <= most_seen) continue;
+      most_seen = seen;
       best = v;
     }
     if (best == viewpoints) break;
+    JoinedStop stop;
     for (std::size_t c = 0; c < clusters; ++c)
       if (!joined[c] && sees(best, c)) {
         joined[c] = true;
@@ -51,7 +49,8 @@ std::vector<JoinedStop> single_stops(const SharedViews& views) {
   std::vector<JoinedStop> stops;
   for (std::size_t v = 0; v < views.found_for.size(); ++v) {
     const std::size_t c = views.found_for[v];
-    if (stops.empty() || stops.back().clusters.front() != c) stops.push_back({{c}, {}});
+    if (stops.empty() || stops.back().clusters.front() != c)
+      stops.push_back({.clusters = {c}, .viewpoints = {}});
     stops.back().viewpoints.push_back(v);
   }
   return stops;

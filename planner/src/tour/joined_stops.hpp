@@ -18,7 +18,6 @@ struct SharedViews {
 struct JoinedStop {
   std::vector<std::size_t> clusters;    ///< ascending
   std::vector<std::size_t> viewpoints;  ///< from which it sees them all; first the one with most in view
-  double seen = 0.0;                    ///< [frontiers] from the first viewpoint, about
 };
 
 /// Puts clusters together, so that few places see them all: each time those that are left and that one
@@ -27,8 +26,8 @@ struct JoinedStop {
 /// clusters without a viewpoint are in none.
 [[nodiscard]] std::vector<JoinedStop> join_clusters(const SharedViews& views);
 
-/// A stop for each cluster with a viewpoint, seen from those that were found for it, in their order. What a
-/// stop sees is left open. @pre viewpoints of one cluster stand together
+/// A stop for each cluster with a viewpoint, seen from those that were found for it, in their order.
+/// @pre viewpoints of one cluster stand together
 [[nodiscard]] std::vector<JoinedStop> single_stops(const SharedViews& views);
 
 }  // namespace frontlux::planner::detail

@@ -21,7 +21,10 @@ namespace {
 
 using Keys = std::vector<VoxelKey>;
 
-static_assert(TravelGraph::kFar == TourProblem::kNever);
+constexpr double kClusterEdge = 0.4;  // [longest range] of the cubes that cut clusters
+constexpr double kZoneEdge = 0.8;     // [longest range] of a zone, whose far clusters make one stop
+constexpr double kGraphEdge = 0.2;    // [longest range] of the graph's cubes
+constexpr double kSpacing = 0.05;     // [own range] between the cells that are tried all over the graph
 
 int voxels(double length, const Lattice& lattice) {
   return std::max(1, static_cast<int>(std::lround(length / lattice.resolution())));
@@ -47,14 +50,13 @@ TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> star
                            const KeyBox& bounds, const Options& options)
     : lattice_(lattice),
       options_(options),
-      zone_edge_(voxels(options.zone_edge * greatest_range(robots), lattice)),
-      clusters_(bounds, voxels(options.cluster_edge * greatest_range(robots), lattice),
-                least_frontiers(options, lattice)) {
-  const int graph_edge = voxels(options.graph_edge * greatest_range(robots), lattice);
+      zone_edge_(voxels(kZoneEdge * greatest_range(robots), lattice)),
+      clusters_(bounds, voxels(kClusterEdge * greatest_range(robots), lattice), least_frontiers(lattice)) {
+  const int graph_edge = voxels(kGraphEdge * greatest_range(robots), lattice);
   for (std::size_t r = 0; r < robots.size(); ++r) {
     Robot& robot = robots[r];
     TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge,
-                      voxels(options.spacing * robot.view.max_range, lattice));
+                      voxels(kSpacing * robot.view.max_range, lattice));
     ViewRegion region(robot.view, lattice.resolution());
     members_.push_back({std::move(robot), std::move(region), {lattice, std::move(graph), options.measured}});
   }

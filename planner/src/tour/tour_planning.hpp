@@ -36,12 +36,7 @@ struct TourStop {
 class TourPlanning {
  public:
   struct Options {
-    double cluster_edge = 0.4;    ///< [longest range] edge of the cubes that cut clusters
-    double zone_edge = 0.8;       ///< [longest range] edge of a zone, whose far clusters make one stop
-    double graph_edge = 0.2;      ///< [longest range] edge of the graph's cubes
-    double spacing = 0.05;        ///< [own range] between the cells that are tried all over the graph
     double near = 2.0;            ///< [own range] up to here each cluster is a stop of its own
-    double least_area = 1.5;      ///< [m2] least size of a cluster with a stop
     double least_gain = 10.0;     ///< [frontiers] least number in view from a stop
     std::size_t joined = 40;      ///< nearest clusters, which are seen from as few viewpoints as can be
     std::size_t refined = 5;      ///< first stops, whose viewpoints are chosen together
@@ -143,7 +138,7 @@ class TourPlanning {
   std::vector<KeyBox> update_distances(const Query& query, std::span<const KeyBox> changes);
   [[nodiscard]] bool nobody_sees_any() const;
   bool lower_least_sizes(const VoxelGrid& grid);
-  [[nodiscard]] static std::size_t least_frontiers(const Options& options, const Lattice& lattice);
+  [[nodiscard]] static std::size_t least_frontiers(const Lattice& lattice);
   [[nodiscard]] ViewpointQuery sight_of(std::size_t robot, const RayCaster& caster,
                                         const VoxelGrid& grid) const;
   [[nodiscard]] std::vector<SeenCluster> seen_clusters(std::span<const MotionState> starts) const;

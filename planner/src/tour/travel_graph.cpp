@@ -265,11 +265,11 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
 class TravelGraph::Search {
  public:
   explicit Search(const TravelGraph& graph)
-      : graph_(graph), lengths_(graph.size(), kFar), marks_(graph.size() / 64 + 1) {}
+      : graph_(graph), lengths_(graph.size(), TourProblem::kNever), marks_(graph.size() / 64 + 1) {}
 
-  // Ends when the distances of so many nodes are known. Those of other nodes are `kFar` afterwards.
+  // Ends when the distances of so many nodes are known. Those of other nodes are `kNever` afterwards.
   void run(std::uint32_t from, std::size_t count) {
-    for (const std::uint32_t node : reached_) lengths_[node] = kFar;
+    for (const std::uint32_t node : reached_) lengths_[node] = TourProblem::kNever;
     reached_.assign(1, from);
     lengths_[from] = 0.0;
     open_.resize(std::max<std::size_t>(open_.size(), 1));
@@ -283,7 +283,7 @@ class TravelGraph::Search {
           const auto& [to, length] = graph_.edges_[e];
           const double through = so_far + static_cast<double>(length);
           if (through >= lengths_[to]) continue;
-          if (lengths_[to] == kFar) reached_.push_back(to);
+          if (lengths_[to] == TourProblem::kNever) reached_.push_back(to);
           lengths_[to] = through;
           const std::size_t next = band(through);
           end = std::max(end, next + 1);
@@ -297,7 +297,7 @@ class TravelGraph::Search {
     for (std::size_t later = now; later < end; ++later) open_[later].clear();
     std::erase_if(reached_, [&](std::uint32_t node) {
       if (band(lengths_[node]) < now) return false;
-      lengths_[node] = kFar;
+      lengths_[node] = TourProblem::kNever;
       return true;
     });
   }
@@ -367,7 +367,7 @@ VoxelKey TravelGraph::middle_cell(std::uint32_t node) const {
   const Cube& cube = cubes_[cube_of(names_[node])];
   const std::uint32_t part = part_of(names_[node]);
   const VoxelKey* best = nullptr;
-  double nearest = kFar;
+  double nearest = TourProblem::kNever;
   for (const VoxelKey& cell : cube.spread) {
     const double distance = (lattice_.exact_center(cell) - cube.centers[part]).squaredNorm();
     if (part_[cell] != part + 1 || distance >= nearest) continue;

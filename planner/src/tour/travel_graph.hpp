@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mapping/box_array.hpp"
+#include "routing/tour_problem.hpp"
 
 #include <frontlux/lattice.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
@@ -10,7 +11,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -22,8 +22,6 @@ namespace frontlux::planner::detail {
 /// exactly which cells are connected, and about how far they are from each other.
 class TravelGraph {
  public:
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
-
   /// @param bounds  of the cells
   /// @param edge    [voxels] of a cube, at most 40
   /// @param spacing [voxels] of the cells that `spread_cells` returns
@@ -46,7 +44,7 @@ class TravelGraph {
   /// Cells in a box in which the robot fits: of each part of a cube one in each smaller cube.
   [[nodiscard]] std::vector<VoxelKey> spread_cells(const KeyBox& box) const;
 
-  /// [m] from a node to others, from middle to middle; `kFar` where there is no path.
+  /// [m] from a node to others, from middle to middle; `kNever` where there is no path.
   [[nodiscard]] std::vector<double> distances(std::uint32_t from) const;
 
   /// What a node is called until its cells change, whatever its number.
@@ -66,13 +64,13 @@ class TravelGraph {
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
   /// The nodes of a shortest path to a node, from its end to its begin.
-  /// @param lengths  `distances` from where the path begins; that to the node is not `kFar`
+  /// @param lengths  `distances` from where the path begins; that to the node is not `kNever`
   [[nodiscard]] std::vector<std::uint32_t> path_back(const std::vector<double>& lengths,
                                                      std::uint32_t to) const;
   /// The cell of a node that is nearest to its middle, of those that `spread_cells` returns.
   [[nodiscard]] VoxelKey middle_cell(std::uint32_t node) const;
   /// The nodes of a shortest path to a node and those next to them, sorted: their cells connect.
-  /// @param lengths  `distances` from where the path begins; that to the node is not `kFar`
+  /// @param lengths  `distances` from where the path begins; that to the node is not `kNever`
   [[nodiscard]] std::vector<std::uint32_t> around_path(const std::vector<double>& lengths,
                                                        std::uint32_t to) const;
 

@@ -22,9 +22,10 @@ double most_to_ask(const FieldOfView& view, double resolution) {
 }  // namespace
 
 // [frontiers] Of a cluster.
-std::size_t TourPlanning::least_frontiers(const Options& options, const Lattice& lattice) {
+std::size_t TourPlanning::least_frontiers(const Lattice& lattice) {
+  constexpr double kLeastArea = 1.5;  // [m2] of a cluster with a stop
   const double face = lattice.resolution() * lattice.resolution();
-  return static_cast<std::size_t>(std::ceil(options.least_area / face - 1e-6));
+  return static_cast<std::size_t>(std::ceil(kLeastArea / face - 1e-6));
 }
 
 double TourPlanning::least_gain(std::size_t robot) const {
@@ -47,7 +48,7 @@ bool TourPlanning::lower_least_sizes(const VoxelGrid& grid) {
   const auto [unknown, free, occupied] = grid.count();
   const double before = least_left_;
   least_left_ = std::max({1.0, kPart * static_cast<double>(free + occupied), options_.least_gain / 20});
-  const std::size_t least = least_frontiers(options_, lattice_);
+  const std::size_t least = least_frontiers(lattice_);
   clusters_.set_least(std::min(least, static_cast<std::size_t>(least_left_)));
   return least_left_ < std::min(before, std::max(options_.least_gain, static_cast<double>(least)));
 }

@@ -69,7 +69,7 @@ TEST(TravelGraph, ConnectsWhatTheCorridorConnects) {
     for_each_key(kBounds, [&](const VoxelKey& key) {
       const auto node = graph.node(key);
       EXPECT_EQ(node.has_value(), corridor.fits(key));
-      EXPECT_EQ(node && distances[*node] != TravelGraph::kFar, corridor.contains(key));
+      EXPECT_EQ(node && distances[*node] != TourProblem::kNever, corridor.contains(key));
     });
   }
 }
@@ -125,7 +125,7 @@ TEST(TravelGraph, MeasuresTheNearestNodesOnly) {
       farthest = std::max(farthest, distance.length);
       is_near[number(distance.to)] = true;
     }
-    const auto reached = all.size() - static_cast<std::size_t>(std::ranges::count(all, TravelGraph::kFar));
+    const auto reached = all.size() - static_cast<std::size_t>(std::ranges::count(all, TourProblem::kNever));
     EXPECT_GE(near.size(), std::min(count, reached));
     for (std::size_t node = 0; node < all.size(); ++node) EXPECT_TRUE(is_near[node] || all[node] >= farthest);
     fewer += near.size() < reached ? 1 : 0;
@@ -216,8 +216,8 @@ TEST(GraphDistances, OfAllPairsAreThoseOfEachPair) {
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const bool both = cells[i] && cells[j];
-        EXPECT_EQ(all(i, j), both ? distances.between(*cells[i], *cells[j]) : TravelGraph::kFar);
-        ++(all(i, j) == TravelGraph::kFar ? far : near);
+        EXPECT_EQ(all(i, j), both ? distances.between(*cells[i], *cells[j]) : TourProblem::kNever);
+        ++(all(i, j) == TourProblem::kNever ? far : near);
       }
   }
   EXPECT_GT(near, 100U);
