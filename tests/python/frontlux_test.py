@@ -261,6 +261,16 @@ class Refusals(unittest.TestCase):
         update(last)
         np.testing.assert_array_equal(frontiers.keys, frontlux.FrontierSet(a.grid).keys)
 
+    def test_changes_of_other_resolutions(self):
+        self.refuses(ValueError, "0.1.* and of 0.2.* m cannot be compared", frontlux.MapChange, frontlux.VoxelGrid(0.1), frontlux.VoxelGrid(0.2))
+        self.refuses(TypeError, "incompatible", frontlux.MapChange, frontlux.VoxelGrid(0.1), None)
+
+    def test_views(self):
+        view = frontlux.FieldOfView.cone(0.5, 2.0)
+        self.refuses(ValueError, "offsets", view.contains, np.ones((3, 2)), 0.0)
+        self.refuses(ValueError, "yaw and offsets|offsets and yaw", view.contains, np.ones((3, 3)), [0.0, 1.0])
+        self.refuses(TypeError, "yaw", view.contains, np.ones((3, 3)), None)
+
     def test_rays_that_octomap_cannot_follow(self):
         fine = frontlux.LiveMap(0.001)
         self.refuses(ValueError, "a ray passes 120000 voxels.*give a max_range", fine.insert, [[0.0, 0.0, 0.0], [25.0, 25.0, 25.0]],
@@ -376,6 +386,52 @@ class Maps(unittest.TestCase):
         # By hand, for the best one.
         seen = caster.visible(free[exact.best], targets)
         self.assertGreaterEqual(seen.sum(), exact.gain[exact.best])
+
+    def test_changes_of_grids_that_were_written_to(self):
+        random = np.random.default_rng(3)
+        grid = frontlux.VoxelGrid.from_occupancy(random.integers(0, 3, (30, 30, 30), np.uint8), 0.2)
+        view = frontlux.FieldOfView.spinning(1.0, 2.0)
+        frontiers, image = frontlux.FrontierSet(grid), frontlux.ViewQualityImage(0.2, view, samples=None)
+        caster = frontlux.RayCaster(grid)
+        viewpoints = np.ascontiguousarray(grid.keys(Occupancy.FREE)[::50])
+        image.render(caster, viewpoints, frontiers.keys)
+        low, size = grid.known_bounds[0] + np.uint16([3, 20, 11]), (6, 5, 9)
+        for _ in range(3):
+            before, states = grid.copy(), random.integers(0, 3, size, np.uint8)
+            was = before.states(low, low + np.uint16(size) - np.uint16(1))
+            grid.set_states(low, states)
+            change = frontlux.MapChange(before, grid)
+            np.testing.assert_array_equal(change.keys, np.argwhere(was != states) + low)
+            self.assertEqual(change.grid, grid)
+            frontiers.update(change)
+            np.testing.assert_array_equal(frontiers.keys, frontlux.FrontierSet(grid).keys)
+            caster.update(grid)
+            image.update(caster, viewpoints, frontiers.keys, change)
+            anew = frontlux.ViewQualityImage(0.2, view, samples=None)
+            anew.render(caster, viewpoints, frontiers.keys)
+            np.testing.assert_array_equal(image.gain, anew.gain)
+        self.assertEqual(frontlux.MapChange(grid, grid).keys.shape, (0, 3))
+
+    def test_what_is_in_view(self):
+        offsets = np.random.default_rng(4).uniform(-4, 4, (40, 50, 3))
+        distance = np.linalg.norm(offsets, axis=-1)
+        azimuth, elevation = np.arctan2(offsets[..., 1], offsets[..., 0]), np.arcsin(offsets[..., 2] / distance)
+        turned = np.angle(np.exp(1j * (azimuth - 2.5)))  # seen from a yaw of 2.5
+        lidar, camera, sonar = (frontlux.FieldOfView.spinning(0.8, 3.0), frontlux.FieldOfView.pyramid(1.2, 0.7, 3.5),
+                                frontlux.FieldOfView.cone(1.0, 4.0))
+        expected = {lidar: (distance < 3.0) & (np.abs(elevation) < 0.4),
+                    camera: (distance < 3.5) & (np.abs(turned) < 0.6) &
+                            (np.abs(offsets[..., 2]) < np.tan(0.35) * np.hypot(*offsets[..., :2].T).T * np.cos(turned)),
+                    sonar: (distance < 4.0) & (np.arccos(np.cos(elevation) * np.cos(turned)) < 0.5)}
+        for view, seen in expected.items():
+            self.assertGreater(seen.sum(), 5)
+            np.testing.assert_array_equal(view.contains(offsets, 2.5), seen, view.shape)
+            np.testing.assert_array_equal(view.contains(offsets, np.full((40, 50), 2.5)), seen)
+            self.assertFalse(view.contains((0.0, 0.0, 0.0), 2.5))
+        self.assertEqual([(v.shape, v.horizontal, v.vertical, v.max_range) for v in expected],
+                         [("spinning", None, 0.8, 3.0), ("pyramid", 1.2, 0.7, 3.5), ("cone", 1.0, None, 4.0)])
+        turns = np.linspace(-3, 3, 13)
+        np.testing.assert_array_equal(sonar.contains((1.0, 0.0, 0.0), turns), np.abs(turns) <= 0.5)
 
     def test_cameras(self):
         intrinsics = np.array([[500.0, 0, 320], [0, 510, 240], [0, 0, 1]])

@@ -87,8 +87,8 @@ class Misuse:
         places, keys = self.numpy.uniform(0, 2, (2, 7, 3)), self.numpy.integers(32768, 32780, (7, 3)).astype(np.uint16)
         values |= {"origins": pose[:3], "origin": pose[:3], "max_range": 2.0, "unknown": self.random.choice(["block", "pass"]),
                    "from_points": places[0], "to_points": places[1], "out": None, "keys": keys, "viewpoints": keys, "targets": keys,
-                   "renderer": "rays", "samples": 10, "azimuth_bins": 4, "kind": "fast", "columns": 4, "rows": 3}
-        kinds = {"grid": "VoxelGrid", "caster": "RayCaster", "change": "MapChange", "view": "FieldOfView",
+                   "renderer": "rays", "samples": 10, "azimuth_bins": 4, "kind": "fast", "columns": 4, "rows": 3, "offsets": places[0], "yaw": pose[3]}
+        kinds = {"grid": "VoxelGrid", "caster": "RayCaster", "before": "VoxelGrid", "after": "VoxelGrid", "change": "MapChange", "view": "FieldOfView",
                  "field_of_view": "FieldOfView", "robots": "Robot"}
         if name in kinds:
             fitting = [one for one in self.objects if type(one).__name__ == kinds[name]]

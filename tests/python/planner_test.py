@@ -1,5 +1,6 @@
 """The planner in Python: explorations of a room that frontlux's own caster measures, and arguments it has to refuse."""
 import functools
+import json
 import os
 import pathlib
 import shutil
@@ -87,6 +88,52 @@ class Robots(unittest.TestCase):
             self.assertEqual(read.view.max_range, robot.view.max_range)
             np.testing.assert_array_equal(read.box, robot.box)
 
+    def test_a_robot_of_values_is_the_one_of_its_file(self):
+        files = {
+            "box": (dict(name="a", motion="plane", box=(0.8, 0.6, 0.5), columns=8, rows=4, margin=0.05, sensor_height=0.4,
+                         require_ground=False, ground=(0.5, 0.4), per_axis=True),
+                    {"motion": "plane", "box_m": [0.8, 0.6, 0.5], "margin_m": 0.05, "mount_height_m": 0.4,
+                     "require_ground": False, "ground_m": [0.5, 0.4], "limits": {"per_axis": True}}),
+            "cylinder": (dict(name="a", motion="ground", box=(0.6, 0.6, 0.5), body="cylinder", columns=8, rows=4, step=0.2, slope=0.25,
+                              sensor_height=0.6),
+                         {"motion": "ground", "body": {"kind": "cylinder", "diameter_m": 0.6, "height_m": 0.5},
+                          "step_m": 0.2, "slope_deg": np.degrees(0.25), "mount_height_m": 0.6}),
+            "sphere": (dict(name="a", motion="space", box=(0.5, 0.5, 0.5), body="sphere", columns=8, rows=4, min_height=0.7, node_edge=1.2),
+                       {"motion": "space", "body": {"kind": "sphere", "diameter_m": 0.5}, "min_height_m": 0.7, "node_edge_m": 1.2})}
+        names = ("motion", "body", "margin", "sensor_height", "require_ground", "step", "slope", "min_height", "node_edge", "per_axis")
+        for body, (values, members) in files.items():
+            sensor = {"kind": "spinning", "vertical_deg": 40, "range_m": 5, "columns": 8, "rows": 4}
+            with tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder) / "a.json"
+                file.write_text(json.dumps({"name": "a", **members, "sensor": sensor}))
+                read = planner.Robot.read(file)
+            made = planner.Robot(view=frontlux.FieldOfView.spinning(np.radians(40), 5.0), **values)
+            self.assertEqual(made.body, body)
+            np.testing.assert_array_equal(made.box, values["box"])
+            np.testing.assert_array_equal(made.ground, read.ground)
+            for name in names:
+                if name == "slope" and made.slope is not None:
+                    self.assertAlmostEqual(made.slope, read.slope)
+                    continue
+                self.assertEqual(getattr(made, name), getattr(read, name), name)
+                if name in values:
+                    self.assertEqual(getattr(made, name), values[name], name)
+        self.assertIsNone(made.step)
+        self.assertIsNone(made.sensor_height)
+        self.assertIsNone(planner.ugv().node_edge)
+
+    def test_a_body_is_free_at_its_start_and_no_more(self):
+        view = frontlux.FieldOfView.spinning(1.0, 5.0)
+        beside = np.maximum(np.abs(np.arange(-7, 8)) - 0.5, 0.0)  # [voxels] from the middle of a cell to others
+        x, y, z = np.meshgrid(beside, beside, beside, indexing="ij")
+        expected = {"box": np.maximum(np.maximum(x, y), z) < 5, "cylinder": (np.hypot(x, y) < 5) & (z < 5),
+                    "sphere": np.sqrt(x**2 + y**2 + z**2) < 5}
+        for body, voxels in expected.items():
+            robot = planner.Robot("r", "space", (1.0, 1.0, 1.0), view, 8, 8, body=body)
+            exploration = planner.ContinuousExploration([robot], room().bounds, 0.1)
+            exploration.begin([room().start])
+            self.assertEqual(exploration.grid.count()[Occupancy.FREE], voxels.sum(), body)
+
     def test_values_are_kept_and_bad_ones_named(self):
         robot = drone()
         self.assertEqual((robot.name, robot.motion, robot.columns, robot.rows, robot.rate), ("drone", "space", 48, 36, 4.0))
@@ -101,9 +148,15 @@ class Robots(unittest.TestCase):
                 ("view", None, TypeError), ("columns", 0, ValueError), ("columns", -1, TypeError), ("rows", 2**40, ValueError),
                 ("rate", 0.0, ValueError), ("rate", INF, ValueError), ("margin", -0.1, ValueError), ("speed", 0.0, ValueError),
                 ("acceleration", NAN, ValueError), ("yaw_rate", 0.0, ValueError), ("sensor_height", 1e9, ValueError),
-                ("ground", (0.0, 1.0), ValueError), ("min_height", -1.0, ValueError)]:
+                ("ground", (0.0, 1.0), ValueError), ("min_height", -1.0, ValueError), ("body", "cube", ValueError),
+                ("node_edge", 1.2, ValueError)]:
             with self.assertRaisesRegex(error, name if error is ValueError else ""):
                 planner.Robot(**{**good, name: value})
+        for body, box in (("cylinder", (0.5, 0.6, 0.5)), ("sphere", (0.5, 0.5, 0.6)), ("sphere", (0.6, 0.5, 0.5))):
+            with self.assertRaisesRegex(ValueError, f"box: of a {body} x"):
+                planner.Robot(**{**good, "body": body, "box": box})
+        with self.assertRaisesRegex(ValueError, "node_edge: 0.9, but has to be 1.0 to"):
+            planner.Robot(**{**good, "motion": "space", "node_edge": 0.9})
         planner.Robot(**{**good, "name": 20 * "é"})
         with self.assertRaisesRegex(ValueError, "name: .*40 bytes"):
             planner.Robot(**{**good, "name": 21 * "é"})
@@ -288,6 +341,18 @@ class InMotion(unittest.TestCase):
         exploration.stopped(0, pose, 1.2)
         np.testing.assert_array_equal(exploration.at(0, 1.3)["pose"], pose)
         self.assertEqual(exploration.plan(1.3).reason, "stopped")
+
+    def test_a_displaced_robot_plans_from_where_it_is_and_keeps_its_cell(self):
+        exploration = in_motion()
+        planner.run(exploration, sense_for(exploration), until=1.0)
+        pose = exploration.at(0, 1.2)["pose"] + (0.05, 0.0, 0.0, 0.5)
+        exploration.displaced(0, pose, 1.2)
+        np.testing.assert_array_equal(exploration.at(0, 1.3)["pose"], pose)
+        plan = exploration.plan(1.3)
+        self.assertEqual(plan.reason, "stopped")
+        self.assertEqual(plan.step.goal_states, ["assigned"])  # after `stopped` it would be "no_corridor"
+        np.testing.assert_array_equal(plan.trajectory.at(plan.trajectory.begin)["pose"], pose)
+        self.assertGreater(plan.trajectory.length, 0.0)
 
     def test_a_lost_robot_plans_no_more(self):
         exploration = in_motion()
@@ -495,7 +560,7 @@ class Refusals(unittest.TestCase):
         exploration = planner.ContinuousExploration([drone()], room().bounds)
         for call in (lambda: exploration.plan(0.0), lambda: exploration.insert_points(0, room().start, np.ones((1, 3))),
                      lambda: exploration.at(0, 0.0), lambda: exploration.finish(0.0),
-                     lambda: exploration.stopped(0, room().start, 0.0), lambda: exploration.lose(0, room().start, 0.0)):
+                     lambda: exploration.stopped(0, room().start, 0.0), lambda: exploration.displaced(0, room().start, 0.0), lambda: exploration.lose(0, room().start, 0.0)):
             self.refuses(ValueError, "has not begun", call)
         begin = exploration.begin
         self.refuses(ValueError, r"starts: shape \(4,\), but has to be \(1, 4\)", begin, room().start)

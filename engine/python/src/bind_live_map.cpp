@@ -98,11 +98,23 @@ ChangePointer insert_scan(const Self& self, const py::object& points, const py::
                 max_range);
 }
 
+ChangePointer change_between(const Held<VoxelGrid>& before, const Held<VoxelGrid>& after) {
+  const auto snapshot = [](const VoxelGrid& grid) { return grid; };
+  const VoxelGrid was = before->use(snapshot), is = after->use(snapshot);  // never two locks at once
+  const OthersRun others_run;
+  return std::make_shared<Change>(was, is);
+}
+
 }  // namespace
 
 void bind_live_map(py::module_& module) {
   py::class_<Change, std::shared_ptr<Change>>(module, "MapChange",
                                               "What is new in a map, for what is kept up to date with it.")
+      .def(py::init(&change_between), py::arg("before"), py::arg("after"),
+           R"(What has changed from one VoxelGrid to another, as from a copy that was kept to the grid that `set_states` wrote to.
+
+Insertions and updates return such a change by themselves. Between a grid and its edited copy it costs as much as the edit
+did. Raises ValueError if the resolutions differ.)")
       .def_property_readonly(
           "keys",
           [](const std::shared_ptr<Change>& self) {

@@ -3,6 +3,11 @@
 #include <frontlux/python/arrays.hpp>
 #include <frontlux/sensor_rays.hpp>
 
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string_view>
+
 namespace frontlux::python {
 namespace {
 
@@ -31,6 +36,37 @@ py::array_t<float> image_of(std::size_t columns, std::size_t rows, const Make& m
 
 py::array_t<float> directions(const View& self, std::size_t columns, std::size_t rows) {
   return image_of(columns, rows, [&] { return sensor_directions(*self, columns, rows); });
+}
+
+py::array_t<bool> contains(const View& self, const py::object& offset_object, const py::object& yaw_object) {
+  const Numbers offsets("offsets", offset_object, 3), yaws("yaw", yaw_object, 0);
+  py::array_t<bool> array(common_shape({&offsets, &yaws}));
+  bool* data = array.mutable_data();
+  const auto size = static_cast<std::size_t>(array.size());
+  const OthersRun others_run;
+  for (std::size_t i = 0; i < size; ++i)
+    data[i] = self->contains({offsets.number(i, 0), offsets.number(i, 1), offsets.number(i, 2)}, yaws.number(i));
+  return array;
+}
+
+std::string_view shape_of(const View& self) {
+  switch (self->shape) {
+    case FieldOfView::Shape::kSpinning:
+      return "spinning";
+    case FieldOfView::Shape::kPyramid:
+      return "pyramid";
+    case FieldOfView::Shape::kCone:
+      return "cone";
+  }
+  return "";
+}
+
+std::optional<double> horizontal_of(const View& self) {
+  return self->shape == FieldOfView::Shape::kSpinning ? std::nullopt : std::optional(self->horizontal);
+}
+
+std::optional<double> vertical_of(const View& self) {
+  return self->shape == FieldOfView::Shape::kCone ? std::nullopt : std::optional(self->vertical);
 }
 
 py::array_t<float> pinhole(const py::object& object, std::size_t columns, std::size_t rows) {
@@ -67,8 +103,19 @@ void bind_sensor_rays(py::module_& module) {
           },
           py::arg("opening"), py::arg("max_range"),
           "A sonar with this full opening angle [rad]; max_range in metres.")
+      .def_property_readonly("shape", &shape_of, "'spinning', 'pyramid' or 'cone'.")
+      .def_property_readonly("horizontal", &horizontal_of,
+                             "[rad] The full opening angle from left to right, of a cone on all sides; None of a spinning "
+                             "sensor, which sees all around.")
+      .def_property_readonly("vertical", &vertical_of,
+                             "[rad] The full opening angle from bottom to top; None of a cone.")
       .def_property_readonly(
           "max_range", [](const View& self) { return self->max_range; }, "[m]")
+      .def("contains", &contains, py::arg("offsets"), py::arg("yaw"),
+           R"(bool (...): which points are in view; nothing that could hide them counts.
+
+offsets: float32 or float64 (..., 3) [m], from the sensor to the points, along the map's axes. yaw: [rad] of the sensor, which is
+upright; one, or of shape (...). The sensor's own position is never in view.)")
       .def(
           "directions", &directions, py::arg("columns"), py::arg("rows"),
           R"(float32 (rows, columns, 3): unit vectors that fill the view, in the sensor's frame, rows from the top.

@@ -117,6 +117,12 @@ void stopped(const Self& self, std::size_t robot, const py::object& pose, double
   });
 }
 
+void displaced(const Self& self, std::size_t robot, const py::object& pose, double time) {
+  at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
+    state.exploration.displaced(robot, rests, time);
+  });
+}
+
 void lose(const Self& self, std::size_t robot, const py::object& pose, double time) {
   at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
     state.exploration.lose(robot, rests, time);
@@ -177,7 +183,7 @@ The same robots, scans and times give the same trajectories, on any number of co
     exploration.begin(starts, time)
     while exploration.end is None:
         exploration.insert(robot, pose, directions, ranges)     # as scans come
-        while plan := exploration.plan(time):
+        while exploration.end is None and (plan := exploration.plan(time)):
             send(plan.robot, plan.trajectory)
 
 Poses are those of sensors in the map's frame: x, y, z [m] and yaw [rad], shape (4,). Times are in seconds on any clock that
@@ -214,7 +220,8 @@ floor on which it stands.)")
           R"(A scan that a robot took, as directions and ranges. Returns a MapChange.
 
 robot: number in the team. pose: (4,), or (4, 4), which maps the sensor's frame into the map's. directions: float32 or float64
-(..., 3), of unit length, in the sensor's frame. ranges: (...) [m], one for each. Infinity, or more than the sensor's max_range:
+(..., 3), of unit length, in the sensor's frame: x forward, y left, z up. Of an optical frame, z forward, turn directions and pose
+first (docs/python.md), or the robot's yaw is wrong. ranges: (...) [m], one for each. Infinity, or more than the sensor's max_range:
 nothing was met up to max_range, and all is free up to there. NaN: not measured.)")
       .def(
           "insert_points",
@@ -224,7 +231,7 @@ nothing was met up to max_range, and all is free up to there. NaN: not measured.
             });
           },
           py::arg("robot"), py::arg("pose"), py::arg("points"),
-          R"(The same for a scan of points (..., 3) [m] in the sensor's frame.
+          R"(The same for a scan of points (..., 3) [m] in the sensor's frame: x forward, y left, z up, not an optical frame.
 
 Points beyond the sensor's max_range stand for rays that met nothing. Those that are not finite, or the sensor's own position,
 were not measured.)")
@@ -238,6 +245,11 @@ blocked or were stopped, and that have waited for two; else the team's order cou
            R"(A robot rests at a pose since it could not go on: something that no sensor saw blocks its path.
 
 blocked: uint16 (..., 3), cells that it could not enter; None: the one that it is in will not be entered again.)")
+      .def("displaced", &displaced, py::arg("robot"), py::arg("pose"), py::arg("time"),
+           R"(A robot rests at a pose that is not the one of its trajectory, and nothing blocks its path.
+
+Its controller lagged behind, it was halted, or its localization has jumped: the poses of scans tell the planner nothing of
+that. It plans anew from there.)")
       .def("lose", &lose, py::arg("robot"), py::arg("pose"), py::arg("time"),
            "A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a "
            "pose, "

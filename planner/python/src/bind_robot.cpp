@@ -15,7 +15,7 @@
 namespace frontlux::python {
 namespace {
 
-using planner::RobotDescription, planner::TravelOptions;
+using planner::BodyShape, planner::Motion, planner::RobotDescription, planner::TravelOptions;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -45,11 +45,24 @@ Eigen::Matrix<double, kSize, 1> edges_of(const char* name, const py::object& obj
   return edges;
 }
 
+// As robots' files have them: of a cylinder a diameter and a height, of a sphere a diameter.
+void set_body(TravelOptions& travel, const std::string& body, const Eigen::Vector3d& box) {
+  const auto shape = planner::body_shape_named(body);
+  if (!shape) throw py::value_error("body: '" + body + "', but has to be 'box', 'cylinder' or 'sphere'");
+  const bool wide = box.x() != box.y(), high = box.y() != box.z();
+  if (*shape == BodyShape::kCylinder && wide)
+    throw py::value_error("box: of a cylinder x and y have to be equal, its diameter");
+  if (*shape == BodyShape::kSphere && (wide || high))
+    throw py::value_error("box: of a sphere x, y and z have to be equal, its diameter");
+  travel.shape = *shape;
+  travel.extents = box;
+}
+
 Self make(const std::string& name, const std::string& motion, const py::object& box, const View& view,
           std::size_t columns, std::size_t rows, double rate, double margin, double sensor_height,
           bool require_ground, const py::object& ground, double step, double slope,
-          std::optional<double> min_height, double speed, double acceleration, double yaw_rate,
-          bool per_axis) {
+          std::optional<double> min_height, double speed, double acceleration, double yaw_rate, bool per_axis,
+          const std::string& body, std::optional<double> node_edge) {
   constexpr std::size_t kLongestName = 40;
   if (name.empty() || name.size() > kLongestName)
     throw py::value_error("name: has to have 1 to 40 bytes in UTF-8");
@@ -59,7 +72,7 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   robot.robot.name = name;
   TravelOptions& travel = robot.robot.travel;
   travel.motion = *known;
-  travel.extents = edges_of<3>("box", box);
+  set_body(travel, body, edges_of<3>("box", box));
   travel.margin = within("margin", margin, 0.0, 100.0, "m");
   travel.sensor_height = within("sensor_height", sensor_height, 0.0, 100.0, "m");
   travel.require_ground = require_ground;
@@ -67,6 +80,10 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   travel.step = within("step", step, 0.001, 10.0, "m");
   travel.slope = within("slope", slope, 0.0, 80.0 * kDegree, "rad");
   travel.min_height = within("min_height", min_height.value_or(travel.extents.z() / 2), 0.0, 100.0, "m");
+  if (node_edge) {
+    if (travel.drives()) throw py::value_error("node_edge: only a robot in space moves through nodes");
+    travel.node_edge = within("node_edge", *node_edge, travel.extents.maxCoeff(), 100.0, "m");
+  }
   robot.robot.view = *view;
   within("view.max_range", view->max_range, 0.01, 1000.0, "m");
   if (columns < 1 || rows < 1 || columns > kMostRays || rows > kMostRays / columns)
@@ -82,6 +99,12 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   return std::make_shared<RobotDescription>(robot);
 }
 
+// What means nothing to a robot is None.
+template <class Value>
+std::optional<Value> only_if(bool condition, Value value) {
+  return condition ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 void bind_robot(py::module_& module) {
@@ -95,16 +118,18 @@ docs/robots.md says more of each value.)")
            py::arg("sensor_height") = 0.75, py::arg("require_ground") = true, py::arg("ground") = py::none(),
            py::arg("step") = 0.15, py::arg("slope") = 20.0 * kDegree, py::arg("min_height") = py::none(),
            py::arg("speed") = 1.0, py::arg("acceleration") = 2.0, py::arg("yaw_rate") = std::numbers::pi / 3,
-           py::arg("per_axis") = false,
+           py::arg("per_axis") = false, py::arg("body") = "box", py::arg("node_edge") = py::none(),
            R"(A robot of these values.
 
 name: in messages, 1 to 40 bytes in UTF-8. motion: 'plane', on the floor that it starts on, 'ground', up and down slopes and steps as well, or 'space'.
-box: (3,) [m] its body along x, y and z, whatever its yaw. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
+box: (3,) [m] the box around its body along x, y and z, whatever its yaw. body: 'box', 'cylinder', upright, whose x and y are equal,
+or 'sphere', whose edges all are. view: FieldOfView of its sensor. columns, rows: rays of a scan. rate: [1/s] of scans in motion.
 margin: [m] kept free around the body; of a robot that drives to its sides.
 On a plane and on the ground: sensor_height: [m] above the floor; ground: (2,) [m] along x and y, the area of the floor that
 must not be missing; None: all under the box. On a plane: require_ground: it goes only where floor is known. On the ground:
 step: [m] the highest, at least a voxel; slope: [rad] the steepest.
-In space: min_height: [m] of its middle above the bottom of the bounds; None: half of its height.
+In space: min_height: [m] of its middle above the bottom of the bounds; None: half of its height. node_edge: [m] it moves through
+free octree nodes of this size, as in the paper, at least as wide as its body; None: wherever the body fits.
 speed [m/s], acceleration [m/s^2], yaw_rate [rad/s]: at most; per_axis: speed and acceleration along x, y and z each.
 Raises ValueError naming the value that is out of bounds.)")
       .def_static(
@@ -124,6 +149,63 @@ Raises ValueError naming the value that is out of bounds.)")
           "box", [](const Self& self) { return py::array_t<double>(3, self->robot.travel.extents.data()); },
           "float64 (3,): [m] the box around its body along x, y and z.")
       .def_property_readonly(
+          "body", [](const Self& self) { return planner::name_of(self->robot.travel.shape); },
+          "Its shape: 'box', 'cylinder' or 'sphere'.")
+      .def_property_readonly(
+          "margin", [](const Self& self) { return self->robot.travel.margin; },
+          "[m] kept free around the body; of a robot that drives to its sides.")
+      .def_property_readonly(
+          "sensor_height",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(travel.drives(), travel.sensor_height);
+          },
+          "[m] of its sensor above the floor; None in space.")
+      .def_property_readonly(
+          "require_ground",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(travel.motion == Motion::kPlane, travel.require_ground);
+          },
+          "Whether it goes only where floor is known; None unless its motion is 'plane'.")
+      .def_property_readonly(
+          "ground",
+          [](const Self& self) -> py::object {
+            const auto& ground = self->robot.travel.ground_extents;
+            if (!ground || !self->robot.travel.drives()) return py::none();
+            return py::array_t<double>(2, ground->data());
+          },
+          "float64 (2,): [m] along x and y, the area of the floor that must not be missing; None: all under "
+          "the box, or in space.")
+      .def_property_readonly(
+          "step",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(travel.motion == Motion::kGround, travel.step);
+          },
+          "[m] The highest step; None unless its motion is 'ground'.")
+      .def_property_readonly(
+          "slope",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(travel.motion == Motion::kGround, travel.slope);
+          },
+          "[rad] The steepest slope; None unless its motion is 'ground'.")
+      .def_property_readonly(
+          "min_height",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(!travel.drives(), travel.min_height);
+          },
+          "[m] of its middle above the bottom of the bounds, at least; None unless its motion is 'space'.")
+      .def_property_readonly(
+          "node_edge",
+          [](const Self& self) {
+            const TravelOptions& travel = self->robot.travel;
+            return only_if(travel.node_edge > 0.0, travel.node_edge);
+          },
+          "[m] of the octree's nodes through which it moves; None: it moves wherever its body fits.")
+      .def_property_readonly(
           "view", [](const Self& self) { return std::make_shared<FieldOfView>(self->robot.view); },
           "What its sensor sees.")
       .def_property_readonly(
@@ -138,7 +220,10 @@ Raises ValueError naming the value that is out of bounds.)")
           "acceleration", [](const Self& self) { return self->robot.limits.acceleration; },
           "[m/s^2] at most.")
       .def_property_readonly(
-          "yaw_rate", [](const Self& self) { return self->robot.limits.yaw_rate; }, "[rad/s] at most.");
+          "yaw_rate", [](const Self& self) { return self->robot.limits.yaw_rate; }, "[rad/s] at most.")
+      .def_property_readonly(
+          "per_axis", [](const Self& self) { return self->robot.limits.per_axis; },
+          "Whether speed and acceleration hold along x, y and z each.");
   module.def(
       "ugv", [] { return std::make_shared<RobotDescription>(planner::ugv_description()); },
       "The paper's ground robot: 1.0 x 1.0 x 0.7 m, 1 m/s, a lidar of 40 degrees that sees 6 m far, 32 x 720 "

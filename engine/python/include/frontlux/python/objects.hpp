@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace frontlux::python {
@@ -27,6 +28,9 @@ struct Change {
   std::vector<VoxelKey> keys;
   explicit Change(const MapChange& change)
       : grid(change.grid), keys(change.keys.begin(), change.keys.end()) {}
+  /// From one map to another. @throws as `changed_keys`
+  Change(const VoxelGrid& before, VoxelGrid after)
+      : grid(std::move(after)), keys(changed_keys(before, grid)) {}
   [[nodiscard]] MapChange change() const { return {grid, keys}; }
   /// @throws std::invalid_argument unless it leads from this map to its own, which costs about as much as the
   ///         change itself if it does
