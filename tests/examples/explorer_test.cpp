@@ -57,6 +57,11 @@ class RosExplorer : public testing::Test {
     return points;
   }
 
+  // A scan from a pose, in the sensor's own frame.
+  std::optional<Waypoints> insert(Explorer& explorer, double time, const Pose& pose) const {
+    return explorer.insert(time, matrix_of(pose), matrix_of(pose), cloud(pose));
+  }
+
   VoxelGrid room_ =
       make_voxel_grid(read_octree(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps/room_0.1m.bt"));
   std::unique_ptr<RayCaster> caster_ = make_ray_caster(room_);
@@ -73,7 +78,7 @@ TEST_F(RosExplorer, ExploresARoomByCloudsAndWaypoints) {
   double time = 0.0;
   for (; !explorer.end() && time < 600.0; time += 0.25) {
     const Pose pose = follow(time >= next.front().time ? next : now, time);
-    const auto answer = explorer.insert(time, matrix_of(pose), cloud(pose));
+    const auto answer = insert(explorer, time, pose);
     if (!answer) continue;
     ++answers;
     if (time >= next.front().time) now = next;
@@ -97,25 +102,53 @@ TEST_F(RosExplorer, ExploresARoomByCloudsAndWaypoints) {
 TEST_F(RosExplorer, TakesCloudsThatComeLateAndRobotsThatStop) {
   Explorer explorer(options_);
   EXPECT_REFUSED(explorer.stopped(0.0, matrix_of(start_)));
-  EXPECT_TRUE(explorer.insert(5.0, matrix_of(start_), cloud(start_)));
+  EXPECT_TRUE(insert(explorer, 5.0, start_));
   const auto size = explorer.tree()->size();
   const Pose turned{start_.position, 2.0};
-  EXPECT_FALSE(explorer.insert(4.9, matrix_of(turned), cloud(turned)));
+  EXPECT_FALSE(insert(explorer, 4.9, turned));
   EXPECT_GT(explorer.tree()->size(), size);
   explorer.stopped(6.0, matrix_of(start_));
-  const auto answer = explorer.insert(6.1, matrix_of(start_), cloud(start_));
+  const auto answer = insert(explorer, 6.1, start_);
   ASSERT_TRUE(answer);
   EXPECT_LT((answer->front().pose.position - start_.position).norm(), 1e-9);
+}
+
+// The robot has been carried a little: it goes on from there, with the cell that it is in.
+TEST_F(RosExplorer, PlansFromWhereARobotIsDisplacedTo) {
+  Explorer explorer(options_);
+  const Pose aside{start_.position + Eigen::Vector3d(0.05, -0.05, 0.0), 0.4};
+  EXPECT_REFUSED(explorer.displaced(0.0, matrix_of(aside)));
+  EXPECT_TRUE(insert(explorer, 5.0, start_));
+  explorer.displaced(6.0, matrix_of(aside));
+  const auto answer = insert(explorer, 6.1, aside);
+  ASSERT_TRUE(answer);
+  EXPECT_LT((answer->front().pose.position - aside.position).norm(), 1e-9);
+  EXPECT_GT((answer->back().pose.position - aside.position).norm(), 0.1);
+}
+
+// A camera's driver names its optical frame: x right, y down, z forward. The yaw is that of the sensor's.
+TEST_F(RosExplorer, TakesCloudsInAnOpticalFrame) {
+  Eigen::Isometry3d T_sensor_optical = Eigen::Isometry3d::Identity();
+  T_sensor_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  std::vector<Eigen::Vector3f> optical = cloud(start_);
+  for (Eigen::Vector3f& point : optical) point = Eigen::Vector3f(-point.y(), -point.z(), point.x());
+  Explorer explorer(options_), same(options_);
+  const auto answer = explorer.insert(5.0, matrix_of(start_), matrix_of(start_) * T_sensor_optical, optical);
+  const auto expected = insert(same, 5.0, start_);
+  ASSERT_TRUE(answer && expected);
+  EXPECT_EQ(answer->front().pose.yaw, start_.yaw);
+  EXPECT_EQ(make_voxel_grid(*explorer.tree()), make_voxel_grid(*same.tree()));
+  EXPECT_EQ(answer->back().pose.position, expected->back().pose.position);
 }
 
 TEST_F(RosExplorer, RefusesWhatIsNoScan) {
   Explorer explorer(options_);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_REFUSED(explorer.insert(kNan, matrix_of(start_), {}));
-  EXPECT_REFUSED(explorer.insert(0.0, matrix_of({{1e9, 0.0, 0.0}, 0.0}), {}));
+  const auto here = matrix_of(start_), far = matrix_of({{1e9, 0.0, 0.0}, 0.0});
+  EXPECT_REFUSED(explorer.insert(kNan, here, here, {}));
+  EXPECT_REFUSED(explorer.insert(0.0, far, far, {}));
   EXPECT_EQ(explorer.tree(), nullptr);
-  explorer.insert(0.0, matrix_of(start_),
-                  std::vector<Eigen::Vector3f>{{NAN, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}});
+  explorer.insert(0.0, here, here, std::vector<Eigen::Vector3f>{{NAN, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}});
   for (const double wrong : {0.0, -1.0, kNan}) {
     Explorer::Options options = options_;
     options.resolution = wrong;

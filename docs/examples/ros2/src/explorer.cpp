@@ -1,6 +1,6 @@
 #include "explorer.hpp"
 
-#include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/exploration_start.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,18 +13,19 @@ using namespace frontlux::planner;
 
 namespace {
 
+// Where it looks, by its x axis.
 Pose upright(const Eigen::Isometry3d& T_map_sensor) {
   const Eigen::Vector3d forward = T_map_sensor.linear().col(0);
   return {T_map_sensor.translation(), std::atan2(forward.y(), forward.x())};
 }
 
-Scan scan_of(const Eigen::Isometry3d& T_map_sensor, std::span<const Eigen::Vector3f> points,
+Scan scan_of(const Eigen::Isometry3d& T_map_cloud, std::span<const Eigen::Vector3f> points,
              double max_range) {
   Scan scan;
-  scan.origin = T_map_sensor.translation().cast<float>();
+  scan.origin = T_map_cloud.translation().cast<float>();
   scan.max_range = max_range;
   for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3d ray = T_map_sensor.linear() * point.cast<double>();
+    const Eigen::Vector3d ray = T_map_cloud.linear() * point.cast<double>();
     const double range = ray.norm();
     if (!std::isfinite(range) || range == 0.0) continue;
     scan.directions.push_back((ray / range).cast<float>());
@@ -32,28 +33,6 @@ Scan scan_of(const Eigen::Isometry3d& T_map_sensor, std::span<const Eigen::Vecto
                                              : std::numeric_limits<float>::infinity());
   }
   return scan;
-}
-
-// Its body, and what is around it: of a robot on wheels at the heights of its body, in the air in all
-// directions.
-ExplorationStart start_of(const Pose& pose, const Lattice& lattice, const TravelOptions& travel,
-                          double free_radius) {
-  ExplorationStart start{pose, {}};
-  const VoxelKey at = lattice.key(pose.position).value();
-  const VoxelKey cell = cell_of(travel, lattice, at);
-  const BodyStencil stencil(travel, lattice.resolution());
-  const KeyBox body = stencil.box_around(cell);
-  const Eigen::Vector3d around = Eigen::Vector3d::Constant(free_radius + lattice.resolution());
-  for_each_key(hull(body, voxels_of(lattice, {pose.position - around, pose.position + around})),
-               [&](const VoxelKey& key) {
-                 const Eigen::Vector3d offset = lattice.exact_center(key) - pose.position;
-                 const bool beside =
-                     travel.motion == Motion::kSpace
-                         ? offset.norm() <= free_radius
-                         : offset.head<2>().norm() <= free_radius && body.min.z <= key.z && key.z <= at.z;
-                 if (beside || stencil.contains(cell, key)) start.known_free.push_back(key);
-               });
-  return start;
 }
 
 }  // namespace
@@ -75,12 +54,12 @@ void Explorer::begin(double time, const Pose& pose) {
   const KeyBox bounds = voxels_of(lattice, {pose.position - options_.reach, pose.position + options_.reach});
   ExplorationOptions options = tour_options(options_.resolution);
   options.latency = options_.latency;
-  options_.robot.travel.floor = (bounds.min.z - static_cast<double>(Lattice::kOrigin)) * options_.resolution;
+  options_.robot.travel.floor = pose.position.z() - options_.reach.z();
   GoalOptions goal = motion_goal_options(options_.robot);
   goal.min_gain = options.epsilon;
   options.team.push_back({options_.robot, goal});
   ContinuousExploration exploration(options, Mapping({.resolution = options_.resolution, .bounds = bounds}));
-  const ExplorationStart start = start_of(pose, lattice, options_.robot.travel, options_.free_radius);
+  const ExplorationStart start = start_at(lattice, options_.robot, pose, options_.free_radius);
   exploration.begin({&start, 1}, time);
   exploration_ = std::move(exploration);
   time_ = time;
@@ -88,12 +67,13 @@ void Explorer::begin(double time, const Pose& pose) {
 
 std::optional<std::vector<Explorer::Waypoint>> Explorer::insert(double time,
                                                                 const Eigen::Isometry3d& T_map_sensor,
+                                                                const Eigen::Isometry3d& T_map_cloud,
                                                                 std::span<const Eigen::Vector3f> points,
                                                                 double rate) {
   if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
   const Pose pose = upright(T_map_sensor);
   if (!exploration_) begin(time, pose);
-  exploration_->insert(0, pose, scan_of(T_map_sensor, points, options_.robot.view.max_range));
+  exploration_->insert(0, pose, scan_of(T_map_cloud, points, options_.robot.view.max_range));
   if (time < time_) return std::nullopt;
   time_ = time;
   std::optional<std::vector<Waypoint>> waypoints;
@@ -115,6 +95,12 @@ void Explorer::stopped(double time, const Eigen::Isometry3d& T_map_sensor) {
   if (!exploration_) throw std::invalid_argument("there was no scan yet");
   time_ = std::max(time, time_);
   exploration_->stopped(0, upright(T_map_sensor), time_, {});
+}
+
+void Explorer::displaced(double time, const Eigen::Isometry3d& T_map_sensor) {
+  if (!exploration_) throw std::invalid_argument("there was no scan yet");
+  time_ = std::max(time, time_);
+  exploration_->displaced(0, upright(T_map_sensor), time_);
 }
 
 std::optional<std::string> Explorer::end() const {

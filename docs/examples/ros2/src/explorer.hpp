@@ -30,20 +30,26 @@ class Explorer {
 
   /// A scan.
   /// @param time    [s] on the clock that the trajectory is to be followed by
-  /// @param T_map_sensor  where the sensor was then
-  /// @param points  [m] in the sensor's frame; beyond its range: the ray met nothing; not finite: it was not
-  /// measured
+  /// @param T_map_sensor  where the sensor was then; its frame has x forward, y left, z up
+  /// @param T_map_cloud   the same of the frame that the points are in, which may be an optical one
+  /// @param points  [m] beyond the sensor's range: the ray met nothing; not finite: it was not measured
   /// @return the robot's new trajectory, `rate` times a second; nothing if it keeps the one that it has. A
   /// scan that is
   ///         older than the last one goes into the map and plans nothing.
   /// @throws std::invalid_argument if the time or the pose is not finite, or the pose is outside the key
   /// range
   std::optional<std::vector<Waypoint>> insert(double time, const Eigen::Isometry3d& T_map_sensor,
+                                              const Eigen::Isometry3d& T_map_cloud,
                                               std::span<const Eigen::Vector3f> points, double rate = 20.0);
 
   /// The robot stands where something is that its sensor does not see.
   /// @throws std::invalid_argument before the first scan
   void stopped(double time, const Eigen::Isometry3d& T_map_sensor);
+
+  /// The robot stands somewhere else than its trajectory has it, and nothing is in its path: it plans anew
+  /// from there with the next scan.
+  /// @throws std::invalid_argument before the first scan
+  void displaced(double time, const Eigen::Isometry3d& T_map_sensor);
 
   /// Why the exploration is over, in words; nothing while it goes on, or before the first scan.
   [[nodiscard]] std::optional<std::string> end() const;

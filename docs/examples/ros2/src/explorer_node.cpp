@@ -38,14 +38,8 @@ class ExplorerNode : public rclcpp::Node {
     cloud_ = create_subscription<sensor_msgs::msg::PointCloud2>(
         "cloud", rclcpp::SensorDataQoS(),
         [this](const sensor_msgs::msg::PointCloud2& cloud) { take(cloud); });
-    stopped_ = create_subscription<std_msgs::msg::Empty>(
-        "stopped", rclcpp::QoS(1), [this](const std_msgs::msg::Empty&) {
-          try {
-            explorer_.stopped(now().seconds(), sensor_pose(sensor_frame_, tf2::TimePointZero));
-          } catch (const std::exception& error) {
-            RCLCPP_WARN(get_logger(), "stopped: %s", error.what());
-          }
-        });
+    stopped_ = told_at_rest("stopped", &Explorer::stopped);
+    displaced_ = told_at_rest("displaced", &Explorer::displaced);
     timer_ = create_wall_timer(std::chrono::seconds(1), [this] { publish_map(); });
   }
 
@@ -62,21 +56,35 @@ class ExplorerNode : public rclcpp::Node {
     return options;
   }
 
-  Eigen::Isometry3d sensor_pose(const std::string& frame, const tf2::TimePoint& time) {
+  // That the robot rests, where tf2 has it now.
+  rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr told_at_rest(
+      const char* topic, void (Explorer::*tell)(double, const Eigen::Isometry3d&)) {
+    return create_subscription<std_msgs::msg::Empty>(
+        topic, rclcpp::QoS(1), [this, topic, tell](const std_msgs::msg::Empty&) {
+          try {
+            (explorer_.*tell)(now().seconds(), pose_of(sensor_frame_, tf2::TimePointZero));
+          } catch (const std::exception& error) {
+            RCLCPP_WARN(get_logger(), "%s: %s", topic, error.what());
+          }
+        });
+  }
+
+  Eigen::Isometry3d pose_of(const std::string& frame, const tf2::TimePoint& time) {
     return tf2::transformToEigen(
         buffer_.lookupTransform(map_frame_, frame, time, tf2::durationFromSec(0.05)));
   }
 
   void take(const sensor_msgs::msg::PointCloud2& cloud) {
     try {
-      const Eigen::Isometry3d T_map_sensor =
-          sensor_pose(cloud.header.frame_id, tf2_ros::fromMsg(cloud.header.stamp));
+      const tf2::TimePoint taken = tf2_ros::fromMsg(cloud.header.stamp);
+      const Eigen::Isometry3d T_map_sensor = pose_of(sensor_frame_, taken),
+                              T_map_cloud = pose_of(cloud.header.frame_id, taken);
       std::vector<Eigen::Vector3f> points;
       for (sensor_msgs::PointCloud2ConstIterator<float> x(cloud, "x"), y(cloud, "y"), z(cloud, "z");
            x != x.end(); ++x, ++y, ++z)
         points.emplace_back(*x, *y, *z);
       const auto waypoints =
-          explorer_.insert(rclcpp::Time(cloud.header.stamp).seconds(), T_map_sensor, points);
+          explorer_.insert(rclcpp::Time(cloud.header.stamp).seconds(), T_map_sensor, T_map_cloud, points);
       if (waypoints) publish(*waypoints);
       if (const auto end = explorer_.end())
         RCLCPP_INFO_ONCE(get_logger(), "the exploration is over: %s", end->c_str());
@@ -117,7 +125,7 @@ class ExplorerNode : public rclcpp::Node {
   rclcpp::Publisher<nav_msgs::msg::Path>::SharedPtr path_;
   rclcpp::Publisher<octomap_msgs::msg::Octomap>::SharedPtr octomap_;
   rclcpp::Subscription<sensor_msgs::msg::PointCloud2>::SharedPtr cloud_;
-  rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr stopped_;
+  rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr stopped_, displaced_;
   rclcpp::TimerBase::SharedPtr timer_;
 };
 
