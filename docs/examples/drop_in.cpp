@@ -6,6 +6,17 @@
 #include <iostream>
 #include <vector>
 
+// castRay's arguments in their order, answered by any caster, as that of a LiveMap.
+static bool cast_ray(const frontlux::RayCaster& caster, const octomap::point3d& origin,
+                     const octomap::point3d& direction, octomap::point3d& end, bool ignore_unknown = false,
+                     double max_range = -1.0) {
+  const auto unknown = ignore_unknown ? frontlux::UnknownPolicy::kPass : frontlux::UnknownPolicy::kBlock;
+  const frontlux::Hit hit =
+      caster.cast({frontlux::from_octomap(origin), frontlux::from_octomap(direction), max_range}, unknown);
+  if (hit.stop != frontlux::RayStop::kInvalid) end = frontlux::to_octomap(hit.end);
+  return hit.occupied();
+}
+
 int main(int, char** arguments) {
   octomap::OcTree tree(arguments[1]);  // nothing is in it if there is no such file
   if (tree.size() == 0) {
@@ -13,7 +24,7 @@ int main(int, char** arguments) {
     return 2;
   }
   const octomap::point3d origin(2.0F, 2.0F, 1.0F), direction(1.0F, 0.7F, 0.1F), sensor(5.0F, 5.0F, 1.5F);
-  octomap::point3d end, theirs;
+  octomap::point3d end, theirs, ours;
   octomap::Pointcloud scan;
   scan.push_back(5.0F, 3.0F, 1.5F);
   std::vector<frontlux::Ray> rays;
@@ -31,11 +42,13 @@ int main(int, char** arguments) {
 
   fast.castRays(rays, hits, true);
   std::size_t same = hit == their_hit && end == theirs ? 1 : 0;
+  const bool now = tree.castRay(origin, direction, theirs, true, 30.0);
+  same += cast_ray(fast.caster(), origin, direction, ours, true, 30.0) == now && ours == theirs ? 1 : 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const octomap::point3d along(rays[i].direction.x(), rays[i].direction.y(), rays[i].direction.z());
     const bool theirs_hit = tree.castRay(origin, along, theirs, true, 30.0);
     const bool same_end = frontlux::to_octomap(hits[i].key) == tree.coordToKey(theirs);
     same += hits[i].occupied() == theirs_hit && same_end ? 1 : 0;
   }
-  std::cout << same << " of " << rays.size() + 1 << " answers are castRay's\n";
+  std::cout << same << " of " << rays.size() + 2 << " answers are castRay's\n";
 }

@@ -19,7 +19,8 @@ namespace frontlux {
 ///     image.update(map.caster(), viewpoints, frontiers.keys(), change);   // a ViewQualityImage
 ///
 /// Thread safety: queries of the caster may run at the same time as `update`, which reads the tree and must
-/// not run while it changes; as a standard container otherwise.
+/// not run while it changes. As a standard container otherwise: nobody may read or copy `grid()` meanwhile,
+/// but `caster().grid()` is a snapshot that may be taken at any time.
 class FRONTLUX_EXPORT LiveMap {
  public:
   /// @param tree  must outlive this object, which uses the tree's change detection: nothing else may
@@ -44,7 +45,7 @@ class FRONTLUX_EXPORT LiveMap {
 
   /// What the tree held at the last update; a copy is a snapshot.
   [[nodiscard]] const VoxelGrid& grid() const;
-  /// Answers from `grid()`.
+  /// Answers from `grid()`; valid as long as this object, wherever it is moved to.
   [[nodiscard]] const RayCaster& caster() const;
 
  private:

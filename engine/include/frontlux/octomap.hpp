@@ -116,7 +116,10 @@ class FRONTLUX_EXPORT OctreeMirror {
 ///     bool hit = fast.castRay(origin, direction, end);
 ///
 /// It answers from a snapshot of the tree, taken at construction and by `refresh`. It prints none of
-/// OctoMap's warnings. Thread safety: const members may run at the same time as each other.
+/// OctoMap's warnings. Thread safety: const members may run at the same time as each other and as `refresh`,
+/// which reads the tree and must not run while that changes; a query answers from the snapshot as it was when
+/// the query began. Calls of `refresh` must not overlap, and one after the tree's resolution has changed must
+/// not run at the same time as anything else.
 class FRONTLUX_EXPORT OctreeRayCaster {
  public:
   /// @param tree  read now and by `refresh`: must outlive this object
@@ -138,11 +141,12 @@ class FRONTLUX_EXPORT OctreeRayCaster {
   /// @throws std::invalid_argument if the spans differ in size
   void castRays(std::span<const Ray> rays, std::span<Hit> hits, bool ignoreUnknownCells = false) const;
 
-  /// Takes a new snapshot, after any change of the tree. Not while another thread casts.
+  /// Takes a new snapshot, after any change of the tree, by reading all of it.
   void refresh();
 
-  /// The queries beyond castRay's: visibility between points and between voxels, and
-  /// counts along paths.
+  /// The queries beyond castRay's: visibility between points and between voxels, and counts along paths.
+  /// Valid as long as this object, wherever it is moved to, and answers from its latest snapshot; a `refresh`
+  /// after the tree's resolution has changed ends it.
   [[nodiscard]] const RayCaster& caster() const;
 
  private:

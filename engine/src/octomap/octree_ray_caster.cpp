@@ -19,8 +19,11 @@ struct OctreeRayCaster::Snapshot {
   std::unique_ptr<RayCaster> caster;
 
   explicit Snapshot(detail::OctreePointer read_from)
-      : tree(std::move(read_from)),
-        caster(make_ray_caster(std::visit([](const auto& t) { return make_voxel_grid(*t); }, tree))) {}
+      : tree(std::move(read_from)), caster(make_ray_caster(read())) {}
+
+  [[nodiscard]] VoxelGrid read() const {
+    return std::visit([](const auto& t) { return make_voxel_grid(*t); }, tree);
+  }
 };
 
 OctreeRayCaster::OctreeRayCaster(const octomap::OcTree& tree)
@@ -46,7 +49,15 @@ void OctreeRayCaster::castRays(std::span<const Ray> rays, std::span<Hit> hits,
   snapshot_->caster->cast(rays, hits, policy(ignoreUnknownCells));
 }
 
-void OctreeRayCaster::refresh() { *snapshot_ = Snapshot(snapshot_->tree); }
+// The caster stays the same object: users hold references to it.
+void OctreeRayCaster::refresh() {
+  const VoxelGrid grid = snapshot_->read();
+  std::unique_ptr<RayCaster>& caster = snapshot_->caster;
+  if (grid.resolution() == caster->lattice().resolution())
+    caster->update(grid);
+  else
+    caster = make_ray_caster(grid);
+}
 
 const RayCaster& OctreeRayCaster::caster() const { return *snapshot_->caster; }
 

@@ -11,7 +11,11 @@
 #include <frontlux/octomap.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <filesystem>
+#include <thread>
+#include <utility>
 
 namespace frontlux::test {
 namespace {
@@ -180,6 +184,64 @@ TEST(OctreeRayCaster, RefreshTakesANewSnapshot) {
   std::vector<Hit> hits(2);
   fast.castRays(rays, hits, true);
   EXPECT_FLOAT_EQ(hits[1].end.x(), 0.55F);
+}
+
+// References to the caster last, and answer from the new map; but for another resolution there is a new one.
+TEST(OctreeRayCaster, RefreshKeepsItsCaster) {
+  octomap::OcTree tree(0.1);
+  tree.updateNode(octomap::point3d(1.05F, 0.05F, 0.05F), true);
+  OctreeRayCaster fast(tree);
+  const RayCaster& caster = fast.caster();
+  const Ray east{{0.05F, 0.05F, 0.05F}, {1, 0, 0}, -1.0};
+  EXPECT_FLOAT_EQ(caster.cast(east, UnknownPolicy::kPass).end.x(), 1.05F);
+  Random random(9);
+  for (int i = 0; i < 5; ++i) {
+    tree.insertPointCloud(random_cloud(random, 200), {0, 0, 0});
+    if (i == 3) tree.clear();  // OctoMap reports none of it
+    tree.updateNode(octomap::point3d(0.55F + 0.1F * static_cast<float>(i % 2), 0.05F, 0.05F), true);
+    fast.refresh();
+    ASSERT_EQ(&fast.caster(), &caster);
+    EXPECT_EQ(caster.grid(), make_voxel_grid(tree));
+    for (int ray = 0; ray < 500; ++ray) {
+      const octomap::point3d origin = random_point(random, 2), direction = random_point(random, 2);
+      octomap::point3d expected, end;
+      ASSERT_EQ(fast.castRay(origin, direction, end, true, 5.0),
+                tree.castRay(origin, direction, expected, true, 5.0));
+      ASSERT_EQ(end, expected);
+    }
+  }
+  OctreeRayCaster moved = std::move(fast);
+  EXPECT_EQ(&moved.caster(), &caster);
+  tree.clear();
+  tree.setResolution(0.2);
+  tree.updateNode(octomap::point3d(1.1F, 0.1F, 0.1F), true);
+  moved.refresh();
+  EXPECT_EQ(moved.caster().lattice().resolution(), 0.2);
+  EXPECT_FLOAT_EQ(moved.caster().cast(east, UnknownPolicy::kPass).end.x(), 1.1F);
+}
+
+// Run it with the thread sanitizer, too (`./dev sanitize`).
+TEST(OctreeRayCaster, CastsWhileItIsRefreshed) {
+  octomap::OcTree tree(0.1);
+  const auto wall = [&](float x, bool is_there) { tree.updateNode(octomap::point3d(x, 0.05F, 0.05F), is_there); };
+  wall(1.05F, true);
+  OctreeRayCaster fast(tree);
+  std::atomic<bool> refreshing = true;
+  std::size_t wrong = 0;
+  std::thread caster([&] {
+    octomap::point3d end;
+    while (refreshing) {
+      const bool hit = fast.castRay({0.05F, 0.05F, 0.05F}, {1, 0, 0}, end, true);
+      if (!hit || (std::abs(end.x() - 0.55F) > 1e-4F && std::abs(end.x() - 1.05F) > 1e-4F)) ++wrong;
+    }
+  });
+  for (int i = 0; i < 100; ++i) {
+    for (int again = 0; again < 10; ++again) wall(0.55F, i % 2 == 0);
+    fast.refresh();
+  }
+  refreshing = false;
+  caster.join();
+  EXPECT_EQ(wrong, 0U);
 }
 
 TEST(OctreeRayCaster, ServesColorTrees) {
