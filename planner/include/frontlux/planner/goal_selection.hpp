@@ -78,8 +78,8 @@ struct FRONTLUX_EXPORT GoalOptions {
 /// By default, view quality for all robots: of those that drive counted exactly; in space drawn from buckets
 /// at every 0.6 m, pruned, and counted for the best cells. As printed: of those that drive by hits
 /// among the drawn frontiers, in space by clusters.
-/// @param epsilon  `ExplorationOptions::epsilon`; by default it is `min_gain`, too: a robot takes a goal of low
-///                 gain only if there is no better one. As printed there is no `min_gain`
+/// @param epsilon  `ExplorationOptions::epsilon`. By default it is also `min_gain`: a robot takes a goal of
+///                 low gain only if there is no better one. As printed there is no such bound
 [[nodiscard]] FRONTLUX_EXPORT GoalOptions goal_options(const Robot& robot, Method method = Method::kDefault,
                                                        double epsilon = 10.0);
 /// The same for a robot in motion: by default near goals cost it less, since it plans again before it
