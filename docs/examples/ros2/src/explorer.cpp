@@ -55,9 +55,8 @@ void Explorer::begin(double time, const Pose& pose) {
   ExplorationOptions options = tour_options(options_.resolution);
   options.latency = options_.latency;
   options_.robot.travel.floor = pose.position.z() - options_.reach.z();
-  GoalOptions goal = motion_goal_options(options_.robot);
-  goal.min_gain = options.epsilon;
-  options.team.push_back({options_.robot, goal});
+  options.team.push_back(
+      {options_.robot, motion_goal_options(options_.robot, Method::kDefault, options.epsilon)});
   ContinuousExploration exploration(options, Mapping({.resolution = options_.resolution, .bounds = bounds}));
   const ExplorationStart start = start_at(lattice, options_.robot, pose, options_.free_radius);
   exploration.begin({&start, 1}, time);
