@@ -3,10 +3,10 @@
 //
 //     explore_live ROBOT.json FOLDER X Y Z YAW SECONDS
 //
-// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free there.
-// Scans come as in explore_recorded: a .ply or .pcd file of points in the sensor's frame [m], x forward, y
-// left, z up, and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where it was taken. When it was
-// taken is the file's name, in seconds on the robot's clock: 12.35.ply.
+// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free
+// there. Scans come as in explore_recorded: a .ply or .pcd file of points in the sensor's frame [m], x
+// forward, y left, z up, and one more line `file,x,y,z,yaw` in FOLDER/poses.csv that says where it was taken.
+// When it was taken is the file's name, in seconds on the robot's clock: 12.35.ply.
 //
 // FOLDER/trajectory.csv is what the robot is to follow, `time,x,y,z,yaw`, twenty rows a second; it is
 // replaced as a whole after each scan, and its first line names that scan. Until a trajectory's first row the

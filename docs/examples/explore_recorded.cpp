@@ -2,9 +2,9 @@
 //
 //     explore_recorded ROBOT.json FOLDER X Y Z YAW SECONDS
 //
-// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free there.
-// Where it has to go next is in FOLDER/next.csv, which the robot removes. It answers with a scan, the .ply or
-// .pcd file of its points in the sensor's frame [m], x forward, y left, z up, and one more line
+// The robot's sensor begins at X, Y, Z [m], YAW [rad]; around a robot that drives 2.3 m have to be free
+// there. Where it has to go next is in FOLDER/next.csv, which the robot removes. It answers with a scan, the
+// .ply or .pcd file of its points in the sensor's frame [m], x forward, y left, z up, and one more line
 // `file,x,y,z,yaw` in FOLDER/poses.csv that says where the scan was taken; rays that met nothing are points
 // beyond the sensor's range. The scan has to be complete before the line is there, and poses.csv to be
 // replaced as a whole. A robot that could not go there answers from where it is, or not at all for SECONDS.
@@ -95,7 +95,8 @@ int main(int argc, char** argv) {
   }
   try {
     const auto number = [&](int i) { return std::stod(argv[i]); };
-    explore(io::read_robot(argv[1]).robot, argv[2], {{number(3), number(4), number(5)}, number(6)}, number(7));
+    explore(io::read_robot(argv[1]).robot, argv[2], {{number(3), number(4), number(5)}, number(6)},
+            number(7));
   } catch (const std::exception& error) {
     std::cerr << "explore_recorded: " << error.what() << '\n';
     return 2;

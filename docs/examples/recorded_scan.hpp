@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <limits>
 
-/// The scan of a file, as the mapping takes it: points in the sensor's frame [m], x forward, y left, z up, those
-/// beyond the sensor's range for rays that met nothing. Points and poses in an optical frame, x right, y down,
-/// z forward, have to be turned first: T_sensor_optical = (0 0 1, -1 0 0, 0 -1 0).
+/// The scan of a file, as the mapping takes it: points in the sensor's frame [m], x forward, y left, z up,
+/// those beyond the sensor's range for rays that met nothing. Points and poses in an optical frame, x right,
+/// y down, z forward, have to be turned first: T_sensor_optical = (0 0 1, -1 0 0, 0 -1 0).
 inline frontlux::planner::Scan scan_of(const frontlux::io::RecordedPose& recorded,
                                        const std::filesystem::path& folder, double max_range) {
   frontlux::planner::Scan scan;

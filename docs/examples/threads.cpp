@@ -1,4 +1,5 @@
-// One thread inserts scans while another one casts, never waits for it, and is told what is new: threads MAP.bt
+// One thread inserts scans while another one casts, never waits for it, and is told what is new: threads
+// MAP.bt
 #include <frontlux/frontier_set.hpp>
 #include <frontlux/live_map.hpp>
 #include <frontlux/sensor_rays.hpp>
@@ -16,7 +17,8 @@
 
 using namespace frontlux;
 
-// A MapChange is a view, valid until the next update. This holds what it shows; a grid's copy costs one pointer.
+// A MapChange is a view, valid until the next update. This holds what it shows; a grid's copy costs one
+// pointer.
 struct Change {
   VoxelGrid grid;
   std::vector<VoxelKey> keys;

@@ -3,19 +3,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 
-set(folder ${CMAKE_CURRENT_BINARY_DIR}/tours_smoke_test)
-file(REMOVE_RECURSE ${folder})
-file(MAKE_DIRECTORY ${folder})
-
-function(run code)
-  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${folder} RESULT_VARIABLE result OUTPUT_VARIABLE output
-                  ERROR_VARIABLE error)
-  if(NOT result STREQUAL code)
-    message(FATAL_ERROR "exit code ${result} instead of ${code}: ${ARGN}\n${output}\n${error}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-  set(error "${error}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/smoke_test.cmake)
 
 run(0 ${FRONTLUX} explore room --stop-time 25 --threads 1 --report off --quiet -o room)
 run(0 ${BENCH_TOURS} room)

@@ -8,8 +8,8 @@
 
 namespace frontlux {
 
-/// What is new in a map. Everything that is kept up to date with a map takes this one account. It is a view of
-/// what its maker holds, as a rule until the next change: to keep it, copy the grid and the keys.
+/// What is new in a map. Everything that is kept up to date with a map takes this one account. It is a view
+/// of what its maker holds, as a rule until the next change: to keep it, copy the grid and the keys.
 struct MapChange {
   const VoxelGrid& grid;  ///< the map as it is now
   std::span<const VoxelKey> keys =
