@@ -110,8 +110,9 @@ ChangePointer change_between(const Held<VoxelGrid>& before, const Held<VoxelGrid
 void bind_live_map(py::module_& module) {
   py::class_<Change, std::shared_ptr<Change>>(module, "MapChange",
                                               "What is new in a map, for what is kept up to date with it.")
-      .def(py::init(&change_between), py::arg("before"), py::arg("after"),
-           R"(What has changed from one VoxelGrid to another, as from a copy that was kept to the grid that `set_states` wrote to.
+      .def(
+          py::init(&change_between), py::arg("before"), py::arg("after"),
+          R"(What has changed from one VoxelGrid to another, as from a copy that was kept to the grid that `set_states` wrote to.
 
 Insertions and updates return such a change by themselves. Between a grid and its edited copy it costs as much as the edit
 did. Raises ValueError if the resolutions differ.)")

@@ -45,7 +45,8 @@ py::array_t<bool> contains(const View& self, const py::object& offset_object, co
   const auto size = static_cast<std::size_t>(array.size());
   const OthersRun others_run;
   for (std::size_t i = 0; i < size; ++i)
-    data[i] = self->contains({offsets.number(i, 0), offsets.number(i, 1), offsets.number(i, 2)}, yaws.number(i));
+    data[i] =
+        self->contains({offsets.number(i, 0), offsets.number(i, 1), offsets.number(i, 2)}, yaws.number(i));
   return array;
 }
 
@@ -104,9 +105,10 @@ void bind_sensor_rays(py::module_& module) {
           py::arg("opening"), py::arg("max_range"),
           "A sonar with this full opening angle [rad]; max_range in metres.")
       .def_property_readonly("shape", &shape_of, "'spinning', 'pyramid' or 'cone'.")
-      .def_property_readonly("horizontal", &horizontal_of,
-                             "[rad] The full opening angle from left to right, of a cone on all sides; None of a spinning "
-                             "sensor, which sees all around.")
+      .def_property_readonly(
+          "horizontal", &horizontal_of,
+          "[rad] The full opening angle from left to right, of a cone on all sides; None of a spinning "
+          "sensor, which sees all around.")
       .def_property_readonly("vertical", &vertical_of,
                              "[rad] The full opening angle from bottom to top; None of a cone.")
       .def_property_readonly(
