@@ -119,6 +119,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
                                     std::span<const VoxelKey> blocked) {
   rest(robot, pose, time);
   State& state = *state_;
+  state.leave_trail(robot, state.team.lattice().resolution());
   State::Member& member = state.members[robot];
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };
@@ -132,7 +133,7 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
 
 void ContinuousExploration::displaced(std::size_t robot, const Pose& pose, double time) {
   rest(robot, pose, time);
-  state_->leave_trail(robot);
+  state_->leave_trail(robot, 0.0);
   state_->tell_of_stop(robot, time);
 }
 

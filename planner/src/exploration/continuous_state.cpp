@@ -167,11 +167,12 @@ void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vec
   if (last < trail.size()) trail.resize(last + 1);
 }
 
-// A robot that is elsewhere than its trajectory had it goes back over its trail only if it can get there.
-void ContinuousExploration::State::leave_trail(std::size_t robot) {
+// A robot that is farther from its trail than `tolerance` [m] goes back over it only if it can get there.
+void ContinuousExploration::State::leave_trail(std::size_t robot, double tolerance) {
   std::vector<Pose>& trail = team.trails[robot];
   if (trail.empty()) return;
   const Eigen::Vector3d here = members[robot].motion.last().end_pose().position;
+  if ((trail.back().position - here).norm() <= tolerance) return;
   const auto is_free = [&](const VoxelKey& key) { return team.mapping.grid().at(key) == Occupancy::kFree; };
   if (!SegmentVoxels(team.lattice(), trail.back().position, here).all_of(is_free)) trail.clear();
 }
@@ -360,6 +361,9 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))
       planned.step.robots[robot].tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
+  // Others may have found another viewpoint for what it goes on to see.
+  RobotStep& now = planned.step.robots[robot];
+  if (keeps && now.goal.pose && !now.tour.empty()) now.tour.front().pose = *now.goal.pose;
   return planned;
 }
 

@@ -91,7 +91,7 @@ struct ContinuousExploration::State {
   void look_for_blocked(double time);
   void extend_trail(std::size_t robot, double until);
   void cut_trail(std::size_t robot, const Eigen::Vector3d& rests);
-  void leave_trail(std::size_t robot);
+  void leave_trail(std::size_t robot, double tolerance);
   void stay_on_plane(std::size_t robot, Pose& pose, double time) const;
   [[nodiscard]] ExplorationStep collect(double time);
   [[nodiscard]] Keys voxels_of_robots(double time) const;

@@ -39,7 +39,7 @@ std::vector<double> start_yaws(const InformationGain& gain, std::span<const doub
   if (options.start == YawStart::kTangent)
     return limits.allow(tangent) ? std::vector(tangent.begin(), tangent.end())
                                  : limits.even_turn(tangent.front(), tangent.back());
-  const YawBins bins(gain, options.yaw_bins, tangent.front(), tangent.back(), limits);
+  const YawBins bins(gain, options.yaw_bins, tangent, limits);
   return options.start == YawStart::kGreedy ? bins.most_distinct() : bins.most_views();
 }
 
@@ -100,7 +100,9 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   const auto even = limits.even_turn(tangent.front(), tangent.back());
   const auto nothing_to_climb = no_ascent(gain, options);
   const bool reachable = limits.allow(even);
-  const bool turn = !nothing_to_climb || *nothing_to_climb == OptimizationEnd::kAscentOff;
+  // Where nothing is visible, too, if it cannot look along its path: as near to that as the limits allow.
+  const bool turn = !nothing_to_climb || *nothing_to_climb == OptimizationEnd::kAscentOff ||
+                    (*nothing_to_climb == OptimizationEnd::kNothingVisible && !limits.allow(tangent));
 
   if (!reachable)
     path.yaws = even;

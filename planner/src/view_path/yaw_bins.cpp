@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numbers>
 
 namespace frontlux::planner {
@@ -11,24 +12,33 @@ namespace {
 
 constexpr int kMaxSweeps = 20;  // the count of distinct frontiers rises in each but the last; few are needed
 
-std::size_t place_of_largest(std::span<const std::uint32_t> values) {
+constexpr std::int64_t kNearest = 1000;                // along the tangent
+constexpr std::int64_t kView = std::int64_t{1} << 32;  // more than the nearness of all viewpoints
+
+std::size_t place_of_largest(std::span<const std::int64_t> values) {
   return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
 }
 
 }  // namespace
 
-YawBins::YawBins(const InformationGain& gain, int bins, double first_yaw, double last_yaw,
+YawBins::YawBins(const InformationGain& gain, int bins, std::span<const double> tangent,
                  const YawLimits& limits)
-    : gain_(gain), limits_(limits), yaws_(gain.viewpoints()), in_view_(gain.viewpoints()) {
-  const auto even = limits.even_turn(first_yaw, last_yaw);
+    : gain_(gain),
+      limits_(limits),
+      yaws_(gain.viewpoints()),
+      nearness_(gain.viewpoints()),
+      in_view_(gain.viewpoints()) {
+  const auto even = limits.even_turn(tangent.front(), tangent.back());
   std::vector<std::uint8_t> answers;
   for (std::size_t i = 0; i < yaws_.size(); ++i) {
     if (i == 0 || i + 1 == yaws_.size()) {
-      yaws_[i] = {i == 0 ? first_yaw : last_yaw};
+      yaws_[i] = {tangent[i]};
     } else {
       for (int b = 0; b < bins; ++b) yaws_[i].push_back(detail::wrapped(2.0 * std::numbers::pi * b / bins));
       if (limits.limited()) yaws_[i].push_back(even[i]);
     }
+    for (const double yaw : yaws_[i])
+      nearness_[i].push_back(std::llround(0.5 * kNearest * (1.0 + std::cos(yaw - tangent[i]))));
     in_view_[i].assign(gain.frontiers_of(i).size(), 0);
     answers.resize(in_view_[i].size());
     for (std::size_t b = 0; b < yaws_[i].size(); ++b) {
@@ -59,21 +69,21 @@ YawBins::Choice YawBins::best_sequence() const {
   const std::vector<std::uint32_t> none(gain_.frontiers(), 0);
   Choice choice(yaws_.size(), 0);
   if (!limits_.limited()) {
-    for (std::size_t i = 0; i < choice.size(); ++i) choice[i] = place_of_largest(new_views(i, none));
+    for (std::size_t i = 0; i < choice.size(); ++i) choice[i] = place_of_largest(scores(i, none));
     return choice;
   }
   constexpr std::int64_t kImpossible = -1;
   std::vector<std::int64_t> best;  // with which each yaw of the viewpoint at hand can be reached
   std::vector<Choice> from(yaws_.size());
   for (std::size_t i = 0; i < yaws_.size(); ++i) {
-    const auto views = new_views(i, none);
-    std::vector<std::int64_t> next(views.size(), i == 0 ? 0 : kImpossible);
-    from[i].assign(views.size(), 0);
-    for (std::size_t b = 0; b < views.size(); ++b) {
+    const auto here = scores(i, none);
+    std::vector<std::int64_t> next(here.size(), i == 0 ? 0 : kImpossible);
+    from[i].assign(here.size(), 0);
+    for (std::size_t b = 0; b < here.size(); ++b) {
       for (std::size_t a = 0; a < best.size(); ++a)
         if (best[a] > next[b] && limits_.allows(i - 1, yaws_[i - 1][a], yaws_[i][b]))
           next[b] = best[a], from[i][b] = a;
-      if (next[b] != kImpossible) next[b] += views[b];
+      if (next[b] != kImpossible) next[b] += here[b];
     }
     best = std::move(next);
   }
@@ -87,7 +97,7 @@ YawBins::Choice YawBins::best_sequence() const {
 // others are chosen, so a viewpoint is counted anew only when its old count is the highest.
 YawBins::Choice YawBins::greedy_choice(std::vector<std::uint32_t>& covered) const {
   struct Offer {
-    std::uint32_t views;
+    std::int64_t score;
     std::size_t viewpoint, bin, round;
   };
   Choice choice(yaws_.size(), 0);
@@ -96,15 +106,15 @@ YawBins::Choice YawBins::greedy_choice(std::vector<std::uint32_t>& covered) cons
     if (yaws_[i].size() == 1) cover(i, 0, 1, covered);
   }
   const auto offer = [&](std::size_t viewpoint, std::size_t round) {
-    const auto views = new_views(viewpoint, covered);
-    const std::size_t bin = place_of_largest(views);
-    return Offer{views[bin], viewpoint, bin, round};
+    const auto here = scores(viewpoint, covered);
+    const std::size_t bin = place_of_largest(here);
+    return Offer{here[bin], viewpoint, bin, round};
   };
   for (std::size_t i = 0; i < yaws_.size(); ++i)
     if (yaws_[i].size() > 1) open.push_back(offer(i, 0));
   for (std::size_t round = 0; !open.empty();) {
     const auto best = std::max_element(open.begin(), open.end(),
-                                       [](const Offer& a, const Offer& b) { return a.views < b.views; });
+                                       [](const Offer& a, const Offer& b) { return a.score < b.score; });
     if (best->round != round) {
       *best = offer(best->viewpoint, round);
       continue;
@@ -125,10 +135,10 @@ void YawBins::sweep(Choice& choice, std::vector<std::uint32_t>& covered) const {
     for (std::size_t i = 0; i < choice.size(); ++i) {
       if (yaws_[i].size() == 1) continue;
       cover(i, choice[i], kLess, covered);
-      const auto views = new_views(i, covered);
+      const auto here = scores(i, covered);
       std::size_t best = choice[i];
-      for (std::size_t b = 0; b < views.size(); ++b)
-        if (views[b] > views[best] && limits_.allows(i - 1, yaws_[i - 1][choice[i - 1]], yaws_[i][b]) &&
+      for (std::size_t b = 0; b < here.size(); ++b)
+        if (here[b] > here[best] && limits_.allows(i - 1, yaws_[i - 1][choice[i - 1]], yaws_[i][b]) &&
             limits_.allows(i, yaws_[i][b], yaws_[i + 1][choice[i + 1]]))
           best = b;
       turned = turned || best != choice[i];
@@ -138,17 +148,17 @@ void YawBins::sweep(Choice& choice, std::vector<std::uint32_t>& covered) const {
   }
 }
 
-// How many frontiers that no viewpoint covers are in view at each yaw.
-std::vector<std::uint32_t> YawBins::new_views(std::size_t viewpoint,
-                                              std::span<const std::uint32_t> covered) const {
-  std::vector<std::uint32_t> views(yaws_[viewpoint].size(), 0);
+// By the frontiers in view at each yaw that no viewpoint covers.
+std::vector<std::int64_t> YawBins::scores(std::size_t viewpoint,
+                                          std::span<const std::uint32_t> covered) const {
+  std::vector<std::int64_t> scores = nearness_[viewpoint];
   const auto mine = gain_.frontiers_of(viewpoint);
   for (std::size_t p = 0; p < mine.size(); ++p) {
     if (covered[mine[p]] != 0) continue;
     for (std::uint64_t bits = in_view_[viewpoint][p]; bits != 0; bits &= bits - 1)
-      ++views[static_cast<std::size_t>(std::countr_zero(bits))];
+      scores[static_cast<std::size_t>(std::countr_zero(bits))] += kView;
   }
-  return views;
+  return scores;
 }
 
 void YawBins::cover(std::size_t viewpoint, std::size_t bin, std::uint32_t by,

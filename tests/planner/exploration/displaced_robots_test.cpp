@@ -72,8 +72,8 @@ TEST(DisplacedRobots, StayOnTheirPlane) {
 }
 
 // A robot that cannot go on retreats as it came. It did not come through the wall to where its localization
-// has jumped.
-TEST(DisplacedRobots, DoNotRetreatThroughWalls) {
+// has jumped, whether it says that it has or only that it cannot go on.
+void expect_no_retreat_through_walls(bool says_so) {
   RobotDescription robot = small_uav();
   robot.robot.travel.extents = {0.4, 0.4, 0.3};  // so small that its voxel may be occupied beside it
   TeamInMotion scene("maze", {robot}, sim::AtContact::kGoOn, GoalChoice::kTours);
@@ -101,13 +101,16 @@ TEST(DisplacedRobots, DoNotRetreatThroughWalls) {
   }
   ASSERT_TRUE(beyond);
   const double time = scene.time() + 0.01;
-  exploration.displaced(0, *beyond, time);
+  if (says_so) exploration.displaced(0, *beyond, time);
   exploration.stopped(0, *beyond, time, {});  // now it has no corridor
   const auto planned = exploration.plan(time);
   ASSERT_TRUE(planned);
   EXPECT_EQ(planned->step.robots[0].goal.state, GoalState::kNoCorridor);
   EXPECT_EQ(planned->trajectory.length(), 0.0);
 }
+
+TEST(DisplacedRobots, DoNotRetreatThroughWalls) { expect_no_retreat_through_walls(true); }
+TEST(StoppedRobots, DoNotRetreatThroughWalls) { expect_no_retreat_through_walls(false); }
 
 }  // namespace
 }  // namespace frontlux::planner

@@ -5,6 +5,8 @@
 #include "support/random.hpp"
 #include "support/random_view.hpp"
 
+#include <frontlux/planner/path_optimizer.hpp>
+
 namespace frontlux::planner {
 namespace {
 
@@ -61,7 +63,7 @@ TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
     limited_trials += limits.limited() ? 1 : 0;
     const InformationGain gain = scene.gain();
     const double first = scene.path.front().yaw, last = scene.path.back().yaw;
-    const YawBins yaw_bins(gain, static_cast<int>(bins), first, last, limits);
+    const YawBins yaw_bins(gain, static_cast<int>(bins), tangent_yaws(scene.path), limits);
     const auto views = yaw_bins.most_views(), seen = yaw_bins.most_distinct();
     for (const auto& yaws : {views, seen}) {
       ASSERT_EQ(yaws.size(), scene.path.size());
@@ -83,14 +85,31 @@ TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
   EXPECT_GE(static_cast<double>(distinct), 0.97 * static_cast<double>(most_distinct));
 }
 
-TEST(YawBins, OfEqualYawsTheFirstIsChosen) {
-  Scene scene{std::vector<Pose>(4), {}, {}, test::camera()};
+TEST(YawBins, OfYawsThatSeeAsManyTheNearestToThePathIsChosen) {
+  Scene scene{std::vector<Pose>(9), {}, {}, test::camera()};
+  for (std::size_t i = 0; i < scene.path.size(); ++i)
+    scene.path[i].position = {0.0, 0.4 * static_cast<double>(i), 0.0};
   scene.path.front().yaw = 1.0, scene.path.back().yaw = 2.0;
-  const InformationGain gain = scene.gain();
-  const YawLimits none(scene.path, kInfinity, kInfinity);
-  const YawBins bins(gain, YawBins::kMaxBins, 1.0, 2.0, none);
-  EXPECT_EQ(bins.most_views(), (std::vector{1.0, 0.0, 0.0, 2.0}));
-  EXPECT_EQ(bins.most_distinct(), (std::vector{1.0, 0.0, 0.0, 2.0}));
+  const double along = std::numbers::pi / 2;
+  for (const double step : {kInfinity, 0.6})
+    for (const bool seen : {false, true}) {
+      scene.frontiers.clear(), scene.list.clear();
+      if (seen) {  // by the fifth alone, beside the path
+        scene.frontiers = {scene.path[4].position + Eigen::Vector3d(3.0, 0.0, 0.0)};
+        scene.list = {{4, 0}};
+      }
+      const InformationGain gain = scene.gain();
+      const YawLimits limits(scene.path, step, kInfinity);
+      const YawBins bins(gain, 24, tangent_yaws(scene.path), limits);
+      for (const auto& yaws : {bins.most_views(), bins.most_distinct()}) {
+        EXPECT_EQ(test::distinct_by_hand(scene, yaws), seen ? 1U : 0U);
+        EXPECT_NEAR(yaws[2], along, seen && limits.limited() ? 0.6 : 1e-9);
+        EXPECT_NEAR(yaws[6], along, seen && limits.limited() ? 0.6 : 1e-9);
+        if (!seen) {
+          EXPECT_NEAR(yaws[4], along, 1e-9);
+        }
+      }
+    }
 }
 
 }  // namespace
