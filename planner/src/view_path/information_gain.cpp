@@ -124,6 +124,12 @@ InformationGain::InformationGain(std::span<const Pose> viewpoints, std::span<con
   }
 }
 
+InformationGain::~InformationGain() = default;
+InformationGain::InformationGain(const InformationGain&) = default;
+InformationGain& InformationGain::operator=(const InformationGain&) = default;
+InformationGain::InformationGain(InformationGain&&) noexcept = default;
+InformationGain& InformationGain::operator=(InformationGain&&) noexcept = default;
+
 void InformationGain::check_yaws(std::span<const double> yaws) const {
   check_size("yaws", yaws.size(), viewpoints());
   for (std::size_t i = 0; i < yaws.size(); ++i)

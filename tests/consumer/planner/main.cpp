@@ -2,6 +2,7 @@
 
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/exploration.hpp>
+#include <frontlux/planner/information_gain.hpp>
 #include <frontlux/sensor_rays.hpp>
 
 #include <octomap/OcTree.h>
@@ -49,6 +50,17 @@ int main(int, char** arguments) {
                [&](const VoxelKey& key) { start.known_free.push_back(key); });
   exploration.begin({&start, 1}, drive);
   while (!exploration.end()) exploration.step(drive);
+
+  // What holds Eigen's arrays is moved and destroyed here, but was made in the library.
+  const Pose pose{{0.0, 0.0, 1.0}, 0.0};
+  const Eigen::Vector3d ahead(1.0, 0.0, 1.0);
+  const VisiblePair pair{0, 0};
+  const VisiblePairs pairs(1, 1, {&pair, 1});
+  const double yaw = 0.0;
+  InformationGain gain({&pose, 1}, {&ahead, 1}, pairs, uav.robot.view);
+  const InformationGain copy = gain;
+  gain = InformationGain({&pose, 1}, {&ahead, 1}, pairs, uav.robot.view);
+  if (gain.distinct({&yaw, 1}) != 1 || copy.distinct({&yaw, 1}) != 1) return 1;
 
   const std::vector<VoxelKey> there = keys_in(room, Occupancy::kFree);
   const auto found = std::ranges::count_if(

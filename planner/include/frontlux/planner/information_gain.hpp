@@ -60,6 +60,12 @@ class FRONTLUX_EXPORT InformationGain {
   /// @param pairs       which of these viewpoints sees which of these frontiers
   InformationGain(std::span<const Pose> viewpoints, std::span<const Eigen::Vector3d> frontiers,
                   const VisiblePairs& pairs, const FieldOfView& view, const GainOptions& options = {});
+  // Not inline: code that is compiled for other processors frees Eigen's arrays otherwise.
+  ~InformationGain();
+  InformationGain(const InformationGain&);
+  InformationGain& operator=(const InformationGain&);
+  InformationGain(InformationGain&&) noexcept;
+  InformationGain& operator=(InformationGain&&) noexcept;
 
   /// Number of viewpoints of the path.
   [[nodiscard]] std::size_t viewpoints() const { return positions_.size(); }
