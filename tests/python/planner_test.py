@@ -134,6 +134,13 @@ class Robots(unittest.TestCase):
             exploration.begin([room().start])
             self.assertEqual(exploration.grid.count()[Occupancy.FREE], voxels.sum(), body)
 
+    def test_a_robot_on_nodes_leaves_a_start_beside_the_middle_of_its_node(self):
+        robot = planner.Robot("r", "space", (0.8, 0.8, 0.8), drone().view, 48, 36, 4.0, node_edge=1.2, min_height=0.6)
+        exploration = planner.ContinuousExploration([robot], room().bounds, 0.1)
+        exploration.begin([(1.45, 1.25, 1.45, 0.4)])
+        planner.run(exploration, sense_for(exploration), until=6.0)
+        self.assertGreater(np.linalg.norm(exploration.at(0, 6.0)["pose"][:3] - (1.45, 1.25, 1.45)), 0.3)
+
     def test_values_are_kept_and_bad_ones_named(self):
         robot = drone()
         self.assertEqual((robot.name, robot.motion, robot.columns, robot.rows, robot.rate), ("drone", "space", 48, 36, 4.0))
@@ -142,7 +149,10 @@ class Robots(unittest.TestCase):
         self.assertEqual(rover.motion, "ground")
         good = {"name": "r", "motion": "plane", "box": (1, 1, 1), "view": robot.view, "columns": 8, "rows": 8}
         planner.Robot(**good)
+        with self.assertRaisesRegex(ValueError, "ground: .*space"):
+            planner.Robot(**{**good, "motion": "space", "ground": (0.5, 0.5)})
         for name, value, error in [
+                ("min_height", 0.5, ValueError), ("node_edge", 1.2, ValueError),
                 ("name", "", ValueError), ("name", 3, TypeError), ("motion", "water", ValueError), ("step", 0, ValueError), ("slope", 2, ValueError), ("box", (1, 1), ValueError),
                 ("box", (1, 1, NAN), ValueError), ("box", np.ones((3, 3)), ValueError), ("box", "big", TypeError),
                 ("view", None, TypeError), ("columns", 0, ValueError), ("columns", -1, TypeError), ("rows", 2**40, ValueError),
@@ -153,7 +163,7 @@ class Robots(unittest.TestCase):
             with self.assertRaisesRegex(error, name if error is ValueError else ""):
                 planner.Robot(**{**good, name: value})
         for body, box in (("cylinder", (0.5, 0.6, 0.5)), ("sphere", (0.5, 0.5, 0.6)), ("sphere", (0.6, 0.5, 0.5))):
-            with self.assertRaisesRegex(ValueError, f"box: of a {body} x"):
+            with self.assertRaisesRegex(ValueError, f"box: .*{max(box)}.* of a {body} x"):
                 planner.Robot(**{**good, "body": body, "box": box})
         with self.assertRaisesRegex(ValueError, "node_edge: 0.9, but has to be 1.0 to"):
             planner.Robot(**{**good, "motion": "space", "node_edge": 0.9})
@@ -248,6 +258,28 @@ class InMotion(unittest.TestCase):
         self.assertAlmostEqual(exploration.known_volume, (counts[1] + counts[2]) * 0.2**3)
         self.check_plans(plans, exploration.robots[0])
 
+    def test_a_run_goes_on_from_the_map_of_one_that_has_crashed(self):
+        crashed = in_motion()
+        planner.run(crashed, sense_for(crashed), until=8.0)
+        self.assertIsNone(crashed.end)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "map.ot"
+            crashed.write(file)
+            exploration = planner.ContinuousExploration([drone()], room().bounds, 0.2, known=file)
+            self.assertEqual(exploration.grid, crashed.grid)
+            in_steps = planner.Exploration([drone()], room().bounds, 0.2, known=str(file))
+            self.assertEqual(in_steps.grid, crashed.grid)
+            with self.assertRaisesRegex(RuntimeError, "no.ot"):
+                planner.ContinuousExploration([drone()], room().bounds, 0.2, known=file.with_name("no.ot"))
+            with self.assertRaisesRegex(ValueError, "map.ot.*0.2.*0.3"):
+                planner.ContinuousExploration([drone()], room().bounds, 0.3, known=file)
+        exploration.begin([crashed.at(0, crashed.time)["pose"]], time=100.0)
+        end = planner.run(exploration, sense_for(exploration), until=400.0)
+        self.assertIsNotNone(exploration.end)
+        self.assertGreater(room().known(exploration.grid), 0.95)
+        from_nothing = in_motion()
+        self.assertLess(end - 100.0, planner.run(from_nothing, sense_for(from_nothing), until=300.0))
+
     def check_plans(self, plans, robot):
         for plan in plans:
             trajectory, step = plan.trajectory, plan.step
@@ -260,6 +292,7 @@ class InMotion(unittest.TestCase):
             np.testing.assert_array_equal(trajectory.at(trajectory.end)["velocity"], 0)
             self.assertEqual(step.goals.shape, (1, 4))
             self.assertEqual(len(step.goal_states), 1)
+            self.assertRegex(step.goal_reasons[0], "^(goal for|stop 1 of) " if np.isfinite(step.goals).all() else "^no goal: ")
             self.assertEqual(step.poses[0].shape[1], 4)
             self.assertEqual(step.tours[0]["pose"].shape, (len(step.tours[0]["clusters"]), 4))
             self.assertEqual(set(step.seconds), {"frontiers", "caster", "goals", "paths", "optimization", "moving"})
@@ -539,13 +572,16 @@ class Refusals(unittest.TestCase):
         with self.assertRaisesRegex(error, pattern):
             function(*args, **kwargs)
 
+    def test_clocks(self):
+        self.refuses(ValueError, "until", planner.run, in_motion(), sense_for(in_motion()), until=NAN)
+
     def test_teams(self):
         make, bounds = planner.ContinuousExploration, room().bounds
         self.refuses(ValueError, "no robot", make, [], bounds)
         self.refuses(TypeError, "incompatible", make, [None], bounds)
         self.refuses(TypeError, "incompatible", make, drone(), bounds)
         self.refuses(ValueError, r"bounds: has to be of shape \(2, 3\)", make, [drone()], (0.0, 0.0, 0.0))
-        self.refuses(ValueError, "holds no voxel", make, [drone()], bounds[::-1])
+        self.refuses(ValueError, "lower corner first", make, [drone()], bounds[::-1])
         self.refuses(ValueError, "bounds: not finite", make, [drone()], ((0.0, 0.0, 0.0), (1.0, 1.0, NAN)))
         self.refuses(ValueError, "resolution", make, [drone()], bounds, -0.1)
         self.refuses(ValueError, "robot 'drone': .*extents", make, [drone()], ((0.0, 0.0, 0.0), (0.1, 0.1, 0.1)), 0.0001)

@@ -18,6 +18,8 @@ def run(exploration, sense, until=math.inf, planned=None):
     Scans are due at multiples of their periods since the exploration's begin, so that some runs one after the other are the same
     as one. What was due before `exploration.time` is left out; a scan whose `sense` raised an exception is due again.
     """
+    if math.isnan(until):
+        raise ValueError("until: not a number")
     begin, now = exploration.begin_time, exploration.time
     if begin is None:
         raise ValueError("the exploration has not begun: call begin first")

@@ -26,7 +26,8 @@ struct Continuous {
   std::set<std::size_t> lost{};
   std::size_t frontiers = 0;  // at the last planning
 
-  explicit Continuous(Team given) : team(std::move(given)), exploration(team.options, Mapping(team.map)) {}
+  Continuous(Team given, Mapping mapping)
+      : team(std::move(given)), exploration(team.options, std::move(mapping)) {}
 
   void expect_begun() const {
     if (!begun) throw std::invalid_argument("the exploration has not begun: call begin first");
@@ -50,11 +51,12 @@ using PlanPointer = std::shared_ptr<Plan>;
 
 Self make(const std::vector<std::shared_ptr<planner::RobotDescription>>& robots, const py::object& bounds,
           double resolution, const std::string& goal, std::uint64_t seed, double latency, double period,
-          std::optional<double> epsilon, std::optional<int> max_steps, const std::string& sensor_model) {
+          std::optional<double> epsilon, std::optional<int> max_steps, const std::string& sensor_model,
+          const std::optional<std::filesystem::path>& known) {
   const Team team = team_in_motion({robots, bounds, resolution, goal, seed, epsilon, max_steps, sensor_model},
                                    latency, period);
   const OthersRun others_run;
-  return std::make_shared<Guarded<Continuous>>(team);
+  return std::make_shared<Guarded<Continuous>>(team, mapping_of(team, known));
 }
 
 StepPointer begin(const Self& self, const py::object& object, double time, double free_radius) {
@@ -191,7 +193,7 @@ does not go back. Methods may be called from several threads; they wait for each
       .def(py::init(&make), py::arg("robots"), py::arg("bounds"), py::arg("resolution") = 0.3,
            py::arg("goal") = "tour", py::arg("seed") = 1, py::arg("latency") = 0.1, py::arg("period") = 1.0,
            py::arg("epsilon") = py::none(), py::arg("max_steps") = py::none(),
-           py::arg("sensor_model") = "octomap",
+           py::arg("sensor_model") = "octomap", py::arg("known") = py::none(),
            R"(A team, in the order in which robots choose: those on the ground first.
 
 robots: list of Robot. bounds: (2, 3) [m], lower and upper corner of what is explored, bottom included; memory grows with it.
@@ -201,7 +203,8 @@ period: [s] after which a robot plans anew at the latest. epsilon: frontiers tha
 tour shows at least; without tours, that a goal has to show, else the end is near. None: 10, with 'nearest' 1, with 'tour' not
 less than 0.3 m2 nor more than 0.9 m2 of them. max_steps: plannings at most; None: any number.
 sensor_model: what a scan says of a voxel: 'octomap', its own weights; 'cautious', a ray that ends in it outweighs five scans
-that pass it: fewer walls are freed at grazing angles, but stray returns close more of the space.)")
+that pass it: fewer walls are freed at grazing angles, but stray returns close more of the space.
+known: an OctoMap file of this resolution with what is known already, as write makes it; None: nothing is.)")
       .def("begin", &begin, py::arg("starts"), py::arg("time") = 0.0, py::arg("free_radius") = 0.0,
            R"(All robots rest at their starts. Returns Step 0.
 

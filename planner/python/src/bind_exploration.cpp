@@ -20,7 +20,8 @@ using StepPointer = std::shared_ptr<ExplorationStep>;
 /// raises, the exploration is over: it keeps what it has mapped until then.
 class LockStep {
  public:
-  explicit LockStep(Team team) : team_(std::move(team)), exploration_(team_.options, Mapping(team_.map)) {}
+  LockStep(Team team, Mapping mapping)
+      : team_(std::move(team)), exploration_(team_.options, std::move(mapping)) {}
 
   [[nodiscard]] const Team& team() const { return team_; }
 
@@ -112,13 +113,14 @@ namespace {
 
 Self make(const std::vector<std::shared_ptr<planner::RobotDescription>>& robots, const py::object& bounds,
           double resolution, const std::string& method, const std::optional<std::string>& goal,
-          std::uint64_t seed, std::optional<double> epsilon, std::optional<int> max_steps) {
+          std::uint64_t seed, std::optional<double> epsilon, std::optional<int> max_steps,
+          const std::optional<std::filesystem::path>& known) {
   if (method != "default" && method != "paper")
     throw py::value_error("method: '" + method + "', but has to be 'default' or 'paper'");
   const Team team =
       team_in_lockstep({robots, bounds, resolution, goal, seed, epsilon, max_steps}, method == "paper");
   const OthersRun others_run;
-  return std::make_shared<LockStep>(team);
+  return std::make_shared<LockStep>(team, mapping_of(team, known));
 }
 
 template <class Value>
@@ -148,10 +150,10 @@ or a scan that is refused, ends the exploration: step and begin raise RuntimeErr
 as they are at that moment. Methods may be called from several threads; they wait for each other.)")
       .def(py::init(&make), py::arg("robots"), py::arg("bounds"), py::arg("resolution") = 0.3,
            py::arg("method") = "default", py::arg("goal") = py::none(), py::arg("seed") = 1,
-           py::arg("epsilon") = py::none(), py::arg("max_steps") = py::none(),
+           py::arg("epsilon") = py::none(), py::arg("max_steps") = py::none(), py::arg("known") = py::none(),
            R"(A team, in the order in which robots choose: those on the ground first.
 
-robots, bounds, resolution, seed: as those of ContinuousExploration. method: 'default', what works best; 'paper', as printed.
+robots, bounds, resolution, seed, known: as those of ContinuousExploration. method: 'default', what works best; 'paper', as printed.
 goal: 'render', the best view quality; 'cluster'; 'nearest'; None: as the method has it. epsilon: steps that expect to see
 fewer frontiers end it, three in a row; None: 10, with 'paper' and 'nearest' 1. max_steps: at most; None: 1000.)")
       .def(

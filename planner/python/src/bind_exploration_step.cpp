@@ -77,6 +77,14 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
           },
           "r words: 'assigned', 'received' or 'uncovered', whose frontiers the goal is for; 'no_corridor', "
           "'no_frontiers', 'nothing_assigned' or 'nothing_visible', why there is none.")
+      .def_property_readonly(
+          "goal_reasons",
+          [](const Self& self) {
+            std::vector<std::string> reasons;
+            for (const RobotStep& robot : self->robots) reasons.push_back(robot.goal.reason);
+            return reasons;
+          },
+          "r sentences: the same in words, as 'no goal: the map has no frontiers'.")
       .def_property_readonly("goal_gains",
                              of_robots<double>([](const RobotStep& robot) { return robot.goal.gain; }),
                              "float64 (r,): frontiers that the goals are expected to see.")

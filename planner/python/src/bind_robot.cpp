@@ -50,10 +50,12 @@ void set_body(TravelOptions& travel, const std::string& body, const Eigen::Vecto
   const auto shape = planner::body_shape_named(body);
   if (!shape) throw py::value_error("body: '" + body + "', but has to be 'box', 'cylinder' or 'sphere'");
   const bool wide = box.x() != box.y(), high = box.y() != box.z();
-  if (*shape == BodyShape::kCylinder && wide)
-    throw py::value_error("box: of a cylinder x and y have to be equal, its diameter");
-  if (*shape == BodyShape::kSphere && (wide || high))
-    throw py::value_error("box: of a sphere x, y and z have to be equal, its diameter");
+  const auto refuse = [&](const char* what) {
+    throw py::value_error("box: (" + std::to_string(box.x()) + ", " + std::to_string(box.y()) + ", " +
+                          std::to_string(box.z()) + "), but of a " + what + ", its diameter");
+  };
+  if (*shape == BodyShape::kCylinder && wide) refuse("cylinder x and y have to be equal");
+  if (*shape == BodyShape::kSphere && (wide || high)) refuse("sphere x, y and z have to be equal");
   travel.shape = *shape;
   travel.extents = box;
 }
@@ -76,9 +78,15 @@ Self make(const std::string& name, const std::string& motion, const py::object& 
   travel.margin = within("margin", margin, 0.0, 100.0, "m");
   travel.sensor_height = within("sensor_height", sensor_height, 0.0, 100.0, "m");
   travel.require_ground = require_ground;
-  if (!ground.is_none()) travel.ground_extents = edges_of<2>("ground", ground);
+  if (!ground.is_none()) {
+    if (!travel.drives()) throw py::value_error("ground: a robot in space stands on none");
+    travel.ground_extents = edges_of<2>("ground", ground);
+  }
   travel.step = within("step", step, 0.001, 10.0, "m");
   travel.slope = within("slope", slope, 0.0, 80.0 * kDegree, "rad");
+  if (min_height && travel.drives())
+    throw py::value_error("min_height: only a robot in space keeps a height, but its motion is '" + motion +
+                          "'");
   travel.min_height = within("min_height", min_height.value_or(travel.extents.z() / 2), 0.0, 100.0, "m");
   if (node_edge) {
     if (travel.drives()) throw py::value_error("node_edge: only a robot in space moves through nodes");

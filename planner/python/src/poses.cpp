@@ -19,8 +19,7 @@ SensorPose sensor_pose(const char* name, const py::object& object, const Lattice
   SensorPose pose;
   if (numbers.shape() == Shape{4}) {
     pose.T_map_sensor = pose_of(numbers);
-    const Eigen::Vector3d forward = pose.T_map_sensor.linear().col(0);
-    pose.upright = {pose.T_map_sensor.translation(), std::atan2(forward.y(), forward.x())};
+    pose.upright = {pose.T_map_sensor.translation(), planner::yaw_along(pose.T_map_sensor.linear().col(0))};
   } else if (numbers.shape().empty()) {
     pose.upright = {{numbers.number(0, 0), numbers.number(0, 1), numbers.number(0, 2)}, numbers.number(0, 3)};
     pose.T_map_sensor = Eigen::Translation3d(pose.upright.position) *

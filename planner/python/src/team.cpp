@@ -1,5 +1,6 @@
 #include "team.hpp"
 
+#include <frontlux/octomap.hpp>
 #include <frontlux/planner/exploration_start.hpp>
 #include <frontlux/planner/goal_search.hpp>
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <variant>
 
 namespace frontlux::python {
 namespace {
@@ -72,9 +74,8 @@ Team make_team(const TeamArguments& arguments, bool lockstep, Method method) {
   options.max_steps = arguments.max_steps.value_or(options.max_steps);
   for (const auto& description : arguments.robots) {
     const Robot robot = robot_above(*description, lattice, team.map.bounds);
-    planner::GoalOptions goal =
-        lockstep ? planner::goal_options(robot, method, options.epsilon)
-                 : planner::motion_goal_options(robot, method, options.epsilon);
+    planner::GoalOptions goal = lockstep ? planner::goal_options(robot, method, options.epsilon)
+                                         : planner::motion_goal_options(robot, method, options.epsilon);
     goal.rule = rule.value_or(goal.rule);
     goal.rendering.seed = arguments.seed;
     options.team.push_back({robot, goal});
@@ -103,6 +104,19 @@ Team team_in_lockstep(const TeamArguments& arguments, bool paper) {
   Team team = make_team(arguments, true, paper ? Method::kPaper : Method::kDefault);
   team.options.check();
   return team;
+}
+
+planner::Mapping mapping_of(const Team& team, const std::optional<std::filesystem::path>& known) {
+  if (!known) return planner::Mapping(team.map);
+  const Octree read = read_octree(*known);
+  const auto* const tree = std::get_if<std::shared_ptr<octomap::OcTree>>(&read);
+  if (tree == nullptr)
+    throw std::invalid_argument("known: '" + known->string() + "' has colours, but has to be without");
+  try {
+    return {team.map, **tree};
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("known: '" + known->string() + "': " + error.what());
+  }
 }
 
 std::vector<ExplorationStart> starts_of(const Team& team, const py::object& object, double free_radius) {

@@ -7,6 +7,7 @@
 #include <frontlux/planner/robot.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,12 @@ struct TeamArguments {
   std::optional<int> max_steps;
   std::string sensor_model = "octomap";
 };
+
+/// What a team knows at the beginning: nothing, or the map in a file.
+/// @throws std::invalid_argument naming the file, if it has colours or another resolution;
+///         std::runtime_error from `read_octree`
+[[nodiscard]] planner::Mapping mapping_of(const Team& team,
+                                          const std::optional<std::filesystem::path>& known);
 
 /// Of robots in motion.
 /// @throws py::value_error naming the argument; std::invalid_argument naming the robot's value

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "exploration/conservative_map.hpp"
 #include "frontier/abandoned_frontiers.hpp"
+#include "mapping/conservative_map.hpp"
 #include "tour/tour_planning.hpp"
 
 #include <frontlux/frontier_set.hpp>

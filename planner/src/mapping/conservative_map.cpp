@@ -1,4 +1,4 @@
-#include "exploration/conservative_map.hpp"
+#include "mapping/conservative_map.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exploration/hit_points.hpp"
+#include "mapping/hit_points.hpp"
 
 #include <frontlux/voxel_grid.hpp>
 

@@ -1,4 +1,4 @@
-#include "exploration/hit_points.hpp"
+#include "mapping/hit_points.hpp"
 
 #include <frontlux/key_box.hpp>
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -20,6 +21,17 @@ void check(const SensorModel& sensor) {
                               std::to_string(miss) + ", least " + std::to_string(least) + " and most " +
                               std::to_string(most) +
                               ", but 0 < least < miss < 0.5 < hit < most < 1 has to hold");
+}
+
+void check(const MappingOptions& options) {
+  if (!(std::isfinite(options.surface_depth) && options.surface_depth >= 0.0))
+    throw std::invalid_argument("surface_depth is " + std::to_string(options.surface_depth) +
+                                " m, but has to be finite and not negative");
+  if (!options.bounds.contains(options.bounds.min) || !options.bounds.contains(options.bounds.max))
+    throw std::invalid_argument(
+        "the bounds of the map hold no voxel: their lowest key lies above their highest");
+  check(options.sensor_model);
+  static_cast<void>(Lattice(options.resolution));  // refuses what is no length before OctoMap sees it
 }
 
 }  // namespace
@@ -49,6 +61,11 @@ KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box) {
   const Eigen::Array3d first = (low + kOnFace).floor().max(0.0),
                        last = ((high - kOnFace).ceil() - 1.0).min(Lattice::kKeysPerAxis - 1.0);
   for (Eigen::Index a = 0; a < 3; ++a)
+    if (box.min()[a] > box.max()[a])
+      throw std::invalid_argument("the box goes from " + std::to_string(box.min()[a]) + " m to " +
+                                  std::to_string(box.max()[a]) + " m along " + "xyz"[a] +
+                                  ": give the lower corner first");
+  for (Eigen::Index a = 0; a < 3; ++a)
     if (!(low[a] < high[a]) || !(first[a] <= last[a]))
       throw std::invalid_argument("the box from " + std::to_string(box.min()[a]) + " m to " +
                                   std::to_string(box.max()[a]) + " m along " + "xyz"[a] +
@@ -74,6 +91,12 @@ struct Mapping::State {
   explicit State(const MappingOptions& options)
       : tree(options.resolution, options.sensor_model),
         grid(options.resolution),
+        bounds(options.bounds),
+        surface_depth(options.surface_depth) {}
+
+  State(const MappingOptions& options, const octomap::OcTree& known)
+      : tree(known, options.sensor_model),
+        grid(make_voxel_grid(tree)),
         bounds(options.bounds),
         surface_depth(options.surface_depth) {}
 
@@ -106,15 +129,19 @@ struct Mapping::State {
 };
 
 Mapping::Mapping(const MappingOptions& options) {
-  if (!(std::isfinite(options.surface_depth) && options.surface_depth >= 0.0))
-    throw std::invalid_argument("surface_depth is " + std::to_string(options.surface_depth) +
-                                " m, but has to be finite and not negative");
-  if (!options.bounds.contains(options.bounds.min) || !options.bounds.contains(options.bounds.max))
-    throw std::invalid_argument(
-        "the bounds of the map hold no voxel: their lowest key lies above their highest");
-  check(options.sensor_model);
-  static_cast<void>(Lattice(options.resolution));  // refuses what is no length before OctoMap sees it
+  check(options);
   state_ = std::make_unique<State>(options);
+}
+Mapping::Mapping(const MappingOptions& options, const octomap::OcTree& known) {
+  check(options);
+  if (known.getResolution() != options.resolution) {
+    std::ostringstream text;
+    text.precision(12);
+    text << "the map that is known has voxels of " << known.getResolution() << " m, but "
+         << options.resolution << " m are asked for";
+    throw std::invalid_argument(text.str());
+  }
+  state_ = std::make_unique<State>(options, known);
 }
 Mapping::~Mapping() = default;
 Mapping::Mapping(Mapping&&) noexcept = default;

@@ -48,11 +48,13 @@ struct StateChange {
 /// for each voxel below. What it leaves behind is what `updateNode` for each voxel would, pruning included.
 class ScanTree : public octomap::OcTree {
  public:
-  ScanTree(double in_resolution, const SensorModel& sensor) : octomap::OcTree(in_resolution) {
-    setProbHit(sensor.hit);
-    setProbMiss(sensor.miss);
-    setClampingThresMin(sensor.least);
-    setClampingThresMax(sensor.most);
+  ScanTree(double in_resolution, const SensorModel& sensor) : octomap::OcTree(in_resolution) { use(sensor); }
+  /// Begins with the nodes of a tree.
+  ScanTree(const octomap::OcTree& known, const SensorModel& sensor) : octomap::OcTree(known) {
+    setOccupancyThres(0.5);
+    enableChangeDetection(false);
+    resetChangeDetection();
+    use(sensor);
   }
 
   /// @param bricks   in octree order
@@ -79,6 +81,13 @@ class ScanTree : public octomap::OcTree {
 
  private:
   static constexpr int kLevelsAboveBricks = 13;
+
+  void use(const SensorModel& sensor) {
+    setProbHit(sensor.hit);
+    setProbMiss(sensor.miss);
+    setClampingThresMin(sensor.least);
+    setClampingThresMax(sensor.most);
+  }
 
   [[nodiscard]] float updated(float log_odds, bool hit) const {
     return std::clamp(log_odds + (hit ? prob_hit_log : prob_miss_log), clamping_thres_min,

@@ -24,7 +24,8 @@ void expect_free(const ExplorationStart& start, const IsFree& is_free) {
   std::size_t counted = 0;
   for_each_key(grown({at, at}, 30), [&](const VoxelKey& key) {
     const bool expected = is_free(kLattice.exact_center(key) - start.pose.position);
-    ASSERT_EQ(known.contains(key), expected) << (kLattice.exact_center(key) - start.pose.position).transpose();
+    ASSERT_EQ(known.contains(key), expected)
+        << (kLattice.exact_center(key) - start.pose.position).transpose();
     counted += expected ? 1 : 0;
   });
   EXPECT_EQ(counted, known.size());
@@ -41,6 +42,21 @@ TEST(ExplorationStart, IsABallAroundABodyInSpace) {
   expect_free(start_at(kLattice, robot, pose, 1.234),
               [&](const Eigen::Vector3d& offset) { return in_body(offset) || offset.norm() <= 1.234; });
   EXPECT_EQ(start_at(kLattice, robot, pose).pose.yaw, 0.3);
+}
+
+// The node is not around the body's middle: one of eight voxels along each axis, aligned.
+TEST(ExplorationStart, IsANodeBesideABodyThatMovesThroughNodes) {
+  Robot robot = uav();
+  robot.travel.extents = {0.5, 0.5, 0.3};
+  robot.travel.node_edge = 0.8;
+  const VoxelKey at{32769, 32774, 32771};
+  const Pose pose{kLattice.exact_center(at), 0.0};
+  expect_free(start_at(kLattice, robot, pose), [&](const Eigen::Vector3d& offset) {
+    const bool in_body =
+        std::abs(offset.x()) < 0.26 && std::abs(offset.y()) < 0.26 && std::abs(offset.z()) < 0.16;
+    const Eigen::Vector3d place = pose.position + offset;  // the node reaches from 0 to 0.8 m
+    return in_body || (place.minCoeff() > 0.0 && place.maxCoeff() < 0.8);
+  });
 }
 
 // The body is 0.7 m high, and the sensor in the middle of the voxel that is number 7 from the floor up.

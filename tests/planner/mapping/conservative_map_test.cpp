@@ -1,6 +1,6 @@
 // The map in motion: surfaces stay in it, what is gone does not.
 
-#include "exploration/conservative_map.hpp"
+#include "mapping/conservative_map.hpp"
 
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"

@@ -1,6 +1,6 @@
 // Voxels in which rays have ended, until others pass the very points.
 
-#include "exploration/hit_points.hpp"
+#include "mapping/hit_points.hpp"
 
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"

@@ -1,6 +1,7 @@
 #include "octomap/quiet_octomap.hpp"
 #include "support/complaint.hpp"
 #include "support/folder_test.hpp"
+#include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 
@@ -128,7 +129,7 @@ TEST(Mapping, PointsEqualInsertPointCloud) {
       const SensorModel& sensor = resolution == 0.25 ? kCautiousSensorModel : kOctomapSensorModel;
       Mapping mapping({.resolution = resolution, .sensor_model = sensor});
       OcTree oracle = tree_with(resolution, sensor);
-      for (int scan = 0; scan < 25; ++scan) {
+      for (int scan = 0; scan < (test::long_mode() ? 25 : 10); ++scan) {
         const auto origin = random_origin(random, resolution);
         auto points = adversarial_points(random, origin, resolution, 6.0, 1 + random.below(600));
         points.insert(points.end(), {{kNan, 0.F, 0.F}, {1.F, kNan, kNan}});
@@ -267,7 +268,7 @@ TEST(Mapping, ScansEqualTheirDefinitionAndTheMirrorFollows) {
 // Rays that go far beyond the bounds: from inside them they are not followed to their ends.
 TEST(Mapping, RaysBeyondTheBoundsEqualTheirDefinition) {
   Random random(7);
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < (test::long_mode() ? 40 : 15); ++round) {
     const MappingOptions options{.resolution = 0.3, .bounds = box(-12, random.below(12))};
     Mapping mapping(options);
     ScanOracle oracle(options);
@@ -353,6 +354,51 @@ TEST(Mapping, MarksVoxelsFree) {
       }
     });
   }
+}
+
+// From a copy of any tree on, however full, pruned or large its nodes: as if all had gone into one map.
+TEST(Mapping, GoesOnFromWhatIsKnown) {
+  Random random(91);
+  for (int round = 0; round < 20; ++round) {
+    const MappingOptions options{.resolution = 0.3, .bounds = cube({32750, 32750, 32750}, 36)};
+    Mapping whole(options);
+    for (int i = 0; i < 5; ++i) whole.insert(random_scan(random, 0.3, 1 + random.below(1500)));
+    Mapping second(options, whole.tree());
+    const OcTree before(whole.tree());
+    EXPECT_TRUE(second.grid() == whole.grid());
+    for (int i = 0; i < 5; ++i) {
+      const Scan scan = random_scan(random, 0.3, 1 + random.below(1500));
+      const auto changed = second.insert(scan).keys;
+      ASSERT_TRUE(std::ranges::equal(changed, whole.insert(scan).keys)) << round << ", " << i;
+      expect_same_nodes(second.tree(), whole.tree(), "round " + std::to_string(round));
+      if (HasFatalFailure()) return;
+      ASSERT_TRUE(second.grid() == make_voxel_grid(whole.tree())) << round << ", " << i;
+    }
+    EXPECT_GT(whole.tree().size(), before.size());
+  }
+}
+
+TEST(Mapping, TakesFromWhatIsKnownItsNodesOnly) {
+  const SensorModel other{.hit = 0.9, .miss = 0.3, .least = 0.05, .most = 0.99};
+  OcTree known = tree_with(0.3, other);
+  known.setOccupancyThres(0.8);
+  known.enableChangeDetection(true);
+  const octomap::OcTreeKey inside(32768, 32768, 32768), outside(32700, 32768, 32768);
+  known.setNodeValue(inside, octomap::logodds(0.7));  // free by the tree's own threshold
+  known.setNodeValue(outside, octomap::logodds(0.2));
+  const MappingOptions options{.resolution = 0.3, .bounds = cube({32760, 32760, 32760}, 16)};
+  Mapping mapping(options, known);
+  EXPECT_EQ(mapping.grid().at({32768, 32768, 32768}), Occupancy::kOccupied);
+  EXPECT_EQ(mapping.grid().at({32700, 32768, 32768}), Occupancy::kFree);
+  EXPECT_EQ(mapping.grid().count()[1] + mapping.grid().count()[2], 2U);
+  EXPECT_EQ(mapping.tree().getProbHit(), OcTree(0.3).getProbHit());
+  EXPECT_EQ(mapping.tree().getClampingThresMax(), OcTree(0.3).getClampingThresMax());
+  EXPECT_FALSE(mapping.tree().isChangeDetectionEnabled());
+  known.clear();
+  EXPECT_EQ(mapping.tree().search(outside)->getLogOdds(), octomap::logodds(0.2));
+  test::expect_complaint([&] { Mapping({.resolution = 0.2}, known); }, {"0.3", "0.2"});
+  EXPECT_REFUSED(Mapping({.resolution = 0.3, .surface_depth = -0.1}, known));
+  EXPECT_EQ(Mapping({.resolution = 0.3}, OcTree(0.3)).grid().count()[1], 0U);
 }
 
 class MappingFiles : public test::FolderTest {};

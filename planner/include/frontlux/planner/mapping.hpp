@@ -89,6 +89,10 @@ class FRONTLUX_EXPORT Mapping {
   /// the depth is negative or not finite, or the sensor model does not keep 0 < least < miss < 0.5 < hit <
   /// most < 1
   explicit Mapping(const MappingOptions& options);
+  /// Begins with a copy of what is known already, as the map of a run before. What lies outside the bounds
+  /// stays as it is there; voxels are occupied from one half on, whatever the tree's own threshold.
+  /// @throws std::invalid_argument the same, or if the tree has another resolution
+  Mapping(const MappingOptions& options, const octomap::OcTree& known);
   ~Mapping();
   Mapping(Mapping&&) noexcept;
   Mapping& operator=(Mapping&&) noexcept;
