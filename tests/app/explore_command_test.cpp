@@ -193,7 +193,7 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
     expect_refused(with({"--seed", number}), {"--seed"});
   for (const char* number : {"0", "-0.3", "nan", "inf", "1e-9", "x"})
     expect_refused(with({"--resolution", number}), {"--resolution"});
-  for (const char* option : {"--epsilon", "--lambda", "--advance", "--min-distance", "--noise"})
+  for (const char* option : {"--epsilon", "--lambda", "--advance", "--min-distance"})
     for (const std::string number : {"-2", "nan", "inf", "1e999", "1m", ""})
       expect_refused(with({option, number}),
                      {option + std::string(": '") + number + "' is not a number of at least 0"});
@@ -201,8 +201,9 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   for (const char* option : {"--dropout", "--drift", "--scan-loss"})
     expect_refused(with({option, "1.01"}), {option});
   expect_refused(with({"--fix-every", "-1"}), {"--fix-every"});
-  for (const char* metres : {"-0.1", "10.1", "nan"})
-    expect_refused(with({"--tracking-error", metres}), {"--tracking-error", "from 0 to 10"});
+  for (const char* option : {"--tracking-error", "--noise"})
+    for (const char* metres : {"-0.1", "10.1", "nan"})
+      expect_refused(with({option, metres}), {option, "from 0 to 10"});
   for (const char* seconds : {"-1", "nan", "61"})
     expect_refused(with({"--scan-delay", seconds}), {"--scan-delay"});
   for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})

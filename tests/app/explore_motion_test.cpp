@@ -214,6 +214,28 @@ TEST_F(ExploreMotion, WarnsWhenItEndsFarFromDone) {
   test::expect_parts(json.at("warnings").at(0), {"the run has ended with "});
 }
 
+// Shut in at its start by what its sensor makes up, or with a sensor that does not reach the next voxel.
+TEST_F(ExploreMotion, SaysWhyARobotThatNeverMovesDoesNot) {
+  const auto warning = [&](const std::string& output, const std::vector<std::string>& words) {
+    const test::Answer answer = run(joined({"room", "--report", "off", "-o", path(output)}, words));
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(json_in(output).at("end"), "nothing_to_do");
+    return json_in(output).at("warnings").at(0).get<std::string>();
+  };
+  test::expect_parts(warning("stray", {"--stray", "0.02"}),
+                     {"the run has ended with ", "; ugv: no goal: ", "; uav: no goal: ",
+                      "; stray returns (--stray 0.02) close space to robots"});
+  write("near.json",
+        R"({"name": "near", "motion": "space", "box_m": [0.5, 0.5, 0.3], "sensor": {"kind": "camera",
+      "horizontal_deg": 90, "vertical_deg": 70, "range_m": 0.05, "columns": 16, "rows": 12}})");
+  test::expect_parts(
+      warning("near", {"--team", "", "--robot", path("near.json")}),
+      {"; near: no goal: ", " are hidden from everywhere, or out of the reach of their sensors"});
+  EXPECT_EQ(warning("failed", {"--fail", "ugv=0.5,uav=0.5"}).find("could have been seen"), std::string::npos);
+  test::expect_parts(warning("failed", {"--force", "--fail", "ugv=0.5,uav=0.5"}),
+                     {": all robots have failed"});
+}
+
 TEST_F(ExploreMotion, ContactsAreJudgedByTheMap) {
   const std::vector<std::string> words = {
       wires(), "--start=-2.5,0.1,1.5", "--team", "",         "--robot", slow_camera(), "--bumper",

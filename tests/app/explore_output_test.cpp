@@ -126,6 +126,24 @@ TEST_F(ExploreOutput, SigtermIsLikeCtrlC) {
   EXPECT_EQ(json_in("stopped").at("end"), "stopped");
 }
 
+// Before there is a step to report on.
+TEST_F(ExploreOutput, CtrlCAtTheVeryBeginningIsOneLikeAnyOther) {
+  int without_steps = 0;
+  for (int i = 0; i < 6; ++i) {
+    const std::string output = path("early" + std::to_string(i));
+    const pid_t child =
+        test::start({FRONTLUX_COMMAND, "explore", "storage", "--quiet", "-o", output}, folder_);
+    ASSERT_GT(child, 0);
+    for (int wait = 0; wait < 60000 && !std::filesystem::exists(output + "/steps.csv"); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    kill(child, SIGINT);
+    EXPECT_EQ(test::exit_code(test::status_of(child)), 130) << content_of(path("err"));
+    expect_parts(content_of(path("err")), {"stopped; "});
+    without_steps += content_of(path("err")).find("no step of the run") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(without_steps, 0);
+}
+
 // Whoever presses it again wants to wait no more.
 TEST_F(ExploreOutput, TheSecondCtrlCEndsAtOnce) {
   const pid_t child = start_and_wait({"station", "--lockstep", "--report", "off", "-o", path("stopped")}, 1);

@@ -174,7 +174,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("uav", kStart, {"--any-ground"}, {"--any-ground: a uav"});
   refuse("ugv", kStart, {"--bounds", "0,0,0,1,1"}, {"--bounds: '0,0,0,1,1' is not six finite numbers"});
   refuse("ugv", kStart, {"--bounds", "50,50,0,60,60,1"}, {"--bounds: no voxel within is known"});
-  refuse("ugv", kStart, {"--bounds", "1,1,1,0,0,0"}, {"--bounds: the box from 1"});
+  refuse("ugv", kStart, {"--bounds", "1,1,1,0,0,0"},
+         {"--bounds: the box goes from 1.000000 m to 0.000000 m along x: give the lower corner first"});
   refuse("uav", kStart, {"--floor", "inf"}, {"--floor: 'inf' is not a finite number"});
   refuse("uav", "5.25,5.25,0.45", {}, {"--at", "below its minimum height"});
   refuse("ugv", "5.25,5.25,-0.15", {}, {"--at", "occupied voxel"});

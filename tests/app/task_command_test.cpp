@@ -333,7 +333,7 @@ TEST_F(TaskCommand, RefusesWhatCannotBe) {
   refuse(R"({"world": "room", "options": {"force": "on"}})", {"'options.force' is not known", "noise"});
   refuse(R"({"world": "room", "options": {"seed": 3}})", {"'options.seed' is not known"});
   refuse(R"({"world": "room", "options": {"noise": -1}})",
-         {"options.noise", "'-1' is not a number of at least 0"});
+         {"options.noise", "'-1' is not a number from 0 to 10"});
   refuse(R"({"world": "room", "robots": [{"file": "none.json"}]})", {"none.json"});
   // Members that contradict each other, by their names.
   const std::string lockstep = R"({"world": "room", "lockstep": true, )";

@@ -141,11 +141,13 @@ void add_explore_command(CLI::App& app) {
   command.group("Robots", Command::Shown::kInHelpAll);
   command.add("--bumper", options.bumper,
               "A robot that would touch a surface stops; off: contacts are counted");
-  command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
+  command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--stray", options.errors.stray, "P",
-              "Probability that a ray returns from nowhere, as from dust, before any surface", kProbability);
+              "Probability that a ray returns from nowhere, as from dust, before any surface; "
+              "explorations end early above some 0.0003",
+              kProbability);
   command.add("--drift", options.pose_errors.drift, "PART",
               "Error of where a robot believes to be, as a part of its path since it last knew, 0 to 1",
               kProbability);

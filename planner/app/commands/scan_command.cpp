@@ -201,7 +201,7 @@ void add_scan_command(CLI::App& app) {
            "Scan from these sensor poses: lines x,y,z,yaw [m, rad], before the --ground shift")
       .excludes(sweep);
   command.add("--robot", options->sensors, "Sensors: the ugv's lidar (6 m), the uav's depth camera (10 m)");
-  command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kFromZero);
+  command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
   command.add("--dropout", options->errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--stray", options->errors.stray, "P",

@@ -155,7 +155,7 @@ class Run {
                            sim::measure_accuracy(*setup_.truth, loop_->mapping().grid()),
                            watch_.seconds()};
     const std::string json = write_run_json(how_, options_, setup_, result);
-    if (how_.report) {
+    if (how_.report && last_) {
       const Recording whole = planner::read_recording(file());
       const report::ReportedRun reported{
           fs::absolute(file()).lexically_normal().parent_path().filename().string(), &whole,

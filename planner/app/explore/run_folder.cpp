@@ -7,6 +7,7 @@
 #include <frontlux/file.hpp>
 
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
@@ -16,6 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 using planner::Recording;
+
+// As a shell takes it for one word.
+std::string for_shell(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "+,-./0123456789:=@_ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char letter : word) letter == '\'' ? quoted.append("'\\''") : quoted.append(1, letter);
+  return quoted + "'";
+}
 
 // Whether there is nothing to lose: at most what runs left that were killed before they began.
 bool is_unused(const fs::path& folder) {
@@ -124,7 +135,7 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
                                  : "; the recorded steps are kept";
     if (::access(file.c_str(), W_OK) != 0)
       return kept + ", but " + file.string() + " is read-only: make it writable to continue the run";
-    return kept + ": frontlux explore --resume " + run.folder.string() + " continues the run";
+    return kept + ": frontlux explore --resume " + for_shell(run.folder.string()) + " continues the run";
   } catch (const planner::UnbegunRecording&) {
     return nothing;
   } catch (const std::runtime_error&) {

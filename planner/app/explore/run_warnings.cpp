@@ -27,16 +27,36 @@ std::string late_planning(double planning, double latency) {
 std::string why_unseen(const sim::Unseen& unseen, const ExploreSetup& setup) {
   std::string text;
   if (unseen.in_view >= kWorthAHint)
-    text +=
-        "; " + percent(unseen.in_view) +
-        " could have been seen from places where they fit, but they did not get there through what they knew "
-        "to be free, or would have seen too little there (run.json says under by_robot what is left and why; "
-        "--epsilon)";
+    text += "; " + percent(unseen.in_view) +
+            " could have been seen from places where they fit, but they did not get there through what they "
+            "knew to be free, or would have seen too little there (--epsilon)";
+  if (unseen.hidden >= kWorthAHint)
+    text += "; " + percent(unseen.hidden) +
+            " are hidden from everywhere, or out of the reach of their sensors (range_m, vertical_deg)";
   if (unseen.narrow >= kWorthAHint)
     text += "; " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
             " see them: if doors are too narrow, voxels finer than " + rounded(setup.head.resolution) +
             " m (--resolution) help, but not against steps, slopes or a sensor that does not reach";
   return text;
+}
+
+bool all_failed(const RunNumbers& numbers) {
+  return std::ranges::all_of(numbers.robots, [](const auto& robot) { return robot.failed.has_value(); });
+}
+
+// What each robot that is still there had last.
+std::string why_they_rest(const ExploreSetup& setup, const RunNumbers& numbers) {
+  std::string text;
+  for (std::size_t r = 0; r < numbers.robots.size(); ++r)
+    if (!numbers.robots[r].failed && !numbers.robots[r].goal.empty())
+      text += "; " + setup.head.robots[r].robot.name + ": " + numbers.robots[r].goal;
+  return text;
+}
+
+std::string by_stray_returns(const ExploreSetup& setup) {
+  if (setup.errors.stray == 0.0) return "";
+  return "; stray returns (--stray " + rounded(setup.errors.stray) +
+         ") close space to robots until rays have passed there again, and more than some 0.0003 shut them in";
 }
 
 }  // namespace
@@ -59,10 +79,14 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
                                       const std::optional<sim::Unseen>& unseen) {
   std::vector<std::string> warnings;
   if (end && end->word == planner::name_of(planner::ExplorationEnd::kCutOff))
-    warnings.push_back(end->text);
+    warnings.push_back(end->text + by_stray_returns(setup));
   else if (end && ends_badly(sums, *end))
     warnings.push_back("the run has ended with " + percent(sums.observable) +
-                       " of the observable space mapped" + (unseen ? why_unseen(*unseen, setup) : ""));
+                       " of the observable space mapped" +
+                       (all_failed(numbers) ? ": all robots have failed"
+                        : unseen            ? why_unseen(*unseen, setup)
+                                            : "") +
+                       why_they_rest(setup, numbers) + by_stray_returns(setup));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
     if (const auto& failed = numbers.robots[r].failed)
       warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +

@@ -329,12 +329,13 @@ std::vector<RobotDescription> team_of(const std::string& word, Method method) {
     std::size_t count = 1;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), count);
     const std::string_view name = part.substr(static_cast<std::size_t>(end - part.data()));
-    if ((error != std::errc{} && end != part.data()) || count < 1 || count > kMaxRobots ||
+    const bool too_many = error == std::errc::result_out_of_range || count > kMaxRobots;
+    if ((!too_many && error != std::errc{} && end != part.data()) || count < 1 ||
         (name != "uav" && name != "ugv"))
       throw BadInput(
           quote(word) +
           " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
-    if (robots.size() + count > kMaxRobots)
+    if (too_many || robots.size() + count > kMaxRobots)
       throw BadInput(quote(word) + " is more than " + std::to_string(kMaxRobots) + " robots; give fewer");
     for (std::size_t i = 0; i < count; ++i)
       robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());

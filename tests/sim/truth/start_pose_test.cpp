@@ -4,6 +4,7 @@
 #include "support/voxel_keys.hpp"
 
 #include <frontlux/key_box.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/scan_world.hpp>
@@ -56,6 +57,26 @@ TEST(StartPose, LeavesRoomForTheMargin) {
     EXPECT_TRUE(all_of(voxels_of_cell(small.travel, truth.lattice(), key),
                        [&](const VoxelKey& voxel) { return truth.at(voxel) == Truth::kFree; }));
     EXPECT_NEAR(starts[0]->position.z(), margin > 0.0 ? 0.45 : 0.15, 1e-9);
+  }
+}
+
+// However wide that is: a robot that does not know to be free what planning asks for would never move.
+TEST(StartPose, KnowsTheRoomThatPlanningKeepsFree) {
+  const GroundTruth truth(room(), 0.3, {3.15, 3.15, 0.15});
+  planner::Robot wide = planner::uav(), wary = planner::uav();
+  wide.travel.extents = {1.5, 1.5, 0.5};
+  wide.travel.margin = 0.05;
+  wary.travel.extents = {0.5, 0.5, 0.3};
+  wary.travel.margin = 1.1;
+  for (planner::Robot robot : {wide, wary}) {
+    robot.travel.min_height = 0.25;
+    const auto starts = find_starts(truth, {3.15, 3.15, 0.15}, {{robot}});
+    ASSERT_TRUE(starts[0]);
+    const auto bubble = start_bubble(truth, robot, *starts[0]);
+    const VoxelKey at = truth.lattice().key(starts[0]->position).value();
+    planner::BodyStencil(robot.travel, 0.3).for_each(at, [&](const VoxelKey& key) {
+      EXPECT_TRUE(std::ranges::binary_search(bubble, key)) << key.x - at.x << " " << key.y - at.y;
+    });
   }
 }
 

@@ -211,13 +211,13 @@ TEST(BuiltInWorlds, CanBeExplored) {
         EXPECT_EQ(ugv.reached, ugv.all);
         EXPECT_EQ(uav.reached, uav.all);
       },
-      test::long_mode() ? 200 : 8);
+      test::long_mode() ? 200 : 4);
 }
 
 // Each robot has places of its own: tunnels and underpasses, where there is no room above 1.2 m, and floors
 // that stand on others.
 TEST(BuiltInWorlds, NeedBothRobots) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+  for (std::uint64_t seed = 1; seed <= (test::long_mode() ? 20 : 4); ++seed)
     for (const char* name : {"maze", "factory", "station"}) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(seed));
       const World world = make_world(name, seed);

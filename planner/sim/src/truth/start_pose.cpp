@@ -265,9 +265,12 @@ std::vector<VoxelKey> start_bubble(const GroundTruth& truth, const Robot& robot,
   const BodyVoxels body(lattice, robot, sensor_pose);
   const VoxelKey from = lattice.key(at).value();
   const std::optional<KeyBox> node = free_node(truth, robot, from);
+  planner::TravelOptions by_voxels = robot.travel;
+  by_voxels.node_edge = 0.0;
+  const BodyStencil room(by_voxels, lattice.resolution());
   constexpr double kRounding = 1e-9;
   const auto in_bubble = [&](const VoxelKey& key) {
-    if (body.contains(key) || (node && node->contains(key))) return true;
+    if (body.contains(key) || room.contains(from, key) || (node && node->contains(key))) return true;
     const Eigen::Vector3d offset = lattice.exact_center(key) - at;
     if (!drives(robot)) return offset.norm() <= kBall + kRounding;
     return offset.head<2>().norm() <= kDisc + kRounding && offset.z() <= kRounding &&

@@ -53,10 +53,10 @@ namespace frontlux::sim {
 /// boundary at or above the floor below a point, or the lower end of the bounds if the point is not free.
 [[nodiscard]] double ground_below(const GroundTruth& truth, const Eigen::Vector3d& around);
 
-/// The voxels that a robot knows to be free at its start without having seen them, sorted: its body; around
-/// it, for a robot that drives, a disc of 2.3 m radius from the ground to the sensor's height, otherwise a
-/// ball of 1 m radius; and its node if that is completely free. They are free and reached from the body
-/// within this shape, so none lies beyond a wall.
+/// The voxels that a robot knows to be free at its start without having seen them, sorted: its body, and what
+/// planning keeps free around it (`BodyStencil`); around it, for a robot that drives, a disc of 2.3 m radius
+/// from the ground to the sensor's height, otherwise a ball of 1 m radius; and its node if that is completely
+/// free. They are free and reached from the body within this shape, so none lies beyond a wall.
 /// @pre the robot can be here
 [[nodiscard]] std::vector<VoxelKey> start_bubble(const GroundTruth& truth, const planner::Robot& robot,
                                                  const planner::Pose& sensor_pose);
