@@ -159,8 +159,7 @@ void GoogleBenchmark::print_cautions(std::ostream& out) const {
 }
 
 void throw_no_row_passes() {
-  throw std::runtime_error("--benchmark_filter: no row's name contains '" + benchmark::GetBenchmarkFilter() +
-                           "'");
+  throw std::runtime_error("--benchmark_filter: no row passes '" + benchmark::GetBenchmarkFilter() + "'");
 }
 
 bool passes_filter(const std::string& row) {

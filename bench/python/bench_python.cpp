@@ -1,6 +1,7 @@
 // How much of the engine's speed is left in Python: the same million queries by a call in C++ and by one of
 // the module `frontlux`, whose answers are compared first. bench_python [MAP.bt]
 
+#include "rays/subject.hpp"
 #include "rays/workload.hpp"
 #include "table.hpp"
 
@@ -70,6 +71,7 @@ bench::Workload made(bench::WorkloadSource& source, const char* name) {
 void run(const std::string& file) {
   const py::object module = py::module_::import("frontlux");
   const VoxelGrid grid = make_voxel_grid(read_octree(file));
+  bench::check_is_place(grid, file);
   const auto caster = make_ray_caster(grid);
   const py::object python = module.attr("RayCaster")(module.attr("VoxelGrid").attr("read")(file));
   bench::WorkloadSource source(grid, *caster);

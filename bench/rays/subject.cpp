@@ -151,14 +151,18 @@ std::unique_ptr<Subject> make_subject(Octree tree, std::string name) {
   return subject;
 }
 
-std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
-  Octree tree = read_octree(file);
-  const auto count = make_voxel_grid(tree).count();
+void check_is_place(const VoxelGrid& grid, const std::filesystem::path& file) {
+  const auto count = grid.count();
   const std::uint64_t known = count[static_cast<std::size_t>(Occupancy::kFree)] +
                               count[static_cast<std::size_t>(Occupancy::kOccupied)];
   if (known > kMaxKnownVoxels)
     throw std::runtime_error(file.string() + ": declares " + std::to_string(known) +
                              " voxels, too many to be a place; give another map");
+}
+
+std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name) {
+  Octree tree = read_octree(file);
+  check_is_place(make_voxel_grid(tree), file);
   auto subject = make_subject(std::move(tree), std::move(name));
   subject->drop_in = std::make_unique<OctreeRayCaster>(subject->tree);
   return subject;

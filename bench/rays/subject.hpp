@@ -55,6 +55,9 @@ struct Subject {
 /// @throws std::runtime_error naming the file, if it cannot be read or declares more voxels than a place has
 [[nodiscard]] std::unique_ptr<Subject> load_subject(const std::filesystem::path& file, std::string name);
 
+/// @throws std::runtime_error naming the file, if its map has more known voxels than a place has
+void check_is_place(const VoxelGrid& grid, const std::filesystem::path& file);
+
 /// A map's name: its file's stem, with a number if that is taken.
 [[nodiscard]] std::string unique_name(const std::filesystem::path& file, std::set<std::string>& taken);
 

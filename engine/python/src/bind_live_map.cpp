@@ -115,7 +115,7 @@ void bind_live_map(py::module_& module) {
           R"(What has changed from one VoxelGrid to another, as from a copy that was kept to the grid that `set_states` wrote to.
 
 Insertions and updates return such a change by themselves. Between a grid and its edited copy it costs as much as the edit
-did. Raises ValueError if the resolutions differ.)")
+did. Raises ValueError if the resolutions differ, or if more than 2^28 voxels have changed: make what is kept up to date anew then.)")
       .def_property_readonly(
           "keys",
           [](const std::shared_ptr<Change>& self) {

@@ -223,25 +223,34 @@ TEST(OctreeRayCaster, RefreshKeepsItsCaster) {
 // Run it with the thread sanitizer, too (`./dev sanitize`).
 TEST(OctreeRayCaster, CastsWhileItIsRefreshed) {
   octomap::OcTree tree(0.1);
-  const auto wall = [&](float x, bool is_there) { tree.updateNode(octomap::point3d(x, 0.05F, 0.05F), is_there); };
+  const auto wall = [&](float x, bool is_there) {
+    tree.updateNode(octomap::point3d(x, 0.05F, 0.05F), is_there);
+  };
   wall(1.05F, true);
   OctreeRayCaster fast(tree);
-  std::atomic<bool> refreshing = true;
-  std::size_t wrong = 0;
+  std::atomic<bool> refreshing = true, casting = false;
+  std::size_t wrong = 0, near = 0, far = 0;
   std::thread caster([&] {
     octomap::point3d end;
     while (refreshing) {
       const bool hit = fast.castRay({0.05F, 0.05F, 0.05F}, {1, 0, 0}, end, true);
-      if (!hit || (std::abs(end.x() - 0.55F) > 1e-4F && std::abs(end.x() - 1.05F) > 1e-4F)) ++wrong;
+      const auto is_at = [&](float x) { return hit && std::abs(end.x() - x) < 1e-4F; };
+      ++(is_at(0.55F) ? near : is_at(1.05F) ? far : wrong);
+      casting = true;
     }
   });
+  while (!casting) std::this_thread::yield();
   for (int i = 0; i < 100; ++i) {
     for (int again = 0; again < 10; ++again) wall(0.55F, i % 2 == 0);
     fast.refresh();
+    casting = false;
+    while (!casting) std::this_thread::yield();  // each map is cast into
   }
   refreshing = false;
   caster.join();
   EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(near, 25U);
+  EXPECT_GT(far, 25U);
 }
 
 TEST(OctreeRayCaster, ServesColorTrees) {

@@ -217,7 +217,7 @@ TEST(Conformance, KnownRays) {
 }
 
 TEST(Conformance, SmallMaps) {
-  for (const NamedMap& map : small_maps()) expect_conforms(map, 30'000);
+  for (const NamedMap& map : small_maps()) expect_conforms(map, 15'000);
 }
 
 TEST(Conformance, ExtraMaps) {

@@ -47,7 +47,8 @@ struct FRONTLUX_EXPORT ExplorationOptions {
   /// [frontiers] In lock-step a step has low gain if all its paths together are expected to see fewer:
   /// distinct ones, or with `GainMode::kSum` summed over viewpoints. In motion without tours a chosen goal
   /// has low gain if fewer are expected to be in view at the goal itself (`Goal::gain`). On tours nothing has
-  /// low gain, since a stop shows at least so many.
+  /// low gain: what shows too few is no stop. There it is what a stop shows at most before it is worth one;
+  /// less towards the end, and with sensors of short range.
   double epsilon = 10.0;
   int low_gain_steps = 3;    ///< of low gain in a row end it: steps, in motion goals that each robot chose
   int max_steps = 1000;      ///< so does this number of steps, in motion plannings

@@ -27,7 +27,8 @@ struct RecordingHead {
   std::vector<ExplorationStart> starts;  ///< of each of them
   std::uint64_t observable = 0;          ///< voxels that can be observed; 0: unknown
   std::uint64_t bounding = 0;            ///< voxels within the bounds; 0: unknown
-  std::string options = "{}";            ///< JSON object of the run's options, as its maker writes it
+  std::string options = "{}";            ///< JSON object of the run's options, as its maker writes it; not
+                                         ///< checked, but Python reads nothing else
 };
 
 /// How many voxels of a world one robot has mapped first, up to the end of a step.
@@ -41,9 +42,10 @@ struct KnownVoxels {
 struct RecordedStep {
   /// As the exploration returned it.
   ExplorationStep step;
-  /// One for each robot of the head, zeros if nobody counts; a voxel counts for the robot that mapped it first.
+  /// One for each robot of the head, zeros if nobody counts; a voxel counts for the robot that mapped it
+  /// first.
   std::vector<KnownVoxels> known;
-  std::uint64_t contacts = 0;      ///< of robots with the true world, in this step
+  std::uint64_t contacts = 0;  ///< of robots with the true world, in this step
 };
 
 /// A run as it was recorded.
@@ -78,9 +80,9 @@ class FRONTLUX_EXPORT RecordingWriter {
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
 
   /// The next step.
-  /// @throws std::invalid_argument naming what a reader would refuse: a step that is not the next by its number,
-  ///         `known` or robots that are not one for each robot of the head, a value out of bounds; or after the
-  ///         end
+  /// @throws std::invalid_argument naming what a reader would refuse: a step that is not the next by its
+  ///         number, `known` or robots that are not one for each robot of the head, a value out of bounds; or
+  ///         after the end
   void write(const RecordedStep& step);
   /// Why the run ended: one word of small letters and `_`.
   /// @throws std::invalid_argument if it is no such word of up to 40 letters, or for a second end
