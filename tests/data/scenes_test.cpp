@@ -1,3 +1,4 @@
+#include "support/maps.hpp"
 #include "support/test.hpp"
 
 #include <frontlux/synthetic/random.hpp>
@@ -80,7 +81,8 @@ TEST(Scenes, NoRayLeavesTheBuilding) {
 // Pulling faces into their solids must not open a crack between two of them.
 TEST(Scenes, SolidsOfTheBuildingLeaveNoCracks) {
   constexpr double kModule = 0.3;
-  for (const std::uint64_t seed : {1U, 4U, 7U}) {
+  for (const std::uint64_t seed : {4U, 1U, 7U}) {
+    if (seed != 4 && !test::long_mode()) break;
     const Scene scene = make_building_scene(seed);
     const auto solid = [&](const Eigen::Vector3d& p) {
       const auto hit = scene.solids.first_hit(p, Eigen::Vector3d::UnitX());

@@ -104,7 +104,7 @@ TEST(Scanner, FreesNothingBeyondTheOuterWalls) {
   const Scene scene = make_building_scene(1);
   const Box& room = scene.room;
   const auto tree = scan(scene, draw_places(scene, 50, 3.0, 1),
-                         {.resolution = resolution, .max_range = 9.0, .rays = 100'000});
+                         {.resolution = resolution, .max_range = 9.0, .rays = 30'000});
   std::size_t free = 0;
   for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
     if (tree->isNodeOccupied(*leaf)) continue;

@@ -218,7 +218,7 @@ await refused(textOf(one, [0, ...Array(3000).fill(255)]), /too early/);
 // ---- damages
 
 const seconds = Number(process.argv[3] ?? 0), end = performance.now() + 1000 * seconds;
-const rounds = process.env.FRONTLUX_LONG === "1" ? 3000 : 800;
+const rounds = process.env.FRONTLUX_LONG === "1" ? 3000 : 300;
 const seeds = seconds > 0 ? [Date.now() % 1e9] : [1];
 console.log(`seed ${seeds[0]}`);
 const roll = dice(seeds[0]);

@@ -62,7 +62,7 @@ TEST_F(RecordingDamageTest, EveryFlippedByteIsFound) {
   record(2, 4, true);
   const std::string whole = bytes();
   for (std::size_t at = 0; at < whole.size(); ++at)
-    for (const int mask : {0x01, 0x10, 0x80, 0xFF}) {
+    for (const int mask : {0x01, 0xFF}) {
       std::string flipped = whole;
       flipped[at] = static_cast<char>(flipped[at] ^ mask);
       const std::string said = complaint(flipped);

@@ -1,5 +1,6 @@
 #include "support/complaint.hpp"
 #include "support/folder_test.hpp"
+#include "support/maps.hpp"
 #include "support/random.hpp"
 #include "support/random_view.hpp"
 
@@ -37,7 +38,7 @@ std::vector<PathOptimizerOptions> all_modes() {
 TEST(PathOptimizer, NeverSeesFewerThanItsStartOrTheTangent) {
   Random random(1);
   std::uint64_t tangent = 0, greedy = 0, ascended = 0;
-  for (int trial = 0; trial < 25; ++trial) {
+  for (int trial = 0; trial < (test::long_mode() ? 25 : 10); ++trial) {
     const Scene scene = test::random_scene(random, 3 + random.below(10), 20 + random.below(400), 0.5);
     const std::uint64_t by_tangent = test::distinct_by_hand(scene, tangent_yaws(scene.path));
     for (const PathOptimizerOptions& options : all_modes()) {
