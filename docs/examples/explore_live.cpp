@@ -110,7 +110,8 @@ void explore(Robot robot, const std::filesystem::path& folder, const Pose& start
     if (exploration.end()) break;
   }
   exploration.mapping().write(folder / "map.bt");
-  std::cout << "# end: " << (exploration.end() ? describe(*exploration.end(), options) : "no more scans")
+  std::cout << "# end: "
+            << (exploration.end() ? describe(*exploration.end(), options, "plannings") : "no more scans")
             << '\n';
 }
 

@@ -3,6 +3,7 @@
 #include <frontlux/io/point_cloud.hpp>
 #include <frontlux/io/pose_file.hpp>
 #include <frontlux/planner/mapping.hpp>
+#include <frontlux/planner/pose.hpp>
 #include <frontlux/planner/robot.hpp>
 #include <frontlux/planner/scan.hpp>
 
@@ -29,14 +30,13 @@ inline frontlux::planner::Scan scan_of(const frontlux::io::RecordedPose& recorde
   return scan;
 }
 
-/// [m] What a robot takes for free around its start without having seen it, as `frontlux explore` does: one
-/// that drives sees no floor so near. Nothing may stand there.
+/// [m] What a robot takes for free around its start without having seen it: one that drives sees no floor so
+/// near. Nothing may stand there.
 inline double free_radius_of(const frontlux::planner::Robot& robot) {
   return robot.travel.drives() ? 2.3 : 0.0;
 }
 
 /// Where a sensor looks [rad]: along x.
 inline double yaw_of(const frontlux::io::SensorFrame& T_world_sensor) {
-  const Eigen::Vector3d forward = T_world_sensor.linear().col(0);
-  return std::atan2(forward.y(), forward.x());
+  return frontlux::planner::yaw_along(T_world_sensor.linear().col(0));
 }

@@ -15,8 +15,7 @@ namespace {
 
 // Where it looks, by its x axis.
 Pose upright(const Eigen::Isometry3d& T_map_sensor) {
-  const Eigen::Vector3d forward = T_map_sensor.linear().col(0);
-  return {T_map_sensor.translation(), std::atan2(forward.y(), forward.x())};
+  return {T_map_sensor.translation(), yaw_along(T_map_sensor.linear().col(0))};
 }
 
 Scan scan_of(const Eigen::Isometry3d& T_map_cloud, std::span<const Eigen::Vector3f> points,
@@ -71,8 +70,12 @@ std::optional<std::vector<Explorer::Waypoint>> Explorer::insert(double time,
                                                                 double rate) {
   if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
   const Pose pose = upright(T_map_sensor);
-  if (!exploration_) begin(time, pose);
-  exploration_->insert(0, pose, scan_of(T_map_cloud, points, options_.robot.view.max_range));
+  const Scan scan = scan_of(T_map_cloud, points, options_.robot.view.max_range);
+  if (!exploration_) {
+    check(scan);  // before anything has begun
+    begin(time, pose);
+  }
+  exploration_->insert(0, pose, scan);
   if (time < time_) return std::nullopt;
   time_ = time;
   std::optional<std::vector<Waypoint>> waypoints;

@@ -34,10 +34,8 @@ class Explorer {
   /// @param T_map_cloud   the same of the frame that the points are in, which may be an optical one
   /// @param points  [m] beyond the sensor's range: the ray met nothing; not finite: it was not measured
   /// @return the robot's new trajectory, `rate` times a second; nothing if it keeps the one that it has. A
-  /// scan that is
-  ///         older than the last one goes into the map and plans nothing.
-  /// @throws std::invalid_argument if the time or the pose is not finite, or the pose is outside the key
-  /// range
+  ///         scan that is older than the last one goes into the map and plans nothing.
+  /// @throws std::invalid_argument if the time or a pose is not finite, or a pose is outside the key range
   std::optional<std::vector<Waypoint>> insert(double time, const Eigen::Isometry3d& T_map_sensor,
                                               const Eigen::Isometry3d& T_map_cloud,
                                               std::span<const Eigen::Vector3f> points, double rate = 20.0);
