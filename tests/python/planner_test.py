@@ -273,6 +273,8 @@ class InMotion(unittest.TestCase):
                 planner.ContinuousExploration([drone()], room().bounds, 0.2, known=file.with_name("no.ot"))
             with self.assertRaisesRegex(ValueError, "map.ot.*0.2.*0.3"):
                 planner.ContinuousExploration([drone()], room().bounds, 0.3, known=file)
+        in_steps.begin([crashed.at(0, crashed.time)["pose"]], lambda _, pose: room().measure(drone(), pose))
+        self.assertGreater(in_steps.known_volume, crashed.known_volume)
         exploration.begin([crashed.at(0, crashed.time)["pose"]], time=100.0)
         end = planner.run(exploration, sense_for(exploration), until=400.0)
         self.assertIsNotNone(exploration.end)

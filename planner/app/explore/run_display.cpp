@@ -153,7 +153,7 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
                              fixed(sums.planning_percentile(1.0), 3) + " s; the clock charges " +
                              fixed(setup_.exploration.latency, 3) + " s") +
          row("wall time", fixed(seconds, 1) + " s");
-  if (run_.report) out += row("report", report_of(run_).string());
+  if (run_.report && std::filesystem::exists(report_of(run_))) out += row("report", report_of(run_).string());
   std::cout << out;
 }
 

@@ -138,7 +138,7 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
 
 std::string result_line(const std::string& run_json, const ExploreRun& run) {
   Json result = {{"folder", run.folder.string()}, {"report", nullptr}};
-  if (run.report) result["report"] = report_of(run).string();
+  if (run.report && std::filesystem::exists(report_of(run))) result["report"] = report_of(run).string();
   result.update(Json::parse(run_json));
   return result.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -86,7 +86,7 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
                        (all_failed(numbers) ? ": all robots have failed"
                         : unseen            ? why_unseen(*unseen, setup)
                                             : "") +
-                       why_they_rest(setup, numbers) + by_stray_returns(setup));
+                       why_they_rest(setup, numbers) + (all_failed(numbers) ? "" : by_stray_returns(setup)));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
     if (const auto& failed = numbers.robots[r].failed)
       warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +

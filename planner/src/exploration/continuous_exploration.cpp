@@ -68,11 +68,13 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
     member.sensed.push_back(starts[r].pose);
     state.members.push_back(std::move(member));
   }
+  const VoxelGrid given = state.team.mapping.grid();
   for (std::size_t r = 0; r < starts.size(); ++r)
-    state.note_scan(r, state.team.mapping.mark_free(starts[r].known_free));
+    state.note_scan(r, state.team.mapping.mark_free(state.team.free_at_start(r, starts[r], given)));
   state.team.conservative_map.emplace(state.team.mapping.grid());
   ExplorationStep step = state.collect(time);
   state.team.update_frontiers(step);
+  detail::ExplorationState::tell_of_given_map(given, step);
   state.team.number = 1;
   return step;
 }
@@ -119,7 +121,9 @@ void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double 
                                     std::span<const VoxelKey> blocked) {
   rest(robot, pose, time);
   State& state = *state_;
-  state.leave_trail(robot, state.team.lattice().resolution());
+  constexpr double kBetween = 0.1;  // [s] places of a trail, at most
+  state.leave_trail(robot, state.team.lattice().resolution() +
+                               kBetween * state.team.options.team[robot].robot.limits.speed);
   State::Member& member = state.members[robot];
   std::vector<VoxelKey> cells(blocked.begin(), blocked.end());
   const auto is_new = [&](const VoxelKey& cell) { return state.team.path_corridor(robot).fits(cell); };

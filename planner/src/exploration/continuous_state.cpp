@@ -361,9 +361,6 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   if (team.tours)
     for (const detail::TourStop& stop : team.tours->tour(robot))
       planned.step.robots[robot].tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
-  // Others may have found another viewpoint for what it goes on to see.
-  RobotStep& now = planned.step.robots[robot];
-  if (keeps && now.goal.pose && !now.tour.empty()) now.tour.front().pose = *now.goal.pose;
   return planned;
 }
 

@@ -34,10 +34,12 @@ ExplorationStep Exploration::begin(std::span<const ExplorationStart> starts, con
   check_finite(poses);
 
   state.start_from(starts);
+  const VoxelGrid given = state.mapping.grid();
   ExplorationStep step = state.new_step();
   state.look_around(starts, drive, step);  // Alg. 1, lines 1 and 2
   state.advance_clock(step);
   state.update_frontiers(step);
+  State::tell_of_given_map(given, step);
   state.number = 1;
   return step;
 }

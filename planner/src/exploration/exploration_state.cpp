@@ -92,10 +92,37 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   retreated_to.resize(size());
 }
 
+ExplorationState::Keys ExplorationState::free_at_start(std::size_t robot, const ExplorationStart& start,
+                                                       const VoxelGrid& given) const {
+  const BodyStencil body(travel_by_voxels(robot), lattice().resolution());
+  const auto at = lattice().key(start.pose.position);
+  Keys free = start.known_free;
+  std::erase_if(free, [&](const VoxelKey& key) {
+    return given.at(key) == Occupancy::kOccupied && !(at && body.contains(*at, key));
+  });
+  return free;
+}
+
+void ExplorationState::tell_of_given_map(const VoxelGrid& given, ExplorationStep& step) {
+  if (!given.known_bounds()) return;
+  std::vector<VoxelChange>& changed = step.robots.front().changed;
+  Keys own;
+  for (VoxelChange& change : changed) {
+    change.before = Occupancy::kUnknown;
+    own.push_back(change.key);
+  }
+  std::ranges::sort(own);
+  for (const Occupancy state : {Occupancy::kFree, Occupancy::kOccupied})
+    for (const VoxelKey& key : keys_in(given, state))
+      if (!std::ranges::binary_search(own, key)) changed.push_back({key, Occupancy::kUnknown, state});
+  std::ranges::sort(changed, {}, &VoxelChange::key);
+}
+
 // Lines 1 and 2.
 void ExplorationState::look_around(std::span<const ExplorationStart> starts, const Drive& drive,
                                    ExplorationStep& step) {
   const PhaseClock clock(step, Phase::kMoving);
+  const VoxelGrid given = mapping.grid();
   for (std::size_t r = 0; r < size(); ++r) {
     RobotStep& robot = step.robots[r];
     robot.path = PathOutcome::kInPlace;
@@ -105,7 +132,7 @@ void ExplorationState::look_around(std::span<const ExplorationStart> starts, con
       robot.planned.push_back(look);
     }
     if (robot.planned.size() > 2) robot.planned.push_back(starts[r].pose);  // it goes on from how it stood
-    execute_path(r, robot, nullptr, drive, mapping, starts[r].known_free);
+    execute_path(r, robot, nullptr, drive, mapping, free_at_start(r, starts[r], given));
     remember(r, robot);
   }
 }

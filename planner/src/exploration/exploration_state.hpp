@@ -65,6 +65,11 @@ struct ExplorationState {
 
   // The stages, in their order.
   void start_from(std::span<const ExplorationStart> starts);
+  /// What a robot takes for free at its start. A map that is given knows better, but for its body.
+  [[nodiscard]] Keys free_at_start(std::size_t robot, const ExplorationStart& start,
+                                   const VoxelGrid& given) const;
+  /// Step 0 tells of all that was known before it: of what the first robot has changed.
+  static void tell_of_given_map(const VoxelGrid& given, ExplorationStep& step);
   void look_around(std::span<const ExplorationStart> starts, const Drive& drive, ExplorationStep& step);
   void update_views(ExplorationStep& step);
   /// @param choosing  if given: the robot that chooses; the others keep their goals

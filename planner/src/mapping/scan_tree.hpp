@@ -55,6 +55,11 @@ class ScanTree : public octomap::OcTree {
     enableChangeDetection(false);
     resetChangeDetection();
     use(sensor);
+    // Within the sensor model's bounds, or it would take more scans to change them than it says.
+    for (auto leaf = begin_leafs(); leaf != end_leafs(); ++leaf)
+      leaf->setLogOdds(std::clamp(leaf->getLogOdds(), clamping_thres_min, clamping_thres_max));
+    updateInnerOccupancy();
+    prune();
   }
 
   /// @param bricks   in octree order

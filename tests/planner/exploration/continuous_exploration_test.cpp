@@ -299,6 +299,37 @@ TEST_P(ContinuousExplorationBy, BeginsWhereSomethingStoodBefore) {
   EXPECT_TRUE(planned->step.robots[0].goal.pose) << planned->step.robots[0].goal.reason;
 }
 
+// A table that stands in the ball that a start takes for free: the map knows better. The account of all steps
+// is the map, what was known before included.
+TEST_P(ContinuousExplorationBy, BeginsWithAMapThatIsGiven) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  Mapping map = team.empty_map();
+  const Eigen::Vector3f middle = team.starts[0].pose.position.cast<float>();
+  const Eigen::Vector3f table = middle + Eigen::Vector3f(0.0F, 0.0F, -0.9F);
+  map.insert(middle, {{table, Eigen::Vector3f(middle + Eigen::Vector3f(2.1F, 0.0F, 0.0F))}});
+  const VoxelKey on_table = map.grid().lattice().key(table).value();
+  ASSERT_EQ(map.grid().at(on_table), Occupancy::kOccupied);
+  const auto& bubble = team.starts[0].known_free;
+  ASSERT_TRUE(std::ranges::find(bubble, on_table) != bubble.end());
+  const VoxelGrid given = map.grid();
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), std::move(map));
+  VoxelGrid told(0.3);
+  const auto take = [&](const ExplorationStep& step) {
+    for (const RobotStep& robot : step.robots)
+      for (const VoxelChange& change : robot.changed) {
+        ASSERT_EQ(told.at(change.key), change.before);
+        told.set(change.key, change.after);
+      }
+  };
+  take(exploration.begin(team.starts, 0.0));
+  EXPECT_TRUE(told == exploration.mapping().grid());
+  EXPECT_EQ(told.at(on_table), Occupancy::kOccupied);
+  EXPECT_GT(told.count()[1], given.count()[1]);
+  exploration.insert(0, team.starts[0].pose, {middle, 5.0, {{0.0F, 1.0F, 0.0F}}, {4.0F}});
+  take(exploration.finish(1.0));
+  EXPECT_TRUE(told == exploration.mapping().grid());
+}
+
 // An account of what has been mapped takes nothing from the plannings after it.
 TEST_P(ContinuousExplorationBy, GoesOnAfterAFinish) {
   TeamInMotion scene("room", {small_uav()}, sim::AtContact::kGoOn, GetParam());

@@ -81,9 +81,9 @@ struct OptimizedPath {
 /// `viewpoints`, only the first and the last are used.
 ///
 /// Returns the yaws with most distinct frontiers in view among the tangent, the start and every step of the
-/// ascent; starts from bins look along the path where nothing is to be seen. These are never fewer than at
-/// the start, and never fewer than along the tangent if it keeps the limits. Deterministic. Limits on yaw
-/// hold to 1e-9 rad.
+/// ascent. A start from bins looks along the path, to the nearest of them, where nothing is to be seen. There
+/// are never fewer than at the start, and never fewer than along the tangent if it keeps the limits.
+/// Deterministic. Limits on yaw hold to 1e-9 rad.
 ///
 /// May be called from several threads; their ascents wait for each other, since Ipopt keeps global counters.
 /// @param frontiers  centres [m]
