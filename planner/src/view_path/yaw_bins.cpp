@@ -10,8 +10,8 @@
 namespace frontlux::planner {
 namespace {
 
-constexpr int kMaxSweeps =
-    20;  // views, or of as many the nearness, rise in each but the last; few are needed
+// Views, or of as many the nearness, rise in each sweep but the last; few are needed.
+constexpr int kMaxSweeps = 20;
 
 constexpr std::int64_t kNearest = 1000;                // along the tangent
 constexpr std::int64_t kView = std::int64_t{1} << 32;  // more than the nearness of all viewpoints

@@ -103,8 +103,8 @@ TEST(YawBins, OfYawsThatSeeAsManyTheNearestToThePathIsChosen) {
       const YawBins bins(gain, 24, tangent_yaws(scene.path), limits);
       for (const auto& yaws : {bins.most_views(), bins.most_distinct()}) {
         EXPECT_EQ(test::distinct_by_hand(scene, yaws), seen ? 1U : 0U);
-        EXPECT_NEAR(yaws[2], along, seen && limits.limited() ? 0.6 : 1e-9);
-        EXPECT_NEAR(yaws[6], along, seen && limits.limited() ? 0.6 : 1e-9);
+        EXPECT_NEAR(yaws[2], along, 1e-9);
+        EXPECT_NEAR(yaws[6], along, 1e-9);
         if (!seen) {
           EXPECT_NEAR(yaws[4], along, 1e-9);
         }
