@@ -1,14 +1,16 @@
 """What the paper claims and what this program shall hold, judged on the runs. Every verdict can go the other way."""
 
+from collections import Counter
 from typing import NamedTuple, Optional
 
 import paper
-from intervals import FEWEST, Interval, mean, median_ratio, ratio
+from experiments import FIRST_SEED, Run
+from intervals import FEWEST, Interval, mean, median_ratio, proportion, ratio
 from markdown import as_first_word, counted, interval, percent, value
-from results import same_everywhere
 
 # Pairs that a verdict needs: what is declared for a main row. In worlds of files only the start differs.
 NEEDED, NEEDED_OF_FILES = 20, 10
+MODES = {"as printed": "steps", "default mode": "steps_render"}  # of the paper's steps, and the methods that show them
 NOT_MEASURED = "not measured"
 NOT_JUDGED = "not judged"
 UNDECIDED = "open: the interval contains the limit"
@@ -32,12 +34,31 @@ def failed(word):
 
 
 def none_of(bad, runs, what="run", fewest=1):
-    """Of facts that are there or not: one fails the line, and few runs without any are no reason to rely on it."""
+    """Of facts that are there or not: one fails the line, and few runs without any are no reason to rely on it. `fewest`: in
+    all, or {task: in each}."""
     if not runs:
         return NOT_MEASURED
     if bad:
         return failed(f"does not hold: {counted(len(bad), what)}")
+    if isinstance(fewest, dict):
+        there = Counter(r.run.task for r in runs)
+        few = sorted((there[task], f"{there[task]} of {n} {what}s of {task}") for task, n in fewest.items() if there[task] < n)
+        others = f", and too few of {counted(len(few) - 1, 'other world')}" if few[1:] else ""
+        return f"open: {few[0][1]}{others}" if few else "holds"
     return "holds" if len(runs) >= fewest else f"open: {len(runs)} of {counted(fewest, what)}"
+
+
+def in_each(results, methods):
+    """How many runs of any of these methods a verdict needs in each world for which they are declared."""
+    return {task: needed(results, task) for task in results.experiments.tasks
+            if any((task, method) in results.experiments.rows for method in methods)}
+
+
+def touching(count, of):
+    """How frequent contacts are, by so many runs; of none, how frequent they may be all the same."""
+    if count == 0:
+        return f"so with 95 % confidence in fewer than {percent(1 - 0.05 ** (1 / of))}"
+    return interval(proportion(count, of), 1, 100, " %")
 
 
 def at_most(found, limit, yes="holds", no="does not hold", strictly=False):
@@ -178,7 +199,7 @@ def times(compared):
 
 def paper_team_lines(results, mode, steps):
     for world in paper.WORLDS:
-        saved = relative(to_a_level(results, [world], steps, f"{steps}_uav", lambda r: r.steps_until(0.9)), -1)
+        saved = relative(to_a_level(results, [world], steps, f"{steps}_uav", lambda r: r.steps_to_90), -1)
         yield Line(f"{mode}, {world}: the team takes at least 30 % fewer planning steps than the UAV alone (up to 54 %)"
                    "; to 90 %", saved.said, saved.judged(at_least, paper.STEPS_SAVED))
     shorter = 1 - paper.UAV_TEAM_LENGTH / paper.UAV_ALONE_LENGTH
@@ -207,7 +228,7 @@ def paper_optimisation_lines(results, mode, steps):
         yield Line(f"{mode}, {world}: optimisation shortens the UAV's path by {100 * (1 - after / before):.0f} % "
                    f"({before} and {after} m)", saved.said, saved.judged(effect, 1 - after / before))
     for world in paper.WORLDS:
-        gained = relative(at_the_end(results, [world], steps, before_it, lambda r: r.gain("uav", "gained")))
+        gained = relative(at_the_end(results, [world], steps, before_it, lambda r: r["gained"]))
         yield Line(f"{mode}, {world}: optimisation improves the UAV's information gain by {percent(paper.UAV_GAIN[world])};"
                    " of what, the paper does not say: here of the frontiers that the scans along a path mapped",
                    gained.said, gained.judged(effect, paper.UAV_GAIN[world]))
@@ -227,8 +248,7 @@ def paper_coverage_lines(results, mode, steps):
 
 def paper_time_lines(results, mode, steps):
     for world in paper.WORLDS:
-        seconds = [r.measured["planning_mean_s"] for r in results.of(world, steps, timed=True)
-                   if r.measured.get("planning_mean_s") is not None]
+        seconds = [r["planning_mean_s"] for r in results.of(world, steps, timed=True) if r["planning_mean_s"] is not None]
         late = [s for s in seconds if s >= paper.LONGEST_PLANNING]
         yield Line(f"{mode}, {world}: planning takes less than 5 s a step on average",
                    value(max(seconds), 3, " s") if seconds else "",
@@ -240,7 +260,7 @@ def paper_lines(results):
     no = "not comparable"
     return [*(line for of in (paper_team_lines, paper_distribution_lines, paper_optimisation_lines, paper_coverage_lines,
                               paper_time_lines)
-              for mode, steps in (("as printed", "steps"), ("default mode", "steps_render"))
+              for mode, steps in MODES.items()
               for line in of(results, mode, steps)),
             Line("69, 74 and 137 steps until the end", "other worlds of the same names, of other sizes", no),
             Line("252 to 1,147 m of path", "as above; ratios are compared in the lines above", no),
@@ -324,32 +344,32 @@ def teams(results):
 
 def contacts_line(results, who, methods, fewest=None):
     runs = [r for r in results.all.values() if r.run.method in methods and not r.run.timed and not r.crashed]
-    touched = [r for r in runs if r.facts["contacts"]]
-    said = f"{sum(r.facts['contacts'] for r in runs)} contacts, in {len(touched)} of {len(runs)} runs"
-    if runs and not touched:
-        said += f"; so with 95 % confidence fewer than {percent(1 - 0.05 ** (1 / len(runs)))} of runs have any"
-    return Line(f"{who} without bumpers: no body touches a surface", said if runs else "", none_of(touched, runs, fewest=fewest or NEEDED))
+    touched = [r for r in runs if r["contacts"]]
+    said = (f"{sum(r['contacts'] for r in runs)} contacts, in {len(touched)} of {len(runs)} runs; "
+            f"{touching(len(touched), len(runs))}") if runs else ""
+    return Line(f"{who} without bumpers: no body touches a surface", said,
+                none_of(touched, runs, fewest=fewest or in_each(results, methods)))
 
 
-def clear_line(who, runs, fewest=None):
-    near = [r for r in runs if r.facts.get("clearance_min_m") is not None and r.facts["clearance_min_m"] < CLEARANCE]
+def clear_line(who, runs, fewest):
+    near = [r for r in runs if r["clearance_min_m"] is not None and r["clearance_min_m"] < CLEARANCE]
     return Line(f"{who}: bodies keep {CLEARANCE} m from surfaces",
-                f"less in {len(near)} of {counted(len(runs), 'run')}" if runs else "", none_of(near, runs, fewest=fewest or NEEDED))
+                f"less in {len(near)} of {counted(len(runs), 'run')}" if runs else "", none_of(near, runs, fewest=fewest))
 
 
-def apart_line(who, runs, fewest=None):
-    several = [r for r in runs if r.facts.get("separation_min_m") is not None]
-    near = [r for r in several if r.facts["separation_min_m"] < SEPARATION - 1e-9]
-    least = min((r.facts["separation_min_m"] for r in several), default=None)
+def apart_line(who, runs, fewest):
+    several = [r for r in runs if r["separation_min_m"] is not None]
+    near = [r for r in several if r["separation_min_m"] < SEPARATION - 1e-9]
+    least = min((r["separation_min_m"] for r in several), default=None)
     return Line(f"{who}: bodies stay {SEPARATION} m apart",
-                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=fewest or NEEDED))
+                f"least {value(least, 3, ' m')} in {len(several)} runs" if several else "", none_of(near, several, fewest=fewest))
 
 
-def mapped_line(who, runs, fewest=None):
+def mapped_line(who, runs, fewest):
     failures = [r for r in runs if r.failure]
     return Line(f"{who}: every run ends by itself with the world mapped (99 %, hospital 90 %)",
                 f"{counted(len(failures), 'failure')} in {counted(len(runs), 'run')}" if runs else "",
-                none_of(failures, runs, fewest=fewest or NEEDED))
+                none_of(failures, runs, fewest=fewest))
 
 
 def safety_lines(results):
@@ -358,17 +378,19 @@ def safety_lines(results):
     yield contacts_line(results, "View quality", ("render",))
 
     everything = [r for r in results.all.values() if r.run.method in of_tours and not r.run.timed]
-    runs = [r for r in everything if r.facts]
-    yield clear_line("Tours", runs)
-    yield apart_line("Tours", runs)
+    runs = [r for r in everything if not r.crashed]
+    fewest = in_each(results, of_tours)
+    yield clear_line("Tours", runs, fewest)
+    yield apart_line("Tours", runs, {task: n for task, n in fewest.items() if any(
+        len(results.experiments.task_file(Run(task, method, FIRST_SEED))["robots"]) > 1 for method in of_tours)})
 
-    moving = [r for r in runs if r.facts.get("worst_of_limits") is not None]
-    over = [r for r in moving if r.facts["worst_of_limits"] > LIMITS_KEPT]
+    moving = [r for r in runs if r["worst_of_limits"] is not None]
+    over = [r for r in moving if r["worst_of_limits"] > LIMITS_KEPT]
     yield Line("Tours: speed, acceleration and yaw rate, sampled at 100 Hz, exceed no limit by more than 0.1 %",
-               f"at most {max(r.facts['worst_of_limits'] for r in moving):.6f} of a limit in {counted(len(moving), 'run')}"
-               if moving else "", none_of(over, moving, fewest=NEEDED))
+               f"at most {max(r['worst_of_limits'] for r in moving):.6f} of a limit in {counted(len(moving), 'run')}"
+               if moving else "", none_of(over, moving, fewest=fewest))
 
-    yield mapped_line("Tours", everything)
+    yield mapped_line("Tours", everything, fewest)
 
 
 def declared(results, which):
@@ -378,11 +400,12 @@ def declared(results, which):
 
 def time_lines(results):
     timed = [r for r in results.all.values() if r.run.timed and r.run.method == "tour"
-             and r.measured.get("planning_p99_s") is not None]
-    late = [r for r in timed if r.measured["planning_p99_s"] > r.content["task"]["latency_s"]]
+             and r["planning_p99_s"] is not None]
+    charged = {r.run: results.experiments.task_file(r.run)["latency_s"] for r in timed}
+    late = [r for r in timed if r["planning_p99_s"] > charged[r.run]]
     yield Line("Tours: 99 % of plannings take at most what the clock charges",
-               "; ".join(f"{r.run.task} {r.measured['planning_p99_s']:.3f} of {r.content['task']['latency_s']} s"
-                         for r in timed), none_of(late, timed, fewest=declared(results, lambda run: run.timed and run.method == "tour")))
+               "; ".join(f"{r.run.task} {r['planning_p99_s']:.3f} of {charged[r.run]} s" for r in timed),
+               none_of(late, timed, fewest=declared(results, lambda run: run.timed and run.method == "tour")))
 
 
 def sameness_lines(results):
@@ -396,7 +419,7 @@ def sameness_lines(results):
             ("One and two threads give the same run", {r.run[:3]: r for r in results.all.values() if r.run.timed},
              lambda run: run.timed)):
         pairs = [(plain_runs[key], other) for key, other in others.items() if key in plain_runs]
-        unlike = [a for a, b in pairs if same_everywhere(a.content) != same_everywhere(b.content)]
+        unlike = [a for a, b in pairs if a["outcome"] != b["outcome"]]
         yield Line(claim, f"{len(pairs) - len(unlike)} of {len(pairs)} pairs of runs are the same" if pairs else "",
                    none_of(unlike, pairs, "pair", declared(results, is_other)))
 
@@ -416,7 +439,7 @@ def control_lines(results):
     def runs(method):
         return [r for task in results.tasks() for r in results.of(task, method)]
 
-    swaying = [r for r in runs("tour_swaying") if r.facts]
+    swaying = [r for r in runs("tour_swaying") if not r.crashed]
     lines = []
     for method, other in (("tour_hasty", "render"), ("tour_alone", "tour_uav")):
         for task in results.experiments.declared_tasks(method):

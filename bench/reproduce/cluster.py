@@ -9,6 +9,7 @@ import explore
 from distributed import CancelledError, Client, KilledWorker, LocalCluster, TimeoutError, wait
 
 WAIT_FOR_WORKERS = 60  # [s]
+WAIT_FOR_OTHERS = 1800  # [s], after the last worker has left
 LOST_WORKERS = 3  # a run whose worker has died more often is lost
 MOST_LOST = 10  # runs in a row that machines may lose: one that cannot make any would soon lose all
 
@@ -47,10 +48,14 @@ def run_all(client, calls, until=None):
     """Yields (key, what explore() returns) as runs end, in any order; {"lost": why} is of a run that its machine could
     not make, which says nothing of the run. `calls`: {key: arguments of explore()}, begun in this order; none is begun
     after `until` (of time.monotonic()). No more runs are handed out than there are threads: a worker that dies takes
-    none with it that it has not begun. Raises OSError if the machines lose run after run."""
-    waiting, begun, lost = list(calls.items()), {}, 0
+    none with it that it has not begun. Raises OSError if the machines lose run after run, or all leave for long."""
+    waiting, begun, lost, last_seen = list(calls.items()), {}, 0, time.monotonic()
     while waiting or begun:
         threads = sum(client.nthreads().values())
+        if threads:
+            last_seen = time.monotonic()
+        elif time.monotonic() > last_seen + WAIT_FOR_OTHERS:
+            raise OSError(f"all workers have left {WAIT_FOR_OTHERS} s ago; start some, and the same command goes on")
         late = until is not None and time.monotonic() >= until
         while waiting and not late and len(begun) < max(threads, 1):
             key, arguments = waiting.pop(0)

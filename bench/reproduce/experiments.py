@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 DECLARED = Path(__file__).resolve().parent / "experiments.json"
-FIRST_SEED = 6  # parameters were fixed on seeds 1 to 5
+FIRST_SEED = 101  # what comes before is for choosing and trying
 COMPLETE = 0.99  # of the observable space, unless the task says otherwise
 COMPLETES = (0.9, 0.95, 0.99)  # parts for which runs say when they had mapped them
 FIRST_PASS = 2  # seeds of each block that come before all others, unless it says otherwise

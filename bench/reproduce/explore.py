@@ -1,9 +1,12 @@
 """One exploration, done by a worker: no other file of this folder is needed here."""
 
 import csv
+import errno
 import hashlib
 import json
 import math
+import os
+import re
 import shutil
 import signal
 import socket
@@ -40,14 +43,18 @@ class Program(NamedTuple):
 
 
 def program_of(command):
-    """The version that `frontlux --version` prints, and the hash of its file. Raises OSError."""
+    """The version that `frontlux --version` prints, and the hash of its file, with those of our libraries if it is not linked
+    statically. Raises OSError."""
     file = find_program(command)
     try:
         said = subprocess.run([file, "--version"], capture_output=True, text=True, timeout=60, check=True)
+        linked = subprocess.run(["ldd", file], capture_output=True, text=True, timeout=60, check=False)  # of a script nothing
     except subprocess.SubprocessError as error:
         raise OSError(f"{file} on {socket.gethostname()} does not run: {error}") from error
-    return Program(said.stdout.split(",")[0].strip().removeprefix("frontlux "),
-                   hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12])
+    digest = hashlib.sha256(Path(file).read_bytes())
+    for library in sorted(re.findall(r"^\s*libfrontlux\S* => (/.*) \(0x", linked.stdout, re.MULTILINE), key=os.path.basename):
+        digest.update(Path(library).read_bytes())
+    return Program(said.stdout.split(",")[0].strip().removeprefix("frontlux "), digest.hexdigest()[:12])
 
 
 def kind_of(robot):
@@ -151,6 +158,8 @@ def run_in(folder, program, task, threads):
         raise OSError(f"{socket.gethostname()} has ended the run")
     if code != 0:
         said = last_line(log.read_text(encoding="utf-8", errors="replace"))
+        if os.strerror(errno.ENOSPC) in said:
+            raise OSError(f"{socket.gethostname()} has no room for the run: {said}")
         ended = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
         return {"failure": f"{ended}: {said}", "measured": {}}
     try:

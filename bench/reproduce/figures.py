@@ -1,6 +1,7 @@
 """The figures of docs/results.md."""
 
 import math
+from statistics import fmean
 
 import paper
 from claims import at_the_end, end_of, seconds_mapped, to_a_level
@@ -24,6 +25,12 @@ def line_of(results, method):
 
 def drawn_methods(results, table):
     return [m for m in results.experiments.methods_of(table) if line_of(results, m)]
+
+
+def is_drawn(results, run):
+    """Whether figures show its curve."""
+    return not run.timed and results.experiments.file_of(run.task) is None and any(
+        run.method in drawn_methods(results, table) for table in ("main", "lock-step"))
 
 
 def colours_of(results, methods):
@@ -88,8 +95,12 @@ def sampled(xs, ys, end):
     return [(x, value_at(xs, ys, x)) for x in (end * i / SAMPLES for i in range(SAMPLES + 1))]
 
 
+def xs_of(run):
+    return [x for x, _, _ in run.curve]
+
+
 def mean_curve(curves):
-    return [(points[0][0], sum(y for _, y in points) / len(points)) for points in zip(*curves)]
+    return [(points[0][0], fmean(y for _, y in points)) for points in zip(*curves)]
 
 
 def chart(title, note, titles, dashes):
@@ -109,8 +120,8 @@ def chart(title, note, titles, dashes):
     return drawing
 
 
-def progress(results, tasks, names, title, of_curve, x_title):
-    """Coverage against `of_curve`: thin lines by seed, a thick one for their mean. Failed runs are drawn as well."""
+def progress(results, tasks, names, title, x_title):
+    """Coverage against seconds or steps: thin lines by seed, a thick one for their mean. Failed runs are drawn as well."""
     tasks = [t for t in tasks if any(r.curve for name in names for r in results.of(t, name))]
     names = [n for n in names if any(r.curve for t in tasks for r in results.of(t, n))]
     dashes = {n: line_of(results, n)[1] for n in names}
@@ -118,13 +129,13 @@ def progress(results, tasks, names, title, of_curve, x_title):
                     "failed runs", {n: results.experiments.title(n) for n in names}, dashes)
     for column, task in enumerate(tasks):
         runs = {name: [r for r in results.of(task, name) if r.curve] for name in names}
-        ends = {name: max((of_curve(r)[-1] for r in runs[name]), default=0) for name in names}
+        ends = {name: max((r.curve[-1][0] for r in runs[name]), default=0) for name in names}
         x_end = max(min(max(ends.values()), 3 * (ends.get(names[0]) or max(ends.values()))), 1)
         panel = Panel(drawing, column, len(tasks), x_end, 100, task, x_title, "mapped part of the observable space [%]")
         for name in reversed(names):
-            curves = [sampled(of_curve(r), [100 * row["coverage"] for row in r.curve], x_end) for r in runs[name]]
+            curves = [sampled(xs_of(r), [100 * mapped for _, mapped, _ in r.curve], x_end) for r in runs[name]]
             for points, run in zip(curves, runs[name]):
-                panel.curve(name, [p for p in points if p[0] <= of_curve(run)[-1]] or points[:1])
+                panel.curve(name, [p for p in points if p[0] <= run.curve[-1][0]] or points[:1])
             if curves:
                 panel.curve(name, mean_curve(curves), dashes[name])
     return svg(title, TOP + PANEL_HEIGHT + 35 + MARGIN - 8, colours_of(results, names), drawing)
@@ -138,12 +149,12 @@ def contributions(results, method="steps"):
     tasks = [t for t in paper.WORLDS if any(r.curve for r in results.of(t, method))]
     for column, task in enumerate(tasks):
         runs = [r for r in results.of(task, method) if r.curve]
-        x_end = max(max(steps_of(r)[-1] for r in runs), 1)
+        x_end = max(max(r.curve[-1][0] for r in runs), 1)
         panel = Panel(drawing, column, len(tasks), x_end, 100, task, "steps", "mapped part of the observable space [%]")
         lower = [(x_end * i / SAMPLES, 0) for i in range(SAMPLES + 1)]
         for kind in kinds:
-            own = mean_curve([sampled(steps_of(r), [100 * row["first"].get(kind, 0) for row in r.curve], x_end)
-                              for r in runs])
+            own = mean_curve([sampled(xs_of(r), [100 * (by_ugv if kind == "ugv" else mapped - by_ugv)
+                                                 for _, mapped, by_ugv in r.curve], x_end) for r in runs])
             upper = [(x, below + y) for (x, below), (_, y) in zip(lower, own)]
             panel.area(kind, lower, upper)
             lower = upper
@@ -199,25 +210,17 @@ def ratios(results, first="tour"):
     return svg(title, bottom + 30 + MARGIN - 8, colours_of(results, others), drawing)
 
 
-def seconds_of(run):
-    return [row["time_s"] for row in run.curve]
-
-
-def steps_of(run):
-    return list(range(len(run.curve)))
-
-
 def figures(results):
     """{name: SVG}; those of runs in lock-step if there are some."""
     drawn = {
         "coverage_by_time": progress(results, results.tasks(of_files=False), drawn_methods(results, "main"),
-                                     "Coverage by time", seconds_of, "time on the clock [s]"),
+                                     "Coverage by time", "time on the clock [s]"),
         "ratios": ratios(results),
     }
     if any(results.methods(world, "lock-step") for world in paper.WORLDS):
         drawn |= {
             "coverage_by_step": progress(results, paper.WORLDS, drawn_methods(results, "lock-step"),
-                                         "Coverage by step, the paper's method", steps_of, "steps"),
+                                         "Coverage by step, the paper's method", "steps"),
             "contributions": contributions(results),
         }
     return drawn

@@ -44,6 +44,24 @@ def by_order(values):
     return Interval(median(values), values[k - 1], values[count - k], count)
 
 
+def proportion(count, of):
+    """Of so many independent runs so many did, with Clopper's and Pearson's exact interval."""
+    def chance(p, counts):
+        return math.fsum(math.comb(of, k) * p ** k * (1 - p) ** (of - k) for k in counts)
+
+    def least(holds):
+        """The least p for which this holds; it holds for all above."""
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (low, middle) if holds(middle) else (middle, high)
+        return high
+
+    tail = (1 - LEVEL) / 2
+    return Interval(count / of, least(lambda p: chance(p, range(count, of + 1)) >= tail) if count else 0.0,
+                    least(lambda p: chance(p, range(count + 1)) <= tail), of)
+
+
 def present(values):
     return [v for v in values if v is not None]
 
@@ -64,11 +82,17 @@ def difference(groups_of_pairs, measure):
                      lambda groups: fmean(fmean(a - b for a, b in pairs) for pairs in groups))
 
 
+def median_difference(pairs, measure):
+    """The median of the first run's less the second's; who never got there is later than any other, as for median_ratio()."""
+    found = [0.0 if a == b else a - b for a, b in both(pairs, measure)]
+    return by_order(found) if found else None
+
+
 def ratio(groups_of_pairs, measure):
     """The first runs' mean by the second runs', in each group; of several groups the mean of that."""
     def of(pairs):
-        below = sum(b for _, b in pairs)
-        return sum(a for a, _ in pairs) / below if below else 0.0
+        below = math.fsum(b for _, b in pairs)
+        return math.fsum(a for a, _ in pairs) / below if below else 0.0
     return bootstrap([both(pairs, measure) for pairs in groups_of_pairs], lambda groups: fmean(map(of, groups)))
 
 

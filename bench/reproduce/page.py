@@ -2,9 +2,10 @@
 
 from collections import Counter
 
-from claims import (NEEDED, NEEDED_OF_FILES, NOT_JUDGED, control_lines, end_of, is_endless, our_lines, paper_lines, seconds_mapped, teams,
-                    to_a_level)
+from claims import (MODES, NEEDED, NEEDED_OF_FILES, NOT_JUDGED, NOT_MEASURED, control_lines, end_of, is_endless, needed, our_lines,
+                    paper_lines, seconds_mapped, teams, to_a_level, touching)
 from explore import LONGEST
+from experiments import FIRST_SEED
 from intervals import FEWEST, LEVEL, RESAMPLES, mean
 from markdown import as_first_word, counted, interval, percent, plain
 from tables import (bumpers_table, failures_list, lines_table, maps_table, means, missing_table, optimisation_table, pairs_table,
@@ -48,11 +49,22 @@ def summary(lines):
     return f"Of {len(lines)} lines: " + ", ".join(f"{n} {word}" for word, n in counts if n) + "."
 
 
+def paper_summary(lines):
+    """Of the paper's method, and of what replaces it: one says nothing of the other."""
+    return "".join(f"- {as_first_word(mode)}: {summary(of_mode)}\n" for mode in MODES
+                   if (of_mode := [line for line in lines if line.claim.startswith(f"{mode}, ")]))
+
+
+def noticed_summary(lines):
+    counts = {word: sum(line.verdict.startswith(word) for line in lines) for word in ("noticed", "open", "**missed", NOT_MEASURED)}
+    return ", ".join(f"{n} {word.strip('*')}" for word, n in counts.items() if n) + "; *open* is what so few pairs cannot tell."
+
+
 def origin(results):
     runs = results.all.values()
-    versions = ", ".join(sorted({plain(r.content["version"]) for r in runs}))
+    versions = ", ".join(sorted({plain(r["version"]) for r in runs}))
     seeds = [run.seed for run in results.all]
-    dates = sorted({r.measured["date"] for r in runs if r.measured.get("date")})
+    dates = sorted({r["date"] for r in runs if r["date"]})
     return (f"{len(runs)} of {len(results.wanted)} runs, seeds {min(seeds)} to {max(seeds)}, by version {versions}, "
             f"{named_programs(results)}" +
             (f", {plain(dates[0])}" + (f" to {plain(dates[-1])}" if len(dates) > 1 else "") if dates else ""))
@@ -62,7 +74,7 @@ def named_programs(results):
     program, *like = map(plain, results.programs)
     if not like:
         return f"program {program}"
-    counts = Counter(plain(r.program) for r in results.all.values())
+    counts = Counter(plain(r["program"]) for r in results.all.values())
     return (f"program {program} ({counted(counts[program], 'run')}) and by what was given as like it: " +
             ", ".join(f"{p} ({counted(counts[p], 'run')})" for p in like))
 
@@ -75,7 +87,7 @@ def others_left_out(results):
 
 def duration(results):
     """How long the runs took: with more workers the command took less."""
-    seconds = [r.measured["wall_s"] for r in results.all.values() if r.measured.get("wall_s") is not None]
+    seconds = [r["wall_s"] for r in results.all.values() if r["wall_s"] is not None]
     return f"{counted(len(seconds), 'run')} took {sum(seconds) / 3600:.1f} hours in all, one after the other"
 
 
@@ -83,33 +95,32 @@ def in_short(results):
     """Sentences of what has an interval."""
     experiments = results.experiments
 
-    def where(tasks):
-        return ("mean of " if len(tasks) > 1 else "") + ", ".join(experiments.task_title(t) for t in tasks)
+    def in_world(task, method, other, measure):
+        pairs, title = len(results.pairs(task, method, other)), experiments.task_title(task)
+        if pairs < FEWEST:
+            return f"{title} has {pairs} of {counted(needed(results, task), 'pair')}"
+        found = to_a_level(results, [task], method, other, measure).found
+        if is_endless(found):
+            return f"{title}: at least half of {experiments.title(other if found.value == 0 else method)} never got there"
+        return f"{title} {interval(found, 2, unit='×')}"
 
-    def against(said, tasks, method, other, measure):
-        tasks = [t for t in tasks if len(results.pairs(t, method, other)) >= FEWEST]
-        found = to_a_level(results, tasks, method, other, measure)
-        if len(tasks) > 1 and any(is_endless(to_a_level(results, [t], method, other, measure).found) for t in tasks):
-            return [line for t in tasks for line in against(said, [t], method, other, measure)]
-        if is_endless(found.found):
-            who = other if found.found.value == 0 else method
-            return [f"{as_first_word(experiments.title(who))}: at least half of the runs never got there "
-                    f"({where(tasks)}, {found.said})."]
-        return [said.format(interval(found.found, 2, unit="×"), f"{where(tasks)}, {found.said}")] if found.found else []
+    def against(said, method, other, measure):
+        """World by world, if one has enough pairs: their mean, and what it shall be, is a line below."""
+        worlds = [t for t in experiments.declared_tasks(method, other) if not experiments.file_of(t)]
+        if all(len(results.pairs(t, method, other)) < FEWEST for t in worlds):
+            return []
+        return [f"{said}: {', '.join(in_world(t, method, other, measure) for t in worlds)}."]
 
-    built_in = experiments.tasks_of(of_files=False)
     lines = [
-        *against("Until 99 % is mapped, tours take {} the time of view quality ({}).", built_in, "tour", "render",
-                 seconds_mapped),
-        *against("Tours take {} the time of the paper's method in motion ({}).", built_in, "tour", "paper", seconds_mapped),
-        *against("With tours, UAV and UGV take {} the time of the UAV alone ({}).", built_in, "tour", "tour_uav", seconds_mapped)]
+        *against("Time until 99 % is mapped, tours by view quality", "tour", "render", seconds_mapped),
+        *against("Tours by the paper's method in motion", "tour", "paper", seconds_mapped),
+        *against("UAV and UGV by the UAV alone, with tours", "tour", "tour_uav", seconds_mapped)]
     of_tours = [r for m in teams(results) for t in results.tasks() for r in results.of(t, m) if not r.crashed]
-    touched = mean(float(r.facts["contacts"] > 0) for r in of_tours)
-    if touched and 0 < touched.value < 1 and touched.low is not None:
-        lines.append(f"In {interval(touched, 1, 100, ' %')} of {counted(len(of_tours), 'run')} of tours a body touched a "
-                     "surface, without bumpers.")
-    lines += against("As printed, in lock-step, the team takes {} the steps of the UAV alone to 90 % ({}).",
-                     built_in, "steps", "steps_uav", lambda r: r.steps_until(0.9))
+    if len(of_tours) >= FEWEST:
+        touched = sum(r["contacts"] > 0 for r in of_tours)
+        lines.append(f"With tours, a body touched a surface in {touched} of {counted(len(of_tours), 'run')} without bumpers; "
+                     f"{touching(touched, len(of_tours))}.")
+    lines += against("Steps to 90 %, as printed, in lock-step, team by UAV alone", "steps", "steps_uav", lambda r: r.steps_to_90)
     for task in experiments.tasks_of(of_files=True):
         if published := experiments.tasks[task].get("published"):
             done = results.done(task, "tour")
@@ -121,10 +132,10 @@ def in_short(results):
     return "".join(f"- {line}\n" for line in lines) or "Too few runs for an interval.\n"
 
 
-def page(results, images, runs):
-    """images, runs: the figures' folder and the table of all runs, as seen from the page."""
+def page(results, images, rows, curves):
+    """images, rows, curves: the figures' folder and the tables of all runs, as seen from the page."""
     built_in, others = results.tasks(of_files=False), results.tasks(of_files=True)
-    ours, papers = our_lines(results), paper_lines(results)
+    ours, papers, spoilt = our_lines(results), paper_lines(results), control_lines(results)
 
     def figure(name, title):
         return f"![{title}]({images}/{name}.svg)\n"
@@ -143,8 +154,8 @@ def page(results, images, runs):
 # Results
 
 Written by `./dev reproduce` from {origin(results)}.
-{duration(results)}. [{runs}]({runs}) has a row for each; [reproducing.md](reproducing.md) says how to make
-them. What is missing stands at the end of the page.
+{duration(results)}. [{rows}]({rows}) has a row for each, and [{curves}]({curves}) what figures draw: this page is made of
+them alone, so more runs can be added anywhere ([reproducing.md](reproducing.md)). What is missing stands at the end of the page.
 
 ## Results in short
 
@@ -159,7 +170,8 @@ clock charges 0.25 s for each planning. In lock-step they are the built-in robot
 UAV of 2 m/s with a margin of 0.05 m, voxels of 0.1 m and 0.15 s. **No bumpers**: a body that touches a surface goes on, and that is a contact.
 `bench/reproduce/experiments.json` declares all of it.
 
-Parameters were fixed on seeds 1 to 5. Seed n is layout n with {results.experiments.seed_offset:,} + n for planner and sensors. Methods are compared
+Nothing was chosen or tried on layouts from {FIRST_SEED} on, and no results of them were looked at before. Worlds of others
+were run while things were tried. Seed n is layout n with {results.experiments.seed_offset:,} + n for planner and sensors. Methods are compared
 by pairs with the same seed; in brackets are {100 * LEVEL:.0f} % intervals, none for fewer than {FEWEST} values: of a median in one world by order (the true
 median is between these two of the values, whatever their distribution), else by bootstrap ({RESAMPLES:,} resamples).
 
@@ -169,7 +181,7 @@ what is left to see is no failure once so much is mapped. A run that its machine
 
 Times, steps and metres **to a level** are compared by the median of the pairs' ratios, of all runs: one that never got
 there, whatever ended it, counts as later than any that did, and two that never did as alike (1). What is measured **at the end** is
-compared by the ratio of means, of pairs of which neither run failed. Several worlds count by the mean of their ratios.
+compared by the ratio of means, of pairs of which neither run failed. Differences are medians of the pairs', by order. Several worlds count by the mean of their ratios.
 
 ## Main tables
 
@@ -192,17 +204,19 @@ What was not mapped is in view only of smaller robots (narrow), of none (hidden)
 ## What must hold
 
 {summary(ours)} *Open* is what these runs do not decide: a verdict needs
-{NEEDED} pairs ({NEEDED_OF_FILES} in worlds of others, where only the start differs), as many as are declared for each line, and of what is
+{NEEDED} pairs in each world ({NEEDED_OF_FILES} in worlds of others, where only the start differs), or so many runs, and of what is
 measured at the end at most a tenth of a method's runs failed. *Not judged* is the time to the end.
 
 {lines_table(ours)}
 **Would they notice?** Lines of the same kinds about runs that are spoilt on purpose, judged by as few pairs as are declared of
 these: none of them may hold. (What limits, planning times and sameness of runs would notice is tested with made-up runs.)
 
-{lines_table(control_lines(results))}
+{noticed_summary(spoilt)}
+
+{lines_table(spoilt)}
 ## Why
 
-One thing changed at a time, by pairs with the method unchanged (failed: of both); above 1 the change costs.
+One thing changed at a time, by pairs with the method unchanged (failed: of both), in worlds with {FEWEST} pairs and more; above 1 the change costs.
 
 {of_each("why", variants_table)}
 ## What reality adds
@@ -229,8 +243,7 @@ Published times to the end of others' planners, by their own clocks and rules:
 {published_list(results.experiments)}
 ## The paper, line by line
 
-{summary(papers)}
-
+{paper_summary(papers)}
 In lock-step, once as printed, once with what replaces it by default (`--goal render --lockstep`). A change that the
 paper prints is *reproduced* if the whole interval is at least half as large; *not reproduced* if the interval excludes one as large, or is of the
 opposite; else *open*. A limit is reproduced if the whole interval keeps it. *Open*
@@ -239,7 +252,8 @@ is also what has too few pairs or too many failures, as above. The paper prints 
 {lines_table(papers)}
 ## The paper's tables
 
-In lock-step; a voxel belongs to the robot that observed it first.
+In lock-step; a voxel belongs to the robot that observed it first. Robots go in straight lines from viewpoint to viewpoint, and a run with a contact
+is one in which a body touched a surface there.
 
 {in_lockstep}
 ## Planning times

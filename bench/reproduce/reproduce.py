@@ -12,7 +12,8 @@ from pathlib import Path
 
 from experiments import Experiments
 from explore import program_of
-from results import Results, is_kept, programs_in, unlike, write_result
+from results import Results, failed_before, is_kept, is_published, programs_in, unlike, write_result
+from rows import curves_table, read_published, rows_table
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(1, str(ROOT / "bench"))  # of all plots
@@ -126,7 +127,7 @@ def describe(result):
     return f"{facts['end']} after {facts['time_s']['end']:.0f} s, {100 * facts['coverage_observable']:.1f} %"
 
 
-def execute(experiments, runs, options):
+def execute(experiments, runs, options, published):
     """Runs those that have no result of this program yet; how many of them were lost, and the program's digest."""
     from cluster import connect, run_all  # only here: tables need no Dask
     folder = options.runs
@@ -141,9 +142,12 @@ def execute(experiments, runs, options):
         program = found[0]
         tasks = {run: experiments.task_file(run) for run in runs}
         programs = {program.sha256, *options.like}
-        left = [run for run in runs
-                if not is_kept(folder, run, tasks[run], {program.sha256} if run.timed else programs)]
-        say(f"{len(runs) - len(left)} of {len(runs)} runs are kept from before, {len(left)} to do")
+        left = []
+        for run in runs:
+            wanted = {program.sha256} if run.timed else programs
+            if not is_kept(folder, run, tasks[run], wanted) and not is_published(published, run, tasks[run], wanted):
+                left.append(run)
+        say(f"{len(runs) - len(left)} of {len(runs)} runs are kept or published from before, {len(left)} to do")
         calls = {run.name: (options.command, program, tasks[run], world_file(experiments.file_of(run.task), options),
                             2 if run.timed else 1) for run in left}
         by_name = {run.name: run for run in left}
@@ -155,6 +159,8 @@ def execute(experiments, runs, options):
                 say(f"[{number_done}/{len(left)}] {name}: LOST: {result['lost']}")
                 continue
             run = by_name[name]
+            if before := failed_before(folder, run, tasks[run], program.sha256):
+                result["measured"]["failed_before"] = before
             write_result(folder, run, tasks[run], program.version, result)
             minutes = (time.monotonic() - begin) / number_done * (len(left) - number_done) / 60
             took = result["measured"].get("wall_s")
@@ -165,29 +171,34 @@ def execute(experiments, runs, options):
     return lost, program.sha256
 
 
-def write_page(experiments, runs, options, program):
-    from csv_of_runs import csv_of_runs
-    from figures import figures
+def tables_of(page):
+    """Beside it: of all its runs the rows, and the curves."""
+    return page.with_suffix(".csv"), page.with_name(f"{page.stem}_curves.csv")
+
+
+def write_page(experiments, runs, options, program, published):
+    from figures import figures, is_drawn
     from page import page
     from svg_chart import save
-    results = Results(experiments, runs, options.runs, options.like, program)
+    results = Results(experiments, runs, options.runs, options.like, program, published)
     if not results.all:
         raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
     images = options.page.parent / "images/results"
     drawn = figures(results)
-    table = options.page.with_suffix(".csv")
-    text = page(results, os.path.relpath(images, options.page.parent), table.name)
+    rows, curves = tables_of(options.page)
+    text = page(results, os.path.relpath(images, options.page.parent), rows.name, curves.name)
     images.mkdir(parents=True, exist_ok=True)
     for name, figure in drawn.items():
         save(images / f"{name}.svg", figure)
-    save(table, csv_of_runs(results))
+    save(curves, curves_table(r for r in results.all.values() if is_drawn(results, r.run)))
+    save(rows, rows_table(results.all.values()))
     save(options.page, text)
     for name, reason in results.broken.items():
         print(f"reproduce: {name}: {reason}", file=sys.stderr)
     failed = sum(bool(r.failure) for r in results.all.values())
     others = f"; {results.of_others} of other programs are left out" if results.of_others else ""
     say(f"{options.page}: {len(results.all)} of {len(results.wanted)} runs, {failed} of them failed{others}; figures in {images}")
-    return 1 if results.broken or any("failure" in r.content for r in results.all.values()) else 0
+    return 1 if results.broken or any(r.crashed for r in results.all.values()) else 0
 
 
 def compare(folder, other):
@@ -210,9 +221,10 @@ def main():
             return 0
         if options.compare:
             return compare(*options.compare)
-        there = programs_in(options.runs) if options.like else set()
+        published = read_published(*tables_of(options.page))
+        there = programs_in(options.runs) | {row["program"] for row, _ in published.values()} if options.like else set()
         if unknown := {*options.like} - there:
-            raise ValueError(f"--like: no run in {options.runs} is of program {', '.join(sorted(unknown))}; there are " +
+            raise ValueError(f"--like: no run in {options.runs} or published is of program {', '.join(sorted(unknown))}; there are " +
                              (", ".join(sorted(there)) or "none"))
         lost, program = 0, None
         if options.tables_only:  # what others are like
@@ -220,11 +232,11 @@ def main():
         else:
             for file in absent:
                 say(f"left out: {file} is in none of the folders given by --worlds")
-            lost, program = execute(experiments, runs, options)
+            lost, program = execute(experiments, runs, options, published)
         # The page is about all that is declared.
         sets = ("quick",) if options.set == "quick" else ("full", "timed")
         return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options,
-                          program) or int(lost > 0)
+                          program, published) or int(lost > 0)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130

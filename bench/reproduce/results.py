@@ -1,4 +1,4 @@
-"""Results of runs: files that are kept, and what tables ask of them."""
+"""Results of runs: files that are kept, rows that are published, and what tables ask of them."""
 
 import json
 import math
@@ -6,11 +6,10 @@ import os
 from collections import Counter
 from pathlib import Path
 
-from explore import kind_of
+from rows import KINDS, curve_of, digest, row_of, run_of, same_everywhere, total
 
 FORMAT = 1
 BY_ITSELF = ("low_gain", "nothing_to_do", "coverage", "cut_off")
-LEVELS = ("50", "90", "95", "99", "end")
 
 
 def write_result(folder, run, task, version, outcome):
@@ -107,6 +106,24 @@ def is_kept(folder, run, task, programs):
     return result["task"] == task and result["measured"].get("program") in programs and "failure" not in result
 
 
+def is_published(published, run, task, programs):
+    """is_kept(), of rows."""
+    row, _ = published.get(run, (None, None))
+    return row is not None and row["declared"] == digest(task) and row["program"] in programs and not row["failure"]
+
+
+def failed_before(folder, run, task, program):
+    """How earlier attempts at this very run by this program ended in no result, or nothing."""
+    try:
+        result = read_result(folder / f"{run.name}.json")
+    except (OSError, ValueError):
+        return None
+    if result["task"] != task or result["measured"].get("program") != program or "failure" not in result:
+        return None
+    before = result["measured"].get("failed_before")
+    return f"{before}; {result['failure']}" if before else result["failure"]
+
+
 def programs_in(folder):
     """Of the results in a folder."""
     programs = set()
@@ -116,12 +133,6 @@ def programs_in(folder):
         except (OSError, ValueError):
             pass
     return programs - {None}
-
-
-def same_everywhere(result):
-    """What does not depend on the machine, nor on what the run and its program are called."""
-    facts = {key: value for key, value in result.get("facts", {}).items() if key != "version"}
-    return {"facts": facts, **{key: result.get(key) for key in ("failure", "gains", "curve")}}
 
 
 def unlike(folder, other):
@@ -145,17 +156,18 @@ def unlike(folder, other):
 
 
 class Result:
-    """Of one run. Seconds and metres are None where it did not get so far."""
+    """Of one run: its row, and what follows from it. Seconds and metres are None where it did not get so far."""
 
-    def __init__(self, run, content, complete):
-        self.run, self.content, self.measured, self.complete = run, content, content["measured"], complete
-        self.facts, self.curve = content.get("facts", {}), content.get("curve", [])
-        self.program = self.measured.get("program") or "unknown"
-        self.failure = content.get("failure") or self.why_incomplete()
+    def __init__(self, row, curve, complete):
+        self.run, self.row, self.curve, self.complete = run_of(row), row, curve, complete
+        self.failure = row["failure"] or self.why_incomplete()
+
+    def __getitem__(self, column):
+        return self.row[column]
 
     def why_incomplete(self):
         """A robot that was cut off from what is left to see is no failure once the world is mapped."""
-        end = self.facts["end"]
+        end = self["end"]
         if end not in BY_ITSELF:
             return f"{end} at {100 * self.coverage:.1f} %"
         return f"ended at {100 * self.coverage:.1f} % ({end})" if self.coverage < self.complete else None
@@ -163,15 +175,15 @@ class Result:
     @property
     def crashed(self):
         """It has left no numbers at all."""
-        return not self.facts
+        return self["failure"] is not None
 
     @property
     def coverage(self):
-        return self.facts["coverage_observable"]
+        return self["coverage_observable"]
 
     def seconds(self, level):
         """To 50, 90, 95 or 99 % of the observable space, or to the end."""
-        return self.facts.get("time_s", {}).get(level)
+        return self[f"s_to_{level}"]
 
     @property
     def seconds_mapped(self):
@@ -183,81 +195,73 @@ class Result:
         seconds = self.seconds(level)
         return math.inf if seconds is None else seconds
 
-    def steps_until(self, coverage):
-        steps = self.steps(coverage)
+    @property
+    def steps_to_90(self):
+        """Without the look around at the start; infinite if it never got there."""
+        steps = self["steps_to_90"]
         return math.inf if steps is None else steps
 
     @property
     def metres_mapped(self):
         """Of all robots, until the world counts as mapped; infinite if it never did."""
-        metres = self.metres(None, self.complete)
+        metres = self["m_mapped"]
         return math.inf if metres is None else metres
 
-    def metres(self, kind=None, coverage=None):
-        """By all robots, or those of a kind; to the end, or to that coverage."""
-        row = self.curve[-1] if coverage is None else self.first_with(coverage)
-        return None if row is None else sum(v for k, v in row["length_m"].items() if kind in (None, k))
-
-    def first_with(self, coverage):
-        return next((row for row in self.curve if row["coverage"] >= coverage), None)
-
-    def steps(self, coverage=None):
-        """Without the look around at the start."""
-        if coverage is None:
-            return len(self.curve) - 1
-        return next((i for i, row in enumerate(self.curve) if row["coverage"] >= coverage), None)
+    def metres(self, kind=None):
+        """By all robots, or those of a kind, to the end."""
+        return total({k: self[f"m_{k}"] or 0.0 for k in KINDS if kind in (None, k)})
 
     def share(self, kind):
         """The part of all that was mapped that robots of a kind mapped first."""
-        first = self.curve[-1]["first"]
-        return first.get(kind, 0.0) / sum(first.values()) if sum(first.values()) else None
-
-    def revisited(self, kind):
-        """The part of the path of robots of a kind that led to where they had been; None of runs before it was measured."""
-        robots = [r for name, r in (self.facts.get("by_robot") or {}).items()
-                  if kind_of(name) == kind and r.get("revisited") is not None]
-        metres = sum(r["length_m"] for r in robots)
-        return sum(r["revisited"] * r["length_m"] for r in robots) / metres if metres else None
+        first = {k: self[f"first_{k}"] or 0.0 for k in KINDS}
+        return first[kind] / total(first) if total(first) else None
 
     def efficiency(self, kind):
         """Percent of the observable space that robots of a kind mapped first, per 100 m of their path."""
         metres = self.metres(kind)
-        return 1e4 * self.curve[-1]["first"].get(kind, 0.0) / metres if metres else None
-
-    def gain(self, kind, column):
-        return self.content["gains"].get(kind, {}).get(column)
-
-    def map_error(self, kind):
-        """One of false_free, false_occupied and surface_found."""
-        return (self.facts.get("map") or {}).get(kind)
+        return 1e4 * (self[f"first_{kind}"] or 0.0) / metres if metres else None
 
 
 class Results:
     """Of all wanted runs those that one program has made, if none is given that of most runs, or those that are given as
-    like it; how many are of others, and what is missing or broken."""
+    like it, in files or published; how many are of others, and what is missing or broken."""
 
-    def __init__(self, experiments, runs, folder, like=(), program=None):
+    def __init__(self, experiments, runs, folder, like=(), program=None, published=None):
         self.experiments, self.wanted, self.broken = experiments, list(runs), {}
-        read = {}
+        declared = {run: digest(experiments.task_file(run)) for run in self.wanted}
+        read = [Result(row, curve, experiments.complete(run)) for run, (row, curve) in (published or {}).items()
+                if declared.get(run) == row["declared"]]
+        by_rows = len(read)
         for run in self.wanted:
             file = folder / f"{run.name}.json"
             try:
                 content = read_result(file)
-                if content["task"] != experiments.task_file(run):
+                row = row_of(run, content, experiments.complete(run))
+                if row["declared"] != declared[run]:
                     raise ValueError(f"{file} is of another declaration of this run; run it again")
-                read[run] = Result(run, content, experiments.complete(run))
+                read.append(Result(row, curve_of(content), experiments.complete(run)))
             except FileNotFoundError:
                 pass
             except (OSError, ValueError) as error:
                 self.broken[run.name] = str(error)
-        programs = Counter(result.program for result in read.values())
+        programs = Counter(result["program"] for result in read)
         if program is None:
             program = max(sorted({*programs} - {*like} or programs), key=programs.get, default=None)
         self.programs = [program, *sorted(({*like} & {*programs}) - {program})]
-        # Which program is faster its decisions do not say.
-        self.all = {run: result for run, result in read.items()
-                    if result.program in (self.programs[:1] if run.timed else self.programs)}
-        self.of_others = sum(result.program not in self.programs for result in read.values())
+        self.all, of_others = {}, set()
+        for number, result in enumerate(read):
+            # Which program is faster its decisions do not say.
+            if result["program"] not in (self.programs[:1] if result.run.timed else self.programs):
+                if result["program"] not in self.programs:
+                    of_others.add(result.run)
+                continue
+            before = self.all.get(result.run)
+            if number >= by_rows and before and before["program"] == result["program"] and not before.crashed \
+                    and not result.crashed and before["outcome"] != result["outcome"]:
+                self.broken[result.run.name] = "it is published with another outcome by the same program"
+            self.all[result.run] = result
+        self.all = {run: self.all[run] for run in self.wanted if run in self.all}
+        self.of_others = len(of_others - {*self.all})
 
     @property
     def missing(self):

@@ -1,10 +1,12 @@
 """The tables of the page of results."""
 
+from statistics import fmean
+
 import paper
 from claims import NOT_MEASURED, at_the_end, end_of, seconds_mapped, to_a_level
-from intervals import difference, mean
+from intervals import FEWEST, difference, mean, median_difference
 from markdown import NOTHING, counted, interval, percent, plain, table, value
-from results import LEVELS
+from rows import GAINS, LEVELS, PLANNING
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):
@@ -21,30 +23,32 @@ def parts(runs, measure):
 
 
 def least(runs, fact):
-    values = [r.facts[fact] for r in runs if r.facts.get(fact) is not None]
+    values = [r[fact] for r in runs if r[fact] is not None]
     return value(min(values) if values else None, 3)
 
 
-def with_facts(runs):
+def with_numbers(runs):
     return [r for r in runs if not r.crashed]
 
 
 def total(runs, fact):
-    return sum(r.facts[fact] for r in runs)
+    return sum(r[fact] for r in runs)
 
 
 def contacts_of(runs):
     """All, and those whose voxels were free in the map: no planner could have known."""
-    return f"{total(runs, 'contacts')} / {sum(r.facts.get('contacts_in_free') or 0 for r in runs)}"
+    return f"{total(runs, 'contacts')} / {sum(r['contacts_in_free'] or 0 for r in runs)}"
+
+
+def touched(runs):
+    return f"{sum(r['contacts'] > 0 for r in runs)} of {len(runs)}"
 
 
 def why_unseen(runs):
     """Where only smaller robots would see it, nobody would, or ours would: estimates, in percent of the observable
     space."""
-    unseen = [r.facts["unseen"] for r in runs if r.facts.get("unseen")]
-    if not unseen:
-        return NOTHING
-    return " / ".join(f"{100 * sum(u[p] for u in unseen) / len(unseen):.1f}" for p in ("narrow", "hidden", "in_view"))
+    known = [r for r in runs if r["hidden"] is not None]
+    return " / ".join(f"{100 * fmean(r[p] for r in known):.1f}" for p in ("narrow", "hidden", "in_view")) if known else NOTHING
 
 
 def level(runs, measure, mean_of):
@@ -74,9 +78,9 @@ def safety_table(results, tasks):
                   "clearance [m]", "bodies apart [m]"],
                  rows_of(results, tasks, lambda runs, done: [
                      means(done, lambda r: r.metres()), means(done, lambda r: r.metres("uav")),
-                     parts(done, lambda r: r.revisited("uav")),
-                     str(sum(r.facts.get("end") == "cut_off" for r in runs)), contacts_of(with_facts(runs)),
-                     least(with_facts(runs), "clearance_min_m"), least(with_facts(runs), "separation_min_m")]), texts=2)
+                     parts(done, lambda r: r["revisited_uav"]),
+                     str(sum(r["end"] == "cut_off" for r in runs)), contacts_of(with_numbers(runs)),
+                     least(with_numbers(runs), "clearance_min_m"), least(with_numbers(runs), "separation_min_m")]), texts=2)
 
 
 def unseen_table(results, tasks):
@@ -96,27 +100,30 @@ def pairs_table(results, first="tour"):
     for task in results.tasks():
         for other in (m for m in results.methods(task, "main") if m != first):
             if pairs := results.pairs(task, first, other):
-                done = results.done_pairs(task, first, other)
                 rows.append([
                     plain(results.experiments.task_title(task)), results.experiments.title(other), str(len(pairs)),
                     failed_of(results, [task], first, other),
                     *(interval(to_a_level(results, [task], first, other, measure).found, 2, unit="×") for measure in
                       (seconds_mapped, lambda r: r.metres_mapped)),
-                    interval(difference([done], seconds_mapped), sign=True),
-                    interval(difference([done], end_of), sign=True),
+                    interval(median_difference(pairs, seconds_mapped), sign=True),
                     interval(at_the_end(results, [task], first, other, end_of).found, 2, unit="×")])
     return table(["task", f"{results.experiments.title(first)} by", "pairs", "failed", "time until mapped",
-                  "metres until mapped", "difference until mapped [s]", "difference to the end [s]", "time to the end"],
+                  "metres until mapped", "difference until mapped [s]", "time to the end"],
                  rows, texts=2)
 
 
+def compared_tasks(results, method, other):
+    """Of fewer pairs there is no interval: they would say little, and look as if they said much."""
+    return [t for t in results.tasks() if len(results.pairs(t, method, other)) >= FEWEST]
+
+
 def variants_table(results, kind, base):
-    """Each variant against its base, by pairs; the tasks together that both have runs of."""
+    """Each variant against its base, by pairs; the tasks together that both have runs enough of."""
     rows = []
     for method in results.experiments.methods_of(kind, base):
-        tasks = [t for t in results.tasks() if results.pairs(t, method, base)]
+        tasks = compared_tasks(results, method, base)
         if tasks:
-            contacts = sum(total(with_facts(results.of(t, method)), "contacts") for t in tasks)
+            contacts = sum(total(with_numbers(results.of(t, method)), "contacts") for t in tasks)
             rows.append([results.experiments.title(method), str(sum(len(results.pairs(t, method, base)) for t in tasks)),
                          failed_of(results, tasks, method, base),
                          *(interval(to_a_level(results, tasks, method, base, measure).found, 2, unit="×") for measure in
@@ -130,13 +137,13 @@ def maps_table(results, kind, base):
     """How right maps are by the true world: with errors of reality less without, by pairs of the same world and seed."""
     facts = ("false_free", "false_occupied", "surface_found")
     methods = results.experiments.methods_of(kind, base)
-    tasks = [t for t in results.tasks() if any(results.pairs(t, m, base) for m in methods)]
-    runs = [r for task in tasks for r in results.of(task, base) if r.map_error(facts[0]) is not None]
+    tasks = [t for t in results.tasks() if any(t in compared_tasks(results, m, base) for m in methods)]
+    runs = [r for task in tasks for r in results.of(task, base) if r[facts[0]] is not None]
     rows = [[results.experiments.title(base), str(len(runs)),
-             *(parts(runs, lambda r, f=fact: r.map_error(f)) for fact in facts)]] if runs else []
+             *(parts(runs, lambda r, f=fact: r[f]) for fact in facts)]] if runs else []
     for method in methods:
-        groups = [pairs for task in tasks if (pairs := results.pairs(task, method, base))]
-        found = [difference(groups, lambda r, f=fact: r.map_error(f)) for fact in facts]
+        groups = [results.pairs(task, method, base) for task in compared_tasks(results, method, base)]
+        found = [difference(groups, lambda r, f=fact: r[f]) for fact in facts]
         if any(found):
             rows.append([results.experiments.title(method), str(max(f.count for f in found if f)),
                          *(interval(f, 2, 100, sign=True) for f in found)])
@@ -149,12 +156,12 @@ def bumpers_table(results):
     for task in results.tasks():
         for method in results.methods(task, "bumpers"):
             without = results.experiments.methods[method]["against"]
-            runs, bare = with_facts(results.of(task, method)), with_facts(results.of(task, without))
-            if runs:
+            pairs = [pair for pair in results.pairs(task, method, without) if not any(r.crashed for r in pair)]
+            if pairs:
+                runs, bare = zip(*pairs)
                 rows.append([plain(results.experiments.task_title(task)), results.experiments.title(without),
-                             str(len(runs)), str(total(runs, "held_back")), str(len(bare)),
-                             str(total(bare, "contacts"))])
-    return table(["task", "method", "runs with bumpers", "times held back", "runs without", "contacts"], rows, texts=2)
+                             str(len(pairs)), str(total(runs, "held_back")), str(total(bare, "contacts"))])
+    return table(["task", "method", "pairs", "with bumpers, times held back", "without, contacts"], rows, texts=2)
 
 
 def lines_table(lines):
@@ -174,13 +181,13 @@ def steps_table(results):
             runs, done = results.of(world, method), results.done(world, method)
             rows.append([
                 world, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
-                parts(with_facts(runs), lambda r: r.coverage),
+                parts(with_numbers(runs), lambda r: r.coverage), touched(with_numbers(runs)),
                 f"{percent(paper.COVERAGE[world])} in {paper.STEPS[world]}" if method == "steps" else NOTHING,
-                mean_interval(done, lambda r: r.steps()), level(done, lambda r: r.steps(0.9), mean_interval),
-                means(done, lambda r: r.metres("uav")), parts(done, lambda r: r.revisited("uav")),
+                mean_interval(done, lambda r: r["steps"]), level(done, lambda r: r["steps_to_90"], mean_interval),
+                means(done, lambda r: r.metres("uav")), parts(done, lambda r: r["revisited_uav"]),
                 means(done, lambda r: r.share("uav"), 0, " %", 100),
                 means(done, lambda r: r.efficiency("uav"), 1)])
-    return table(["world", "", "runs", "failed", "mapped, by all runs", "paper, mapped in steps", "steps",
+    return table(["world", "", "runs", "failed", "mapped, by all runs", "runs with a contact", "paper, mapped in steps", "steps",
                   "steps to 90 %", "UAV's metres", "revisited", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
 
 
@@ -189,10 +196,10 @@ def optimisation_table(results):
     for world, steps in ((w, s) for s in ("steps", "steps_render") for w in paper.WORLDS):
         before, after = results.done(world, f"{steps}_yaw_ahead"), results.done(world, steps)
         if before or after:
-            seen = [means(after, lambda r, c=c: r.gain("uav", c)) for c in ("gain_tangent", "gain_predicted", "gained")]
+            seen = [means(after, lambda r, c=c: r[c]) for c in GAINS]
             shares = " / ".join(means(runs, lambda r: r.share("uav"), 0, " %", 100) for runs in (before, after))
             metres = " / ".join(means(runs, lambda r: r.metres("uav"), 0, " m") for runs in (before, after))
-            rows.append([world, results.experiments.title(steps), *seen, means(before, lambda r: r.gain("uav", "gained")),
+            rows.append([world, results.experiments.title(steps), *seen, means(before, lambda r: r["gained"]),
                          "{} / {} %".format(*paper.UAV_SHARE[world]), shares,
                          "{} / {} m".format(*paper.UAV_LENGTH[world]), metres])
     return table(["world", "", "frontiers in view, looking ahead", "with optimised yaws", "mapped by a path",
@@ -204,12 +211,12 @@ def planning_table(results):
     rows = []
     for run, result in results.all.items():
         if run.timed and not result.crashed:
-            lockstep = result.content["task"].get("lockstep")
+            task = results.experiments.task_file(run)
+            lockstep = task.get("lockstep")
             printed = paper.UAV_PLANNING[run.task] + paper.UGV_PLANNING[run.task]
             rows.append([run.task, results.experiments.title(run.method) + (", lock-step" if lockstep else ""),
-                         *(value(result.measured.get(key), 3, " s") for key in
-                           ("planning_mean_s", "planning_p99_s", "planning_max_s")),
-                         NOTHING if lockstep else f"{result.content['task']['latency_s']} s",
+                         *(value(result[column], 3, " s") for column in PLANNING),
+                         NOTHING if lockstep else f"{task['latency_s']} s",
                          f"{printed:.2f} s" if lockstep else NOTHING])
     if not rows:
         return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and "
@@ -249,5 +256,7 @@ def failures_list(results):
     spoilt = results.experiments.methods_of("controls")
     lines = [f"- {plain(r.run.name)}: {plain(r.failure)}\n" for r in results.all.values()
              if r.failure and (r.crashed or r.run.method not in spoilt)]
+    lines += [f"- {plain(r.run.name)}, before this run of it: {plain(r['failed_before'])}\n" for r in results.all.values()
+              if r["failed_before"]]
     lines += [f"- {plain(name)}: {plain(reason)}\n" for name, reason in results.broken.items()]
     return "".join(lines) or "None.\n"

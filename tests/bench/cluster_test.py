@@ -6,6 +6,7 @@ cluster_test.py FOLDER, that of bench/reproduce; runs are made up.
 import hashlib
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,11 +22,12 @@ REPRODUCE = Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(REPRODUCE))
 
 from distributed import Client
-from experiments import Experiments
+from experiments import FIRST_SEED, Experiments
 
 PATIENCE = 120  # [s]
 SOME = ["--quick", "--seeds", "1"]
-ALL = [run.name for run in Experiments().runs("quick") if run.seed == 6]
+ALL = [run.name for run in Experiments().runs("quick") if run.seed == FIRST_SEED]
+MAZE, FACTORY = f"maze-tour-{FIRST_SEED}", f"factory-tour-{FIRST_SEED}"
 
 
 # Each starts a cluster or two.
@@ -68,7 +70,7 @@ class Cluster(unittest.TestCase):
 
     def reproduce(self, *arguments, runs="runs", **environment):
         return self.start([REPRODUCE / "reproduce.py", *SOME, "--command", self.command, "--runs", self.folder / runs,
-                           "--page", self.folder / "page.md", *arguments], **environment)
+                           "--page", self.folder / f"page_of_{runs}.md", *arguments], **environment)
 
     def finish(self, process, code):
         self.output, self.errors = process.communicate(timeout=PATIENCE)
@@ -106,10 +108,10 @@ class Cluster(unittest.TestCase):
         alone = self.results()
         self.assertEqual(sorted(alone), sorted(ALL))
         self.log.unlink()
-        address = self.workers(2, MADE_UP_DIES_ONCE="factory-tour-6")
+        address = self.workers(2, MADE_UP_DIES_ONCE=FACTORY)
         self.finish(self.reproduce("--scheduler", address, runs="elsewhere"), 0)
         self.assertEqual(self.results("elsewhere"), alone)
-        died, other = self.assert_repeated("factory-tour-6")
+        died, other = self.assert_repeated(FACTORY)
         self.assertFalse(is_running(died))
         self.assertTrue(is_running(other))
 
@@ -126,9 +128,9 @@ class Cluster(unittest.TestCase):
 
     @long_test
     def test_what_a_machine_loses_is_missing_and_no_failure(self):
-        self.finish(self.reproduce("--workers", "1", MADE_UP_DIES="factory-tour-6"), 1)
-        self.assertEqual(sorted(self.results()), sorted(set(ALL) - {"factory-tour-6"}))
-        self.assertIn("factory-tour-6: LOST: its worker died again and again", self.output)
+        self.finish(self.reproduce("--workers", "1", MADE_UP_DIES=FACTORY), 1)
+        self.assertEqual(sorted(self.results()), sorted(set(ALL) - {FACTORY}))
+        self.assertIn(f"{FACTORY}: LOST: its worker died again and again", self.output)
         self.assertIn("1 runs were lost by their machines", self.output)
         self.finish(self.reproduce("--workers", "1"), 0)
         self.assertEqual(sorted(self.results()), sorted(ALL))
@@ -170,36 +172,44 @@ class Cluster(unittest.TestCase):
 
     @long_test
     def test_a_worker_of_the_local_cluster_is_replaced(self):
-        self.finish(self.reproduce("--workers", "2", MADE_UP_DIES_ONCE="factory-tour-6"), 0)
+        self.finish(self.reproduce("--workers", "2", MADE_UP_DIES_ONCE=FACTORY), 0)
         self.assertEqual(sorted(self.results()), sorted(ALL))
-        self.assert_repeated("factory-tour-6")
+        self.assert_repeated(FACTORY)
 
     def test_failed_runs_are_failures_and_are_run_again(self):
-        self.finish(self.reproduce("--workers", "2", MADE_UP_FAILS="maze-tour-6"), 1)
+        self.finish(self.reproduce("--workers", "2", MADE_UP_FAILS=MAZE), 1)
         self.assertEqual(len(self.results()), len(ALL))
-        self.assertIn(f"maze-tour-6: FAILED: exit code 3: {FAILURE}", self.output)
-        text = (self.folder / "page.md").read_text()
-        self.assertIn("- maze-tour-6: exit code 3: no", text)
+        self.assertIn(f"{MAZE}: FAILED: exit code 3: {FAILURE}", self.output)
+        text = (self.folder / "page_of_runs.md").read_text()
+        self.assertIn(f"- {MAZE}: exit code 3: no", text)
         self.log.unlink()
         self.finish(self.reproduce("--workers", "2"), 0)
-        self.assertEqual([name for name, *_ in self.calls()], ["maze-tour-6"])
+        self.assertEqual([name for name, *_ in self.calls()], [MAZE])
+        page = (self.folder / "page_of_runs.md").read_text()
+        self.assertIn(f"- {MAZE}, before this run of it: exit code 3: no", page)
+        # What is published needs no files any more.
+        shutil.rmtree(self.folder / "runs")
+        self.log.unlink()
+        self.finish(self.reproduce("--workers", "2"), 0)
+        self.assertIn(f"{len(ALL)} of {len(ALL)} runs are kept or published from before", self.output)
+        self.assertEqual((self.calls(), (self.folder / "page_of_runs.md").read_text()), ([], page))
 
     def test_ctrl_c_leaves_nothing_running_and_goes_on_later(self):
         for runs, interrupt in (("runs", lambda process: os.killpg(process.pid, signal.SIGINT)),  # as a terminal does
                                 ("others", lambda process: process.send_signal(signal.SIGTERM))):
             self.log.unlink(missing_ok=True)
-            process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS="factory-tour-6")
-            until(lambda: ["factory-tour-6"] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")
+            process = self.reproduce("--workers", "1", runs=runs, MADE_UP_SLEEPS=FACTORY)
+            until(lambda: [FACTORY] == [name for name, *_ in self.calls()][-1:], "a run that sleeps")
             worker, asleep = map(int, self.calls()[-1][1:])
             self.assertTrue(is_running(asleep))
             interrupt(process)
             self.finish(process, 130)
             self.assertRegex(self.errors, r"^\nstopped; finished runs are kept in .*\n$")
             until(lambda: not is_running(asleep) and not is_running(worker), "the end of the run and its worker")
-            before = [name for name, *_ in self.calls() if name != "factory-tour-6"]
+            before = [name for name, *_ in self.calls() if name != FACTORY]
             self.assertEqual(sorted(self.results(runs)), sorted(before))
             self.assertGreater(len(before), 0)
-            self.assertFalse((self.folder / "page.md").exists())
+            self.assertFalse((self.folder / f"page_of_{runs}.md").exists())
         self.finish(self.reproduce("--workers", "1"), 0)
         self.assertEqual(sorted(self.results()), sorted(ALL))
 

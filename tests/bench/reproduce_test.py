@@ -25,14 +25,14 @@ sys.path[:0] = [str(REPRODUCE), str(REPRODUCE.parent)]
 import claims
 import explore
 import intervals
-from claims import at_least, at_most, changed_by, control_lines, effect, our_lines, paper_lines
-from csv_of_runs import csv_of_runs
-from experiments import Experiments, Run, merged
-from figures import figures, mean_curve, round_step, value_at
-from intervals import Interval, bootstrap, difference, mean, median_ratio, ratio
+from claims import at_least, at_most, changed_by, control_lines, effect, our_lines, paper_lines, touching
+from experiments import FIRST_SEED, Experiments, Run, merged
+from figures import figures, is_drawn, mean_curve, round_step, value_at
+from intervals import Interval, bootstrap, difference, mean, median_difference, median_ratio, ratio
 from markdown import interval, plain
 from page import page
-from results import Result, Results, is_kept, unlike, write_result
+from results import Result, Results, failed_before, is_kept, is_published, unlike, write_result
+from rows import curves_table, read_published, row_of, rows_table
 
 NEEDED = claims.NEEDED, claims.NEEDED_OF_FILES
 intervals.RESAMPLES, claims.NEEDED, claims.NEEDED_OF_FILES = 200, 8, 7  # enough for what is asked here, and quick
@@ -89,10 +89,10 @@ class Declared(Made):
         self.assertEqual([r["limits"]["yaw_rate_deg_s"] for r in faster], [60, 60])
         steps = self.experiments.task_file(Run("maze", "steps_uav", 7))
         self.assertEqual((steps["lockstep"], steps["team"], "end" in steps), (True, "uav", False))
-        mesh = self.experiments.task_file(Run("hospital", "tour", 7))
+        mesh = self.experiments.task_file(Run("hospital", "tour", FIRST_SEED + 1))
         self.assertEqual((mesh["world"], mesh["options"]["start"]), ("hospital_aws_floor1.ply", "-9.15,-4.35,0.45"))
         self.assertNotIn("world_seed", mesh)
-        office = self.experiments.task_file(Run("complex_office", "tour", 8))
+        office = self.experiments.task_file(Run("complex_office", "tour", FIRST_SEED + 2))
         self.assertEqual((office["robots"][0]["start"], "team" in office), ([1.3, 0, 1, 0], False))
 
     def test_no_two_runs_are_the_same_exploration(self):
@@ -100,7 +100,7 @@ class Declared(Made):
             runs = self.experiments.runs(name)
             tasks = {json.dumps({**self.experiments.task_file(r), "name": ""}, sort_keys=True) for r in runs}
             self.assertEqual(len(tasks), len(runs))
-            self.assertGreaterEqual(min(r.seed for r in runs), 6)
+            self.assertGreaterEqual(min(r.seed for r in runs), FIRST_SEED)
 
     def test_main_rows_have_twenty_seeds(self):
         runs = self.experiments.runs("full")
@@ -121,7 +121,7 @@ class Declared(Made):
     def test_a_first_pass_has_few_seeds_of_everything(self):
         runs = self.experiments.runs("full")
         rows = {run[:2] for run in runs}
-        first = runs[:next(i for i, run in enumerate(runs) if run.seed > 11)]
+        first = runs[:next(i for i, run in enumerate(runs) if run.seed > FIRST_SEED + 5)]
         self.assertEqual({run[:2] for run in first}, rows)
         for row, seeds in self.seeds_of(first).items():
             self.assertGreaterEqual(len(seeds), 2, row)
@@ -201,6 +201,21 @@ class Intervals(unittest.TestCase):
         self.assertIsNone(ratio([[(1, 1), (9, 4)], [(1, 1)], []], lambda v: v))  # a world is missing
         self.assertEqual(ratio([[(1, 1), (None, 4)]], lambda v: v).count, 1)
 
+    def test_differences_and_ratios_say_the_same(self):
+        found = median_difference([(1, 2), (3, 2), (5, 1), (9, 4), (2, 9), (7, 1)], lambda v: v)
+        self.assertEqual(found, (2.5, -7, 6, 6))
+        never = math.inf
+        self.assertEqual(median_difference([(1, never)] * 6, lambda v: v).value, -never)
+        self.assertEqual(median_difference([(never, never)] * 6 + [(never, 1)], lambda v: v).value, 0)
+        self.assertIsNone(median_difference([], lambda v: v))
+
+    def test_how_frequent_contacts_may_be(self):
+        # Clopper's and Pearson's intervals, from tables of them.
+        self.assertEqual(touching(9, 212), "4.2 % (2.0 to 7.9)")
+        self.assertEqual(touching(1, 10), "10.0 % (0.3 to 44.5)")
+        self.assertEqual(touching(10, 10), "100.0 % (69.2 to 100.0)")
+        self.assertEqual(touching(0, 20), "so with 95 % confidence in fewer than 13.9 %")
+
     def test_who_never_got_there_is_later_than_any_other(self):
         never = math.inf
         self.assertEqual(median_ratio([[(1, 2)] * 4 + [(never, 2)] * 2], lambda v: v)[:2], (0.5, 0.5))
@@ -273,25 +288,24 @@ class OneRun(Made):
         run = self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995)
         result = self.results([run]).all[run]
         self.assertIsNone(result.failure)
-        self.assertEqual((result.seconds("end"), result.coverage, result.steps()), (400, 0.995, 40))
-        self.assertAlmostEqual(result.seconds("50"), 400 * 0.5 / 0.995)
+        self.assertEqual((result.seconds("end"), result.coverage, result["steps"]), (400, 0.995, 40))
+        self.assertAlmostEqual(result.seconds("50"), 400 * 0.5 / 0.995, places=4)
         self.assertEqual((result.metres(), result.metres("uav"), result.metres("ugv")), (600, 400, 200))
-        self.assertEqual(result.steps(0.9), 37)  # 0.995 * 37 / 40 = 0.920
-        self.assertAlmostEqual(result.metres(None, 0.9), 555)
-        self.assertIsNone(result.steps(0.999))
+        self.assertEqual(result.steps_to_90, 37)  # 0.995 * 37 / 40 = 0.920
+        self.assertAlmostEqual(result.metres_mapped, 600)  # 0.995 * 39 / 40 = 0.970
+        hospital = self.make(Run("hospital", "tour", 6), seconds=400.0, coverage=0.995)
+        self.assertAlmostEqual(self.results([hospital]).all[hospital].metres_mapped, 555)  # 90 %
         self.assertAlmostEqual(result.share("uav"), 0.75, places=5)
         self.assertAlmostEqual(result.efficiency("uav"), 99.5 * 0.75 / 4, places=3)
-        self.assertEqual((result.revisited("uav"), result.revisited("balloon")), (0.1, None))
-        self.assertEqual(result.gain("uav", "gain_predicted"), 150)
-        self.assertIsNone(result.gain("balloon", "gained"))
+        self.assertEqual((result["revisited_uav"], result["gain_predicted"]), (0.1, 150))
 
     def test_revisits_count_by_metres(self):
         robots = {"uav1": {"length_m": 100, "revisited": 0.1}, "uav2": {"length_m": 300, "revisited": 0.3},
                   "ugv": {"length_m": 50}}  # as runs left it before it was measured
         run = self.make(Run("maze", "tour", 6), by_robot=robots)
         result = self.results([run]).all[run]
-        self.assertAlmostEqual(result.revisited("uav"), 0.25)
-        self.assertIsNone(result.revisited("ugv"))
+        self.assertAlmostEqual(result["revisited_uav"], 0.25)
+        self.assertIsNone(result["revisited_ugv"])
 
     def test_robots_of_a_kind_are_added(self):
         run = Run("maze", "tour", 6)
@@ -320,10 +334,10 @@ class OneRun(Made):
         self.make(Run("hospital", "tour", 6), seconds=100.0, coverage=0.95)
         runs = [Run("maze", "tour", seed) for seed in (6, 7, 8)] + [Run("hospital", "tour", 6)]
         whole, part, crashed, hospital = (self.results(runs).all[run] for run in runs)
-        self.assertAlmostEqual(whole.seconds_mapped, 99 / 0.999)
-        self.assertEqual((whole.steps_until(0.9), part.seconds_mapped, crashed.seconds_mapped), (37, math.inf, math.inf))
-        self.assertEqual((crashed.steps_until(0.9), crashed.metres_mapped), (math.inf, math.inf))
-        self.assertAlmostEqual(hospital.seconds_mapped, 90 / 0.95)
+        self.assertAlmostEqual(whole.seconds_mapped, 99 / 0.999, places=4)
+        self.assertEqual((whole.steps_to_90, part.seconds_mapped, crashed.seconds_mapped), (37, math.inf, math.inf))
+        self.assertEqual((crashed.steps_to_90, crashed.metres_mapped), (math.inf, math.inf))
+        self.assertAlmostEqual(hospital.seconds_mapped, 90 / 0.95, places=4)
 
     def test_failed_runs_enter_no_mean_and_lose_their_pair_at_the_end(self):
         runs = [self.make(Run("maze", "tour", 6), seconds=100.0), self.make(Run("maze", "tour", 8), seconds=300.0),
@@ -333,7 +347,7 @@ class OneRun(Made):
         results = self.results(runs)
         self.assertEqual([a.run.seed for a, _ in results.pairs("maze", "tour", "render")], [6, 7, 8])
         self.assertEqual([a.run.seed for a, _ in results.done_pairs("maze", "tour", "render")], [6])
-        text = page(results, "images", "runs.csv")
+        text = page(results, "images", "runs.csv", "curves.csv")
         row = next(line for line in text.splitlines() if line.startswith("| maze | tours | 3 | 1 |"))
         self.assertIn("| 200 |", row)  # of 100 and 300
         self.assertIn("- maze-tour-7: ended at 50.0 % (nothing\\_to\\_do)\n", text)
@@ -343,7 +357,7 @@ class OneRun(Made):
     def test_a_mean_to_a_level_says_how_many_got_there(self):
         runs = [self.make(Run("hospital", "tour", seed), seconds=100.0, coverage=0.96 if seed == 6 else 0.92)
                 for seed in (6, 7, 8)]
-        text = page(self.results(runs), "images", "runs.csv")
+        text = page(self.results(runs), "images", "runs.csv", "curves.csv")
         row = next(line for line in text.splitlines() if "| tours | 3 | 0 |" in line)
         self.assertIn("| 99; 1 of 3 | – | 100 |", row)
 
@@ -368,7 +382,7 @@ class OneRun(Made):
         runs += [self.make(Run("maze", "tour", 8), "another"), self.make(Run("maze", "render", 8), "another")]
         results = self.results(runs + [self.make(Run("maze", "render", 6))])
         self.assertEqual((results.programs, len(results.all), results.of_others), ([PROGRAM], 3, 2))
-        text = page(results, "images", "runs.csv")
+        text = page(results, "images", "runs.csv", "curves.csv")
         self.assertIn(f"program {PROGRAM}, 2026-01-02", text[:400])
         self.assertIn(f"Of other programs than {PROGRAM} there are 2 runs, which are left out", text)
         # Planning times are of one program, and the program that was run is the one, however few its runs.
@@ -382,7 +396,7 @@ class OneRun(Made):
             self.assertEqual((set(results.programs), len(results.all), results.of_others),
                              ({PROGRAM, "another"}, 5 + (like == PROGRAM), 0))
             self.assertNotEqual(results.programs[0], like)
-            text = page(results, "images", "runs.csv")
+            text = page(results, "images", "runs.csv", "curves.csv")
             self.assertIn(f"program {results.programs[0]} (", text[:400])
             self.assertIn(f"and by what was given as like it: {like} (", text[:400])
 
@@ -426,7 +440,7 @@ class OneRun(Made):
         file.write_text(file.read_text().replace('"planning_p99_s": 0.1', '"planning_p99_s": null'))
         results = self.results([run, timed])
         self.assertEqual(len(results.all), 2)
-        page(results, "images", "runs.csv"), figures(results), csv_of_runs(results)
+        page(results, "images", "runs.csv", "curves.csv"), figures(results), rows_table(results.all.values())
 
     def test_folders_of_the_same_runs(self):
         for name in ("one", "two"):
@@ -529,10 +543,11 @@ class Lines(Made):
             how = but(run, how)
             if how is not None:
                 made = {"failure": how["failure"], "measured": {}} if "failure" in how else self.outcome(run, **how)
-                runs[run] = {"task": {"latency_s": 0.25}, **made}
+                content = {"task": self.experiments.task_file(run), "version": VERSION, **made}
+                runs[run] = Result(row_of(run, content, self.experiments.complete(run)), [], self.experiments.complete(run))
         fill(make)
         results = Results(self.experiments, [], self.folder)
-        results.all = {run: Result(run, content, self.experiments.complete(run)) for run, content in runs.items()}
+        results.all = runs
         return [*our_lines(results), *paper_lines(results)]
 
     def judged(self, *arguments):
@@ -589,9 +604,11 @@ class Lines(Made):
                          "open: 6 of 7 pairs")
         self.assertEqual(lines["as printed, maze: 97.2 % are covered at the end; of the observable space"].verdict,
                          "open: 6 of 8 runs")
-        self.assertEqual(lines["View quality without bumpers: no body touches a surface"].verdict, "holds")
+        self.assertEqual(lines["View quality without bumpers: no body touches a surface"].verdict,
+                         "open: 6 of 7 runs of building, and too few of 9 other worlds")
         one = self.judged(all_hold, lambda run, how: how if run[:3] == ("maze", "render", 6) else None)
-        self.assertEqual(one["View quality without bumpers: no body touches a surface"].verdict, "open: 1 of 8 runs")
+        self.assertEqual(one["View quality without bumpers: no body touches a surface"].verdict,
+                         "open: 0 of 7 runs of building, and too few of 9 other worlds")
 
     def test_a_world_without_pairs_leaves_the_mean_open(self):
         lines = self.judged(all_hold, lambda run, how: None if run[:2] == ("station", "render") else how)
@@ -656,7 +673,7 @@ class Page(Made):
         runs += [self.make(Run("maze", "tour_drift", seed), map={"false_free": 0.02 + 0.01 * (seed % 2), "false_occupied": 0,
                                                                  "surface_found": 0.8}) for seed in range(6, 12)]
         results = Results(self.experiments, runs + [Run("factory", "render_bumper", 6)], self.folder)
-        text = page(results, "pictures", "runs.csv")
+        text = page(results, "pictures", "runs.csv", "curves.csv")
         self.columns_agree(text)
         self.assertIn(f"from {len(runs)} of {len(runs) + 1} runs, seeds 6 to 13, by version 9.9, program {PROGRAM}, "
                       "2026-01-02.", text[:500])
@@ -666,23 +683,23 @@ class Page(Made):
         # In points, by the pairs of the six seeds, not of all eight.
         self.assertIn("| 6 | +0.50 (+0.17 to +0.83) | +0.00 (+0.00 to +0.00) | -10.00 (-10.00 to -10.00) |", text)
         short = text[text.index("## Results in short"):text.index("## What is compared")]
-        self.assertIn("Until 99 % is mapped, tours take 0.5", short)
+        self.assertIn("Time until 99 % is mapped, tours by view quality: maze 0.5", short)
         self.assertIn("complex office (FALCON): the end after 100 s (100 to 100), with tours, 99 % after 99 s; published", short)
-        self.assertIn("FALCON 138 to 153 s, FUEL 209 to 232 s", short)
+        self.assertIn("FALCON 138 to 153 s, FAEP 178 to 197 s", short)
         self.assertLessEqual(len(short.strip().splitlines()) - 2, 6)
         tables = text[text.index("## Main tables"):text.index("## What must hold")]
         self.assertLessEqual(max(line.count(" | ") for line in tables.splitlines() if line.startswith("| ")), 9)
         for name in figures(results):
             self.assertIn(f"(pictures/{name}.svg)", text)
-        self.assertEqual(text, page(results, "pictures", "runs.csv"))
+        self.assertEqual(text, page(results, "pictures", "runs.csv", "curves.csv"))
         self.assertNotIn(str(self.folder), text)
 
     def test_every_declared_method_is_on_the_page(self):
-        runs = [self.make(Run("maze", method, seed)) for method in self.experiments.methods for seed in (6, 7)]
-        text = page(self.results(runs), "images", "runs.csv")
+        runs = [self.make(Run("maze", method, seed)) for method in self.experiments.methods for seed in range(6, 12)]
+        text = page(self.results(runs), "images", "runs.csv", "curves.csv")
         for method, declared in self.experiments.methods.items():
-            shown = {"caster": " of 2 pairs of runs are the same |",
-                     "bumpers": f"| maze | {self.experiments.title(declared.get('against', method))} | 2 | 0 | 2 | 0 |"}
+            shown = {"caster": " of 6 pairs of runs are the same |",
+                     "bumpers": f"| maze | {self.experiments.title(declared.get('against', method))} | 6 | 0 | 0 |"}
             title = declared["title"]
             shown["controls"] = title[1:]  # its first letter may be the line's
             self.assertIn(shown.get(declared["table"], f"| {title} |"), text, method)
@@ -690,19 +707,103 @@ class Page(Made):
     def test_table_of_runs(self):
         runs = [self.make(Run("maze", "tour", 6), seconds=400.0, coverage=0.995, separation_min_m=None),
                 Run("maze", "tour", 7), self.make(Run("maze", "tour", 8), failure='a "b", c'), self.make(Run("maze", "tour", 6, True))]
-        rows = list(csv.DictReader(io.StringIO(csv_of_runs(self.results(runs)))))
-        self.assertEqual([row["seed"] for row in rows], ["6", "8"])
-        columns = ("s_to_end", "m_ugv", "m_uav", "revisited_ugv", "revisited_uav", "share_uav", "steps_to_90", "end",
+        rows = list(csv.DictReader(io.StringIO(rows_table(self.results(runs).all.values()))))
+        self.assertEqual([(row["seed"], row["timed"]) for row in rows], [("6", "0"), ("8", "0"), ("6", "1")])
+        columns = ("s_to_end", "m_ugv", "m_uav", "revisited_ugv", "revisited_uav", "first_uav", "steps_to_90", "end",
                    "separation_min_m")
         self.assertEqual([rows[0][key] for key in columns],
-                         ["400.0", "200.0", "400.0", "0.3", "0.1", "0.75", "37", "nothing_to_do", ""])
+                         ["400", "200", "400", "0.3", "0.1", "0.74625", "37", "nothing_to_do", ""])
         self.assertEqual((rows[0]["false_free"], rows[0]["surface_found"]), ("0.02", "0.9"))
         self.assertEqual((rows[1]["failure"], rows[1]["s_to_end"]), ('a "b", c', ""))
+
+    def tables(self, results):
+        """As they are published."""
+        rows, curves = self.folder / "page.csv", self.folder / "page_curves.csv"
+        rows.write_text(rows_table(results.all.values()))
+        curves.write_text(curves_table(r for r in results.all.values() if is_drawn(results, r.run)))
+        return rows, curves
+
+    def of_tables(self, runs, folder="nowhere", program=None):
+        published = read_published(self.folder / "page.csv", self.folder / "page_curves.csv")
+        return Results(self.experiments, runs, self.folder / folder, (), program, published)
+
+    def whole(self, results):
+        return page(results, "pictures", "runs.csv", "curves.csv"), figures(results), *(t.read_text() for t in self.tables(results))
+
+    def test_published_tables_are_enough(self):
+        runs = []
+        all_hold(lambda run, **how: runs.append(self.make(run, **how)) if run.seed < 9 or run.task == "maze" else None)
+        runs += [self.make(Run("maze", "tour", 30), failure='a "b",  c\n'), self.make(Run("maze", "tour", 31), coverage=0.98994),
+                 self.make(Run("maze", "tour_noise", 6), separation_min_m=None)]
+        of_files = self.whole(self.results(runs))
+        self.assertTrue(self.whole(self.of_tables(runs)) == of_files)  # too long to print
+
+    def test_runs_are_added_to_those_published(self):
+        runs = [self.make(Run("maze", method, seed)) for seed in SEEDS for method in ("tour", "steps")]
+        whole = self.whole(self.results(runs))
+        first, second = self.folder / "first", self.folder / "second"
+        for folder, part in ((first, runs[::3]), (second, [r for r in runs if r not in runs[::3]] + runs[:1])):
+            folder.mkdir()
+            for run in part:
+                (folder / f"{run.name}.json").write_text((self.folder / f"{run.name}.json").read_text())
+        (self.folder / "page.csv").unlink()
+        self.tables(self.of_tables(runs, "first"))
+        self.assertTrue(self.whole(self.of_tables(runs, "nowhere")) != whole)
+        self.assertTrue(self.whole(self.of_tables(runs, "second")) == whole)
+        self.assertTrue(self.whole(self.of_tables(runs, "nowhere")) == whole)
+        # Of one program a run has one outcome; a failed one is done again, and what another program made is left out.
+        published = read_published(self.folder / "page.csv", self.folder / "page_curves.csv")
+        task = self.experiments.task_file(runs[0])
+        self.assertTrue(is_published(published, runs[0], task, {PROGRAM}))
+        self.assertFalse(is_published(published, runs[0], task, {"another"}))
+        self.assertFalse(is_published(published, runs[0], {**task, "seed": 0}, {PROGRAM}))
+        self.assertFalse(is_published(published, Run("maze", "tour", 99), task, {PROGRAM}))
+        self.make(runs[0], contacts=7)
+        self.assertEqual(list(self.of_tables(runs, ".").broken), [runs[0].name])
+        self.make(runs[0], program="another", contacts=7)
+        results = self.of_tables(runs, ".", "another")
+        self.assertEqual((list(results.all), results.of_others, results.broken), ([runs[0]], len(runs) - 1, {}))
+        self.make(runs[0], failure="exit code 1: x")
+        self.tables(self.of_tables(runs, "."))
+        published = read_published(self.folder / "page.csv", self.folder / "page_curves.csv")
+        self.assertFalse(is_published(published, runs[0], task, {PROGRAM}))
+
+    def test_tables_that_are_not_ours_are_refused(self):
+        rows, curves = self.tables(self.results([self.make(Run("maze", "tour", 6))]))
+        whole, drawn = rows.read_text(), curves.read_text()
+        self.assertEqual(len(read_published(rows, curves)), 1)
+        for text, other in (("", drawn), (whole.replace("seed", "sead"), drawn), (whole + "maze,tour\n", drawn), (whole, drawn[:40]),
+                            (whole.replace("nothing_to_do", ""), drawn), (whole.replace("0.999", "0.99x"), drawn),
+                            (whole.replace("0.999", "nan"), drawn), (whole.replace(",6,0,", ",6,2.5,"), drawn)):
+            self.assertNotEqual((text, other), (whole, drawn))
+            rows.write_text(text)
+            curves.write_text(other)
+            with self.assertRaisesRegex(ValueError, "page.*csv"):
+                read_published(rows, curves)
+        rows.unlink()
+        self.assertEqual(read_published(rows, curves), {})
+
+    def test_earlier_failures_of_a_run_stay_on_the_page(self):
+        run = self.make(Run("maze", "tour", 6), failure="exit code 1: x")
+        task = self.experiments.task_file(run)
+        self.assertEqual(failed_before(self.folder, run, task, PROGRAM), "exit code 1: x")
+        self.assertIsNone(failed_before(self.folder, run, task, "another"))
+        self.assertIsNone(failed_before(self.folder, run, {**task, "seed": 0}, PROGRAM))
+        self.assertIsNone(failed_before(self.folder, Run("maze", "tour", 7), task, PROGRAM))
+        again = {"failure": "hung", "measured": {"program": PROGRAM, "failed_before": "exit code 1: x"}}
+        write_result(self.folder, run, task, VERSION, again)
+        self.assertEqual(failed_before(self.folder, run, task, PROGRAM), "exit code 1: x; hung")
+        outcome = self.outcome(run)
+        outcome["measured"].update(program=PROGRAM, failed_before="exit code 1: x; hung")
+        write_result(self.folder, run, task, VERSION, outcome)
+        self.assertIsNone(failed_before(self.folder, run, task, PROGRAM))
+        text = page(self.results([run]), "images", "runs.csv", "curves.csv")
+        self.assertIn("- maze-tour-6, before this run of it: exit code 1: x; hung\n", text)
 
     def test_hostile_names(self):
         runs = [self.make(Run("maze", "tour", 6), failure=FAILURE + "\n# x"), self.make(Run("maze", "tour", 7)),
                 self.make(Run("maze", "tour", 8), end="<b>|\n## y")]
-        text = page(self.results(runs), "images", "runs.csv")
+        text = page(self.results(runs), "images", "runs.csv", "curves.csv")
         for bad in ("<script", "[here](x)", "\n# x", "\n## y", "<b>"):
             self.assertNotIn(bad, text)
         self.assertIn(plain(FAILURE), text)
@@ -816,6 +917,27 @@ class Exploring(Made):
             self.is_program(f'for last in "$@"; do :; done; mv "{kept}" "$last"')
             self.assertIn("cannot be read", self.explore()["failure"])
 
+    def test_our_libraries_count_as_the_program(self):
+        library, other = self.folder / "libfrontlux_planner.so.0", self.folder / "libc.so.6"
+        (self.folder / "ldd").write_text("#!/bin/sh\n" + "".join(f"echo '\t{f.name} => {f} (0x00)'\n" for f in (other, library)))
+        (self.folder / "ldd").chmod(0o755)
+        path = os.environ["PATH"]
+        self.addCleanup(os.environ.update, PATH=path)
+        alone = explore.program_of(str(self.command))
+        os.environ["PATH"] = f"{self.folder}:{path}"
+        programs = [alone]
+        for file, text in ((library, "one"), (library, "two"), (other, "three")):
+            other.touch()
+            file.write_text(text)
+            programs.append(explore.program_of(str(self.command)))
+        self.assertEqual(len(set(programs)), 3)
+        self.assertEqual(programs[2], programs[3])
+
+    def test_a_full_disk_is_no_failure_of_the_run(self):
+        self.is_program("echo 'cannot write x: No space left on device' >&2; exit 1")
+        with self.assertRaisesRegex(OSError, "has no room for the run"):
+            self.explore()
+
     def test_another_program_is_no_failure_of_the_run(self):
         program = explore.program_of(str(self.command))
         self.is_program("exit 3")  # of the same version
@@ -832,10 +954,10 @@ class Calls(unittest.TestCase):
                                 (["--like", "9a48"], "is no SHA-256; give 12 digits"),
                                 (["--tables-only", "--runs", "/nonexistent", "--like", "0123456789AB,"], "'' is no SHA-256"),
                                 (["--tables-only", "--runs", "/nonexistent", "--like", "0123456789AB"],
-                                 "no run in /nonexistent is of program 0123456789ab; there are none"),
+                                 "no run in /nonexistent or published is of program 0123456789ab; there are"),
                                 (["--tables-only", "--tasks", "mase"], "'mase'"), (["--tables-only", "--methods", "x"], "'x'"),
                                 (["--timed", "--scheduler", "tcp://x:1"], "--scheduler"),
-                                (["--tables-only", "--runs", "/nonexistent"], "no result in /nonexistent"),
+                                (["--tables-only", "--runs", "/nonexistent", "--page", "/nonexistent/x.md"], "no result in /nonexistent"),
                                 (["--compare", "/nonexistent"], "expected 2 arguments"),
                                 (["--compare", "/nonexistent", "/none"], "no result in /nonexistent; give two")):
             done = subprocess.run([sys.executable, "-B", REPRODUCE / "reproduce.py", *arguments], capture_output=True,

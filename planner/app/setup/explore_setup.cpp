@@ -115,6 +115,13 @@ void check_errors_in_motion(const ExploreOptions& options) {
     throw BadInput(
         "--fix-every is for --drift, without which poses have no error; give both, or leave it out" +
         or_in_task(options));
+  for (const auto& [part, name] :
+       {std::pair(options.errors.dropout, "--dropout"), {options.message_errors.loss, "--scan-loss"}})
+    if (part == 1.0 && !options.stop_time && !options.lockstep)
+      throw BadInput(std::string(name) +
+                     ": of 1 nothing is ever measured, so that the run would not end; give less, or "
+                     "--stop-time as well" +
+                     or_in_task(options));
 }
 
 // When each robot fails [s].

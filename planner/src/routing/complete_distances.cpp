@@ -19,7 +19,7 @@ void complete_distances(NumberTable& distances, std::span<const double> from_rob
   mirror();
   const NumberTable known = distances;
   for_each_index(count, [&](std::size_t i) {
-    std::vector<double> by_one(i, TourProblem::kNever);
+    std::vector<double> by_one(count, TourProblem::kNever);
     // Also where it is known: without a branch the compiler takes several at a time.
     const auto shorten = [&](double to_middle, const double* from_middle) {
       for (std::size_t j = 0; j < i && to_middle != TourProblem::kNever; ++j)
