@@ -35,23 +35,23 @@ def failed(word):
 
 def none_of(bad, runs, what="run", fewest=1):
     """Of facts that are there or not: one fails the line, and few runs without any are no reason to rely on it. `fewest`: in
-    all, or {task: in each}."""
+    all, or {(task, method): of each}."""
     if not runs:
         return NOT_MEASURED
     if bad:
         return failed(f"does not hold: {counted(len(bad), what)}")
     if isinstance(fewest, dict):
-        there = Counter(r.run.task for r in runs)
-        few = sorted((there[task], f"{there[task]} of {n} {what}s of {task}") for task, n in fewest.items() if there[task] < n)
-        others = f", and too few of {counted(len(few) - 1, 'other world')}" if few[1:] else ""
+        there = Counter(r.run[:2] for r in runs)
+        few = sorted((there[row], f"{there[row]} of {n} {what}s of {' '.join(row)}") for row, n in fewest.items() if there[row] < n)
+        others = f", and too few of {len(few) - 1} of the {len(fewest) - 1} others" if few[1:] else ""
         return f"open: {few[0][1]}{others}" if few else "holds"
     return "holds" if len(runs) >= fewest else f"open: {len(runs)} of {counted(fewest, what)}"
 
 
 def in_each(results, methods):
-    """How many runs of any of these methods a verdict needs in each world for which they are declared."""
-    return {task: needed(results, task) for task in results.experiments.tasks
-            if any((task, method) in results.experiments.rows for method in methods)}
+    """How many runs a verdict needs of each of these methods in each world for which it is declared."""
+    return {(task, method): needed(results, task) for task in results.experiments.tasks for method in methods
+            if (task, method) in results.experiments.rows}
 
 
 def touching(count, of):
@@ -381,8 +381,8 @@ def safety_lines(results):
     runs = [r for r in everything if not r.crashed]
     fewest = in_each(results, of_tours)
     yield clear_line("Tours", runs, fewest)
-    yield apart_line("Tours", runs, {task: n for task, n in fewest.items() if any(
-        len(results.experiments.task_file(Run(task, method, FIRST_SEED))["robots"]) > 1 for method in of_tours)})
+    yield apart_line("Tours", runs, {row: n for row, n in fewest.items()
+                                     if len(results.experiments.task_file(Run(*row, FIRST_SEED))["robots"]) > 1})
 
     moving = [r for r in runs if r["worst_of_limits"] is not None]
     over = [r for r in moving if r["worst_of_limits"] > LIMITS_KEPT]

@@ -1,5 +1,6 @@
 """The runs that experiments.json declares: each is one task file for `frontlux explore`."""
 
+import hashlib
 import json
 from pathlib import Path
 from typing import NamedTuple
@@ -35,6 +36,15 @@ def merged(one, other):
         else:
             result[key] = value
     return result
+
+
+def digest(value):
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:12]
+
+
+def declaration(task, complete):
+    """A digest of what a run is, and of when its world counts as mapped."""
+    return digest([task, complete])
 
 
 class Experiments:
@@ -121,6 +131,9 @@ class Experiments:
     def complete(self, run):
         """How much of the observable space the run has to map, or it has failed."""
         return min(self.tasks[run.task].get("complete", COMPLETE), self.methods[run.method].get("complete", COMPLETE))
+
+    def declaration(self, run):
+        return declaration(self.task_file(run), self.complete(run))
 
     def level(self, task):
         """complete() in percent, of what is in motion."""

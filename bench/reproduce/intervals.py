@@ -32,7 +32,7 @@ def bootstrap(groups, statistic):
 
 
 def by_order(values):
-    """The median, with the interval between two of the values that holds the true one in at least LEVEL of all samples,
+    """The median, which is no number if it lies between two opposite infinities, with the interval between two of the values that holds the true one in at least LEVEL of all samples,
     whatever their distribution: a bootstrap of few pairs' medians promises more than it keeps."""
     values, count = sorted(values), len(values)
     if count < FEWEST:
@@ -47,19 +47,20 @@ def by_order(values):
 def proportion(count, of):
     """Of so many independent runs so many did, with Clopper's and Pearson's exact interval."""
     def chance(p, counts):
-        return math.fsum(math.comb(of, k) * p ** k * (1 - p) ** (of - k) for k in counts)
+        return math.fsum(math.exp(math.lgamma(of + 1) - math.lgamma(k + 1) - math.lgamma(of - k + 1) + k * math.log(p) +
+                                  (of - k) * math.log1p(-p)) for k in counts)
 
     def least(holds):
         """The least p for which this holds; it holds for all above."""
         low, high = 0.0, 1.0
-        for _ in range(60):
+        for _ in range(50):
             middle = (low + high) / 2
             low, high = (low, middle) if holds(middle) else (middle, high)
         return high
 
     tail = (1 - LEVEL) / 2
     return Interval(count / of, least(lambda p: chance(p, range(count, of + 1)) >= tail) if count else 0.0,
-                    least(lambda p: chance(p, range(count + 1)) <= tail), of)
+                    least(lambda p: chance(p, range(count + 1)) <= tail) if count < of else 1.0, of)
 
 
 def present(values):

@@ -35,7 +35,7 @@ def percent(part, digits=1):
 
 def interval(found, digits=0, scale=1.0, unit="", sign=False):
     """Value, and in brackets its interval if it has one."""
-    if found is None:
+    if found is None or found.value != found.value:
         return NOTHING
     mark = "+" if sign else ""
     middle, *ends = (None if v is None else f"{scale * v:{mark},.{digits}f}".replace("inf", "∞") for v in found[:3])

@@ -154,8 +154,8 @@ def page(results, images, rows, curves):
 # Results
 
 Written by `./dev reproduce` from {origin(results)}.
-{duration(results)}. [{rows}]({rows}) has a row for each, and [{curves}]({curves}) what figures draw: this page is made of
-them alone, so more runs can be added anywhere ([reproducing.md](reproducing.md)). What is missing stands at the end of the page.
+{duration(results)}. [{rows}]({rows}) has a row for each, and [{curves}]({curves}) what figures draw: what the page says of
+runs is made of them alone, so more can be added anywhere ([reproducing.md](reproducing.md)). What is missing stands at the end of the page.
 
 ## Results in short
 
@@ -170,10 +170,9 @@ clock charges 0.25 s for each planning. In lock-step they are the built-in robot
 UAV of 2 m/s with a margin of 0.05 m, voxels of 0.1 m and 0.15 s. **No bumpers**: a body that touches a surface goes on, and that is a contact.
 `bench/reproduce/experiments.json` declares all of it.
 
-Nothing was chosen or tried on layouts from {FIRST_SEED} on, and no results of them were looked at before. Worlds of others
-were run while things were tried. Seed n is layout n with {results.experiments.seed_offset:,} + n for planner and sensors. Methods are compared
+Nothing was chosen or tried on layouts from {FIRST_SEED} on. Worlds of others were run while things were tried. Seed n is layout n with {results.experiments.seed_offset:,} + n for planner and sensors. Methods are compared
 by pairs with the same seed; in brackets are {100 * LEVEL:.0f} % intervals, none for fewer than {FEWEST} values: of a median in one world by order (the true
-median is between these two of the values, whatever their distribution), else by bootstrap ({RESAMPLES:,} resamples).
+median is between these two of the values, whatever their distribution), of a share of runs the exact binomial one, else by bootstrap ({RESAMPLES:,} resamples).
 
 A run has **failed** if it crashed, hung ({LONGEST:,} s of the machine's time, so a far slower machine could fail it), reached a limit, or
 ended with less than 99 % of the observable space mapped (hospital 90 %, the paper's steps 90 %). A robot that was cut off from
@@ -181,7 +180,7 @@ what is left to see is no failure once so much is mapped. A run that its machine
 
 Times, steps and metres **to a level** are compared by the median of the pairs' ratios, of all runs: one that never got
 there, whatever ended it, counts as later than any that did, and two that never did as alike (1). What is measured **at the end** is
-compared by the ratio of means, of pairs of which neither run failed. Differences are medians of the pairs', by order. Several worlds count by the mean of their ratios.
+compared by the ratio of means, of pairs of which neither run failed. Differences of times are medians of the pairs', by order. Several worlds count by the mean of their ratios.
 
 ## Main tables
 

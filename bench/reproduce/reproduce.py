@@ -16,6 +16,7 @@ from results import Results, failed_before, is_kept, is_published, programs_in, 
 from rows import curves_table, read_published, rows_table
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+OWN_PAGE = ROOT / "out/reproduce/results.md"  # of a program that has made fewer runs than are published
 sys.path.insert(1, str(ROOT / "bench"))  # of all plots
 
 
@@ -69,13 +70,15 @@ def read_options():
                         "well, since they decide the same: 12 digits each, as the page has them")
     parser.add_argument("--runs", type=Path, default=ROOT / "out/reproduce/runs", metavar="FOLDER",
                         help="of all results")
-    parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md]")
+    parser.add_argument("--page", type=Path, metavar="FILE.md", help="[docs/results.md; if "
+                        "that has more runs of another program, out/reproduce/results.md]")
     options = parser.parse_args()
     options.set = options.set or "full"
     if options.set == "timed" and options.scheduler:
         parser.error("--timed is for this machine alone: leave out --scheduler")
     options.worlds += [Path(folder) for folder in os.environ.get("FRONTLUX_WORLDS", "").split(":") if folder]
-    options.page = options.page or ROOT / ("out/reproduce/quick.md" if options.set == "quick" else "docs/results.md")
+    options.page_given = options.page is not None
+    options.page = options.page or (ROOT / "out/reproduce/quick.md" if options.set == "quick" else ROOT / "docs/results.md")
     options.command = options.command or ("frontlux" if options.scheduler else str(ROOT / "build/release/bin/frontlux"))
     return options
 
@@ -145,7 +148,7 @@ def execute(experiments, runs, options, published):
         left = []
         for run in runs:
             wanted = {program.sha256} if run.timed else programs
-            if not is_kept(folder, run, tasks[run], wanted) and not is_published(published, run, tasks[run], wanted):
+            if not is_kept(folder, run, tasks[run], wanted) and not is_published(published, run, experiments.declaration(run), wanted):
                 left.append(run)
         say(f"{len(runs) - len(left)} of {len(runs)} runs are kept or published from before, {len(left)} to do")
         calls = {run.name: (options.command, program, tasks[run], world_file(experiments.file_of(run.task), options),
@@ -176,18 +179,27 @@ def tables_of(page):
     return page.with_suffix(".csv"), page.with_name(f"{page.stem}_curves.csv")
 
 
-def write_page(experiments, runs, options, program, published):
+def write_page(experiments, runs, options, program):
     from figures import figures, is_drawn
     from page import page
     from svg_chart import save
+    published = read_published(*tables_of(options.page))  # others may have added to it meanwhile
     results = Results(experiments, runs, options.runs, options.like, program, published)
     if not results.all:
         raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
+    if not options.page_given and results.of_others > len(results.all):
+        say(f"{options.page} has {results.of_others} runs of other programs and would have {len(results.all)} of this one: the page "
+            f"goes to {OWN_PAGE} (--page replaces)")
+        options.page = OWN_PAGE
     images = options.page.parent / "images/results"
     drawn = figures(results)
     rows, curves = tables_of(options.page)
     text = page(results, os.path.relpath(images, options.page.parent), rows.name, curves.name)
     images.mkdir(parents=True, exist_ok=True)
+    if without := sum(is_drawn(results, r.run) and not r.curve and not r.crashed for r in results.all.values()):
+        say(f"{without} published rows have no curve in {curves.name}, so that figures leave them out")
+    if results.outdated:
+        say(f"{results.outdated} published rows are of runs that are not declared, or declared otherwise, and are left out")
     for name, figure in drawn.items():
         save(images / f"{name}.svg", figure)
     save(curves, curves_table(r for r in results.all.values() if is_drawn(results, r.run)))
@@ -236,7 +248,7 @@ def main():
         # The page is about all that is declared.
         sets = ("quick",) if options.set == "quick" else ("full", "timed")
         return write_page(experiments, [run for name in sets for run in experiments.runs(name)], options,
-                          program, published) or int(lost > 0)
+                          program) or int(lost > 0)
     except KeyboardInterrupt:
         print(f"\nstopped; finished runs are kept in {options.runs}, the same command goes on", file=sys.stderr)
         return 130

@@ -6,7 +6,7 @@ import os
 from collections import Counter
 from pathlib import Path
 
-from rows import KINDS, curve_of, digest, row_of, run_of, same_everywhere, total
+from rows import KINDS, curve_of, row_of, run_of, same_everywhere, total
 
 FORMAT = 1
 BY_ITSELF = ("low_gain", "nothing_to_do", "coverage", "cut_off")
@@ -106,10 +106,15 @@ def is_kept(folder, run, task, programs):
     return result["task"] == task and result["measured"].get("program") in programs and "failure" not in result
 
 
-def is_published(published, run, task, programs):
+def is_published(published, run, declared, programs):
     """is_kept(), of rows."""
     row, _ = published.get(run, (None, None))
-    return row is not None and row["declared"] == digest(task) and row["program"] in programs and not row["failure"]
+    return row is not None and row["declared"] == declared and row["program"] in programs and not row["failure"]
+
+
+def joined(*texts):
+    """Each once."""
+    return "; ".join(dict.fromkeys(filter(None, texts))) or None
 
 
 def failed_before(folder, run, task, program):
@@ -118,10 +123,9 @@ def failed_before(folder, run, task, program):
         result = read_result(folder / f"{run.name}.json")
     except (OSError, ValueError):
         return None
-    if result["task"] != task or result["measured"].get("program") != program or "failure" not in result:
+    if result["task"] != task or result["measured"].get("program") != program:
         return None
-    before = result["measured"].get("failed_before")
-    return f"{before}; {result['failure']}" if before else result["failure"]
+    return joined(result["measured"].get("failed_before"), result.get("failure"))
 
 
 def programs_in(folder):
@@ -227,41 +231,52 @@ class Results:
     like it, in files or published; how many are of others, and what is missing or broken."""
 
     def __init__(self, experiments, runs, folder, like=(), program=None, published=None):
-        self.experiments, self.wanted, self.broken = experiments, list(runs), {}
-        declared = {run: digest(experiments.task_file(run)) for run in self.wanted}
-        read = [Result(row, curve, experiments.complete(run)) for run, (row, curve) in (published or {}).items()
-                if declared.get(run) == row["declared"]]
-        by_rows = len(read)
+        self.experiments, self.wanted, self.broken, self.outdated = experiments, list(runs), {}, 0
+        read, wanted = {}, {*self.wanted}  # of each run those of each program
+        for run, (row, curve) in (published or {}).items():
+            if run in wanted and row["declared"] == experiments.declaration(run):
+                read.setdefault(run, {})[row["program"]] = Result(row, curve, experiments.complete(run))
+            else:
+                self.outdated += 1
         for run in self.wanted:
-            file = folder / f"{run.name}.json"
             try:
-                content = read_result(file)
-                row = row_of(run, content, experiments.complete(run))
-                if row["declared"] != declared[run]:
-                    raise ValueError(f"{file} is of another declaration of this run; run it again")
-                read.append(Result(row, curve_of(content), experiments.complete(run)))
+                result = self.read_file(run, folder / f"{run.name}.json")
             except FileNotFoundError:
-                pass
+                continue
             except (OSError, ValueError) as error:
-                self.broken[run.name] = str(error)
-        programs = Counter(result["program"] for result in read)
+                if run not in read:
+                    self.broken[run.name] = str(error)
+                continue
+            others = read.setdefault(run, {})
+            others[result["program"]] = self.merged(others[result["program"]], result) if result["program"] in others else result
+        programs = Counter(p for results in read.values() for p in results)
         if program is None:
             program = max(sorted({*programs} - {*like} or programs), key=programs.get, default=None)
         self.programs = [program, *sorted(({*like} & {*programs}) - {program})]
-        self.all, of_others = {}, set()
-        for number, result in enumerate(read):
+        self.all, self.of_others = {}, 0
+        for run in self.wanted:
+            results = read.get(run, {})
             # Which program is faster its decisions do not say.
-            if result["program"] not in (self.programs[:1] if result.run.timed else self.programs):
-                if result["program"] not in self.programs:
-                    of_others.add(result.run)
-                continue
-            before = self.all.get(result.run)
-            if number >= by_rows and before and before["program"] == result["program"] and not before.crashed \
-                    and not result.crashed and before["outcome"] != result["outcome"]:
-                self.broken[result.run.name] = "it is published with another outcome by the same program"
-            self.all[result.run] = result
-        self.all = {run: self.all[run] for run in self.wanted if run in self.all}
-        self.of_others = len(of_others - {*self.all})
+            usable = [results[p] for p in (self.programs[:1] if run.timed else self.programs) if p in results]
+            if usable:
+                self.all[run] = next((r for r in usable if not r.crashed), usable[0])
+            self.of_others += bool(results) and not {*results} & {*self.programs}
+
+    def read_file(self, run, file):
+        """Raises OSError, or ValueError if it is not the result of this very run."""
+        content, complete = read_result(file), self.experiments.complete(run)
+        row = row_of(run, content, complete)
+        if row["declared"] != self.experiments.declaration(run):
+            raise ValueError(f"{file} is of another declaration of this run; run it again")
+        return Result(row, curve_of(content), complete)
+
+    def merged(self, row, file):
+        """Of one program, published and in a file: what is published stays, unless only the file has an outcome."""
+        kept, other = (file, row) if row.crashed else (row, file)
+        if not kept.crashed and not other.crashed and kept["outcome"] != other["outcome"]:
+            self.broken[row.run.name] = "it is published with another outcome by the same program; find out which one is right"
+        failures = joined(other["failed_before"], other["failure"], kept["failed_before"]) if not kept.crashed else kept["failed_before"]
+        return Result({**kept.row, "failed_before": failures}, kept.curve, kept.complete)
 
     @property
     def missing(self):

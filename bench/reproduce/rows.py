@@ -4,49 +4,45 @@ Rows that are published need no file of the run any more: other machines, and la
 """
 
 import csv
-import hashlib
 import io
-import json
 import math
 
-from experiments import Run
+from experiments import Run, declaration, digest
 from explore import kind_of
 
 LEVELS = ("50", "90", "95", "99", "end")
 KINDS = ("ugv", "uav")
 GAINS = ("gain_tangent", "gain_predicted", "gained")  # of the UAVs
+MAP = ("false_free", "false_occupied", "surface_found")
+UNSEEN = ("narrow", "hidden", "in_view")
 PLANNING = ("planning_mean_s", "planning_p99_s", "planning_max_s")
 WHO = ("task", "method", "seed")
 
-COUNT, TEXT = "count", "text"
-SECONDS, METRES, GAIN, PART = 4, 4, 4, 6  # decimal places
+COUNT, TEXT, NUMBER, PART = "count", "text", "number", "part"
 COLUMNS = {
     "task": TEXT, "method": TEXT, "seed": COUNT, "timed": COUNT,
     "failure": TEXT,  # why it has left no numbers
-    **{f"s_to_{level}": SECONDS for level in LEVELS},
-    **{f"m_{kind}": METRES for kind in KINDS}, "m_mapped": METRES,
+    **{f"s_to_{level}": NUMBER for level in LEVELS},
+    **{f"m_{kind}": NUMBER for kind in KINDS}, "m_mapped": NUMBER,
     **{f"revisited_{kind}": PART for kind in KINDS},
     **{f"first_{kind}": PART for kind in KINDS},
     "steps": COUNT, "steps_to_90": COUNT,
     "end": TEXT, "coverage_observable": PART, "auc": PART,
-    "contacts": COUNT, "contacts_in_free": COUNT, "held_back": COUNT, "clearance_min_m": METRES, "separation_min_m": METRES,
-    "worst_of_limits": PART,
-    "false_free": PART, "false_occupied": PART, "surface_found": PART,
-    "narrow": PART, "hidden": PART, "in_view": PART,
-    **{gain: GAIN for gain in GAINS},
-    **{column: SECONDS for column in PLANNING}, "wall_s": SECONDS,
+    "contacts": COUNT, "contacts_in_free": COUNT, "held_back": COUNT, "clearance_min_m": NUMBER, "separation_min_m": NUMBER,
+    "worst_of_limits": NUMBER,
+    **dict.fromkeys(MAP, PART), **dict.fromkeys(UNSEEN, PART), **dict.fromkeys(GAINS, NUMBER),
+    **dict.fromkeys(PLANNING, NUMBER), "wall_s": NUMBER, "machine": TEXT,  # the latter of timed runs
     "failed_before": TEXT,  # why earlier attempts at it by this program crashed or hung
     "version": TEXT, "program": TEXT, "date": TEXT,
-    "declared": TEXT,  # digests: of the task, and of all that does not depend on the machine
+    "declared": TEXT,  # digests: of what the run is, and of all of its outcome that does not depend on the machine
     "outcome": TEXT,
 }
 ALWAYS = ("s_to_end", "steps", "end", "coverage_observable", "contacts", "held_back")  # of a run that has ended
-CURVE_COLUMNS = (*WHO, "x", "mapped", "by_ugv")
+FACTS = ("end", "coverage_observable", "auc", "contacts", "contacts_in_free", "held_back", "clearance_min_m", "separation_min_m",
+         "worst_of_limits")
+DIGITS = 9
+CURVE_COLUMNS = (*WHO, "outcome", "x", "mapped", "by_ugv")
 CURVE_POINTS = 50
-
-
-def digest(value):
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def same_everywhere(content):
@@ -75,7 +71,10 @@ def numbers_of(content, complete):
     facts, curve = content["facts"], content["curve"]
     last, (_, mapped) = curve[-1], first_with(curve, complete)
     return {
-        **facts, **(facts.get("map") or {}), **(facts.get("unseen") or {}), **content["gains"].get("uav", {}),
+        **{column: facts.get(column) for column in FACTS},
+        **{column: (facts.get("map") or {}).get(column) for column in MAP},
+        **{column: (facts.get("unseen") or {}).get(column) for column in UNSEEN},
+        **{column: content["gains"].get("uav", {}).get(column) for column in GAINS},
         **{f"s_to_{level}": facts["time_s"].get(level) for level in LEVELS},
         **{f"m_{kind}": last["length_m"].get(kind) for kind in KINDS},
         "m_mapped": mapped and total(mapped["length_m"]),
@@ -85,11 +84,13 @@ def numbers_of(content, complete):
 
 
 def row_of(run, content, complete):
-    """Of a run's file. As read_row() gives it of a table: what is rounded there is rounded here."""
+    """Of a run's file. As read_row() gives it of a table: what is rounded there is rounded here. Raises ValueError."""
+    measured = content["measured"]
     numbers = numbers_of(content, complete) if "facts" in content else {"failure": content["failure"]}
-    row = {**run._asdict(), **content["measured"], **numbers, "version": content["version"],
-           "program": content["measured"].get("program") or "unknown",
-           "declared": digest(content["task"]), "outcome": digest(same_everywhere(content))}
+    row = {**numbers, **run._asdict(), **{column: measured.get(column) for column in (*PLANNING, "wall_s", "failed_before", "date")},
+           "machine": measured.get("machine") if run.timed else None,
+           "version": content["version"], "program": measured.get("program") or "unknown",
+           "declared": declaration(content["task"], complete), "outcome": digest(same_everywhere(content))}
     return read_row({column: written(row.get(column), kind) for column, kind in COLUMNS.items()})
 
 
@@ -98,7 +99,7 @@ def written(value, kind):
         return ""
     if kind == TEXT:
         return " ".join(str(value).split())
-    return str(int(value)) if kind == COUNT else f"{value:.{kind}f}".rstrip("0").rstrip(".")
+    return str(int(value)) if kind == COUNT else f"{value:.{DIGITS}g}"
 
 
 def read_value(text, kind):
@@ -107,15 +108,16 @@ def read_value(text, kind):
     if kind == TEXT:
         return text
     value = int(text) if kind == COUNT else float(text)
-    if not abs(value) < 1e15:
-        raise ValueError(f"{text} is not a number")
+    if not 0 <= value <= (1 if kind == PART else 1e15):
+        raise ValueError(f"{text} is no {kind}")
     return value
 
 
 def read_row(cells):
     """Raises ValueError if a cell is not what its column holds, or one is empty that tables need."""
     row = {column: read_value(cells[column], kind) for column, kind in COLUMNS.items()}
-    needed = WHO + ("version", "program", "declared", "outcome") + (() if row["failure"] else ALWAYS)
+    together = [column for columns in (MAP, UNSEEN) if any(row[c] is not None for c in columns) for column in columns]
+    needed = (*WHO, "timed", "version", "program", "declared", "outcome", *(() if row["failure"] else ALWAYS), *together)
     if empty := [column for column in needed if row[column] is None]:
         raise ValueError(f"a row of {row['task']} {row['method']} {row['seed']} has no {', '.join(empty)}")
     return row
@@ -147,7 +149,7 @@ def rows_table(results):
 
 
 def curves_table(results):
-    return table_of(CURVE_COLUMNS, ([*(r[c] for c in WHO), *(" ".join(f"{v:g}" for v in values) for values in zip(*r.curve))]
+    return table_of(CURVE_COLUMNS, ([*(r[c] for c in CURVE_COLUMNS[:-3]), *(" ".join(f"{v:g}" for v in values) for values in zip(*r.curve))]
                                     for r in results if r.curve))
 
 
@@ -170,16 +172,29 @@ def run_of(row):
     return Run(row["task"], row["method"], row["seed"], bool(row["timed"]))
 
 
+def read_curve(line):
+    lists = [[read_value(v, PART if column != "x" else NUMBER) for v in line[column].split()] for column in CURVE_COLUMNS[-3:]]
+    if not len(lists[0]) == len(lists[1]) == len(lists[2]) > 0:
+        raise ValueError(f"the curve of {line['task']} {line['method']} {line['seed']} is cut off")
+    return list(zip(*lists))
+
+
 def read_published(table, curves):
     """What rows_table() and curves_table() have written: {run: (row, curve)}; nothing if there is no such file. Raises OSError,
     ValueError."""
     if not table.exists():
         return {}
+    published = {}
     try:
         rows = [read_row(line) for line in read_table(table, COLUMNS)]
-        points = {Run(line["task"], line["method"], int(line["seed"])):
-                  list(zip(*([float(v) for v in line[c].split()] for c in CURVE_COLUMNS[len(WHO):])))
+        points = {(Run(line["task"], line["method"], int(line["seed"])), line["outcome"]): read_curve(line)
                   for line in read_table(curves, CURVE_COLUMNS)}
+        for row in rows:
+            if run_of(row) in published:
+                raise ValueError(f"{run_of(row).name} has two rows; leave one")
+            published[run_of(row)] = row, points.get((run_of(row), row["outcome"]), [])
+    except FileNotFoundError as error:
+        raise ValueError(f"{table} is there and {curves} is not: bring it back, or remove {table.name} to begin anew") from error
     except ValueError as error:
         raise ValueError(f"{table} or {curves.name}: {error}") from error
-    return {run_of(row): (row, points.get(run_of(row), [])) for row in rows}
+    return published

@@ -130,7 +130,7 @@ def variants_table(results, kind, base):
                            (lambda r: r.until("90"), seconds_mapped, lambda r: r.metres_mapped)),
                          interval(at_the_end(results, tasks, method, base, end_of).found, 2, unit="×"), str(contacts)])
     return table(["changed", "pairs", "failed", "time to 90 %", "time until mapped", "metres until mapped",
-                  "time to the end", "contacts"], rows)
+                  "time to the end", "contacts"], rows, none=f"No world has {FEWEST} pairs yet.")
 
 
 def maps_table(results, kind, base):
@@ -148,7 +148,7 @@ def maps_table(results, kind, base):
             rows.append([results.experiments.title(method), str(max(f.count for f in found if f)),
                          *(interval(f, 2, 100, sign=True) for f in found)])
     return table(["", "runs or pairs", "free voxels that hold a surface", "occupied ones in free space",
-                  "surface voxels found"], rows)
+                  "surface voxels found"], rows, none=f"No world has {FEWEST} pairs yet.")
 
 
 def bumpers_table(results):
@@ -217,11 +217,11 @@ def planning_table(results):
             rows.append([run.task, results.experiments.title(run.method) + (", lock-step" if lockstep else ""),
                          *(value(result[column], 3, " s") for column in PLANNING),
                          NOTHING if lockstep else f"{task['latency_s']} s",
-                         f"{printed:.2f} s" if lockstep else NOTHING])
+                         f"{printed:.2f} s" if lockstep else NOTHING, plain(result["machine"] or NOTHING)])
     if not rows:
         return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and "
                 "there are none yet.\nIn all other tables the clock charges a fixed latency, which no load changes.\n")
-    return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV"], rows, texts=2)
+    return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV", "processor"], rows, texts=2)
 
 
 def published_list(experiments):

@@ -154,12 +154,13 @@ HindsightTour hindsight_tour(TravelOptions travel, VoxelGrid map, const KeyBox& 
     }
     return length;
   };
-  const Tour own = in_order(problem);
-  Tour tour = shortest_tour(problem);
-  HindsightTour result{{cells[0]}, length_of(tour), length_of(own)};
-  if (result.in_order < result.length) {  // along the corridor's cells it was longer
-    result.length = result.in_order;
-    tour = own;
+  Tour tour = in_order(problem);
+  const double in_order_length = length_of(tour);
+  HindsightTour result{{cells[0]}, in_order_length, in_order_length};
+  Tour found = shortest_tour(problem);  // along the corridor's cells, so that its paths may be longer
+  if (const double length = length_of(found); length <= in_order_length) {
+    result.length = length;
+    tour = std::move(found);
   }
   for (const std::uint32_t stop : tour) result.cells.push_back(cells[stop + 1]);
   return result;

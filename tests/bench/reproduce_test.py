@@ -208,12 +208,15 @@ class Intervals(unittest.TestCase):
         self.assertEqual(median_difference([(1, never)] * 6, lambda v: v).value, -never)
         self.assertEqual(median_difference([(never, never)] * 6 + [(never, 1)], lambda v: v).value, 0)
         self.assertIsNone(median_difference([], lambda v: v))
+        tie = median_difference([(1, never)] * 3 + [(never, 1)] * 3, lambda v: v)
+        self.assertEqual(interval(tie), "–")
 
     def test_how_frequent_contacts_may_be(self):
         # Clopper's and Pearson's intervals, from tables of them.
         self.assertEqual(touching(9, 212), "4.2 % (2.0 to 7.9)")
         self.assertEqual(touching(1, 10), "10.0 % (0.3 to 44.5)")
         self.assertEqual(touching(10, 10), "100.0 % (69.2 to 100.0)")
+        self.assertEqual(touching(9, 5000), "0.2 % (0.1 to 0.3)")
         self.assertEqual(touching(0, 20), "so with 95 % confidence in fewer than 13.9 %")
 
     def test_who_never_got_there_is_later_than_any_other(self):
@@ -486,14 +489,14 @@ def all_hold(make):
     for seed in SEEDS:
         for world in BUILT_IN:
             for method, seconds in (("tour", 100.0), ("render", 200.0), ("cluster", 180.0), ("nearest", 400.0),
-                                    ("paper", 300.0), ("tour_uav", 150.0), ("tour_2uav", 80.0), ("tour_4uav", 40.0)):
+                                    ("paper", 300.0), ("tour_uav", 150.0), ("tour_2uav", 80.0), ("tour_3uav", 60.0), ("tour_4uav", 40.0)):
                 make(Run(world, method, seed), seconds=seconds + seed)
             for steps in LOCKSTEP:
                 make(Run(world, steps, seed), seconds=400.0, uav_part=0.93, steps=40)
                 make(Run(world, f"{steps}_uav", seed), seconds=800.0, steps=80)
                 make(Run(world, f"{steps}_unassigned", seed), seconds=520.0, uav_part=0.75, steps=50)
                 make(Run(world, f"{steps}_yaw_ahead", seed), seconds=1600.0, uav_part=0.6, steps=60, gains=(100, 100, 85))
-        for method, seconds in (("tour", 100.0), ("render", 200.0), ("tour_uav", 150.0)) if seed in FEW_SEEDS else ():
+        for method, seconds in (("tour", 100.0), ("render", 200.0), ("tour_uav", 150.0), ("tour_3uav", 90.0)) if seed in FEW_SEEDS else ():
             for task in OTHERS:
                 make(Run(task, method, seed), seconds=seconds)
         make(Run("maze", "tour_grid_caster", seed), seconds=100.0 + seed)
@@ -605,10 +608,10 @@ class Lines(Made):
         self.assertEqual(lines["as printed, maze: 97.2 % are covered at the end; of the observable space"].verdict,
                          "open: 6 of 8 runs")
         self.assertEqual(lines["View quality without bumpers: no body touches a surface"].verdict,
-                         "open: 6 of 7 runs of building, and too few of 9 other worlds")
+                         "open: 6 of 7 runs of building render, and too few of 9 of the 9 others")
         one = self.judged(all_hold, lambda run, how: how if run[:3] == ("maze", "render", 6) else None)
         self.assertEqual(one["View quality without bumpers: no body touches a surface"].verdict,
-                         "open: 0 of 7 runs of building, and too few of 9 other worlds")
+                         "open: 0 of 7 runs of building render, and too few of 9 of the 9 others")
 
     def test_a_world_without_pairs_leaves_the_mean_open(self):
         lines = self.judged(all_hold, lambda run, how: None if run[:2] == ("station", "render") else how)
@@ -753,33 +756,67 @@ class Page(Made):
         self.assertTrue(self.whole(self.of_tables(runs, "nowhere")) == whole)
         # Of one program a run has one outcome; a failed one is done again, and what another program made is left out.
         published = read_published(self.folder / "page.csv", self.folder / "page_curves.csv")
-        task = self.experiments.task_file(runs[0])
-        self.assertTrue(is_published(published, runs[0], task, {PROGRAM}))
-        self.assertFalse(is_published(published, runs[0], task, {"another"}))
-        self.assertFalse(is_published(published, runs[0], {**task, "seed": 0}, {PROGRAM}))
-        self.assertFalse(is_published(published, Run("maze", "tour", 99), task, {PROGRAM}))
-        self.make(runs[0], contacts=7)
-        self.assertEqual(list(self.of_tables(runs, ".").broken), [runs[0].name])
-        self.make(runs[0], program="another", contacts=7)
-        results = self.of_tables(runs, ".", "another")
-        self.assertEqual((list(results.all), results.of_others, results.broken), ([runs[0]], len(runs) - 1, {}))
-        self.make(runs[0], failure="exit code 1: x")
-        self.tables(self.of_tables(runs, "."))
+        declared = self.experiments.declaration(runs[0])
+        self.assertTrue(is_published(published, runs[0], declared, {PROGRAM}))
+        self.assertFalse(is_published(published, runs[0], declared, {"another"}))
+        self.assertFalse(is_published(published, runs[0], self.experiments.declaration(runs[1]), {PROGRAM}))
+        self.assertFalse(is_published(published, Run("maze", "tour", 99), declared, {PROGRAM}))
+
+    def test_what_is_published_stays(self):
+        run, other = self.make(Run("maze", "tour", 6), wall_s=1.0), self.make(Run("maze", "tour", 7))
+        self.tables(self.results([run, other]))
+
+        def now(program=None):
+            results = self.of_tables([run, other], ".", program)
+            self.tables(results)
+            return results
+
+        self.make(run, wall_s=2.0)  # the same once more
+        self.assertEqual((now().all[run]["wall_s"], now().broken), (1.0, {}))
+        self.make(run, contacts=7)
+        for _ in range(2):
+            results = now()
+            self.assertEqual((results.all[run]["contacts"], list(results.broken)), (0, [run.name]))
+        self.make(run, failure="exit code 1: x")  # of an earlier attempt
+        self.assertEqual((now().all[run].crashed, now().all[run]["failed_before"]), (False, "exit code 1: x"))
+        (self.folder / f"{run.name}.json").write_text("{")
+        self.assertEqual((now().all[run].crashed, now().broken), (False, {}))
+        # What another program made is left out, and what is not asked for is counted.
+        self.make(run, program="another", contacts=7)
+        results = self.of_tables([run, other], ".", "another")
+        self.assertEqual((list(results.all), results.of_others, results.broken), ([run], 1, {}))
+        self.assertEqual((results.all[run]["contacts"], results.outdated), (7, 0))
+        self.assertEqual(self.of_tables([other]).outdated, 1)
+
+    def test_a_published_crash_is_done_again_and_stays_on_the_page(self):
+        run = self.make(Run("maze", "tour", 6), failure="exit code 1: x")
+        self.tables(self.results([run]))
         published = read_published(self.folder / "page.csv", self.folder / "page_curves.csv")
-        self.assertFalse(is_published(published, runs[0], task, {PROGRAM}))
+        self.assertFalse(is_published(published, run, self.experiments.declaration(run), {PROGRAM}))
+        self.make(run)
+        result = self.of_tables([run], ".").all[run]
+        self.assertEqual((result.failure, result["failed_before"]), (None, "exit code 1: x"))
 
     def test_tables_that_are_not_ours_are_refused(self):
         rows, curves = self.tables(self.results([self.make(Run("maze", "tour", 6))]))
         whole, drawn = rows.read_text(), curves.read_text()
         self.assertEqual(len(read_published(rows, curves)), 1)
-        for text, other in (("", drawn), (whole.replace("seed", "sead"), drawn), (whole + "maze,tour\n", drawn), (whole, drawn[:40]),
+        for text, other in (("", drawn), (whole.replace("seed", "sead"), drawn), (whole + "maze,tour\n", drawn), (whole, drawn[:60]),
                             (whole.replace("nothing_to_do", ""), drawn), (whole.replace("0.999", "0.99x"), drawn),
-                            (whole.replace("0.999", "nan"), drawn), (whole.replace(",6,0,", ",6,2.5,"), drawn)):
+                            (whole.replace("0.999", "nan"), drawn), (whole.replace(",6,0,", ",6,2.5,"), drawn),
+                            (whole.replace("0.999", "7"), drawn), (whole.replace(",6,0,", ",6,,"), drawn),
+                            (whole.replace(",0.02,0,0.9,", ",,0,0.9,"), drawn), (whole + whole.splitlines()[1] + "\n", drawn),
+                            (whole, drawn.replace("12.7", "inf")), (whole, drawn.replace("12.7", "nan")),
+                            (whole, drawn.replace("0 12.7", "0"))):
             self.assertNotEqual((text, other), (whole, drawn))
             rows.write_text(text)
             curves.write_text(other)
-            with self.assertRaisesRegex(ValueError, "page.*csv"):
+            with self.assertRaisesRegex(ValueError, "page.*csv", msg=(text, other)):
                 read_published(rows, curves)
+        rows.write_text(whole)
+        curves.unlink()
+        with self.assertRaisesRegex(ValueError, "page.csv is there and .* is not: bring it back"):
+            read_published(rows, curves)
         rows.unlink()
         self.assertEqual(read_published(rows, curves), {})
 
@@ -796,7 +833,6 @@ class Page(Made):
         outcome = self.outcome(run)
         outcome["measured"].update(program=PROGRAM, failed_before="exit code 1: x; hung")
         write_result(self.folder, run, task, VERSION, outcome)
-        self.assertIsNone(failed_before(self.folder, run, task, PROGRAM))
         text = page(self.results([run]), "images", "runs.csv", "curves.csv")
         self.assertIn("- maze-tour-6, before this run of it: exit code 1: x; hung\n", text)
 

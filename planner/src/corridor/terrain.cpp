@@ -80,7 +80,8 @@ void Terrain::decide() {
 // Where columns are stale, or those beside them that decide.
 void Terrain::close_gaps() {
   const int reach = options_.gap_width;
-  auto& [holes, grounded] = *gaps_;
+  VoxelColumns& holes = gaps_->holes;
+  const VoxelColumns& grounded = gaps_->grounded;
   for (const std::size_t number : holes.stale.numbers()) {
     const auto [x, y] = holes.place(number);
     for (int by = -reach; by <= reach; ++by)

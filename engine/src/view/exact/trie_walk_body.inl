@@ -205,7 +205,7 @@ class Counter {
       // Most nodes have no target: that is well worth a branch.
       const bool any =
           node.is_target != 0 ? step<true>(node, vectors, near) : step<false>(node, vectors, near);
-      n = is_fork & !any ? behind : n + 1;
+      n = (is_fork & !any) ? behind : n + 1;
     }
   }
 
