@@ -98,8 +98,10 @@ std::optional<FrontierSet> find_frontiers(const MapFile& map, const VoxelGrid& g
     if (all) around += size_of(*all) - (inside ? size_of(*inside) : 0);
   });
   if (around > most) return std::nullopt;
+  // Of real maps a leaf has some ten; a large free block alone may have as many as any map.
+  const std::uint64_t most_frontiers = most_voxels(map, std::uint64_t{1} << 24, 64);
   try {
-    return FrontierSet(grid, bounds);
+    return FrontierSet(grid, bounds, Adjacency::kFaces, most_frontiers);
   } catch (const std::length_error&) {
     return std::nullopt;
   }

@@ -108,6 +108,19 @@ TEST_F(MapCommandTest, TellsOfCloudsAndPointsThatItLeavesOut) {
                                   "left out     1 of them, which are not finite\n"});
 }
 
+TEST_F(MapCommandTest, RefusesACloudWithManyLines) {
+  std::ofstream poses(path("clouds/poses.csv"), std::ios::app);
+  for (int i = 0; i < 9; ++i) poses << "./a.pcd,0,0,1,0\n";
+  poses.close();
+  EXPECT_EQ(run({path("clouds"), "-o", path("map.bt")}).code, 0);
+  poses.open(path("clouds/poses.csv"), std::ios::app);
+  poses << "../clouds/a.pcd,0,0,1,0\n";
+  poses.close();
+  std::filesystem::create_directory(path("other"));
+  std::ofstream(path("clouds/poses.csv"), std::ios::app) << "a.pcd,0,0,1,0\n";
+  expect_refused({path("clouds"), "-o", path("more.bt")}, "'a.pcd' has more than 10 lines");
+}
+
 TEST_F(MapCommandTest, TellsOfPointsThatNoMapHolds) {
   const std::string begin = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nDATA ascii\n";
   std::filesystem::create_directory(path("far"));

@@ -101,6 +101,13 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   const std::size_t at = all.find(name) + name.size();
   EXPECT_EQ(measured(all.substr(0, at) + deep + all.substr(all.find('}', at) + 1))["held_back"],
             nlohmann::json({nullptr, 0}));
+  EXPECT_FALSE(measured("{\"coverage_observable\":" + deep + "," + all.substr(1)).is_null());
+  for (const auto& [member, value] : whole.items()) {
+    const std::string begin = "\"" + member + "\":", text = value.dump();
+    const std::size_t place = all.find(begin + text);
+    ASSERT_NE(place, std::string::npos) << member;
+    measured(all.substr(0, place) + begin + deep + all.substr(place + begin.size() + text.size()));
+  }
   for (const std::string& text :
        {other.dump(), longer.dump(), words.dump(), whole.dump().substr(1), std::string(), std::string("[]"),
         std::string("{}"), std::string(100'000, '[')})

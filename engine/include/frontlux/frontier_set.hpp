@@ -24,14 +24,19 @@ enum class Adjacency : std::uint8_t {
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
-  /// @throws std::length_error if more than 2^22 bricks of 8 x 8 x 8 voxels within the bounds are beside
-  ///         blocks of the grid that are free as a whole: a giant one has gigabytes of frontiers
-  FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency = Adjacency::kFaces);
+  /// @param most    frontiers that there may be at once, each of which takes up to 24 bytes while they are
+  /// found
+  /// @throws std::length_error if there are more, or if more than 2^22 bricks of 8 x 8 x 8 voxels within the
+  ///         bounds are beside blocks of the grid that are free as a whole: a giant one has gigabytes of
+  ///         frontiers
+  FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency = Adjacency::kFaces,
+              std::size_t most = std::size_t{1} << 28);
   ~FrontierSet();
   FrontierSet(FrontierSet&&) noexcept;
   FrontierSet& operator=(FrontierSet&&) noexcept;
 
   /// @param change  since the last update
+  /// @throws std::length_error as the constructor does; the set is as it was
   void update(const MapChange& change);
 
   /// All frontiers, sorted. Valid until the next update.

@@ -236,6 +236,7 @@ void BoxScene::update(const Blockers& blockers) {
   for (const auto& view : embree_->views)
     if (view) take_over(view.get());
   const RTCError error = rtcGetDeviceError(embree_->device->get());
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree cannot build a scene of " + std::to_string(blockers.box_count()) +
                              " boxes (error " + std::to_string(error) + ")");

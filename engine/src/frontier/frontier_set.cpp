@@ -111,6 +111,7 @@ struct FrontierSet::State {
 
   KeyBox bounds;
   Adjacency adjacency;
+  std::size_t most;
   BrickTable<Layers> bricks{};   // frontiers, by number; bricks that have none any more stay
   std::vector<VoxelKey> keys{};  // the same, sorted
 
@@ -129,6 +130,8 @@ struct FrontierSet::State {
         append(corner, z, after[z] & ~before[z], added);
         append(corner, z, before[z] & ~after[z], removed);
       }
+      if (keys.size() + added.size() > most + removed.size())
+        throw std::length_error("there are more than " + std::to_string(most) + " frontiers");
     }
     std::sort(added.begin(), added.end());
     std::sort(removed.begin(), removed.end());
@@ -196,8 +199,8 @@ struct FrontierSet::State {
   }
 };
 
-FrontierSet::FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency)
-    : state_(std::make_unique<State>(State{bounds, adjacency})) {
+FrontierSet::FrontierSet(const VoxelGrid& grid, const KeyBox& bounds, Adjacency adjacency, std::size_t most)
+    : state_(std::make_unique<State>(State{bounds, adjacency, most})) {
   state_->build(grid);
 }
 FrontierSet::~FrontierSet() = default;

@@ -12,6 +12,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <system_error>
 #include <thread>
@@ -151,7 +153,11 @@ std::string read_run_json(const std::filesystem::path& folder) {
 
 std::optional<int> last_limit(const std::filesystem::path& folder) {
   try {
-    return Json::parse(read_run_json(folder)).at("options").at("max_steps").get<int>();
+    const Json all = Json::parse(read_run_json(folder));
+    const Json& limit = all.at("options").at("max_steps");
+    if (!limit.is_number_unsigned() || limit.get<std::uint64_t>() > std::numeric_limits<int>::max())
+      return std::nullopt;
+    return limit.get<int>();
   } catch (const std::exception&) {  // there is none, or it is damaged
     return std::nullopt;
   }

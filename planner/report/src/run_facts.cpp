@@ -159,7 +159,7 @@ std::string misfit(const std::string& run_json, const planner::Recording& record
              recorded.dump(-1, ' ', true, json::error_handler_t::replace);
   std::uint64_t mapped = 0;
   for (const planner::KnownVoxels& known : recording.steps.back().known) mapped += known.observable;
-  const json coverage = member(all, "coverage_observable");
+  const json& coverage = member(all, "coverage_observable");
   const double all_there = static_cast<double>(recording.head.observable);
   if (all_there > 0.0 && coverage.is_number() &&
       std::abs(coverage.get<double>() - static_cast<double>(mapped) / all_there) > 1e-9)

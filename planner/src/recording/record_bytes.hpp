@@ -79,6 +79,14 @@ class RecordBytes {
     require(size <= left_.size() / least_bytes, "a list is longer than what is there");
     list.resize(static_cast<std::size_t>(size));
   }
+  /// length() of a list that has from `fewest` to `most` elements, else `what` is wrong.
+  template <class List>
+  void length(List& list, std::size_t fewest, std::size_t most, const char* what) {
+    std::uint64_t size = list.size();
+    varint(size);
+    require(size >= fewest && size <= most, what);
+    if (reading_) list.resize(static_cast<std::size_t>(size));
+  }
 
   /// A value that may be missing; `code` writes or reads it.
   template <class Value, class Code>

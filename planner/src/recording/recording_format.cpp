@@ -13,6 +13,7 @@ namespace frontlux::planner::detail {
 namespace {
 
 constexpr std::size_t kKeyBytes = 3;  // at least
+constexpr std::size_t kMostRecordedRobots = 1000;
 constexpr int kFormatWithTours = 4, kFormatWithPlans = 5;
 
 void code_finite(RecordBytes& bytes, double& value, const char* what) {
@@ -127,7 +128,6 @@ void code_description(RecordBytes& bytes, RobotDescription& description) {
 }
 
 void code_head(RecordBytes& bytes, RecordingHead& head) {
-  constexpr std::size_t kRobotBytes = 130, kStartBytes = 33;  // at least
   bytes.text(head.world);
   bytes.number(head.resolution);
   bytes.require(passes([&] { static_cast<void>(Lattice(head.resolution)); }),
@@ -140,14 +140,13 @@ void code_head(RecordBytes& bytes, RecordingHead& head) {
   bytes.require(head.observable == 0 || head.bounding == 0 || head.observable <= head.bounding,
                 "more voxels can be known than the bounds hold");
   bytes.text(head.options);
-  bytes.length(head.robots, kRobotBytes);
+  bytes.length(head.robots, 0, kMostRecordedRobots, "there are more than 1,000 robots");
   for (std::size_t i = 0; i < head.robots.size(); ++i) {
     bytes.part("robot " + std::to_string(i));
     code_description(bytes, head.robots[i]);
   }
   bytes.part("starts");
-  bytes.length(head.starts, kStartBytes);
-  bytes.require(head.starts.size() == head.robots.size(), "there is not one for each robot");
+  bytes.length(head.starts, head.robots.size(), head.robots.size(), "there is not one for each robot");
   for (ExplorationStart& start : head.starts) {
     code_pose(bytes, start.pose);
     code_keys(bytes, start.known_free);
@@ -234,8 +233,7 @@ void code_robot(RecordBytes& bytes, RobotStep& robot, const KeyBox& bounds, int 
 }
 
 void code_known(RecordBytes& bytes, std::vector<KnownVoxels>& known, const RecordingHead& head) {
-  bytes.length(known, 2);
-  bytes.require(known.size() == head.robots.size(), "there is not one number for each robot");
+  bytes.length(known, head.robots.size(), head.robots.size(), "there is not one number for each robot");
   std::uint64_t observable_left = head.observable, bounding_left = head.bounding;
   for (KnownVoxels& part : known) {
     bytes.whole(part.observable);
@@ -251,7 +249,6 @@ void code_known(RecordBytes& bytes, std::vector<KnownVoxels>& known, const Recor
 
 void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& head, std::uint64_t number,
                int format) {
-  constexpr std::size_t kRobotBytes = 60;  // at least
   const std::string name = "step " + std::to_string(number);
   ExplorationStep& step = recorded.step;
   bytes.part(name);
@@ -269,8 +266,7 @@ void code_step(RecordBytes& bytes, RecordedStep& recorded, const RecordingHead& 
   bytes.part(name + ", known voxels");
   code_known(bytes, recorded.known, head);
   bytes.part(name);
-  bytes.length(step.robots, kRobotBytes);
-  bytes.require(step.robots.size() == head.robots.size(), "has not as many robots as the team");
+  bytes.length(step.robots, head.robots.size(), head.robots.size(), "has not as many robots as the team");
   for (std::size_t i = 0; i < step.robots.size(); ++i) {
     bytes.part(name + ", robot " + std::to_string(i));
     code_robot(bytes, step.robots[i], head.bounds, format);

@@ -67,5 +67,23 @@ TEST(FrontierSet, RefusesTheSurfaceOfAGiantBlock) {
   expect_frontiers(FrontierSet(grid, part), grid, part, Adjacency::kFaces, "part");
 }
 
+TEST(FrontierSet, RefusesMoreFrontiersThanItMayHave) {
+  VoxelGrid grid(0.1);
+  const VoxelKey first = {100, 100, 100}, second = {200, 100, 100};
+  grid.set(first, Occupancy::kFree);
+  EXPECT_THROW(FrontierSet(grid, kAllVoxels, Adjacency::kFaces, 5), std::length_error);
+  FrontierSet frontiers(grid, kAllVoxels, Adjacency::kFaces, 6);
+  grid.set(second, Occupancy::kFree);
+  EXPECT_THROW(frontiers.update({grid, {&second, 1}}), std::length_error);
+  EXPECT_EQ(frontiers.size(), 6U);
+  EXPECT_FALSE(frontiers.contains({199, 100, 100}));
+  // As many go as come.
+  grid.set(first, Occupancy::kUnknown);
+  const std::array both = {first, second};
+  frontiers.update({grid, both});
+  expect_frontiers(frontiers, grid, kAllVoxels.contains(first) ? around(200, 100, 100, 10) : kAllVoxels,
+                   Adjacency::kFaces, "moved");
+}
+
 }  // namespace
 }  // namespace frontlux

@@ -161,7 +161,15 @@ TEST_F(RecordingDamageTest, AnnouncedSizesAllocateNothing) {
   // A list of 2^60 robots' known voxels.
   const std::string first = std::string(6, '\0') + std::string(56, '\0');
   expect_refused(before + detail::packed_record("step", first + "\x80\x80\x80\x80\x80\x80\x80\x80\x10"),
-                 "a list is longer than what is there");
+                 "there is not one number for each robot");
+  // As many robots in a team as fit into a million bytes.
+  RecordingHead crowd = head_;
+  crowd.robots.resize(1001, crowd.robots.front());
+  crowd.starts.resize(1001);
+  EXPECT_THROW(static_cast<void>(detail::head_bytes(crowd)), std::invalid_argument);
+  crowd.robots.resize(1000);
+  crowd.starts.resize(1000);
+  EXPECT_EQ(detail::head_from(detail::head_bytes(crowd)).robots.size(), 1000U);
   // A gigabyte of zeros would compress to a megabyte: announced in a record of a few bytes.
   std::string bomb = detail::packed_record("step", std::string(1000, '\0'));
   bomb[8] = bomb[9] = bomb[10] = '\xFF';

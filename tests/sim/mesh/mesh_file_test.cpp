@@ -309,8 +309,17 @@ TEST_F(MeshFile, ImportersFallAlone) {
   expect_refused(save("many.dae", many), "to import");
 }
 
-// A file whose materials are in itself, again and again: reading it once more is no new file, so that the time
-// is up although reading terabytes would take hours.
+// Who ignores how children end gets meshes, and is told if one cannot be had.
+TEST_F(MeshFile, IsImportedWhoeverWaitsForChildren) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  const std::string dae = house_dae("Z_UP", "1");
+  expect_house(read_mesh_world(save("good.dae", dae)), {0, 0, 0}, {2, 3, 5});
+  expect_refused(save("crash.dae", test::replaced(dae, "count=\"8\"", "count=\"0\"")));
+  std::signal(SIGCHLD, before);
+}
+
+// A file whose materials are in itself, again and again: reading it once more is no new file, so that the
+// time is up although reading terabytes would take hours.
 TEST_F(MeshFile, LongWhatNamesItselfGetsNoMoreTime) {
   std::string self = house_obj();
   for (int i = 0; i < 400'000; ++i) self += "mtllib self.obj\n";
@@ -350,6 +359,16 @@ TEST_F(MeshFile, BadIndicesAreRefused) {
   for (const char* index : {"9", "-1", "4294967295", "x"})
     expect_refused(
         save("bad.dae", test::replaced(house_dae("Z_UP", "1"), "<p>0 ", "<p>" + std::string(index) + " ")));
+  for (const char* begin : {"<p >", "<p\n>", "<p a='1'>"})
+    expect_refused(
+        save("bad.dae", test::replaced(house_dae("Z_UP", "1"), "<p>0 ", begin + std::string("x "))),
+        "an index of a face is 'x'");
+  // What is no list of indices, though it begins as one does.
+  for (const char* other : {"<!-- <p>made by me</p> -->", "<param>x</param>", "<p/>", "<![CDATA[<p>x</p>]]>"})
+    expect_house(
+        read_mesh_world(save("good.dae", test::replaced(house_dae("Z_UP", "1"), "<library_geometries>",
+                                                        other + std::string("<library_geometries>")))),
+        {0, 0, 0}, {2, 3, 5});
   std::string bytes;
   for (const auto& v : kHouse) bytes.append(reinterpret_cast<const char*>(v.data()), 12);
   for (std::uint16_t i = 0; i < 36; ++i) bytes += test::bytes_of(std::uint16_t(i < 33 ? i % 8 : 700));

@@ -21,6 +21,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -58,15 +59,19 @@ class MeshFolder : public Assimp::IOSystem {
   bool Exists(const char* file) const override { return reason_against(file).empty(); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // of all of them
     std::string reason = reason_against(file);
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos)
       reason = "is not to be written";
+    if (reason.empty()) {
+      // Once each: what names itself again and again gets no more time by that.
+      if (opened_.insert(std::filesystem::canonical(file)).second) bytes_ += std::filesystem::file_size(file);
+      if (bytes_ > kMostBytes) reason = "makes it more than 1 GiB";
+    }
     if (!reason.empty()) {
       refused_ = ", which names " + quote(file) + ", and that " + reason;
       return nullptr;
     }
-    // Once each: what names itself again and again gets no more time by that.
-    if (opened_.insert(std::filesystem::canonical(file)).second) bytes_ += std::filesystem::file_size(file);
     limit_import(bytes_);
     const std::string bytes = read_file(file);
     auto* const copy = new std::uint8_t[bytes.size() + 1];
@@ -108,11 +113,30 @@ class BadIndices : public Assimp::LogStream {
   bool found_ = false;
 };
 
+// Where what begins here ends that is no element, if it does: a comment or characters as they are.
+std::optional<std::size_t> end_of_no_element(std::string_view xml, std::size_t at) {
+  for (const auto& [begin, end] :
+       {std::pair<std::string_view, std::string_view>("<!--", "-->"), {"<![CDATA[", "]]>"}})
+    if (xml.substr(at).starts_with(begin))
+      return std::min(xml.find(end, at + begin.size()), xml.size() - end.size()) + end.size();
+  return std::nullopt;
+}
+
 // A COLLADA file's lists of indices. Assimp takes for 0 what is no whole number below 2^31.
 void check_indices(std::string_view collada) {
-  constexpr std::string_view kBegin = "<p>", kBlank = " \t\r\n";
-  for (std::size_t at = 0; (at = collada.find(kBegin, at)) != std::string_view::npos;) {
-    at += kBegin.size();
+  constexpr std::string_view kBegin = "<p", kBlank = " \t\r\n";
+  for (std::size_t at = 0; (at = collada.find('<', at)) != std::string_view::npos;) {
+    if (const auto end = end_of_no_element(collada, at)) {
+      at = *end;
+      continue;
+    }
+    const std::string_view left = collada.substr(at);
+    const std::size_t close = left.find('>');
+    at += 1;
+    if (!left.starts_with(kBegin) || close == std::string_view::npos || left[close - 1] == '/' ||
+        (close != kBegin.size() && kBlank.find(left[kBegin.size()]) == std::string_view::npos))
+      continue;
+    at += close;
     std::string_view list = collada.substr(at, collada.find('<', at) - at);
     while (list.remove_prefix(std::min(list.find_first_not_of(kBlank), list.size())), !list.empty()) {
       const std::string_view word = list.substr(0, list.find_first_of(kBlank));

@@ -187,6 +187,7 @@ struct Surface::Scene {
     rtcCommitScene(scene);
     detail::take_over(&mesh);
     const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE)
       throw std::runtime_error("Embree cannot build a scene of " + std::to_string(mesh.triangles.size()) +
                                " triangles (error " + std::to_string(error) + ")");

@@ -44,10 +44,16 @@ class SurfaceFaces {
             beyond[u] = low[u] + i;
             beyond[v] = low[v] + j;
             if (is_occupied(grid_, beyond)) continue;
-            if (++count_ > kMaxFaces) refuse();
+            if (++count_ > allowed_) refuse();
             faces_[axis][static_cast<std::size_t>(side)].push_back({c[axis] + side, beyond[u], beyond[v]});
           }
       }
+  }
+
+  // Blocks of one state take few bytes of a file, and have far fewer faces than sides where they are many.
+  void allow(const Brick* brick) {
+    constexpr std::size_t kOfBlock = 512, kOfBrick = 1536;
+    allowed_ = std::min(allowed_ + (brick == nullptr ? kOfBlock : kOfBrick), kMaxFaces);
   }
 
   // A few bytes of a file can stand for trillions of sides, so large blocks are counted before any is added.
@@ -64,14 +70,15 @@ class SurfaceFaces {
   }
 
  private:
-  [[noreturn]] static void refuse() {
-    throw std::runtime_error("the map's occupied voxels have more than " + std::to_string(kMaxFaces) +
+  [[noreturn]] void refuse() const {
+    throw std::runtime_error("the map's occupied voxels have more than " + std::to_string(allowed_) +
                              " faces, or lie in large blocks with more than " +
                              std::to_string(kMaxBlockSides) + " sides; use a coarser or smaller map");
   }
 
   const VoxelGrid& grid_;
   CellFaces faces_;
+  std::size_t allowed_ = std::size_t{1} << 23U;  // that any map may have: 0.6 GB with what is made of them
   std::size_t count_ = 0, compared_ = 0, expected_ = 0;
 };
 
@@ -89,6 +96,7 @@ Eigen::AlignedBox3d bounds_of(const VoxelGrid& grid) {
 World make_map_world(const VoxelGrid& grid) {
   SurfaceFaces faces(grid);
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
+    faces.allow(brick);
     if (brick == nullptr && state == Occupancy::kOccupied) faces.expect(1 << block.log2_edge);
   });
   grid.for_each_block([&](const Block& block, const Brick* brick, Occupancy state) {
