@@ -43,11 +43,14 @@ void ClusterSights::note_unreached(const Query& query, const FrontierCluster& cl
   const TravelGraph& graph = query.view.graph;
   std::vector<VoxelKey> cells = graph.spread_cells(grown(cluster.box, query.view.region.reach()));
   std::erase_if(cells, query.reaches);
-  const auto node_of = [&](const VoxelKey& cell) { return graph.node(cell); };
-  cells.erase(std::ranges::unique(cells, {}, node_of).begin(), cells.end());
-  const auto connected = std::ranges::partition(cells, std::not_fn(query.connects));
-  sight.behind_others.assign(connected.begin(), connected.end());
-  sight.beyond.assign(cells.begin(), connected.begin());
+  // Of std::ranges these two would return a range, which clang 14 does not compile.
+  cells.erase(
+      std::unique(cells.begin(), cells.end(),
+                  [&](const VoxelKey& a, const VoxelKey& b) { return graph.node(a) == graph.node(b); }),
+      cells.end());
+  const auto connected = std::partition(cells.begin(), cells.end(), std::not_fn(query.connects));
+  sight.behind_others.assign(connected, cells.end());
+  sight.beyond.assign(cells.begin(), connected);
 }
 
 // Of the viewpoints that were found those that the robot can get to.

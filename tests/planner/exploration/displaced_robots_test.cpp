@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ranges>
 #include <vector>
 
 namespace frontlux::planner {
@@ -88,7 +87,7 @@ void expect_no_retreat_through_walls(bool says_so) {
   // From all that is about the nearest place of its trail.
   const auto is_behind_a_wall = [&](const Eigen::Vector3d& place) {
     const auto off = [&](const Eigen::Vector3d& at) { return (at - place).norm(); };
-    const double nearest = std::ranges::min(been | std::views::transform(off));
+    const double nearest = off(*std::ranges::min_element(been, {}, off));
     return std::ranges::all_of(been, [&](const Eigen::Vector3d& at) {
       return off(at) > nearest + 0.5 || !SegmentVoxels(grid.lattice(), at, place).all_of(is_free);
     });
