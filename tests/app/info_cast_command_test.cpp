@@ -186,13 +186,14 @@ TEST_F(InfoCastCommand, LackOfMemoryIsCalledThat) {
                                           "--direction", "1,0,0", "--caster", "embree"};
   const std::string hit = expect_answer(words, {"hit an occupied voxel"});
   int short_of_memory = 0;
-  for (int kilobytes = 100000; kilobytes <= 260000; kilobytes += 40000) {
+  for (int kilobytes = 100000; kilobytes <= 420000; kilobytes += 40000) {
     SCOPED_TRACE(kilobytes);
     const Answer answer = run(words, "ulimit -v " + std::to_string(kilobytes) + ";");
     if (answer.code == 127) {  // the loader's
       expect_parts(answer.err, {"error while loading shared libraries"});
       continue;
     }
+    if (answer.err.find("MPI_Init") != std::string::npos) continue;  // by Debian 13's Ipopt as it is loaded
     const bool has_enough = answer.code == 0;
     short_of_memory += has_enough ? 0 : 1;
     EXPECT_TRUE(has_enough || answer.code == 1) << answer.code;

@@ -202,9 +202,9 @@ class KilledCommand : public ExploreMotion {
         {"view.png", {"render", map, "--robot", "uav", "--at", from, "-o"}},
         {"path.csv", {"plan", map, "--robot", "uav", "--from", from + ",0", "--to", to, "-o"}},
         {"page.html", {"report", path("run"), "-o"}}};
-    Moment moment;
     for (const auto& [name, words] : commands) {
       SCOPED_TRACE(name);
+      Moment moment;
       const std::string file = path(name);
       const std::vector<std::string> command = joined(words, {file});
       const std::chrono::duration<double> time = expect_done(command);
@@ -220,6 +220,9 @@ class KilledCommand : public ExploreMotion {
         const std::string now = content_of(file);
         ASSERT_TRUE(now == earlier || now == whole) << now.size();
       }
+      if (kills >= 10) {  // of two both may come late
+        EXPECT_GE(moment.kills, kills / 2) << "the others came after its end";
+      }
       // The kill comes too late where the file has got its name already.
       bool is_left = false;
       for (int i = 0; i < kTries && !is_left; ++i) {
@@ -231,11 +234,10 @@ class KilledCommand : public ExploreMotion {
       }
       EXPECT_TRUE(is_left) << "never killed while it wrote";
       const Answer full = frontlux(command, "ulimit -f 0;");
-      EXPECT_NE(full.code, 0);
+      EXPECT_EQ(full.code, 2);
       EXPECT_EQ(content_of(file), earlier) << "a full disk";
       EXPECT_TRUE(parts().empty()) << "what the killed one left goes with the next one";
     }
-    EXPECT_GE(moment.kills, kills);
   }
 };
 
@@ -243,7 +245,7 @@ TEST_F(KilledCommand, LeavesARunThatGoesOn) { expect_runs_survive(5); }
 TEST_F(KilledCommand, LeavesARunInMotionThatGoesOn) {
   expect_motions_survive(joined({"explore"}, quick("4")), 3);
 }
-TEST_F(KilledCommand, LeavesEarlierFilesIntact) { expect_files_survive(0); }
+TEST_F(KilledCommand, LeavesEarlierFilesIntact) { expect_files_survive(2); }
 TEST_F(KilledCommand, LeavesNoPartOfAFileWhenItIsStopped) {
   expect_explored("run");
   int stopped = 0;
