@@ -173,7 +173,7 @@ void add_explore_command(CLI::App& app) {
 Files of a run: run.json (options and results), steps.csv, paths.csv, events.csv, motion.csv and tours.csv (of
 robots in motion), map.ot, map.bt, run.frontlux (the recording) and report.html. Ctrl-C or SIGTERM ends a run
 after the current step. --help-all has more options.)");
-  command.run([given, resume, team, lockstep, method] {
+  command.run([given, team, lockstep, method] {
     const auto& [mode, goal] = method;
     replace_in_task(given->options, team.given(), mode.given(), lockstep.given(), goal.given());
     run(*given);

@@ -207,7 +207,7 @@ TEST(Conformance, KnownRays) {
       {{0.1F, 0.1F, 0.1F}, {-1.0F, 1.0F, -1.0F}, -1.0},   {{0.0F, 0.0F, 0.0F}, {0.0F, -1.0F, 0.0F}, 1.0},
       {{0.25F, 0.05F, 0.15F}, {2.0F, 1.0F, 1.0F}, 0.5},
   };
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const NamedMap map{"noise_" + std::to_string(seed), make_noise_tree(seed, 0.1, 6)};
     const Subject subject(map);
     Disagreements bad;
