@@ -24,8 +24,7 @@ enum class Adjacency : std::uint8_t {
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
-  /// @param most    frontiers that there may be at once, each of which takes up to 24 bytes while they are
-  /// found
+  /// @param most    frontiers that there may be at once; each takes up to 24 bytes while they are found
   /// @throws std::length_error if there are more, or if more than 2^22 bricks of 8 x 8 x 8 voxels within the
   ///         bounds are beside blocks of the grid that are free as a whole: a giant one has gigabytes of
   ///         frontiers

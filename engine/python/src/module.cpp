@@ -25,7 +25,7 @@ PYBIND11_MODULE(_engine, module) {
   expect_numpy_1();
 #endif
   module.attr("__name__") = "frontlux";  // what names and messages show
-  Computing::end_before_python_exits();
+  Computing::end_before_the_process();
   module.def(
       "instruction_set", &frontlux::instruction_set_name,
       "The vector instructions in use: 'avx512', 'avx2', 'vector' or 'none'; FRONTLUX_ISA asks for others.");

@@ -130,16 +130,20 @@ struct FrontierSet::State {
         append(corner, z, after[z] & ~before[z], added);
         append(corner, z, before[z] & ~after[z], removed);
       }
-      if (keys.size() + added.size() > most + removed.size())
-        throw std::length_error("there are more than " + std::to_string(most) + " frontiers");
+      if (added.size() > most) refuse();
     }
     std::sort(added.begin(), added.end());
     std::sort(removed.begin(), removed.end());
     if (differ.empty()) return;
+    if (keys.size() - removed.size() > most - added.size()) refuse();
     std::vector<VoxelKey> merged = with_changes(added, removed);
     for (auto& [at, layers] : differ) at = bricks.index(at);
     for (const auto& [at, layers] : differ) bricks.value(at) = layers;
     keys = std::move(merged);
+  }
+
+  [[noreturn]] void refuse() const {
+    throw std::length_error("there are more than " + std::to_string(most) + " frontiers");
   }
 
   static void append(const VoxelKey& corner, std::size_t z, std::uint64_t layer, std::vector<VoxelKey>& to) {

@@ -79,11 +79,13 @@ std::string differences(const std::filesystem::path& folder, const std::filesyst
 }
 
 // Work follows from the clouds' sizes: a line is few bytes, and each maps a cloud once more.
-void check_lines(const std::filesystem::path& pose_file, const std::vector<io::RecordedPose>& poses) {
+void check_lines(const std::filesystem::path& folder, const std::filesystem::path& pose_file,
+                 const std::vector<io::RecordedPose>& poses) {
   constexpr int kMostLines = 10;
   std::map<std::filesystem::path, int> lines;
+  std::error_code error;  // what is wrong with a file, reading says
   for (const io::RecordedPose& pose : poses)
-    if (++lines[std::filesystem::path(pose.file).lexically_normal()] > kMostLines)
+    if (++lines[std::filesystem::weakly_canonical(folder / pose.file, error)] > kMostLines)
       throw BadInput(pose_file.string() + ": " + quote(pose.file) + " has more than " +
                      std::to_string(kMostLines) + " lines; a cloud is mapped with each, so give it few");
 }
@@ -91,7 +93,7 @@ void check_lines(const std::filesystem::path& pose_file, const std::vector<io::R
 Recording open_folder(const std::filesystem::path& folder, const std::string& given) {
   const std::filesystem::path pose_file = given.empty() ? folder / "poses.csv" : std::filesystem::path(given);
   const auto poses = std::make_shared<std::vector<io::RecordedPose>>(io::read_pose_file(pose_file));
-  check_lines(pose_file, *poses);
+  check_lines(folder, pose_file, *poses);
   const auto file = [folder, poses](std::size_t i) { return folder / (*poses)[i].file; };
   return {poses->size(), [file](std::size_t i) { return file(i).string(); },
           [file, poses](std::size_t i) {

@@ -117,10 +117,11 @@ void check_errors_in_motion(const ExploreOptions& options) {
         or_in_task(options));
   for (const auto& [part, name] :
        {std::pair(options.errors.dropout, "--dropout"), {options.message_errors.loss, "--scan-loss"}})
-    if (part == 1.0 && !options.stop_time && !options.lockstep)
+    if (part == 1.0 && !options.stop_time && !options.max_steps && !options.lockstep &&
+        options.failures.each.empty())
       throw BadInput(std::string(name) +
                      ": of 1 nothing is ever measured, so that the run would not end; give less, or "
-                     "--stop-time as well" +
+                     "--stop-time or --max-steps as well" +
                      or_in_task(options));
 }
 

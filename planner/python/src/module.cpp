@@ -4,7 +4,7 @@ PYBIND11_MODULE(_planner, module) {
   using namespace frontlux::python;
   py::module_::import("frontlux");               // its grids, changes and fields of view are ours, too
   module.attr("__name__") = "frontlux.planner";  // what names and messages show
-  Computing::end_before_python_exits();
+  Computing::end_before_the_process();
   bind_robot(module);
   bind_trajectory(module);
   bind_exploration_step(module);

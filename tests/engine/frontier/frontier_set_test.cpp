@@ -77,12 +77,18 @@ TEST(FrontierSet, RefusesMoreFrontiersThanItMayHave) {
   EXPECT_THROW(frontiers.update({grid, {&second, 1}}), std::length_error);
   EXPECT_EQ(frontiers.size(), 6U);
   EXPECT_FALSE(frontiers.contains({199, 100, 100}));
-  // As many go as come.
+  // As many go as come, whichever are found first.
   grid.set(first, Occupancy::kUnknown);
   const std::array both = {first, second};
   frontiers.update({grid, both});
-  expect_frontiers(frontiers, grid, kAllVoxels.contains(first) ? around(200, 100, 100, 10) : kAllVoxels,
-                   Adjacency::kFaces, "moved");
+  EXPECT_EQ(frontiers.size(), 6U);
+  EXPECT_TRUE(frontiers.contains({199, 100, 100}));
+  grid.set(first, Occupancy::kFree);
+  grid.set(second, Occupancy::kUnknown);
+  frontiers.update({grid, both});
+  expect_frontiers(FrontierSet(grid, around(100, 100, 100, 10)), grid, around(100, 100, 100, 10),
+                   Adjacency::kFaces, "back");
+  EXPECT_EQ(frontiers.size(), 6U);
 }
 
 }  // namespace

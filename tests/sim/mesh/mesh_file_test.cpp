@@ -363,6 +363,16 @@ TEST_F(MeshFile, BadIndicesAreRefused) {
     expect_refused(
         save("bad.dae", test::replaced(house_dae("Z_UP", "1"), "<p>0 ", begin + std::string("x "))),
         "an index of a face is 'x'");
+  for (const char* within : {"<![CDATA[x]]>", "0 <!-- --> x"})
+    expect_refused(
+        save("bad.dae", test::replaced(house_dae("Z_UP", "1"), "<p>0 ", "<p>" + std::string(within))),
+        "a list of indices holds more than numbers");
+  // In time that grows with the file, and no faster.
+  for (const char* begin : {"<", "<p ", "<p/", "<!--", "<p>"}) {
+    std::string many;
+    while (many.size() < 4'000'000) many += begin;
+    expect_refused(save("many.dae", many));
+  }
   // What is no list of indices, though it begins as one does.
   for (const char* other : {"<!-- <p>made by me</p> -->", "<param>x</param>", "<p/>", "<![CDATA[<p>x</p>]]>"})
     expect_house(

@@ -128,7 +128,7 @@ TEST(MapWorld, RefusesMapsWithoutAWorld) {
 // A file of 2 kB may hold as many blocks of 64 voxels a side, none of which touches another one.
 TEST(MapWorld, RefusesManyBlocksWithMoreFacesThanTheirNumberBrings) {
   VoxelGrid grid(0.1);
-  constexpr int kBlocks = 360, kSpacing = 128;  // 6 * 64^2 faces each
+  constexpr int kBlocks = 720, kSpacing = 128;  // 6 * 64^2 faces each
   for (int i = 0; i < kBlocks; ++i)
     grid.fill({make_key(i % 20 * kSpacing, i / 20 * kSpacing, 0), 6}, Occupancy::kOccupied);
   EXPECT_THROW(static_cast<void>(make_map_world(grid)), std::runtime_error);

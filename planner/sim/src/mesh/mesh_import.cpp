@@ -64,9 +64,14 @@ class MeshFolder : public Assimp::IOSystem {
     if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos)
       reason = "is not to be written";
     if (reason.empty()) {
-      // Once each: what names itself again and again gets no more time by that.
-      if (opened_.insert(std::filesystem::canonical(file)).second) bytes_ += std::filesystem::file_size(file);
-      if (bytes_ > kMostBytes) reason = "makes it more than 1 GiB";
+      const bool is_new = !opened_.contains(std::filesystem::canonical(file));
+      const std::uint64_t with_it = bytes_ + (is_new ? std::filesystem::file_size(file) : 0);
+      if (with_it > kMostBytes) reason = "makes it more than 1 GiB";
+      if (reason.empty()) {
+        // Once each: what names itself again and again gets no more time by that.
+        opened_.insert(std::filesystem::canonical(file));
+        bytes_ = with_it;
+      }
     }
     if (!reason.empty()) {
       refused_ = ", which names " + quote(file) + ", and that " + reason;
@@ -122,28 +127,38 @@ std::optional<std::size_t> end_of_no_element(std::string_view xml, std::size_t a
   return std::nullopt;
 }
 
+void check_list(std::string_view list) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  while (list.remove_prefix(std::min(list.find_first_not_of(kBlank), list.size())), !list.empty()) {
+    const std::string_view word = list.substr(0, list.find_first_of(kBlank));
+    if (const auto index = number_from<std::int32_t>(word); !index || *index < 0)
+      throw std::invalid_argument("an index of a face is " + quote(word));
+    list.remove_prefix(word.size());
+  }
+}
+
 // A COLLADA file's lists of indices. Assimp takes for 0 what is no whole number below 2^31.
 void check_indices(std::string_view collada) {
-  constexpr std::string_view kBegin = "<p", kBlank = " \t\r\n";
+  constexpr std::string_view kBegin = "<p", kAfter = " \t\r\n>";
   for (std::size_t at = 0; (at = collada.find('<', at)) != std::string_view::npos;) {
     if (const auto end = end_of_no_element(collada, at)) {
       at = *end;
       continue;
     }
-    const std::string_view left = collada.substr(at);
-    const std::size_t close = left.find('>');
+    const std::size_t after = at + kBegin.size();
+    const bool is_list = collada.substr(at).starts_with(kBegin) && after < collada.size() &&
+                         kAfter.find(collada[after]) != std::string_view::npos;
     at += 1;
-    if (!left.starts_with(kBegin) || close == std::string_view::npos || left[close - 1] == '/' ||
-        (close != kBegin.size() && kBlank.find(left[kBegin.size()]) == std::string_view::npos))
-      continue;
-    at += close;
-    std::string_view list = collada.substr(at, collada.find('<', at) - at);
-    while (list.remove_prefix(std::min(list.find_first_not_of(kBlank), list.size())), !list.empty()) {
-      const std::string_view word = list.substr(0, list.find_first_of(kBlank));
-      if (const auto index = number_from<std::int32_t>(word); !index || *index < 0)
-        throw std::invalid_argument("an index of a face is " + quote(word));
-      list.remove_prefix(word.size());
-    }
+    if (!is_list) continue;
+    const std::size_t begin = collada.find('>', at);
+    if (begin == std::string_view::npos) return;
+    at = begin + 1;
+    if (collada[begin - 1] == '/') continue;
+    const std::size_t end = std::min(collada.find('<', at), collada.size());
+    check_list(collada.substr(at, end - at));
+    if (!collada.substr(end).starts_with("</"))
+      throw std::invalid_argument("a list of indices holds more than numbers");
+    at = end;
   }
 }
 
@@ -160,7 +175,10 @@ void keep_importers(Assimp::Importer& importer, const std::string& ending) {
 
 // In a process of its own: Assimp's log is one for all.
 io::RawMesh read_scene(const std::filesystem::path& file, const std::string& ending, bool keep_frame) {
-  if (ending == "dae") check_indices(read_file(file));
+  if (ending == "dae") {
+    limit_import(std::filesystem::file_size(file));
+    check_indices(read_file(file));
+  }
   Assimp::Importer importer;
   keep_importers(importer, ending);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, keep_frame);

@@ -78,7 +78,7 @@ class SurfaceFaces {
 
   const VoxelGrid& grid_;
   CellFaces faces_;
-  std::size_t allowed_ = std::size_t{1} << 23U;  // that any map may have: 0.6 GB with what is made of them
+  std::size_t allowed_ = std::size_t{1} << 24U;  // that any map may have: 0.4 GB
   std::size_t count_ = 0, compared_ = 0, expected_ = 0;
 };
 

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
+#include <pthread.h>
 #include <thread>
+#include <unistd.h>
 
 namespace frontlux::python {
 
@@ -15,11 +17,22 @@ namespace py = pybind11;
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
+/// Whether Python ends, or has, and this is not the thread that ends it, the process's first one.
+inline bool python_ends_elsewhere() {
+#if PY_VERSION_HEX >= 0x030D0000
+  const bool ends = Py_IsFinalizing() != 0;
+#else
+  const bool ends = _Py_IsFinalizing() != 0;
+#endif
+  return (ends || Py_IsInitialized() == 0) && ::gettid() != ::getpid();
+}
+
 /// What `call()` returns, which may take Python's lock. A daemon thread that takes it while Python exits is
-/// ended by unwinding its stack: without the lock, through objects of Python's, destructors and TBB. It
-/// rests here instead, until the process is gone.
+/// ended by unwinding its stack: without the lock, through objects of Python's, destructors and TBB; after
+/// that it ends the process. It rests here instead, until the process is gone.
 template <class Call>
 auto rest_if_python_exits(const Call& call) {
+  if (python_ends_elsewhere()) rest_for_ever();
   try {
     return call();
   } catch (const abi::__forced_unwind&) {
@@ -27,41 +40,35 @@ auto rest_if_python_exits(const Call& call) {
   }
 }
 
-/// The threads of this module that compute without Python's lock. What they use, of the libraries as well, is
-/// destroyed when the process exits, so that Python waits for them, and those that begin then rest.
+/// The threads of this module that compute without Python's lock. When the process exits, what they use is
+/// destroyed, that of the libraries as well. So Python waits for them when nobody can take its lock any more.
 class Computing {
  public:
   static void begin() {
-    go_on();
-    if (!exits_ || exiting_ == std::this_thread::get_id()) return;
-    end();
-    rest_for_ever();
+    is_counted_ = true;
+    ++threads_;
   }
-  static void end() { --threads_; }
-  /// After an end() within a call, which may hold locks of ours: it must come to its own end.
-  static void go_on() { ++threads_; }
+  static void end() {
+    --threads_;
+    is_counted_ = false;
+  }
 
   /// Once for a module.
-  static void end_before_python_exits() {
-    py::module_::import("atexit").attr("register")(py::cpp_function(&await));
+  static void end_before_the_process() {
+    Py_AtExit(&wait);
     // A child of fork() has none of its parent's other threads.
-    py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
-                                                           py::cpp_function([] { threads_ = 0; }));
+    ::pthread_atfork(nullptr, nullptr, [] { threads_ = is_counted_ ? 1 : 0; });
   }
 
  private:
-  static void await() {
-    exiting_ = std::this_thread::get_id();
-    exits_ = true;
-    const py::gil_scoped_release others_run;
+  static void wait() {
     const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (threads_ > 0 && std::chrono::steady_clock::now() < latest)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   static inline std::atomic<int> threads_ = 0;
-  static inline std::atomic<bool> exits_ = false;
-  static inline std::thread::id exiting_;
+  static inline thread_local bool is_counted_ = false;
 };
 
 /// Lets Python's other threads run as long as this lasts.
@@ -88,7 +95,7 @@ class PythonRuns {
   }
   ~PythonRuns() {
     lock_.reset();
-    Computing::go_on();
+    Computing::begin();
   }
   PythonRuns(const PythonRuns&) = delete;
   PythonRuns& operator=(const PythonRuns&) = delete;
