@@ -43,7 +43,7 @@ def none_of(bad, runs, what="run", fewest=1):
     if isinstance(fewest, dict):
         there = Counter(r.run[:2] for r in runs)
         few = sorted((there[row], f"{there[row]} of {n} {what}s of {' '.join(row)}") for row, n in fewest.items() if there[row] < n)
-        others = f", and too few of {len(few) - 1} of the {len(fewest) - 1} others" if few[1:] else ""
+        others = f", and too few in {counted(len(few) - 1, 'other row')}" if few[1:] else ""
         return f"open: {few[0][1]}{others}" if few else "holds"
     return "holds" if len(runs) >= fewest else f"open: {len(runs)} of {counted(fewest, what)}"
 
@@ -345,7 +345,7 @@ def teams(results):
 def contacts_line(results, who, methods, fewest=None):
     runs = [r for r in results.all.values() if r.run.method in methods and not r.run.timed and not r.crashed]
     touched = [r for r in runs if r["contacts"]]
-    said = (f"{sum(r['contacts'] for r in runs)} contacts, in {len(touched)} of {len(runs)} runs; "
+    said = (f"{counted(sum(r['contacts'] for r in runs), 'contact')}, in {len(touched)} of {len(runs)} runs; "
             f"{touching(len(touched), len(runs))}") if runs else ""
     return Line(f"{who} without bumpers: no body touches a surface", said,
                 none_of(touched, runs, fewest=fewest or in_each(results, methods)))

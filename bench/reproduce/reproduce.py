@@ -77,7 +77,7 @@ def read_options():
     if options.set == "timed" and options.scheduler:
         parser.error("--timed is for this machine alone: leave out --scheduler")
     options.worlds += [Path(folder) for folder in os.environ.get("FRONTLUX_WORLDS", "").split(":") if folder]
-    options.page_given = options.page is not None
+    options.replace = options.page is not None or options.set == "quick"
     options.page = options.page or (ROOT / "out/reproduce/quick.md" if options.set == "quick" else ROOT / "docs/results.md")
     options.command = options.command or ("frontlux" if options.scheduler else str(ROOT / "build/release/bin/frontlux"))
     return options
@@ -187,7 +187,7 @@ def write_page(experiments, runs, options, program):
     results = Results(experiments, runs, options.runs, options.like, program, published)
     if not results.all:
         raise ValueError(f"there is no result in {options.runs} to write a page from; let runs finish first")
-    if not options.page_given and results.of_others > len(results.all):
+    if not options.replace and results.of_others > len(results.all):
         say(f"{options.page} has {results.of_others} runs of other programs and would have {len(results.all)} of this one: the page "
             f"goes to {OWN_PAGE} (--page replaces)")
         options.page = OWN_PAGE

@@ -3,6 +3,8 @@
 reproduce_test.py FOLDER, that of bench/reproduce; runs are made up in a temporary folder.
 """
 
+import argparse
+import contextlib
 import csv
 import hashlib
 import io
@@ -25,6 +27,7 @@ sys.path[:0] = [str(REPRODUCE), str(REPRODUCE.parent)]
 import claims
 import explore
 import intervals
+import reproduce
 from claims import at_least, at_most, changed_by, control_lines, effect, our_lines, paper_lines, touching
 from experiments import FIRST_SEED, Experiments, Run, merged
 from figures import figures, is_drawn, mean_curve, round_step, value_at
@@ -608,10 +611,10 @@ class Lines(Made):
         self.assertEqual(lines["as printed, maze: 97.2 % are covered at the end; of the observable space"].verdict,
                          "open: 6 of 8 runs")
         self.assertEqual(lines["View quality without bumpers: no body touches a surface"].verdict,
-                         "open: 6 of 7 runs of building render, and too few of 9 of the 9 others")
+                         "open: 6 of 7 runs of building render, and too few in 9 other rows")
         one = self.judged(all_hold, lambda run, how: how if run[:3] == ("maze", "render", 6) else None)
         self.assertEqual(one["View quality without bumpers: no body touches a surface"].verdict,
-                         "open: 0 of 7 runs of building render, and too few of 9 of the 9 others")
+                         "open: 0 of 7 runs of building render, and too few in 9 other rows")
 
     def test_a_world_without_pairs_leaves_the_mean_open(self):
         lines = self.judged(all_hold, lambda run, how: None if run[:2] == ("station", "render") else how)
@@ -796,6 +799,27 @@ class Page(Made):
         self.make(run)
         result = self.of_tables([run], ".").all[run]
         self.assertEqual((result.failure, result["failed_before"]), (None, "exit code 1: x"))
+
+    def test_few_runs_of_another_program_get_a_page_of_their_own(self):
+        runs = [self.make(Run("maze", "tour", seed)) for seed in (6, 7, 8)]
+        file, own = self.folder / "docs/results.md", self.folder / "out/results.md"
+        self.addCleanup(setattr, reproduce, "OWN_PAGE", reproduce.OWN_PAGE)
+        reproduce.OWN_PAGE = own
+
+        def write(program, replace=False):
+            options = argparse.Namespace(page=file, replace=replace, runs=self.folder, like=[])
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                reproduce.write_page(self.experiments, runs, options, program)
+            return said.getvalue()
+
+        self.assertNotIn("other programs", write(PROGRAM))
+        whole = file.read_text()
+        self.make(runs[0], program="another")
+        self.assertIn("has 2 runs of other programs and would have 1 of this one", write("another"))
+        self.assertEqual(file.read_text(), whole)
+        self.assertIn("from 1 of 3 runs", own.read_text())
+        write("another", replace=True)
+        self.assertIn("from 1 of 3 runs, seeds 6 to 6, by version 9.9, program another", file.read_text())
 
     def test_tables_that_are_not_ours_are_refused(self):
         rows, curves = self.tables(self.results([self.make(Run("maze", "tour", 6))]))

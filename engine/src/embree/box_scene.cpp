@@ -54,7 +54,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   bounds.upper_x = box.center[0] + box.half[0] + pad;
   bounds.upper_y = box.center[1] + box.half[1] + pad;
   bounds.upper_z = box.center[2] + box.half[2] + pad;
-  hand_over(&view);
+  hand_over(&view.cell);  // another address: callbacks are in no order among themselves
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* args) {
@@ -234,7 +234,7 @@ void BoxScene::update(const Blockers& blockers) {
   embree_->mean_edge = static_cast<float>(std::sqrt(face_area / std::max(count, 1.0)));
   rtcCommitScene(embree_->scene);
   for (const auto& view : embree_->views)
-    if (view) take_over(view.get());
+    if (view) take_over(&view->cell);
   const RTCError error = rtcGetDeviceError(embree_->device->get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != RTC_ERROR_NONE)

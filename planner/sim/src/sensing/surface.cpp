@@ -112,7 +112,7 @@ void bounds_callback(const RTCBoundsFunctionArguments* args) {
   bounds.upper_x = high.x();
   bounds.upper_y = high.y();
   bounds.upper_z = high.z();
-  detail::hand_over(&geometry);
+  detail::hand_over(&geometry.pad);  // another address: callbacks are in no order among themselves
 }
 
 // Embree may hand over a part of a packet.
@@ -185,7 +185,7 @@ struct Surface::Scene {
     rtcReleaseGeometry(geometry);
     detail::hand_over(&mesh);
     rtcCommitScene(scene);
-    detail::take_over(&mesh);
+    detail::take_over(&mesh.pad);
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     if (error != RTC_ERROR_NONE)
