@@ -2,12 +2,9 @@
 
 #include <pybind11/pybind11.h>
 
-#include <atomic>
 #include <chrono>
 #include <optional>
-#include <pthread.h>
 #include <thread>
-#include <unistd.h>
 
 namespace frontlux::python {
 
@@ -18,14 +15,7 @@ namespace py = pybind11;
 }
 
 /// Whether Python ends, or has, and this is not the thread that ends it, the process's first one.
-inline bool python_ends_elsewhere() {
-#if PY_VERSION_HEX >= 0x030D0000
-  const bool ends = Py_IsFinalizing() != 0;
-#else
-  const bool ends = _Py_IsFinalizing() != 0;
-#endif
-  return (ends || Py_IsInitialized() == 0) && ::gettid() != ::getpid();
-}
+bool python_ends_elsewhere();
 
 /// What `call()` returns, which may take Python's lock. A daemon thread that takes it while Python exits is
 /// ended by unwinding its stack: without the lock, through objects of Python's, destructors and TBB; after
@@ -44,31 +34,10 @@ auto rest_if_python_exits(const Call& call) {
 /// destroyed, that of the libraries as well. So Python waits for them when nobody can take its lock any more.
 class Computing {
  public:
-  static void begin() {
-    is_counted_ = true;
-    ++threads_;
-  }
-  static void end() {
-    --threads_;
-    is_counted_ = false;
-  }
-
+  static void begin();
+  static void end();
   /// Once for a module.
-  static void end_before_the_process() {
-    Py_AtExit(&wait);
-    // A child of fork() has none of its parent's other threads.
-    ::pthread_atfork(nullptr, nullptr, [] { threads_ = is_counted_ ? 1 : 0; });
-  }
-
- private:
-  static void wait() {
-    const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (threads_ > 0 && std::chrono::steady_clock::now() < latest)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-
-  static inline std::atomic<int> threads_ = 0;
-  static inline thread_local bool is_counted_ = false;
+  static void end_before_the_process();
 };
 
 /// Lets Python's other threads run as long as this lasts.
