@@ -6,7 +6,7 @@ import paper
 from claims import NOT_MEASURED, at_the_end, end_of, seconds_mapped, to_a_level
 from intervals import FEWEST, difference, mean, median_difference
 from markdown import NOTHING, counted, interval, percent, plain, table, value
-from rows import GAINS, LEVELS, PLANNING
+from rows import GAINS, LEVELS, MAP, PLANNING, UNSEEN
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):
@@ -48,7 +48,7 @@ def why_unseen(runs):
     """Where only smaller robots would see it, nobody would, or ours would: estimates, in percent of the observable
     space."""
     known = [r for r in runs if r["hidden"] is not None]
-    return " / ".join(f"{100 * fmean(r[p] for r in known):.1f}" for p in ("narrow", "hidden", "in_view")) if known else NOTHING
+    return " / ".join(f"{100 * fmean(r[p] for r in known):.1f}" for p in UNSEEN) if known else NOTHING
 
 
 def level(runs, measure, mean_of):
@@ -135,15 +135,14 @@ def variants_table(results, kind, base):
 
 def maps_table(results, kind, base):
     """How right maps are by the true world: with errors of reality less without, by pairs of the same world and seed."""
-    facts = ("false_free", "false_occupied", "surface_found")
     methods = results.experiments.methods_of(kind, base)
     tasks = [t for t in results.tasks() if any(t in compared_tasks(results, m, base) for m in methods)]
-    runs = [r for task in tasks for r in results.of(task, base) if r[facts[0]] is not None]
+    runs = [r for task in tasks for r in results.of(task, base) if r[MAP[0]] is not None]
     rows = [[results.experiments.title(base), str(len(runs)),
-             *(parts(runs, lambda r, f=fact: r[f]) for fact in facts)]] if runs else []
+             *(parts(runs, lambda r, f=fact: r[f]) for fact in MAP)]] if runs else []
     for method in methods:
         groups = [results.pairs(task, method, base) for task in compared_tasks(results, method, base)]
-        found = [difference(groups, lambda r, f=fact: r[f]) for fact in facts]
+        found = [difference(groups, lambda r, f=fact: r[f]) for fact in MAP]
         if any(found):
             rows.append([results.experiments.title(method), str(max(f.count for f in found if f)),
                          *(interval(f, 2, 100, sign=True) for f in found)])
