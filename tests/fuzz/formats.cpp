@@ -1,5 +1,6 @@
 #include "fuzz/formats.hpp"
 
+#include "parts.hpp"
 #include "planner/recording/random_recording.hpp"
 #include "recording/record_bytes.hpp"
 #include "recording/recording_format.hpp"
@@ -229,7 +230,8 @@ std::vector<std::string> run_seeds() {
   })};
 }
 
-// A record without its checksums, which no mutation gets past: its kind in the first byte.
+// A record without its checksums, which no mutation gets past, behind a byte that tells its kind: a head, a
+// step of a format, or an end.
 bool read_record(const std::string& bytes) {
   if (bytes.empty()) return false;
   const std::string_view record = std::string_view(bytes).substr(1);
@@ -238,8 +240,10 @@ bool read_record(const std::string& bytes) {
       case 'h':
         static_cast<void>(planner::detail::head_from(record));
         break;
-      case 's':
-        static_cast<void>(planner::detail::step_from(record, small_head(), 0));
+      case '3':
+      case '4':
+      case '5':
+        static_cast<void>(planner::detail::step_from(record, small_head(), 0, bytes[0] - '0'));
         break;
       default:
         static_cast<void>(planner::detail::end_from(record));
@@ -253,9 +257,35 @@ bool read_record(const std::string& bytes) {
 std::vector<std::string> record_seeds() {
   test::Random random(3);
   const RecordingHead head = small_head();
-  return {"h" + planner::detail::head_bytes(head),
-          "s" + planner::detail::step_bytes(test::random_step(random, head, 0, 5), head, 0),
-          "e" + planner::detail::end_bytes("stopped")};
+  std::vector<std::string> seeds = {"h" + planner::detail::head_bytes(head),
+                                    "e" + planner::detail::end_bytes("stopped")};
+  for (int format = planner::detail::kOldestRecordingFormat; format <= planner::kRecordingFormat; ++format) {
+    const planner::RecordedStep step = test::random_step(random, head, 0, format);
+    seeds.push_back(std::to_string(format) + planner::detail::step_bytes(step, head, 0, format));
+  }
+  return seeds;
+}
+
+// ---- what lies beside a recording
+
+planner::Recording small_recording() {
+  test::Random random(4);
+  planner::Recording recording;
+  recording.head = small_head();
+  recording.steps = {test::random_step(random, recording.head, 0, 5)};
+  recording.end = "stopped";
+  return recording;
+}
+
+bool read_run_json(const std::string& bytes) {
+  static const planner::Recording recording = small_recording();
+  static_cast<void>(report::detail::run_facts({"run", &recording, bytes}, "0"));
+  return report::misfit(bytes, recording).empty();
+}
+
+std::vector<std::string> run_json_seeds() {
+  return {R"({"world": "station \"\u00e9\"", "robots": ["ugv0", "uav"], "end": "stopped", "steps": 0,
+    "clearance_min_m": 0.1, "separation_min_m": null, "by_robot": {"ugv0": {"idle_s": 1.5, "held_back": 2}}})"};
 }
 
 }  // namespace
@@ -271,6 +301,7 @@ const std::vector<Format>& formats() {
       {"task", read_task, task_seeds},
       {"recording", read_run, run_seeds},
       {"record", read_record, record_seeds},
+      {"run_json", read_run_json, run_json_seeds},
       {"obj", read_mesh<kObj>, obj_seeds, false},
       {"stl", read_mesh<kStl>, stl_seeds, false},
       {"dae", read_mesh<kDae>, dae_seeds, false},

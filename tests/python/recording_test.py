@@ -6,17 +6,66 @@ import pathlib
 import struct
 import subprocess
 import tempfile
+import tracemalloc
 import unittest
 import zlib
+from unittest import mock
 
 import numpy as np
 
 import frontlux
+from frontlux import _recording
 
 
 def explore(folder, *options):
     subprocess.run([os.environ["FRONTLUX_COMMAND"], "explore", "room", "--seed", "1", *options, "-o", folder], check=True,
                    stdout=subprocess.DEVNULL)
+
+
+def whole(number):
+    digits = bytearray()
+    while number > 0x7F:
+        digits.append(number & 0x7F | 0x80)
+        number >>= 7
+    return bytes(digits + bytes([number]))
+
+
+def record(tag, plain):
+    payload = zlib.compress(plain)
+    sizes = struct.pack("<4s2I", tag, len(payload), len(plain))
+    return sizes + struct.pack("<I", zlib.crc32(sizes)) + payload + struct.pack("<I", zlib.crc32(payload))
+
+
+class WholeNumbers(unittest.TestCase):
+    def test_those_written_are_read_in_parts_of_any_size(self):
+        random = np.random.default_rng(1)
+        numbers = [0, 0x7F, 0x80, 2**63 - 1] + [int(random.integers(2**63)) >> int(random.integers(63)) for _ in range(200)]
+        data = b"".join(map(whole, numbers))
+        for part in (1, 2, 7, 203, 204, 1000):
+            with mock.patch.object(_recording, "_PART", part):
+                read = _recording._Bytes(data + b"\5")
+                self.assertEqual(read.counts(len(numbers)).tolist(), numbers)
+                self.assertEqual(read.count(), 5)
+                self.assertEqual(read.counts(0).tolist(), [])
+                with self.assertRaisesRegex(ValueError, "ends too early"):
+                    _recording._Bytes(data[:-1] + b"\x80").counts(len(numbers))
+
+    def test_too_large_ones_are_refused(self):
+        for data, what in ((whole(2**63), "too large"), (whole(2**64 - 1), "too large"), (b"\x80" * 11, "more than 64 bits"),
+                           (b"\x80" * 9, "ends too early"), (b"\xff" * 10 + b"\1", "more than 64 bits")):
+            with self.subTest(data=data), self.assertRaisesRegex(ValueError, what):
+                _recording._Bytes(data).counts(1)
+
+    def test_keys_are_sums_of_differences_across_parts(self):
+        keys = np.random.default_rng(2).integers(0x10000, size=(50, 3))
+        steps = np.diff(keys, axis=0, prepend=0).T
+        data = b"".join(whole(2 * int(step) if step >= 0 else -2 * int(step) - 1) for step in steps.ravel())
+        for part in (1, 7, 50, 1000):
+            with mock.patch.object(_recording, "_PART", part):
+                np.testing.assert_array_equal(_recording._Bytes(data).keys(50), keys)
+        for outside in (b"\1\0\0", whole(2 * 0x10000) + b"\0\0"):
+            with self.assertRaisesRegex(ValueError, "outside the key range"):
+                _recording._Bytes(outside).keys(1)
 
 
 class Recordings(unittest.TestCase):
@@ -124,12 +173,28 @@ class Recordings(unittest.TestCase):
         file = pathlib.Path(self.folder.name) / "made.frontlux"
         for text, what in ((b"[1]", "options that are no object"), (b"{", "made.frontlux"), (b"\xff", "made.frontlux")):
             other = head.replace(options, text.ljust(len(options)))
-            payload = zlib.compress(other)
-            sizes = struct.pack("<4s2I", tag, len(payload), len(other))
-            record = sizes + struct.pack("<I", zlib.crc32(sizes)) + payload + struct.pack("<I", zlib.crc32(payload))
-            file.write_bytes(whole[:begin] + record)
+            file.write_bytes(whole[:begin] + record(tag, other))
             with self.assertRaisesRegex(RuntimeError, what):
                 frontlux.read_recording(file)
+
+    def test_few_bytes_that_stand_for_many_take_little_more_than_what_is_read(self):
+        whole_run = (self.run_folder / "run.frontlux").read_bytes()
+        first = whole_run.index(b"\n") + 1
+        head = whole_run[:first + 20 + struct.unpack("<I", whole_run[first + 4:first + 8])[0]]
+        many = 1_000_000
+        robot = bytes(5 + 8 + 3 + 4 + 32 + 4) + b"\0%b" + bytes(10)
+        changes = whole(many) + bytes(3 * many) + b"\1" * many
+        step = bytes(6 + 8 + 48) + b"\2" + bytes(4) + b"\2" + robot % changes + robot % b"\0"
+        file = pathlib.Path(self.folder.name) / "many.frontlux"
+        file.write_bytes(head + record(b"step", step))
+        self.assertLess(file.stat().st_size - len(head), len(step) / 500)
+        tracemalloc.start()
+        try:
+            with self.assertRaisesRegex(RuntimeError, "outside the bounds"):
+                frontlux.read_recording(file)
+            self.assertLess(tracemalloc.get_traced_memory()[1], 6 * len(step))
+        finally:
+            tracemalloc.stop()
 
     def test_a_grid_takes_no_memory_for_what_lies_between_its_voxels(self):
         changes = {"step": np.int64([0, 0, 0, 0]), "keys": np.uint16([[0, 0, 0], [65535] * 3, [7, 9, 40000], [7, 9, 40000]]),

@@ -13,6 +13,9 @@ from ._engine import VoxelGrid
 _TITLE = b"frontlux recording, format "
 _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no assigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
+_MOST_ROBOTS = 1000
+_PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
+_POSE = struct.Struct("<4d")
 _CUBE = 16  # [voxels]
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "contacts")
@@ -96,29 +99,34 @@ class _Bytes:
     """A record: whole numbers of 7 bits a byte, lowest first; doubles; texts."""
 
     def __init__(self, data):
-        self.bytes, self.at = np.frombuffer(data, np.uint8), 0
-        self.ends = np.flatnonzero(self.bytes < 0x80)  # the last bytes of whole numbers, among others
+        self.data, self.bytes, self.at = data, np.frombuffer(data, np.uint8), 0
 
     def take(self, size):
-        if size > len(self.bytes) - self.at:
+        if size > len(self.data) - self.at:
             raise ValueError("a record ends too early")
         self.at += size
         return self.bytes[self.at - size:self.at]
 
-    def counts(self, how_many):
-        """(how_many,) int64"""
-        if how_many == 0:
-            return np.empty(0, np.int64)
-        first = np.searchsorted(self.ends, self.at)
-        ends = self.ends[first:first + how_many]
-        if len(ends) < how_many:
-            raise ValueError("a record ends too early")
-        begins = np.concatenate(([self.at], ends[:-1] + 1))
-        if (ends - begins).max() > 9:
+    def counts(self, how_many, dtype=np.int64, make=lambda part: part):
+        """(how_many,) of a type, of what is made of each part"""
+        numbers = np.empty(how_many, dtype)
+        for begin in range(0, how_many, _PART):
+            part = numbers[begin:begin + _PART]
+            part[:] = make(self._part(len(part)))
+        return numbers
+
+    def _part(self, size):
+        """(size,) int64"""
+        begin = self.bytes[self.at:self.at + 10 * size]
+        ends = np.flatnonzero(begin < 0x80)[:size]
+        begins = np.concatenate(([0], ends + 1))[:-1]
+        if (ends - begins).max(initial=0) > 9 or len(ends) < size <= len(begin) // 10:
             raise ValueError("a whole number has more than 64 bits")
-        digits = self.take(int(ends[-1]) + 1 - self.at).astype(np.int64) & 0x7F
-        shifts = 7 * (np.arange(len(digits)) - np.repeat(begins - begins[0], ends - begins + 1))
-        numbers = np.add.reduceat(digits << shifts, begins - begins[0])
+        if len(ends) < size:
+            raise ValueError("a record ends too early")
+        digits = self.take(int(ends[-1]) + 1).astype(np.int64) & 0x7F
+        shifts = 7 * (np.arange(len(digits)) - np.repeat(begins, ends - begins + 1))
+        numbers = np.add.reduceat(digits << shifts, begins)
         if numbers.min() < 0 or (digits[shifts == 63] > 0).any():
             raise ValueError("a whole number is too large")
         return numbers
@@ -126,16 +134,17 @@ class _Bytes:
     def count(self):
         value = shift = 0
         while shift < 64:
-            byte = int(self.take(1)[0])
+            byte = self.data[self.at]
+            self.at += 1
             value, shift = value | (byte & 0x7F) << shift, shift + 7
             if byte < 0x80:
                 return value
         raise ValueError("a whole number has more than 64 bits")
 
-    def length(self):
-        """Of a list, each of whose elements has a byte at least."""
+    def length(self, element=1):
+        """Of a list, each of whose elements has so many bytes at least."""
         size = self.count()
-        if size > len(self.bytes) - self.at:
+        if size > (len(self.data) - self.at) // element:
             raise ValueError("a list is longer than what is there")
         return size
 
@@ -147,11 +156,38 @@ class _Bytes:
 
     def keys(self, how_many):
         """(how_many, 3) uint16, from differences: all x, then y, then z"""
-        zigzag = self.counts(3 * how_many).reshape(3, how_many)
-        keys = np.cumsum(np.where(zigzag & 1, -(zigzag >> 1) - 1, zigzag >> 1), axis=1).T
-        if keys.size and (keys.min() < 0 or keys.max() > 0xFFFF):
-            raise ValueError("a voxel lies outside the key range")
-        return keys.astype(np.uint16)
+        last = 0
+
+        def places(zigzag):
+            nonlocal last
+            keys = last + np.cumsum((zigzag >> 1) ^ -(zigzag & 1))
+            if keys.min() < 0 or keys.max() > 0xFFFF:
+                raise ValueError("a voxel lies outside the key range")
+            last = keys[-1]
+            return keys
+
+        keys = np.empty((how_many, 3), np.uint16)
+        for axis in keys.T:
+            last = 0
+            axis[:] = self.counts(how_many, np.uint16, places)
+        return keys
+
+    def states(self, how_many):
+        """(how_many,) uint8, each of what a voxel was and became"""
+        def known(states):
+            if states.max() > 8:
+                raise ValueError("a voxel changes to no state")
+            return states
+
+        return self.counts(how_many, np.uint8, known)
+
+    def stops(self, how_many):
+        """Of a tour: (how_many, 4) float64, poses; (how_many, 2) int64, clusters and frontiers in view."""
+        poses, seen = np.empty((how_many, 4)), np.empty((how_many, 2), np.int64)
+        for i in range(how_many):
+            poses[i] = _POSE.unpack(self.take(_POSE.size))
+            seen[i] = self.count(), self.count()
+        return poses, seen
 
 
 def _read_robot(record):
@@ -172,7 +208,10 @@ def _read_head(record):
     head["options"] = json.loads(record.text())
     if not isinstance(head["options"], dict):
         raise ValueError("has options that are no object")
-    head["robots"] = [_read_robot(record) for _ in range(record.length())]
+    team = record.length()
+    if team > _MOST_ROBOTS:
+        raise ValueError(f"has {team} robots, but at most {_MOST_ROBOTS} are read")
+    head["robots"] = [_read_robot(record) for _ in range(team)]
     starts = []
     for _ in range(record.length()):
         starts.append(record.doubles(4))
@@ -203,19 +242,16 @@ def _read_step(record, number, head, run, version):
         record.counts(3), record.text(), record.doubles(4), record.counts(4)  # the goal
         poses = record.doubles(record.length(), 4)[:of_robot["travelled"]]
         changed = record.length()
-        keys, states = record.keys(changed), record.counts(changed)
+        keys, states = record.keys(changed), record.states(changed)
         if changed and ((keys < head["bounds"][0]) | (keys > head["bounds"][1])).any():
             raise ValueError(f"step {number} changes a voxel outside the bounds")
-        if changed and states.max() > 8:
-            raise ValueError(f"step {number} changes a voxel to no state")
         run["poses"].append((number, robot, poses))
         run["changes"].append((number, robot, keys, states // 3, states % 3))
         record.keys(record.length()), record.keys(record.length())  # still unknown; blocked
         cells = record.length()
         record.keys(cells), record.doubles(5, cells), record.counts(cells)  # the image
-        stops = [(record.doubles(4), record.counts(2)) for _ in range(record.length())] if version > 3 else []
-        run["tours"].append((number, robot, np.array([pose for pose, _ in stops]).reshape(-1, 4),
-                             *np.array([seen for _, seen in stops], np.int64).reshape(-1, 2).T))
+        poses, seen = record.stops(record.length(_POSE.size) if version > 3 else 0)
+        run["tours"].append((number, robot, poses, *seen.T))
         if version > 4:
             run["trajectories"].append((number, robot, record.doubles(record.length(), 4)))
             run["reassigned"].append((number, robot, record.keys(record.length())))
@@ -295,6 +331,7 @@ def read_recording(file):
         except (ValueError, IndexError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
             raise RuntimeError(f"{fspath(file)}: {str(error) or type(error).__name__}") from error
     robots = len(head["robots"])
+    del part, record
     names = {"time": ((), np.float64), "seconds": ((6,), np.float64), "length": ((robots,), np.float64),
              **{name: ((), np.int64) for name in _STEP_COUNTS},
              **{name: ((robots,), np.int64) for name in ("known", "known_in_bounds", *_ROBOT_COUNTS)}}

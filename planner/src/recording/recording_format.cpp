@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kKeyBytes = 3;  // at least
 constexpr std::size_t kMostRecordedRobots = 1000;
+constexpr std::size_t kMostOptionBytes = 1 << 24;
 constexpr int kFormatWithTours = 4, kFormatWithPlans = 5;
 
 void code_finite(RecordBytes& bytes, double& value, const char* what) {
@@ -140,6 +141,7 @@ void code_head(RecordBytes& bytes, RecordingHead& head) {
   bytes.require(head.observable == 0 || head.bounding == 0 || head.observable <= head.bounding,
                 "more voxels can be known than the bounds hold");
   bytes.text(head.options);
+  bytes.require(head.options.size() <= kMostOptionBytes, "the options take more than 16 MiB");
   bytes.length(head.robots, 0, kMostRecordedRobots, "there are more than 1,000 robots");
   for (std::size_t i = 0; i < head.robots.size(); ++i) {
     bytes.part("robot " + std::to_string(i));

@@ -113,6 +113,11 @@ TEST_F(RecordingTest, ImpossibleValuesAreNeitherWrittenNorRead) {
                  [&](RecordingHead& head) { head.robots[0].robot.limits.yaw_rate = limit; });
     refuses_head("robot 1: scans have no", [&](RecordingHead& head) { head.robots[1].rate = limit; });
   }
+  refuses_head("more than 16 MiB", [&](RecordingHead& head) { head.options.assign((1U << 24U) + 1, ' '); });
+  refuses_head("more than 1,000 robots", [&](RecordingHead& head) {
+    head.robots.resize(1001, head.robots[0]);
+    head.starts.resize(1001);
+  });
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other")) << "nothing is created for a wrong head";
 }
 
