@@ -63,11 +63,6 @@ class BrickTable {
 
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
-  void clear() {
-    entries_.clear();
-    slots_.assign(slots_.size(), 0);
-  }
-
  private:
   [[nodiscard]] std::size_t find_slot(std::uint64_t number) const {
     const std::size_t mask = slots_.size() - 1;

@@ -19,8 +19,8 @@ enum class Adjacency : std::uint8_t {
 
 /// The frontiers of a map: the unknown voxels inside the bounds that have a free neighbour.
 ///
-/// An update takes time in proportion to the bricks around the changed voxels; the result is the same as that
-/// of a new set. Thread safety: as a standard container.
+/// An update looks at the bricks around the changed voxels, and copies the sorted list if that has changed;
+/// the result is the same as that of a new set. Thread safety: as a standard container.
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours

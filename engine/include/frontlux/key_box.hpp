@@ -17,8 +17,9 @@ namespace frontlux {
 
 /// The key at an offset [voxels]; none outside the key range.
 [[nodiscard]] constexpr std::optional<VoxelKey> offset_key(const VoxelKey& key, int dx, int dy, int dz) {
-  const int x = key.x + dx, y = key.y + dy, z = key.z + dz;
-  if ((x | y | z) & ~0xFFFF) return std::nullopt;
+  const auto x = key.x + static_cast<std::uint32_t>(dx), y = key.y + static_cast<std::uint32_t>(dy),
+             z = key.z + static_cast<std::uint32_t>(dz);
+  if ((x | y | z) > 0xFFFF) return std::nullopt;
   return make_key(x, y, z);
 }
 

@@ -33,7 +33,9 @@ class FRONTLUX_EXPORT LiveMap {
   LiveMap(LiveMap&&) noexcept;
   LiveMap& operator=(LiveMap&&) noexcept;
 
-  /// Takes in what changed in the tree since the last call, in time that grows with the change. Returns what
+  /// Takes in what changed in the tree since the last call, in time that grows with the change, but for a
+  /// table of what rays that pass unknown voxels meet, if any did: that follows known bounds that grow as a
+  /// whole. Returns what
   /// is new; its grid and keys are valid until the next call. If it throws, the next call that returns has
   /// what is new, unless that was too much.
   /// @throws std::length_error as `changed_keys` does; grid and caster are up to date all the same

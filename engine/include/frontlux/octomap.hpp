@@ -103,8 +103,8 @@ class FRONTLUX_EXPORT OctreeMirror {
 /// OctoMap's own castRay, unchanged, behind the common interface: the baseline. `visible` calls castRay for
 /// the ray between the two points; its answer depends on rounding, and a ray that passes beside the voxel of
 /// its end counts, so that in rare cases it differs from the other casters' (docs/ray_contract.md, 7).
-/// @param tree  queried by reference: must outlive the caster and not change during a query. `update` does
-/// nothing.
+/// @param tree  queried by reference: must outlive the caster and not change during a query; queries throw
+/// std::invalid_argument once its resolution is another one. `update` does nothing.
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(
     const octomap::ColorOcTree& tree);

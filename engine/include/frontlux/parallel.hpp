@@ -33,7 +33,7 @@ void for_each_range(std::size_t size, const Work& work) {
 
 /// Calls `work(begin, end)` for the chunks of [0, size): each has `chunk` elements, the last one may have
 /// fewer. Chunks run on the threads of TBB's current task arena. A single chunk runs on the calling thread,
-/// so that a single query costs nothing but itself.
+/// so that a single query costs nothing but itself. @pre chunk > 0
 template <class Work>
 void for_each_chunk(std::size_t size, std::size_t chunk, const Work& work) {
   if (size <= chunk) {

@@ -112,9 +112,10 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 
 /// The fast caster. It keeps two things beside the grid: a table of open voxels, through which packets of
 /// rays walk, and Embree's BVH of boxes. Rays that nothing stops within 400 voxels, segments between voxels
-/// further apart than 1000, segments between points, and whatever lies outside the table go to the BVH,
-/// which is made by the first query that needs it. Where rounding could change an answer, castRay's own
-/// arithmetic decides. In maps too wide for one table, rays in sectors where few rays start walk the grid.
+/// further apart than 1000, segments between points if there are many, and whatever lies outside the table
+/// go to the BVH, which is made by the first query that needs it. Where rounding could change an answer,
+/// castRay's own arithmetic decides. The grid is walked by segments between points as long as few are asked
+/// for between two updates, and by rays in sectors where few start of a map too wide for one table.
 /// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
 ///                       building: `make_grid_ray_caster(grid)`
 /// @throws std::runtime_error (by the first query that needs the BVH) if Embree cannot make its device

@@ -34,7 +34,8 @@ class SplitMix64 {
 
   /// Uniform among low, low + 1, ..., high. @pre low <= high
   constexpr int whole(int low, int high) {
-    return low + static_cast<int>(bits() % (static_cast<std::uint64_t>(high - low) + 1));
+    const auto numbers = static_cast<std::uint64_t>(std::int64_t{high} - low) + 1;
+    return static_cast<int>(low + static_cast<std::int64_t>(bits() % numbers));
   }
 
   /// True once in `n` times on average.

@@ -122,8 +122,8 @@ class FRONTLUX_EXPORT ViewQualityImage {
                    const ViewQualityOptions& options);
 
   /// Renders every viewpoint.
-  /// @param caster      of the map. Occupied and unknown voxels block, except the target's and the
-  /// viewpoint's
+  /// @param caster      of the map, not updated meanwhile. Occupied and unknown voxels block, except the
+  /// target's and the viewpoint's
   /// @param viewpoints  sensor positions, in any order
   /// @param targets     voxels to be seen, in any order; repeated ones count once
   /// @throws std::invalid_argument if the caster's map has another resolution, as `update` does
@@ -132,7 +132,7 @@ class FRONTLUX_EXPORT ViewQualityImage {
 
   /// Renders only the viewpoints that are new, and those that a changed voxel or a new or former target may
   /// concern. The image is afterwards the same as after `render`.
-  /// @param caster  of the map as it is now
+  /// @param caster  of the map as it is now, not updated meanwhile
   /// @param change  since the last call
   /// @return number of viewpoints that were rendered
   std::size_t update(const RayCaster& caster, std::span<const VoxelKey> viewpoints,

@@ -11,7 +11,7 @@ import numpy as np
 from ._engine import VoxelGrid
 
 _TITLE = b"frontlux recording, format "
-_FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no assigned frontiers
+_FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no reassigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
 _MOST_ROBOTS = 1000
 _PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
@@ -335,7 +335,7 @@ def read_recording(file):
     names = {"time": ((), np.float64), "seconds": ((6,), np.float64), "length": ((robots,), np.float64),
              **{name: ((), np.int64) for name in _STEP_COUNTS},
              **{name: ((robots,), np.int64) for name in ("known", "known_in_bounds", *_ROBOT_COUNTS)}}
-    steps = {name: np.array([step[name] for step in run["steps"]], dtype).reshape(-1, *shape)
+    steps = {name: np.array([step[name] for step in run["steps"]], dtype).reshape(len(run["steps"]), *shape)
              for name, (shape, dtype) in names.items()}
     poses = dict(zip(("step", "robot", "pose"), _columns(run["poses"], ((4,), np.float64))))
     changes = dict(zip(("step", "robot", "keys", "before", "after"),

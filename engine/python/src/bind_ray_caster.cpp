@@ -295,7 +295,11 @@ Arguments as those of `cast`. Returns a dict of `unknown`, `free` and `occupied`
           },
           "A snapshot of the map from which it answers.")
       .def_property_readonly(
-          "memory_bytes", [](const Self& self) { return self->answers->memory_bytes(); },
+          "memory_bytes",
+          [](const Self& self) {
+            const OthersRun others_run;
+            return self->answers->memory_bytes();
+          },
           "Bytes that it holds beside the grid's own.");
 }
 

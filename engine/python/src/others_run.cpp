@@ -7,7 +7,8 @@
 namespace frontlux::python {
 namespace {
 
-std::atomic<int> threads = 0;  // that compute
+std::atomic<int> threads = 0;   // that compute
+std::atomic<pid_t> ending = 0;  // the thread that ends Python, before it does
 thread_local bool is_counted = false;
 
 void wait() {
@@ -24,7 +25,7 @@ bool python_ends_elsewhere() {
 #else
   const bool ends = _Py_IsFinalizing() != 0;
 #endif
-  return (ends || Py_IsInitialized() == 0) && ::gettid() != ::getpid();
+  return (ends || Py_IsInitialized() == 0) && ::gettid() != ending;
 }
 
 void Computing::begin() {
@@ -38,6 +39,8 @@ void Computing::end() {
 }
 
 void Computing::end_before_the_process() {
+  // A program that embeds Python may end it in any of its threads.
+  py::module_::import("atexit").attr("register")(py::cpp_function([] { ending = ::gettid(); }));
   Py_AtExit(&wait);
   // A child of fork() has none of its parent's other threads.
   ::pthread_atfork(nullptr, nullptr, [] { threads = is_counted ? 1 : 0; });

@@ -28,17 +28,27 @@ using detail::MapTables;
 
 /// The blockers of a map in Embree's scenes, made when they are first needed.
 class BoxesOnDemand {
+  // To follow a scan with the boxes of a map of 0.1 to 0.3 m takes as long as to walk so many segments or
+  // more.
+  static constexpr std::uint64_t kWorthBoxes = 1U << 14U;
+
  public:
   explicit BoxesOnDemand(const VoxelGrid& grid) : grid_(grid) {}
-  BoxesOnDemand(const VoxelGrid& grid, const BoxesOnDemand& before) : grid_(grid), before_(before.latest()) {}
+  BoxesOnDemand(const VoxelGrid& grid, const BoxesOnDemand& before) : grid_(grid), latest_(before.latest()) {}
 
   [[nodiscard]] const detail::BoxSnapshot& get() const {
     if (made_.load(std::memory_order_acquire) == nullptr) {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(making_);
       // Isolated: a thread that waits here for its loops must not take up a query that waits for this lock.
-      if (!boxes_) run_isolated([this] { make(); });
+      if (made_.load(std::memory_order_relaxed) == nullptr) run_isolated([this] { make(); });
     }
     return *made_.load(std::memory_order_acquire);
+  }
+  /// Whether boxes are there, or so much has been asked of the map, with these queries, that they soon pay
+  /// off.
+  [[nodiscard]] bool are_worth_it(std::size_t queries) const {
+    return made_.load(std::memory_order_acquire) != nullptr ||
+           asked_.fetch_add(queries, std::memory_order_relaxed) + queries >= kWorthBoxes;
   }
   /// Of those that are kept, be they of an earlier moment.
   [[nodiscard]] std::size_t memory_bytes() const {
@@ -48,20 +58,24 @@ class BoxesOnDemand {
 
  private:
   void make() const {
-    boxes_ = before_ ? std::make_shared<const detail::BoxSnapshot>(grid_, *before_)
-                     : std::make_shared<const detail::BoxSnapshot>(grid_);
-    before_.reset();
-    made_.store(boxes_.get(), std::memory_order_release);
+    const auto before = latest();
+    auto boxes = before ? std::make_shared<const detail::BoxSnapshot>(grid_, *before)
+                        : std::make_shared<const detail::BoxSnapshot>(grid_);
+    made_.store(boxes.get(), std::memory_order_release);
+    const std::lock_guard lock(keeping_);
+    latest_ = std::move(boxes);
   }
+  // Waits for none that are being made.
   [[nodiscard]] std::shared_ptr<const detail::BoxSnapshot> latest() const {
-    const std::lock_guard lock(mutex_);
-    return boxes_ ? boxes_ : before_;
+    const std::lock_guard lock(keeping_);
+    return latest_;
   }
 
   VoxelGrid grid_;
-  mutable std::mutex mutex_;
-  mutable std::shared_ptr<const detail::BoxSnapshot> before_, boxes_;
+  mutable std::mutex making_, keeping_;
+  mutable std::shared_ptr<const detail::BoxSnapshot> latest_;  // of this moment or an earlier one
   mutable std::atomic<const detail::BoxSnapshot*> made_{nullptr};
+  mutable std::atomic<std::uint64_t> asked_{0};
 };
 
 /// A map as it was at one moment, with its open voxels in tables and its blockers in scenes.
@@ -206,7 +220,8 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   static Hit walk(const VoxelGrid& grid, const Ray& ray, UnknownPolicy unknown) {
     return detail::walk_ray(grid, ray, unknown);
   }
-  static std::uint8_t walk(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
+  template <class Segment>
+  static std::uint8_t walk(const VoxelGrid& grid, const Segment& segment, UnknownPolicy unknown) {
     return detail::walk_visible(grid, segment, unknown) ? 1 : 0;
   }
 
@@ -216,6 +231,12 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
     const auto now = snapshot();
+    if (!now->boxes().are_worth_it(segments.size())) {
+      for_each_chunk(segments.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) visible[i] = walk(now->grid(), segments[i], unknown);
+      });
+      return;
+    }
     const detail::SceneQuery scene(now->boxes().get(), unknown);
     for_each_chunk(segments.size(), kBatch, [&](std::size_t begin, std::size_t end) {
       scene.visible(segments.subspan(begin, end - begin), visible.subspan(begin, end - begin));

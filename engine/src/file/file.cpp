@@ -185,6 +185,7 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   errno = 0;
   UnfinishedFile part(file);
   std::ofstream stream;
+  stream.imbue(std::locale::classic());  // the same bytes, whatever the process has set
   if (part.exists()) stream.open(part.path(), std::ios::binary | std::ios::trunc);
   if (!stream.is_open())
     cannot(std::generic_category().message(errno), "check that its folder exists and may be written to");

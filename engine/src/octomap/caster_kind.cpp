@@ -1,7 +1,10 @@
+#include "octomap/octomap_adapter.hpp"
+
 #include <frontlux/caster_kind.hpp>
 
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 namespace frontlux {
 namespace {
@@ -33,7 +36,7 @@ std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& gri
   return make(kind, grid, tree);
 }
 std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid, const Octree& tree) {
-  return make(kind, grid, tree);
+  return std::visit([&](const auto& t) { return make(kind, grid, *detail::there(t)); }, tree);
 }
 
 }  // namespace frontlux

@@ -5,12 +5,14 @@
 #include "walk/plain_count.hpp"
 #include "walk/walk.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/ray_caster.hpp>
 
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 namespace frontlux {
 namespace {
@@ -82,15 +84,26 @@ class OctomapRayCaster final : public RayCaster {
     return detail::out_of_range(from, from_octomap(end), range);
   }
 
+  // All that is not asked of the tree is asked of the lattice.
+  void check_resolution() const {
+    if (tree_.getResolution() != lattice().resolution())
+      throw std::invalid_argument("the tree's resolution is " + decimals_of(tree_.getResolution()) +
+                                  " m, but was " + decimals_of(lattice().resolution()) +
+                                  " m when the caster was made; make another one");
+  }
+
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(rays, hits, [&](const Ray& ray) { return cast_one(ray, unknown); });
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(segments, visible, [&](const Segment& s) { return visible_one(s.from, s.to, unknown); });
   }
   void do_visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(segments, visible, [&](const KeySegment& s) { return visible_one(s.from, s.to, unknown); });
   }
 
@@ -129,14 +142,17 @@ class OctomapRayCaster final : public RayCaster {
 
   void do_count(std::span<const Ray> rays, std::span<PathCount> counts,
                 UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(rays, counts, [&](const Ray& ray) { return count_one(ray, unknown); });
   }
   void do_count(std::span<const Segment> segments, std::span<PathCount> counts,
                 UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(segments, counts, [&](const Segment& segment) { return count_one(segment, unknown); });
   }
   void do_count(std::span<const KeySegment> segments, std::span<PathCount> counts,
                 UnknownPolicy unknown) const override {
+    check_resolution();
     answer_each(segments, counts, [&](const KeySegment& segment) { return count_one(segment, unknown); });
   }
 

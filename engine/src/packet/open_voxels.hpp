@@ -27,10 +27,7 @@ namespace frontlux::detail {
 /// than is known, so that the table can follow a map that grows.
 class OpenVoxels {
  public:
-  /// Empty if no voxel is known, or if the table would be larger than it is worth.
-  OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown)
-      : OpenVoxels(grid, unknown, grid.known_bounds(), kAllVoxels) {}
-  /// Of the voxels in a window.
+  /// Of the voxels in a window. Empty if no voxel is known, or if the table would be larger than it is worth.
   /// @param known   a box of all known voxels of the map; none if there are none
   /// @param window  of whole bricks
   OpenVoxels(const VoxelGrid& grid, UnknownPolicy unknown, const std::optional<KeyBox>& known,

@@ -29,10 +29,10 @@ class Latest {
     // there may be no memory for one.
     std::array<std::shared_ptr<const T>, kStripes> copies;
     for (auto& copy : copies) copy = std::shared_ptr<const T>(value.get(), [value](const T*) {});
-    for (std::size_t i = 0; i < kStripes; ++i) {
-      const std::lock_guard lock(stripes_[i].mutex);
-      stripes_[i].value.swap(copies[i]);
-    }
+    // All at once: who hears of the new value from another thread gets no older one.
+    std::array<std::unique_lock<std::mutex>, kStripes> locks;
+    for (std::size_t i = 0; i < kStripes; ++i) locks[i] = std::unique_lock(stripes_[i].mutex);
+    for (std::size_t i = 0; i < kStripes; ++i) stripes_[i].value.swap(copies[i]);
   }
 
  private:

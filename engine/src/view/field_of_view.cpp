@@ -25,13 +25,15 @@ void FieldOfView::check() const {
 }
 
 bool FieldOfView::contains(const Eigen::Vector3d& offset, double yaw) const {
+  if (shape == Shape::kSpinning) return contains_at_some_yaw(offset);
   const double squared = offset.squaredNorm();
   if (!(squared > 0.0 && squared <= max_range * max_range)) return false;
-  const double forward = offset.x() * std::cos(yaw) + offset.y() * std::sin(yaw);
-  const double left = offset.y() * std::cos(yaw) - offset.x() * std::sin(yaw);
+  const double cosine = std::cos(yaw), sine = std::sin(yaw);
+  const double forward = offset.x() * cosine + offset.y() * sine;
+  const double left = offset.y() * cosine - offset.x() * sine;
   switch (shape) {
     case Shape::kSpinning:
-      return contains_at_some_yaw(offset);
+      break;
     case Shape::kPyramid:
       return std::fabs(left) <= std::tan(horizontal / 2) * forward &&
              std::fabs(offset.z()) <= std::tan(vertical / 2) * forward;

@@ -89,9 +89,14 @@ MapChange ContinuousExploration::insert(std::size_t robot, const Pose& pose, con
   if (state.team.tours) state.note_solid(closed);
   State::Member& member = state.members[robot];
   member.sensed.push_back(pose);
-  if (std::ranges::any_of(scan.ranges, [](float range) { return !std::isnan(range); })) {
+  std::vector<Eigen::Vector3f> measured;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+    if (!std::isnan(scan.ranges[i])) measured.push_back(scan.directions[i]);
+  member.sees_nothing = measured.empty();
+  if (!measured.empty()) {
     member.last_look = pose;
     state.stay_on_plane(robot, *member.last_look, member.motion.now.begin());
+    member.measured = std::move(measured);
     member.looked = true;
   }
   return change;
@@ -104,13 +109,13 @@ void ContinuousExploration::rest(std::size_t robot, const Pose& pose, double tim
   check_time(time);
   check_finite({&pose, 1});
   State::Member& member = state.members[robot];
-  Pose rests = pose;
-  state.stay_on_plane(robot, rests, time);
-  if (!state.team.lattice().key(rests.position)) refuse("a pose outside the map's key range");
+  Pose resting = pose;
+  state.stay_on_plane(robot, resting, time);
+  if (!state.team.lattice().key(resting.position)) refuse("a pose outside the map's key range");
   state.start_next_trajectories(time);
   state.extend_trail(robot, time);
-  state.cut_trail(robot, rests.position);
-  state.set_motion(robot, Trajectory(rests, time));
+  state.cut_trail(robot, resting.position);
+  state.set_motion(robot, Trajectory(resting, time));
   member.stopped = true;
   member.blocked = false;
   member.needed.clear();

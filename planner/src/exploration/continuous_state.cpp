@@ -4,6 +4,7 @@
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
+#include "mapping/directions.hpp"
 #include "mapping/sort_once.hpp"
 #include "motion/yaw.hpp"
 
@@ -21,7 +22,7 @@ using detail::sort_once;
 
 using Keys = std::vector<VoxelKey>;
 
-constexpr double kUnseen = 0.2;   // a goal with this part of its frontiers still unknown has been seen
+constexpr double kMostUnknown = 0.2;  // of a goal's frontiers, when it has been seen
 constexpr int kMostWaits = 10;    // plannings in a row, one in a period, for which a robot waits for others
 constexpr double kSoonest = 0.4;  // of the period, before a robot with such a goal plans again
 // Periods for which a robot rests until it has nothing to do: scans free by then what a stray return has
@@ -106,7 +107,11 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
   if (member.stopped) return PlanReason::kStopped;
   if (age < team.options.latency) return std::nullopt;
   if (member.meets_other) return PlanReason::kBlocked;
-  const bool arrives = time + team.options.latency >= member.motion.last().end();
+  // What did not work where it rests is not tried again at once.
+  const bool has_tried =
+      member.activity == Activity::kTriesAgain && member.motion.last().end() <= *member.planned;
+  const bool arrives = time + team.options.latency >= member.motion.last().end() &&
+                       (!has_tried || age >= team.options.period * kSoonest);
   if (member.blocked) return PlanReason::kBlocked;
   const bool leaves = member.activity == Activity::kRetreats || member.activity == Activity::kMakesRoom;
   if (leaves && !arrives) return std::nullopt;
@@ -116,7 +121,7 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
     const auto unknown = std::ranges::count_if(member.goal_frontiers, [&](const VoxelKey& key) {
       return team.mapping.grid().at(key) == Occupancy::kUnknown;
     });
-    if (static_cast<double>(unknown) <= kUnseen * static_cast<double>(member.goal_frontiers.size()))
+    if (static_cast<double>(unknown) <= kMostUnknown * static_cast<double>(member.goal_frontiers.size()))
       return PlanReason::kGoalSeen;
   }
   const auto is_going = [](const Member& other) { return other.is_going(); };
@@ -243,37 +248,57 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   return step;
 }
 
-// Frontiers that are in view of the robot's last scan, and have stayed unknown all the same. Where it has
-// arrived these are also the ones for which it came: planning, between the middles of voxels, may see past an
-// edge that hides them from where it is. So are they if all scans come from beside it.
+// Frontiers in view of the robot's last scan, in directions in which it measured, that have stayed unknown
+// all the same. Where it has arrived these are also the ones for which it came: planning, between the middles
+// of voxels, may see past an edge that hides them from where it is. So are they if all scans come from beside
+// it, or if none shows anything for so long that it would choose its goal anew.
 void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kGoals);
   constexpr double kNear = 0.05, kAligned = 0.05;  // [m], [rad] of two scans of a robot at rest
   RobotStep& now = step.robots[robot];
   Member& member = members[robot];
-  if (!std::exchange(member.looked, false)) return;
+  const auto give_up_goal = [&] {
+    for (const VoxelKey& key : member.goal_frontiers)
+      if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
+    sort_once(now.still_unknown);
+  };
+  if (!std::exchange(member.looked, false)) {
+    const bool arrived = step.time >= member.motion.last().end();
+    if (member.sees_nothing && arrived && step.time - member.chosen >= team.options.commitment) {
+      give_up_goal();
+      team.abandoned.visited(now.still_unknown);
+    }
+    return;
+  }
   const Pose& pose = *member.last_look;
   const FieldOfView& view = team.options.team[robot].robot.view;
   const Keys frontiers =
       detail::frontiers_near_path(team.lattice(), team.frontiers.keys(), {&pose, 1}, view.max_range);
   const detail::CountingRayCaster counting(*team.caster, team.lattice());
   const VisiblePairs seen = visible_pairs(counting, team.mapping.grid(), {&pose, 1}, frontiers, view);
+  const detail::Directions directions(member.measured);
+  const auto is_measured = [&](const Eigen::Vector3f& direction) {
+    constexpr float kFound = detail::Directions::kFound;
+    bool found = false;
+    directions.for_each_near(direction, [&](std::uint32_t i) {
+      found = found || (member.measured[i] - direction).squaredNorm() < kFound * kFound;
+    });
+    return found;
+  };
   for (const std::uint32_t i : seen.frontiers_of(0)) {
     const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
-    if (view.contains(offset, pose.yaw)) now.still_unknown.push_back(frontiers[i]);
+    if (view.contains(offset, pose.yaw) && is_measured(offset.normalized().cast<float>()))
+      now.still_unknown.push_back(frontiers[i]);
   }
   const Trajectory& last = member.motion.last();
   const bool goes_there = member.goal.pose && team.lattice().key(member.goal.pose->position) ==
                                                   team.lattice().key(last.end_pose().position);
-  const bool rests = member.look_before && is_near(pose, *member.look_before, kNear, kAligned);
+  const bool has_not_moved = member.look_before && is_near(pose, *member.look_before, kNear, kAligned);
   member.look_before = pose;
-  const bool missed = goes_there && rests && reason != PlanReason::kArrival && step.time >= last.end();
+  const bool missed =
+      goes_there && has_not_moved && reason != PlanReason::kArrival && step.time >= last.end();
   member.missed_looks = missed ? member.missed_looks + 1 : 0;
-  if (goes_there && reason == PlanReason::kArrival) {
-    for (const VoxelKey& key : member.goal_frontiers)
-      if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
-    sort_once(now.still_unknown);
-  }
+  if (goes_there && reason == PlanReason::kArrival) give_up_goal();
   step.rays += counting.rays();
   team.abandoned.visited(now.still_unknown);
 }
@@ -292,16 +317,18 @@ std::optional<KeyBox> ContinuousExploration::State::cells_too_near(std::size_t r
   const Eigen::Vector3d inside = Eigen::Vector3d::Constant(shrunk * team.lattice().resolution());
   Eigen::Vector3d lowest = box.min() + inside, highest = box.max() - inside;
   if (on_plane) lowest.z() = highest.z() = height;  // its own layer, wherever in it the sensor is
-  const auto low = team.lattice().key(lowest), high = team.lattice().key(highest);
-  if (!low || !high) return std::nullopt;
-  return KeyBox{*low, *high};
+  const auto key_of = [&](const Eigen::Vector3d& at, std::uint16_t outside) {
+    const auto along = [&](double x) { return team.lattice().key(x).value_or(outside); };
+    return VoxelKey{along(at.x()), along(at.y()), along(at.z())};
+  };
+  return KeyBox{key_of(lowest, 0), key_of(highest, 0xFFFF)};
 }
 
 // The cells that are too near to where others will come to rest.
 std::vector<KeyBox> ContinuousExploration::State::places_of_others(std::size_t robot, Others which) const {
   std::vector<KeyBox> places;
   for (std::size_t other = 0; other < members.size(); ++other) {
-    if (other == robot || (which == Others::kThatDoNotRest && rests(members[other]))) continue;
+    if (other == robot || (which == Others::kThatDoNotRest && rests_without_goal(members[other]))) continue;
     const Pose end = members[other].motion.last().end_pose();
     const double shrunk = members[robot].keeps_out_of_all() ? 0.0 : 0.5;
     if (auto cells = cells_too_near(robot, other, end.position, shrunk)) places.push_back(*cells);
@@ -345,20 +372,20 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
     member.missed_looks = 0;
   }
 
-  const bool rested = rests(member);
+  const bool rested = rests_without_goal(member);
   member.others_rest = false;
   Trajectory trajectory = find_trajectory(robot, start, step);
   member.goal = step.robots[robot].goal;
-  const bool took_it = take_up(robot, start, trajectory, step);
+  take_up(robot, start, trajectory, step);
   member.planned = time;
-  if (rests(member) && !rested) tell_others(robot);
-  member.blocked = member.blocked && !took_it && member.is_going();  // it tries again to brake
-  member.meets_other = member.stopped = false;
+  if (rests_without_goal(member) && !rested) tell_of_rest(robot);
+  member.blocked = member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
   step.robots[robot].trajectory = poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
-  if (team.tours)
+  // While it keeps its goal another robot's planning may have arranged the rest of its tour anew.
+  if (team.tours && !keeps)
     for (const detail::TourStop& stop : team.tours->tour(robot))
       planned.step.robots[robot].tour.push_back({stop.pose, stop.clusters.size(), stop.seen});
   return planned;

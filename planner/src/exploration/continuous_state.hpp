@@ -54,9 +54,11 @@ struct ContinuousExploration::State {
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
     std::size_t samples = 0;        // of its trajectory that its trail has, or passes near by
-    std::optional<Pose> last_look = {};    // where it took its last scan that shows something
-    bool looked = false;                   // it has taken it since it planned last
-    std::optional<Pose> look_before = {};  // the same at the planning before with such a scan
+    std::optional<Pose> last_look = {};          // where it took its last scan that shows something
+    std::vector<Eigen::Vector3f> measured = {};  // directions of that scan in which it shows something
+    bool sees_nothing = false;                   // all its scans since have shown nothing, and there is one
+    bool looked = false;                         // it has taken it since it planned last
+    std::optional<Pose> look_before = {};        // the same at the planning before with such a scan
     int missed_looks = 0;  // plannings in a row at its goal with scans from where it rests, beside that
     std::optional<Request> request = {};   // by another one, while it has no goal
     bool others_rest = false;              // another one has come to rest, or was lost, since it planned last
@@ -99,7 +101,7 @@ struct ContinuousExploration::State {
   void withdraw_requests(std::size_t robot);
   /// A robot has come to rest. The others that rest plan again: they may ask it for room, or get to what it
   /// kept closed.
-  void tell_others(std::size_t robot);
+  void tell_of_rest(std::size_t robot);
   /// A robot is lost: each of the others decides anew what there is for it to do.
   void tell_of_loss(std::size_t robot);
   /// A robot has stopped where none of the others knew that it would: they may not go on through it.
@@ -114,7 +116,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::optional<KeyBox> cells_too_near(std::size_t robot, std::size_t other,
                                                      const Eigen::Vector3d& other_at, double shrunk) const;
   [[nodiscard]] std::vector<KeyBox> places_of_others(std::size_t robot, Others which) const;
-  [[nodiscard]] bool rests(const Member& member) const;
+  [[nodiscard]] bool rests_without_goal(const Member& member) const;
   [[nodiscard]] bool waits_for_room(std::size_t robot) const;
   [[nodiscard]] Keys path_without_resting(std::size_t robot, ExplorationStep& step);
   void end_request(std::size_t robot);
@@ -122,7 +124,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] std::vector<Pose> path_aside(std::size_t robot) const;
   [[nodiscard]] Trajectory find_trajectory(std::size_t robot, double start, ExplorationStep& step);
   [[nodiscard]] Trajectory without_goal(std::size_t robot, double start, ExplorationStep& step);
-  [[nodiscard]] bool take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
+  void take_up(std::size_t robot, double start, Trajectory& trajectory, ExplorationStep& step);
   [[nodiscard]] bool brakes_instead(std::size_t robot, double start, Trajectory& trajectory);
   void count_low_gain(std::size_t robot, const RobotStep& step, bool kept);
   [[nodiscard]] bool keeps_apart(std::size_t robot, const Trajectory& trajectory) const;

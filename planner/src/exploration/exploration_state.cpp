@@ -65,6 +65,7 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   poses.clear();
   for (std::size_t r = 0; r < size(); ++r) {
     TravelOptions& travel = team[r].robot.travel;
+    if (options.tours) travel.node_edge = 0.0;  // paths of tours lead wherever the body fits
     // No sensor sees the floor on which its robot stands.
     if (travel.drives() && !starts[r].known_free.empty()) {
       KeyBox known = bounds_of(starts[r].known_free);

@@ -36,8 +36,7 @@ CorridorExtent ExplorationState::extent_of_tours(std::size_t robot) const {
   constexpr std::uint64_t kFew = 1'000'000;  // cells
   const TravelOptions& travel = options.team[robot].robot.travel;
   const bool samples = options.path.search != PathSearch::kCorridor;  // among the cells
-  const bool all = travel.motion == Motion::kPlane || travel.node_edge > 0.0 || samples ||
-                   size_of(mapping.bounds()) <= kFew;
+  const bool all = travel.motion == Motion::kPlane || samples || size_of(mapping.bounds()) <= kFew;
   return all ? CorridorExtent::kAllCells : CorridorExtent::kNearby;
 }
 

@@ -14,7 +14,7 @@ namespace frontlux::planner {
 using Keys = std::vector<VoxelKey>;
 
 // Whether a robot has no goal and stays where it is, unless it is asked to make room.
-bool ContinuousExploration::State::rests(const Member& member) const {
+bool ContinuousExploration::State::rests_without_goal(const Member& member) const {
   return member.planned && !member.is_lost() && !member.is_going() && !member.goal.pose;
 }
 
@@ -31,7 +31,7 @@ void ContinuousExploration::State::withdraw_requests(std::size_t robot) {
 }
 
 // Who rests where it did before opens nothing that was closed: the others do not begin to wait anew.
-void ContinuousExploration::State::tell_others(std::size_t robot) {
+void ContinuousExploration::State::tell_of_rest(std::size_t robot) {
   if (!team.tours) return;
   const auto place = team.lattice().key(members[robot].motion.last().end_pose().position);
   const bool is_new = std::exchange(members[robot].told_from, place) != place;
@@ -97,13 +97,14 @@ Keys ContinuousExploration::State::path_without_resting(std::size_t robot, Explo
 void ContinuousExploration::State::ask_for_room(std::size_t robot, ExplorationStep& step) {
   constexpr int kTimes = 2;
   Member& member = members[robot];
-  if (!team.tours || team.voxel_corridors[robot] || waits_for_room(robot) || !member.asks) return;
+  if (!team.tours || waits_for_room(robot) || !member.asks) return;
   member.asks = false;
   std::vector<std::size_t> resting;
   Keys places;
   for (std::size_t other = 0; other < members.size(); ++other) {
     const auto place = team.lattice().key(team.poses[other].position);
-    if (other == robot || !place || !(rests(members[other]) || members[other].is_lost())) continue;
+    if (other == robot || !place || !(rests_without_goal(members[other]) || members[other].is_lost()))
+      continue;
     places.push_back(*place);
     if (!members[other].is_lost()) resting.push_back(other);
   }

@@ -168,8 +168,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
 }
 
 // Lets a robot follow a trajectory if it keeps apart from the others, else the one that it has.
-// @return whether it follows another one than before
-bool ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
+void ContinuousExploration::State::take_up(std::size_t robot, double start, Trajectory& trajectory,
                                            ExplorationStep& step) {
   const detail::PhaseClock clock(step, Phase::kPaths);
   Member& member = members[robot];
@@ -179,18 +178,17 @@ bool ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
     member.needed = voxels_needed(robot, trajectory);
     member.motion.next = trajectory;
     if (!apart) tell_of_stop(robot, start);
-    return true;
+    return;
   }
   trajectory = member.motion.last();  // which keeps apart
   const bool goes_on = trajectory.end() > start;
   const bool retreated =
       std::exchange(member.activity, goes_on ? Activity::kMoves : Activity::kRests) == Activity::kRetreats;
   const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return false;
+  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return;
   // Another one may make room: it tries the retreat again.
   team.retreated_to[robot].pop_back();
   member.activity = Activity::kTriesAgain;
-  return false;
 }
 
 // Of a robot whose path is neither free nor can be left: it brakes, also on the path of another one, which

@@ -6,20 +6,20 @@
 namespace frontlux::planner::detail {
 
 std::vector<VoxelKey> ConservativeMap::update(const VoxelGrid& map, std::span<const VoxelKey> changed,
-                                              std::span<const VoxelKey> occupied) {
+                                              std::span<const VoxelKey> under_robots) {
   std::vector<VoxelKey> further = hits_.take_changed();
-  further.insert(further.end(), under_robots_.begin(), under_robots_.end());
-  under_robots_.clear();
+  further.insert(further.end(), freed_.begin(), freed_.end());
+  freed_.clear();
   const auto take_over = [&](const VoxelKey& key) {
     const Occupancy state = map.at(key);
     grid_.set(key, state == Occupancy::kFree && hits_.is_solid(key) ? Occupancy::kOccupied : state);
   };
   std::ranges::for_each(changed, take_over);
   std::ranges::for_each(further, take_over);
-  for (const VoxelKey& key : occupied) {
+  for (const VoxelKey& key : under_robots) {
     if (grid_.at(key) != Occupancy::kOccupied) continue;
     grid_.set(key, Occupancy::kFree);
-    under_robots_.push_back(key);
+    freed_.push_back(key);
     further.push_back(key);
   }
   return further;

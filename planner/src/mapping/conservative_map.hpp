@@ -11,8 +11,8 @@
 namespace frontlux::planner::detail {
 
 /// The map in motion, in which surfaces stay: rays that graze one free some of its voxels, until they are hit
-/// again. What is behind those is no frontier, and robots keep off them. So a voxel is occupied in it that is
-/// so in the map, or that `HitPoints` holds for solid.
+/// again. What is behind those is no frontier, and on tours robots keep off them. So a voxel is occupied in
+/// it that is so in the map, or that `HitPoints` holds for solid.
 class ConservativeMap {
  public:
   /// @param map  at the beginning
@@ -27,16 +27,17 @@ class ConservativeMap {
   }
 
   /// Takes over changes of the map.
-  /// @param changed   the voxels that may have changed in it since the last update
-  /// @param occupied  by robots: in these nothing else can be, so that they are free until the next update
+  /// @param changed       the voxels that may have changed in it since the last update
+  /// @param under_robots  filled by robots' bodies: nothing else can be there, so that they are free until
+  ///                      the next update
   /// @return further voxels that may have changed here
   [[nodiscard]] std::vector<VoxelKey> update(const VoxelGrid& map, std::span<const VoxelKey> changed,
-                                             std::span<const VoxelKey> occupied = {});
+                                             std::span<const VoxelKey> under_robots = {});
 
  private:
   VoxelGrid grid_;
   HitPoints hits_;
-  std::vector<VoxelKey> under_robots_;  // occupied but for them
+  std::vector<VoxelKey> freed_;  // in the last update, since a robot was there
 };
 
 }  // namespace frontlux::planner::detail

@@ -13,6 +13,8 @@
 
 namespace frontlux::planner::detail {
 
+class Directions;
+
 /// Where rays have ended: of each voxel the last point, `surface_depth` behind a surface. A voxel is solid if
 /// `kLeastEnded` rays have ended in it, until later ones have passed that point by less than an eighth of a
 /// voxel, and gone on: `kMostPassed` rays, of scans that have none that ends in the voxel.
@@ -39,7 +41,6 @@ class HitPoints {
   [[nodiscard]] std::vector<VoxelKey> take_changed();
 
  private:
-  class Directions;
   struct Point {
     Eigen::Vector3f at = Eigen::Vector3f::Zero();  // [m]
     std::uint32_t scan = 0;                        // number of the last one that ended here

@@ -15,8 +15,7 @@ std::optional<Departure> best_departure(const Trajectory& old, double time, cons
 
   std::optional<Departure> best;
   double arrival = 0.0;
-  const auto take = [&](Departure departure) {
-    const Trajectory trajectory = depart(old, time, departure, limits, is_free);
+  const auto take = [&](Departure departure, const Trajectory& trajectory) {
     if (best && trajectory.end() >= arrival) return;
     arrival = trajectory.end();
     best = std::move(departure);
@@ -30,20 +29,21 @@ std::optional<Departure> best_departure(const Trajectory& old, double time, cons
       std::vector<Pose> viewpoints = path_from(ahead);
       if (viewpoints.empty()) continue;
       viewpoints.insert(viewpoints.begin(), start.pose);
-      if (Trajectory::through(start, time, viewpoints, limits, is_free)) take({false, std::move(viewpoints)});
+      if (const auto trajectory = Trajectory::through(start, time, viewpoints, limits, is_free))
+        take({false, std::move(viewpoints)}, *trajectory);
     }
   }
-  if (auto viewpoints = path_from(old.stop(time, limits)); !viewpoints.empty())
-    take({true, std::move(viewpoints)});
+  if (auto viewpoints = path_from(old.stop(time, limits)); !viewpoints.empty()) {
+    const Trajectory trajectory = old.after_stop(time, viewpoints, limits, is_free);
+    take({true, std::move(viewpoints)}, trajectory);
+  }
   return best;
 }
 
 Trajectory depart(const Trajectory& old, double time, const Departure& departure, const MotionLimits& limits,
                   const SegmentTest& is_free) {
-  if (!departure.stops)
-    if (auto trajectory = Trajectory::through(old.at(time), time, departure.viewpoints, limits, is_free))
-      return *std::move(trajectory);
-  return old.after_stop(time, departure.viewpoints, limits, is_free);
+  if (departure.stops) return old.after_stop(time, departure.viewpoints, limits, is_free);
+  return Trajectory::through(old.at(time), time, departure.viewpoints, limits, is_free).value();
 }
 
 }  // namespace frontlux::planner::detail

@@ -24,6 +24,7 @@ struct Departure {
                                                       const SegmentTest& is_free);
 
 /// The trajectory that takes up a new path at a time.
+/// @param departure  the best one of that time; its yaws may be others
 [[nodiscard]] Trajectory depart(const Trajectory& old, double time, const Departure& departure,
                                 const MotionLimits& limits, const SegmentTest& is_free);
 

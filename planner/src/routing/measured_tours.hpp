@@ -9,7 +9,7 @@
 namespace frontlux::planner::detail {
 
 /// [s] Smaller gains are rounding.
-inline constexpr double kLeastGain = 1e-6;
+inline constexpr double kCostRounding = 1e-6;
 /// Instead of a stop: none, and the end of a tour.
 inline constexpr std::uint32_t kNoStop = ~std::uint32_t{0}, kEndOfTour = kNoStop - 1;
 

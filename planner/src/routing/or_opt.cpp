@@ -201,7 +201,7 @@ bool OrOpt::move_stops() {
   for_each_index(moves.size(),
                  [&](std::size_t i) { moves[i] = best_move_from(moves[i].from, moves[i].begin); });
   const auto best = std::ranges::min_element(moves, {}, &Move::cost);
-  if (best == moves.end() || !(best->cost < tours_.cost() - kLeastGain)) return false;
+  if (best == moves.end() || !(best->cost < tours_.cost() - kCostRounding)) return false;
   find_place(*best);
   make(*best);
   return true;

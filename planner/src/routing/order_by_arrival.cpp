@@ -28,7 +28,7 @@ Tour order_by_arrival(const TourProblem::Robot& robot, std::span<const double> w
   Tour best, changed;
   const auto consider = [&] {
     const double now = cost_of_order(robot, weights, changed);
-    if (now >= cost - kLeastGain) return;
+    if (now >= cost - kCostRounding) return;
     cost = now;
     best = changed;
   };

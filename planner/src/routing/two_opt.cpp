@@ -30,7 +30,7 @@ bool TwoOpt::reverse_stretches_of(std::size_t r) {
       const double before = steps[i] + (j + 1 < tour.size() ? steps[j + 1] : 0.0);
       const double to = i == 0 ? robot.first[tour[j]] : robot.between(tour[i - 1], tour[j]);
       const double after = to + (j + 1 < tour.size() ? robot.between(tour[i], tour[j + 1]) : 0.0);
-      if (after >= before - kLeastGain) continue;
+      if (after >= before - kCostRounding) continue;
       std::reverse(tour.begin() + static_cast<std::ptrdiff_t>(i),
                    tour.begin() + static_cast<std::ptrdiff_t>(j + 1));
       tours_.measure(r);

@@ -85,7 +85,6 @@ std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey&
 std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<const VoxelKey> cells,
                                         std::span<const VoxelKey> targets, Aim aim) {
   constexpr std::size_t kAtOnce = 32;  // cells, whose segments stay in the cache
-  const bool all_around = query.view.sees_all_around();
   std::vector<ClusterViewpoint> viewpoints(cells.size());
   for_each_chunk(cells.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     std::vector<KeySegment> segments;
@@ -109,7 +108,7 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
       ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], yaw_along(sum), 0, aim};
       for (const Eigen::Vector3d& offset : offsets)
-        if (all_around || query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
+        if (query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
     }
   });
   return viewpoints;

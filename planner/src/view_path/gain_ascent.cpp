@@ -33,7 +33,7 @@ class Climb {
     // What would be returned, to the last bit: without whole turns, the ends as they were given.
     for (std::size_t i = 1; i + 1 < yaws.size(); ++i) shown_[i] = detail::wrapped(yaws[i]);
     const std::uint64_t distinct = gain_.distinct(shown_);
-    if (distinct >= most_ && limits_.allow(shown_)) {
+    if (distinct >= most_ && limits_.allows(shown_)) {
       most_ = distinct;
       best_ = shown_;
     }

@@ -37,8 +37,8 @@ std::optional<OptimizationEnd> no_ascent(const InformationGain& gain, const Path
 std::vector<double> start_yaws(const InformationGain& gain, std::span<const double> tangent,
                                const YawLimits& limits, const PathOptimizerOptions& options) {
   if (options.start == YawStart::kTangent)
-    return limits.allow(tangent) ? std::vector(tangent.begin(), tangent.end())
-                                 : limits.even_turn(tangent.front(), tangent.back());
+    return limits.allows(tangent) ? std::vector(tangent.begin(), tangent.end())
+                                  : limits.even_turn(tangent.front(), tangent.back());
   const YawBins bins(gain, options.yaw_bins, tangent, limits);
   return options.start == YawStart::kGreedy ? bins.most_distinct() : bins.most_views();
 }
@@ -99,17 +99,17 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
   const YawLimits limits(viewpoints, options.max_yaw_step, options.max_yaw_rate);
   const auto even = limits.even_turn(tangent.front(), tangent.back());
   const auto nothing_to_climb = no_ascent(gain, options);
-  const bool reachable = limits.allow(even);
+  const bool reachable = limits.allows(even);
   // Where nothing is visible, too, if it cannot look along its path: as near to that as the limits allow.
   const bool turn = !nothing_to_climb || *nothing_to_climb == OptimizationEnd::kAscentOff ||
-                    (*nothing_to_climb == OptimizationEnd::kNothingVisible && !limits.allow(tangent));
+                    (*nothing_to_climb == OptimizationEnd::kNothingVisible && !limits.allows(tangent));
 
   if (!reachable)
     path.yaws = even;
   else if (turn)
     path.yaws = start_yaws(gain, tangent, limits, options);
   else
-    path.yaws = limits.allow(tangent) ? tangent : even;
+    path.yaws = limits.allows(tangent) ? tangent : even;
   for (std::size_t i = 1; i + 1 < path.yaws.size(); ++i) path.yaws[i] = detail::wrapped(path.yaws[i]);
   path.start = report(path.yaws);
 
@@ -124,7 +124,7 @@ OptimizedPath optimize_path(std::span<const Pose> viewpoints, std::span<const Ei
     path.yaws = std::move(ascent.yaws);
   }
   path.result = report(path.yaws);
-  if (reachable && path.tangent.distinct > path.result.distinct && limits.allow(tangent)) {
+  if (reachable && path.tangent.distinct > path.result.distinct && limits.allows(tangent)) {
     path.yaws = tangent;
     path.result = path.tangent;
   }

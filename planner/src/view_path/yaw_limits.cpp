@@ -25,7 +25,7 @@ bool YawLimits::allows(std::size_t i, double yaw, double next) const {
   return std::fabs(detail::turn(yaw, next)) <= steps_[i] + kTolerance;
 }
 
-bool YawLimits::allow(std::span<const double> yaws) const {
+bool YawLimits::allows(std::span<const double> yaws) const {
   for (std::size_t i = 0; i < steps_.size(); ++i)
     if (!allows(i, yaws[i], yaws[i + 1])) return false;
   return true;

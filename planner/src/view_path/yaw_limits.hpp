@@ -22,7 +22,7 @@ class YawLimits {
   [[nodiscard]] bool limited() const { return limited_; }
 
   [[nodiscard]] bool allows(std::size_t i, double yaw, double next) const;
-  [[nodiscard]] bool allow(std::span<const double> yaws) const;
+  [[nodiscard]] bool allows(std::span<const double> yaws) const;
 
   /// Turns from the first yaw to the last by the smaller angle, by the same fraction of each limit. It keeps
   /// the limits if any yaws do.

@@ -7,6 +7,7 @@
 #include "support/tree_state.hpp"
 #include "support/voxel_keys.hpp"
 
+#include <frontlux/caster_kind.hpp>
 #include <frontlux/live_map.hpp>
 #include <frontlux/octomap.hpp>
 
@@ -80,6 +81,7 @@ TEST(Octree, WithoutATreeIsRefused) {
   EXPECT_REFUSED(LiveMap(none));
   EXPECT_REFUSED(OctreeRayCaster(none));
   EXPECT_REFUSED(make_octomap_ray_caster(none));
+  for (const auto& [_, kind] : kCasterNames) EXPECT_REFUSED(make_ray_caster(kind, VoxelGrid(0.1), none));
   EXPECT_REFUSED(write_octree(none, "none.ot"));
 }
 
@@ -264,6 +266,23 @@ TEST(OctreeRayCaster, ServesColorTrees) {
               tree.castRay(origin, direction, expected, true, 5.0));
     ASSERT_EQ(end, expected);
   }
+}
+
+TEST(OctomapRayCaster, RefusesATreeOfAnotherResolution) {
+  const auto tree = make_random_tree(4, 0.25);
+  const auto caster = make_octomap_ray_caster(*tree);
+  const Ray ray{{0.1F, 0.1F, 0.1F}, {1.0F, 0.2F, 0.1F}};
+  const KeySegment segment{key_at(0, 0, 0), key_at(5, 1, 0)};
+  static_cast<void>(caster->cast(ray, UnknownPolicy::kPass));
+  tree->setResolution(1.0);
+  const auto cast = [&] { static_cast<void>(caster->cast(ray, UnknownPolicy::kPass)); };
+  expect_complaint(cast, {"1 m", "0.25 m", "make another one"});
+  std::uint8_t visible = 0;
+  PathCount count;
+  EXPECT_REFUSED(caster->visible(std::span(&segment, 1), {&visible, 1}, UnknownPolicy::kPass));
+  EXPECT_REFUSED(caster->count(std::span(&ray, 1), {&count, 1}, UnknownPolicy::kPass));
+  tree->setResolution(0.25);
+  cast();
 }
 
 class ReadOctree : public FolderTest {};

@@ -1,4 +1,7 @@
 #include "engine/octomap/octree_bytes.hpp"
+#include "support/maps.hpp"
+
+#include <frontlux/octomap.hpp>
 
 #include <locale>
 
@@ -59,6 +62,19 @@ TEST_F(OctreeFileTest, ReadsTheSameInEveryLocale) {
   std::locale::global(before);
   ASSERT_TRUE(file) << complaint_;
   EXPECT_EQ(file->resolution, 1234.5);
+}
+
+TEST_F(OctreeFileTest, IsWrittenTheSameInEveryLocale) {
+  const auto tree = make_random_tree(4, 1234.5);
+  ASSERT_GE(tree->size(), 1000U) << "the least number that has a separator";
+  for (const auto& [one, other] : {std::pair{"1.bt", "2.bt"}, {"1.ot", "2.ot"}}) {
+    const auto here = folder_ / one, there = folder_ / other;
+    write_octree(*tree, here);
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaDecimals));
+    write_octree(*tree, there);
+    std::locale::global(before);
+    EXPECT_EQ(content_of(there), content_of(here));
+  }
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ OpenVoxels table_of(const VoxelGrid& grid, UnknownPolicy unknown, const KeyBox& 
 TEST(OpenVoxels, EqualTheGridAndAreClosedAroundIt) {
   for (const VoxelGrid& grid : grids())
     for (const UnknownPolicy unknown : kPolicies) {
-      const OpenVoxels table(grid, unknown);
+      const OpenVoxels table = table_of(grid, unknown, kAllVoxels);
       if (table.empty()) continue;
       const KeyBox known = *grid.known_bounds();
       std::size_t open = 0;
@@ -147,11 +147,13 @@ TEST(OpenVoxels, TellHowFarItIsOpenAroundACell) {
   Random random(11);
   for (const VoxelGrid& grid : grids())
     for (const UnknownPolicy unknown : kPolicies) {
-      const OpenVoxels table(grid, unknown);
+      const OpenVoxels table = table_of(grid, unknown, kAllVoxels);
       if (!table.empty()) expect_equal(table, grid, unknown, random);
     }
   const VoxelGrid hall = hall_grid(7);
-  EXPECT_GT(expect_equal(OpenVoxels(hall, UnknownPolicy::kBlock), hall, UnknownPolicy::kBlock, random), 100U);
+  EXPECT_GT(
+      expect_equal(table_of(hall, UnknownPolicy::kBlock, kAllVoxels), hall, UnknownPolicy::kBlock, random),
+      100U);
 }
 
 // Scans that change some voxels, uncover what was unknown, or forget a part; now and then beyond the table.
@@ -195,12 +197,12 @@ TEST(OpenVoxels, FollowAMapThatChangesAndGrows) {
 
 TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {
   VoxelGrid grid(0.1);
-  EXPECT_TRUE(OpenVoxels(grid, UnknownPolicy::kBlock).empty());
+  EXPECT_TRUE(table_of(grid, UnknownPolicy::kBlock, kAllVoxels).empty());
   grid.set({1, 1, 1}, Occupancy::kFree);
-  EXPECT_FALSE(OpenVoxels(grid, UnknownPolicy::kBlock).empty());
+  EXPECT_FALSE(table_of(grid, UnknownPolicy::kBlock, kAllVoxels).empty());
   grid.set({60000, 60000, 60000}, Occupancy::kFree);
-  EXPECT_TRUE(OpenVoxels(grid, UnknownPolicy::kPass).empty());
-  EXPECT_FALSE(OpenVoxels(grid, UnknownPolicy::kPass).contains({1, 1, 1}));
+  EXPECT_TRUE(table_of(grid, UnknownPolicy::kPass, kAllVoxels).empty());
+  EXPECT_FALSE(table_of(grid, UnknownPolicy::kPass, kAllVoxels).contains({1, 1, 1}));
 }
 
 TEST(PacketWalk, SeesWhatTheWalkSees) {
@@ -267,7 +269,7 @@ TEST(PacketWalk, StopsWhereTheWalkStops) {
 
 TEST(PacketWalk, TellsWhereRaysRunOut) {
   const VoxelGrid grid = hall_grid(7);
-  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  const OpenVoxels table = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
   auto rays = adversarial_rays(grid, 40'000, 9);
   Random random(10);
   for (Ray& ray : rays)
@@ -307,7 +309,7 @@ TEST(PacketWalk, MeasuresDistancesAsTheWalkDoes) {
   const Ray ray{{0x1.100b9ep+2F, -0x1.ce7894p+2F, 0x1.985ecep+3F},
                 {-0x1.f83f6ap-28F, -0x1.32af1ep-26F, 0x1p+0F},
                 0x1.a9c42c855b4f3p+5};
-  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  const OpenVoxels table = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
   const Hit expected = detail::walk_ray(grid, ray, UnknownPolicy::kBlock);
   EXPECT_EQ(expected.distance, 0x1.33d09ap+4F);
   for (const detail::PacketWalk& walk : detail::packet_walks()) {
@@ -338,7 +340,7 @@ TEST(PacketWalk, HoldsUpToItsLongestOffset) {
   for (int i = 0; i < 300'000; ++i)
     grid.set({key(random.below(kEdge)), key(random.below(kEdge)), key(random.below(kEdge))},
              Occupancy::kOccupied);
-  const OpenVoxels spotted(grid, UnknownPolicy::kBlock);
+  const OpenVoxels spotted = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
   ASSERT_FALSE(spotted.empty());
   for (const detail::PacketWalk& walk : detail::packet_walks()) {
     const TableQuery query(grid, spotted, UnknownPolicy::kBlock, walk);
@@ -374,7 +376,7 @@ TEST(TableQuery, RaysAloneAreThoseOfTheWalkAlongHalls) {
     size[static_cast<std::size_t>(axis)] = 520;
     for_each_key({{32768, 32768, 32768}, make_key(32767 + size[0], 32767 + size[1], 32767 + size[2])},
                  [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
-    const OpenVoxels table(grid, UnknownPolicy::kBlock);
+    const OpenVoxels table = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
     const TableQuery query(grid, table, UnknownPolicy::kBlock);
     for (int i = 0; i < 20'000; ++i) {
       // Just beyond a face across, or anywhere.
@@ -410,7 +412,7 @@ TEST(TableQuery, RaysAloneAreThoseOfTheWalkAlongHalls) {
 
 TEST(TableQuery, LeavesEverythingToOthersIfThereIsNoTable) {
   const VoxelGrid grid(0.25);
-  const OpenVoxels table(grid, UnknownPolicy::kBlock);
+  const OpenVoxels table = table_of(grid, UnknownPolicy::kBlock, kAllVoxels);
   ASSERT_TRUE(table.empty());
   const TableQuery query(grid, table, UnknownPolicy::kBlock);
   const auto rays = adversarial_rays(corner_grid(0, 1), 10, 1);

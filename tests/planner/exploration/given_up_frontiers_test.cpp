@@ -113,5 +113,54 @@ TEST_P(GivenUpFrontiersBy, AreNoneForScansWithoutRanges) {
   EXPECT_GT(given_up(std::numeric_limits<float>::infinity(), 0.01), 0U) << "a sensor that sees nothing";
 }
 
+// What hides some of the view from the sensor, as another robot, is in no map: there it measures nothing.
+TEST_P(GivenUpFrontiersBy, AreInDirectionsInWhichItMeasures) {
+  constexpr double kFound = 0.06;  // [rad] of a ray, and a little more
+  const TeamInWorld team("room", 1, {small_uav()});
+  ContinuousExploration exploration(TeamInMotion::options(team, GetParam()), team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  const auto left_of = [](const Pose& pose, const Eigen::Vector3d& offset) {
+    return offset.y() * std::cos(pose.yaw) - offset.x() * std::sin(pose.yaw);
+  };
+  std::size_t given_up = 0;
+  for (double time = 0.0; time < 60.0 && !exploration.end(); time += 0.1) {
+    const Pose pose = exploration.at(0, time).pose;
+    Scan scan{pose.position.cast<float>(), 0.01, {}, {}};
+    for (double azimuth = -3.14; azimuth < 3.15; azimuth += 0.04)
+      for (double elevation = -1.2; elevation < 1.2; elevation += 0.04) {
+        const Eigen::Vector3d direction(std::cos(azimuth) * std::cos(elevation),
+                                        std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+        scan.directions.push_back(direction.normalized().cast<float>());
+        scan.ranges.push_back(left_of(pose, direction) > 0.0 ? std::numeric_limits<float>::quiet_NaN()
+                                                             : std::numeric_limits<float>::infinity());
+      }
+    exploration.insert(0, pose, scan);
+    while (const auto now = exploration.plan(time)) {
+      if (now->reason == PlanReason::kArrival) continue;  // it gives up what it came for
+      for (const VoxelKey& key : now->step.robots[0].still_unknown) {
+        const Eigen::Vector3d offset = team.empty_map().grid().lattice().exact_center(key) - pose.position;
+        EXPECT_LE(left_of(pose, offset) / offset.norm(), kFound);
+        ++given_up;
+      }
+    }
+  }
+  EXPECT_GT(given_up, 20U);
+}
+
+TEST_P(GivenUpFrontiersBy, AreAtLastThoseOfASensorThatShowsNothing) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ExplorationOptions options = TeamInMotion::options(team, GetParam());
+  options.commitment = 2.0;
+  ContinuousExploration exploration(options, team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  for (double time = 0.0; time < kLong && !exploration.end(); time += 0.1) {
+    const Pose pose = exploration.at(0, time).pose;
+    exploration.insert(0, pose, scan_with(pose, std::numeric_limits<float>::quiet_NaN(), 10.0));
+    while (exploration.plan(time)) {
+    }
+  }
+  EXPECT_TRUE(exploration.end());
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -227,7 +227,7 @@ TEST(TourPlanning, WithoutToursNobodyGoesWhereAnotherOneIsGoing) {
 }
 
 // A robot goes to see several clusters from one place. Others that plan meanwhile, and are there already,
-// leave all of them to it.
+// leave all of them to it, also when its path has led it through what it did not know when it planned.
 TEST(TourPlanning, LeavesToARobotWhatItGoesToSee) {
   OpenSpace space;
   const std::array<Pose, 2> poses{space.pose, space.pose};
@@ -243,7 +243,9 @@ TEST(TourPlanning, LeavesToARobotWhatItGoesToSee) {
   const TourStop stop = both.tour(0).front();
   ASSERT_GT(stop.clusters.size(), 1U);
   starts[1].pose = stop.pose;
-  for (int planning = 0; planning < 3; ++planning) {
+  const Eigen::Vector3d beyond = space.grid.lattice().exact_center(make_key(32795, 32765, 32772));
+  for (int planning = 0; planning < 4; ++planning) {
+    if (planning == 2) starts[0].pose.position = beyond;
     plan(1);
     std::set<ClusterId> kept;
     for (const TourStop& next : both.tour(0).first(std::min(stop.clusters.size(), both.tour(0).size())))

@@ -42,7 +42,7 @@ struct Best {
         yaws[i] = yaw;
         choose(scene, bins, limits, yaws, i + 1);
       }
-    } else if (limits.allow(yaws)) {
+    } else if (limits.allows(yaws)) {
       ++choices;
       views = std::max(views, views_of(scene, yaws));
       distinct = std::max(distinct, test::distinct_by_hand(scene, yaws));
@@ -69,7 +69,7 @@ TEST(YawBins, MostViewsIsTheBestOfAllChoicesAndMostDistinctIsNear) {
       ASSERT_EQ(yaws.size(), scene.path.size());
       EXPECT_EQ(yaws.front(), first);
       EXPECT_EQ(yaws.back(), yaws.size() == 1 ? first : last);
-      EXPECT_TRUE(limits.allow(yaws));
+      EXPECT_TRUE(limits.allows(yaws));
     }
     EXPECT_EQ(views_of(scene, views), best.views);
     const std::uint64_t reached = test::distinct_by_hand(scene, seen);

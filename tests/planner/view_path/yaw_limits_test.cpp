@@ -15,14 +15,14 @@ TEST(YawLimits, AreTheSmallerOfStepAndRateTimesLength) {
   EXPECT_EQ(limits.step(0), 0.5);
   EXPECT_EQ(limits.step(1), 0.0);  // no length, no turn
   EXPECT_EQ(limits.step(2), 0.9);
-  EXPECT_TRUE(limits.allow(std::vector{1.0, 1.5, 1.5 + 2 * kPi, 0.6}));  // whole turns make no difference
-  EXPECT_FALSE(limits.allow(std::vector{1.0, 1.5, 1.5, 0.5}));
-  EXPECT_FALSE(limits.allow(std::vector{1.0, 1.5, 1.6, 1.6}));
+  EXPECT_TRUE(limits.allows(std::vector{1.0, 1.5, 1.5 + 2 * kPi, 0.6}));  // whole turns make no difference
+  EXPECT_FALSE(limits.allows(std::vector{1.0, 1.5, 1.5, 0.5}));
+  EXPECT_FALSE(limits.allows(std::vector{1.0, 1.5, 1.6, 1.6}));
 
   // From half a turn on there is no limit, nor without any.
   for (const YawLimits& free : {YawLimits(path, kPi, kInfinity), YawLimits(path, kInfinity, kInfinity)}) {
     EXPECT_FALSE(free.limited());
-    EXPECT_TRUE(free.allow(std::vector{0.0, 3.0, -3.0, 0.0}));
+    EXPECT_TRUE(free.allows(std::vector{0.0, 3.0, -3.0, 0.0}));
   }
   EXPECT_EQ(YawLimits(path, kInfinity, 1.0).step(2), kInfinity);  // 9 rad
   EXPECT_FALSE(YawLimits({path.data(), 1}, 0.1, 0.1).limited());
@@ -47,8 +47,8 @@ TEST(YawLimits, EvenTurnUsesTheSameFractionOfEachLimit) {
     const double turn = std::remainder(last - first, 2 * kPi);
     for (std::size_t i = 0; i < steps.size(); ++i)
       EXPECT_NEAR(detail::wrapped(yaws[i + 1] - yaws[i] - turn * steps[i] / all), 0.0, 1e-12);
-    EXPECT_EQ(limits.allow(yaws), std::fabs(turn) <= all);
-    reachable += limits.allow(yaws) ? 1 : 0;
+    EXPECT_EQ(limits.allows(yaws), std::fabs(turn) <= all);
+    reachable += limits.allows(yaws) ? 1 : 0;
   }
   EXPECT_GT(reachable, 100);
   EXPECT_LT(reachable, 480);

@@ -44,7 +44,8 @@ struct PlannedMotion {
 /// Robots that explore without stops and without waiting for each other: `Exploration` for robots in motion.
 /// Scans go in when they are taken, trajectories come out; nothing in here waits, reads a clock or starts a
 /// thread. Each robot plans for itself: when it has looked from its goal, when what it was going for has been
-/// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period`. It knows the
+/// mapped by anybody, when its path is blocked, and at least every `ExplorationOptions::period` but on its
+/// way back or aside. It knows the
 /// others' plans: frontiers are assigned to one robot, and a trajectory keeps apart from the bodies of the
 /// others for all time to come. If there is none such, the robot keeps the one it has; it brakes if something
 /// is on that, even where another one would pass, which plans at once then.
@@ -78,10 +79,10 @@ class FRONTLUX_EXPORT ContinuousExploration {
 
   /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map. Rays that end on
   /// a robot of the team are to be left out (NaN): what they hit would be closed until others pass there.
-  /// @param pose  where the robot was, as it is believed: by it is judged from where it has looked. Rays begin
-  ///              at the scan's own origin. It does not move the robot for the planner: new trajectories begin
-  ///              on the one that it has. One that is not on that reports `displaced`, or `stopped` if
-  ///              something is in its path.
+  /// @param pose  where the robot was, as it is believed: by it is judged from where it has looked. Rays
+  ///              begin at the scan's own origin. It does not move the robot for the planner: new
+  ///              trajectories begin on the one that it has. One that is not on that reports `displaced`, or
+  ///              `stopped` if something is in its path.
   /// @throws std::invalid_argument before `begin`, if there is no such robot, for a pose that is not finite,
   ///         or for what `Mapping::insert` refuses
   MapChange insert(std::size_t robot, const Pose& pose, const Scan& scan);

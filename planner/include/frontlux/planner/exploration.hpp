@@ -46,9 +46,9 @@ struct FRONTLUX_EXPORT ExplorationOptions {
 
   /// [frontiers] In lock-step a step has low gain if all its paths together are expected to see fewer:
   /// distinct ones, or with `GainMode::kSum` summed over viewpoints. In motion without tours a chosen goal
-  /// has low gain if fewer are expected to be in view at the goal itself (`Goal::gain`). On tours nothing has
-  /// low gain: what shows too few is no stop. There it is what a stop shows at most before it is worth one;
-  /// less towards the end, and with sensors of short range.
+  /// has low gain if fewer are expected to be in view at the goal itself (`Goal::gain`). On tours no goal has
+  /// low gain. There it is how many a place has to show to be worth a stop; fewer are asked for towards the
+  /// end, and of sensors of short range.
   double epsilon = 10.0;
   int low_gain_steps = 3;    ///< of low gain in a row end it: steps, in motion goals that each robot chose
   int max_steps = 1000;      ///< so does this number of steps, in motion plannings
@@ -118,8 +118,8 @@ struct RobotStep {
   std::vector<VoxelChange> changed;  ///< by its scans, sorted by key
   std::vector<VoxelKey> blocked;     ///< cells that it could not go through; sorted
   std::vector<VoxelKey> still_unknown;  ///< frontiers in view of its viewpoints that stayed unknown; sorted
-  /// Where it means to look from, in order, if it planned in this step; the first one is its goal. Empty
-  /// without tours.
+  /// Where it means to look from, in order, if it chose its goal in this step; the first one is its goal.
+  /// Empty without tours.
   std::vector<PlannedStop> tour;
   /// In motion, if it planned in this step: where its trajectory leads, from its begin to its end, a few
   /// centimetres at most from the lines between these poses.
@@ -153,7 +153,8 @@ struct FRONTLUX_EXPORT ExplorationStep {
 /// Why an exploration is over.
 enum class ExplorationEnd : std::uint8_t {
   kLowGain,  ///< `low_gain_steps` times in a row too little was expected, see `ExplorationOptions::epsilon`
-  kNothingToDo,  ///< no robot has a goal to which it gets; in motion one waits ten times for others to let it
+  kNothingToDo,  ///< no robot has a goal that it can get to; in motion it tries ten times if others are in
+                 ///< its way
   kStepLimit,    ///< `max_steps` are done
   kCutOff,       ///< as one of the first two, but a robot cannot get to where it came from
 };

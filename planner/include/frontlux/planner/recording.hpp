@@ -28,7 +28,7 @@ struct RecordingHead {
   std::uint64_t observable = 0;          ///< voxels that can be observed; 0: unknown
   std::uint64_t bounding = 0;            ///< voxels within the bounds; 0: unknown
   std::string options = "{}";            ///< JSON object of the run's options, as its maker writes it; not
-                                         ///< checked, but Python reads nothing else
+                                         ///< checked here, but by who reads them
 };
 
 /// How many voxels of a world one robot has mapped first, up to the end of a step.
@@ -56,8 +56,8 @@ struct Recording {
   std::optional<std::string> end;   ///< `name_of(ExplorationEnd)`, or a word of who ran it, as "coverage",
                                     ///< "time_limit" and "stopped"; nothing if it was cut off
   bool truncated = false;           ///< an unfinished step at the end of the file was left out
-  int format = kRecordingFormat;    ///< of the file; steps of format 4 have no trajectories and no assigned
-                                    ///< frontiers, of 3 no tours
+  int format = kRecordingFormat;    ///< of the file; steps of format 4 have no trajectories and no
+                                    ///< reassigned frontiers, of 3 no tours
   std::uint64_t bytes = 0;          ///< of the file, up to the end of the last finished step
 };
 

@@ -149,7 +149,7 @@ enum class CorridorState : std::uint8_t {
   kTooLow,         ///< its cell is below the minimum height
   kUnknown,        ///< it is in an unknown voxel
   kOccupied,       ///< it is in an occupied voxel
-  kBoxNotFree,     ///< its stencil, or its node, is not known to be free
+  kBoxNotFree,     ///< its stencil, or its node, is not known to be free, or its cell is blocked
   kWithoutGround,  ///< the floor under it is not known to carry it
 };
 
@@ -222,10 +222,10 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// The cells of a shortest path, from the robot's to this one, both included; empty if there is none.
   [[nodiscard]] std::vector<VoxelKey> path_to(const VoxelKey& key) const;
 
-  /// Whether a cell is passable, connected or not. In constant time.
+  /// Whether a cell is passable, connected or not. Searches no path.
   [[nodiscard]] bool passable(const VoxelKey& key) const;
 
-  /// Whether a cell would be passable, wherever other robots are. In constant time.
+  /// Whether a cell would be passable, wherever other robots are. Searches no path.
   [[nodiscard]] bool fits(const VoxelKey& key) const;
 
   /// The voxels around a cell that have to be free.

@@ -14,7 +14,7 @@ namespace py = pybind11;
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Whether Python ends, or has, and this is not the thread that ends it, the process's first one.
+/// Whether Python ends, or has, and this is not the thread that ends it.
 bool python_ends_elsewhere();
 
 /// What `call()` returns, which may take Python's lock. A daemon thread that takes it while Python exits is
