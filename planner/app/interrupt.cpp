@@ -9,6 +9,7 @@
 #include <ctime>
 #include <string_view>
 #include <unistd.h>
+#include <utility>
 
 namespace frontlux::app {
 namespace {
@@ -17,13 +18,15 @@ constexpr std::array kSignals = {SIGINT, SIGTERM};
 
 constexpr std::int64_t kNone = -1;
 std::atomic<std::int64_t> noted_at = kNone;  // [ns]
-static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+std::atomic<const char*> noted_advice = "";
+static_assert(std::atomic<std::int64_t>::is_always_lock_free &&
+              std::atomic<const char*>::is_always_lock_free);
 
 // Only calls that a handler may make.
 extern "C" void end_at_once(int) {
   remove_own_unfinished();
-  constexpr std::string_view kMessage = "frontlux: stopped\n";
-  static_cast<void>(!::write(STDERR_FILENO, kMessage.data(), kMessage.size()));
+  for (const std::string_view part : {"frontlux: stopped", noted_advice.load(), "\n"})
+    static_cast<void>(!::write(STDERR_FILENO, part.data(), part.size()));
   ::_exit(kInterruptedCode);
 }
 
@@ -52,12 +55,14 @@ void end_at_interrupts() {
   for (const int signal : kSignals) handle(signal, &end_at_once);
 }
 
-InterruptNote::InterruptNote() {
+InterruptNote::InterruptNote(std::string advice) : advice_(std::move(advice)) {
   noted_at = kNone;
+  noted_advice = advice_.c_str();
   for (std::size_t i = 0; i < kSignals.size(); ++i) before_[i] = handle(kSignals[i], &take_note);
 }
 
 InterruptNote::~InterruptNote() {
+  noted_advice = "";
   for (std::size_t i = 0; i < kSignals.size(); ++i)
     if (before_[i] != SIG_ERR) std::signal(kSignals[i], before_[i]);
 }

@@ -27,7 +27,8 @@ void end_at_interrupts();
 /// second later or more, ends it at once. One at a time.
 class InterruptNote {
  public:
-  InterruptNote();
+  /// @param advice  what a second one says, as how to go on
+  explicit InterruptNote(std::string advice = "");
   ~InterruptNote();
   InterruptNote(const InterruptNote&) = delete;
   InterruptNote& operator=(const InterruptNote&) = delete;
@@ -36,6 +37,7 @@ class InterruptNote {
 
  private:
   using Action = void (*)(int);
+  std::string advice_;
   std::array<Action, 2> before_;  // by `kSignals`
 };
 

@@ -3,10 +3,12 @@
 #include <sys/ioctl.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <fcntl.h>
 #include <iostream>
+#include <utility>
 
 namespace frontlux::app {
 namespace {
@@ -51,6 +53,28 @@ void ProgressLine::show(std::string_view text) const {
 
 void ProgressLine::clear() const {
   if (visible_) std::cerr << "\r\033[K" << std::flush;
+}
+
+WorkingLine::WorkingLine(std::string what) : what_(std::move(what)) {
+  if (line_.visible()) thread_ = std::thread([this] { tell(); });
+}
+
+WorkingLine::~WorkingLine() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void WorkingLine::tell() {
+  constexpr int kFirst = 3;  // [s]
+  std::unique_lock lock(mutex_);
+  for (int seconds = 1; !changed_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; });
+       ++seconds)
+    if (seconds >= kFirst) line_.show(what_ + ", for " + std::to_string(seconds) + " s");
 }
 
 }  // namespace frontlux::app

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <condition_variable>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <unistd.h>
 
 namespace frontlux::app {
@@ -37,6 +40,27 @@ class ProgressLine {
 
  private:
   bool visible_ = ::isatty(STDERR_FILENO) != 0;
+};
+
+/// Says what is being worked on, and for how long already, from its third second on: of work that cannot tell
+/// how far it is. In a progress line; as long as it lives, nothing else is to be printed.
+class WorkingLine {
+ public:
+  /// @param what  as "looking for what can be observed"
+  explicit WorkingLine(std::string what);
+  ~WorkingLine();
+  WorkingLine(const WorkingLine&) = delete;
+  WorkingLine& operator=(const WorkingLine&) = delete;
+
+ private:
+  void tell();
+
+  std::string what_;
+  ProgressLine line_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool done_ = false;
+  std::thread thread_;
 };
 
 }  // namespace frontlux::app

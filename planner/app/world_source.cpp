@@ -161,6 +161,14 @@ SourcedWorld make_world(const WorldSource& source) {
     if (!source.ground->height && !sourced.world.start)
       throw BadInput(
           "--ground: auto looks for the floor below the start; give --start, or the floor's height");
+    // The floor may be below all that a mesh shows.
+    Eigen::AlignedBox3d bounds = sourced.world.bounds;
+    bounds.min().z() -= bounds.sizes().z();
+    if (const auto& height = source.ground->height;
+        height && !(*height >= bounds.min().z() && *height <= bounds.max().z()))
+      throw BadInput("--ground: " + rounded(*height) + " m is far from the world, which is from " +
+                     rounded(sourced.world.bounds.min().z()) + " to " + rounded(bounds.max().z()) +
+                     " m high");
     sourced.ground_shift = sim::align_ground(sourced.world, source.ground->height, source.resolution);
   });
   return sourced;

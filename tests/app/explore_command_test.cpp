@@ -246,6 +246,16 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
                  {"holds the world to explore, " + path("mine/map.ot")});
   expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
   expect_refused({"--resume", path("nowhere")}, {"--resume: there is no folder " + path("nowhere")});
+  expect_refused({"--resume", path("file")}, {"is a file; name its folder, " + folder_.string()});
+  // Files that have the names of a run's may be a user's own.
+  for (const char* name : {"map.bt", "report.html", "video.mp4", "coverage.svg"}) {
+    fs::create_directory(path("own"));
+    write(std::string("own/") + name, "mine");
+    expect_refused({"room", "--max-steps", "0", "-o", path("own"), "--force"},
+                   {std::string("holds ") + name + ", but no run"});
+    EXPECT_EQ(content_of(path(std::string("own/") + name)), "mine");
+    fs::remove_all(path("own"));
+  }
   // With --force all that is not of a run stays.
   ASSERT_EQ(run({"room", "--max-steps", "0", "-o", path("kept"), "--force"}).code, 0);
   EXPECT_EQ(content_of(path("kept/notes.txt")), "mine");

@@ -163,7 +163,10 @@ TEST_F(ExploreOutput, TheSecondCtrlCEndsAtOnce) {
   kill(child, SIGINT);
   kill(child, SIGCONT);
   EXPECT_EQ(test::exit_code(test::status_of(child)), 130);
-  EXPECT_EQ(content_of(path("err")), "frontlux: stopped\n");
+  EXPECT_EQ(
+      content_of(path("err")),
+      "frontlux: stopped; what was recorded is kept, other files may be missing: frontlux explore --resume " +
+          path("stopped") + " continues the run\n");
   EXPECT_FALSE(fs::exists(path("stopped/run.json")));
   EXPECT_GE(read_recording(path("stopped/run.frontlux")).steps.size(), 2U);
 }

@@ -85,6 +85,8 @@ TEST_F(ScanCommand, RefusesWhatItCannotUse) {
   expect({"room", "--noise", "-1"}, {"--noise", "-1"});
   expect({"room", "--noise", "nan"}, {"--noise", "nan"});
   expect({"room", "--dropout", "1.5"}, {"--dropout", "1.5"});
+  expect({"room", "--poses", write("poses.csv", "8.45,8.35,1.5,0\n"), "--dropout", "1"},
+         {"the scans make no voxel free or occupied"});
   expect({"room", "--seed", "x"}, {"--seed", "'x'"});
   expect({"room", "--start", "99,0,0"}, {"--start", "99"});
   expect({"room", "--start", "-0.1,6,1"}, {"room", "solid"});

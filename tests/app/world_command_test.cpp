@@ -60,6 +60,7 @@ TEST_F(WorldCommand, AlignsTheGround) {
                  "ground       shifted by -0.05 m along z"});
   expect_answer({path("box.ply"), "--ground", "-0.4"}, {"shifted by 0.05 m"});
   expect_answer({"room", "--ground", "auto"}, {"shifted by 0 m"});
+  expect_refused({"room", "--ground", "100"}, {"--ground: 100 m is far from the world", "to 3.25 m high"});
 }
 
 TEST_F(WorldCommand, TakesMaps) {

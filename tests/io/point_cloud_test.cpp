@@ -71,6 +71,7 @@ TEST_F(PointCloud, RefusesBadClouds) {
           "line 11: DATA is 'binary_compressed'; save the cloud as ascii or binary");
   bad_pcd(pcd_header("binary", "999999999999"), "bytes follow");
   bad_pcd(pcd_header("binary", "18446744073709551615"), "more points than can be");
+  bad_pcd(pcd_ascii() + "\n\n7 1 1 1 2 3 4\n", "comes after all 3 points");
   bad_pcd(pcd_header("ascii", "999999999999"), "ends after 0 of 999999999999 points");
   bad_pcd(xyz + "WIDTH 4294967296\nHEIGHT 4294967296\nDATA binary\n", "more points than can be");
   bad_pcd(xyz + "WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n", "POINTS is 3, but WIDTH times HEIGHT is 4");

@@ -54,6 +54,8 @@ TEST_F(PoseFile, RefusesBadPoses) {
   bad("a.pcd,1,2,,0\n", "line 1: '' is no finite number");
   bad("a.pcd,1,2,1e999,0\n", "'1e999' is no finite number");
   bad("file,x,y,z,yaw\nfile,x,y,z,yaw\n", "line 2: 'x' is no finite number");
+  bad("file,x,y,z,qw,qx,qy,qz\na.pcd,1,2,3,1,0,0,0\n", "line 1: names other columns, or in another order");
+  bad("file,x,y,yaw,z\na.pcd,1,2,0,3\n", "line 1: names other columns");
   bad("a.pcd,1,2,3,0,0,0,0.5\n", "line 1: the quaternion is not of length 1");
   EXPECT_THROW(static_cast<void>(read_pose_file(folder_ / "none.csv")), std::runtime_error);
 }
@@ -66,6 +68,7 @@ TEST_F(PoseFile, ReadsListsOfPoses) {
   EXPECT_EQ(list[0].pose.yaw, 0.5);
   read_ = [](const auto& file) { static_cast<void>(read_pose_list(file)); };
   expect_refused("poses.csv", "x,y,z,yaw\n", "holds no pose; write x,y,z,yaw");
+  expect_refused("poses.csv", "x,y,yaw,z\n1,2,0,3\n", "line 1: names other columns");
   expect_refused("poses.csv", "1,2,3,4\n1,2,3\n", "line 2: has 3 fields instead of 4");
   expect_refused("poses.csv", "1,2,3,inf\n", "line 1: 'inf' is no finite number");
   expect_refused("poses.csv", "1,2,3,90\n", "line 1: has a yaw of 90, more than a turn");

@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
 #include "map_file.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 
 #include <frontlux/frontier_set.hpp>
@@ -236,6 +237,7 @@ void plan(const Options& options) {
                    rounded(middle - half) + " to " + rounded(middle + half) + " m; give the z of --from");
   }
   const KeyBox space = robot_space(map, grid, options.bounds, robot.travel.motion);
+  std::optional<WorkingLine> working(std::in_place, "planning");
   const TravelCorridor corridor = make_corridor(robot.travel, grid, space, start);
   const Stopwatch planning;
   PathPlan path = planner::plan_path(corridor, grid.lattice(), options.from.pose, options.to.pose,
@@ -245,6 +247,7 @@ void plan(const Options& options) {
   if (!options.to.has_yaw) look_ahead(path.viewpoints);
   std::optional<Optimized> optimized;
   if (options.optimize) optimized = optimize(options, robot, grid, corridor, path);
+  working.reset();
   if (!options.output.empty()) io::write_path(options.output, path.viewpoints);
   print(options, robot, corridor, path, path_ms, optimized);
 }

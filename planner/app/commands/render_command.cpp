@@ -5,6 +5,7 @@
 #include "commands/output_file.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 
 #include <frontlux/key_box.hpp>
@@ -233,7 +234,10 @@ void render(const Options& options) {
   check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"}, std::array{options.map});
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);
-  const View view = look(map, grid, options, make_member(options));
+  const View view = [&] {
+    const WorkingLine working("rendering");
+    return look(map, grid, options, make_member(options));
+  }();
   const Stopwatch writing;
   const auto ending = std::filesystem::path(options.output).extension();
   if (ending == ".csv")

@@ -147,7 +147,10 @@ void write_stills(const Options& options, const Run& run) {
   const auto write = [&](const char* name, const Picture& picture) {
     for (const char* ending : endings) {
       const std::filesystem::path file = run.file.parent_path() / (std::string(name) + ending);
-      picture.write(file);
+      {
+        const WorkingLine working("drawing " + file.string());
+        picture.write(file);
+      }
       std::cout << file.string() << '\n';
     }
   };
@@ -176,14 +179,20 @@ void write_films(const Options& options, const Run& run) {
   const bool keeps_frames = !has_ffmpeg();
   // What is gone in the end takes no names that a user may have given to his own files.
   Frames frames(folder / (keeps_frames ? kFrames : kUnfinishedFrames));
-  write_frames(frames.folder, run.recording, run.name, kWidth);
+  {
+    const WorkingLine working("drawing the frames of a film");
+    write_frames(frames.folder, run.recording, run.name, kWidth);
+  }
   if (keeps_frames) {
     frames.keep = true;
     std::cout << (frames.folder / "").string() << '\n';
     return;
   }
   const auto write = [&](const char* name) {
-    write_film(folder / name, frames.folder);
+    {
+      const WorkingLine working("making " + (folder / name).string());
+      write_film(folder / name, frames.folder);
+    }
     std::cout << (folder / name).string() << '\n';
   };
   if (options.video) write(kFilms[0]);

@@ -155,6 +155,7 @@ void run(Options& options) {
   std::vector<io::ListedPose> poses;
   if (!options.poses.empty()) poses = io::read_pose_list(options.poses);
 
+  std::optional<WorkingLine> working(std::in_place, "preparing " + source.world);
   SourcedWorld sourced = make_world(source);
   for (io::ListedPose& listed : poses) listed.pose.position.z() += sourced.ground_shift;
   // Without a start, what can be seen begins where the first sensor is.
@@ -176,7 +177,10 @@ void run(Options& options) {
     add_sweep(options, truth, sim::free_start(sourced.world, source.resolution, false), plan);
   Mapping mapping(
       {.resolution = source.resolution, .bounds = truth.bounds(), .sensor_model = options.sensor_model});
+  working.reset();
   scan(sourced, truth, plan, options, mapping);
+  if (!mapping.grid().known_bounds())
+    throw BadInput(source.world + ": the scans make no voxel free or occupied; nothing was written");
   mapping.write(options.output);
   print_summary(options, sourced, truth, plan, mapping, watch.seconds());
 }

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 #include "world_source.hpp"
 
@@ -52,6 +53,7 @@ std::string observable_text(const SourcedWorld& sourced, double resolution) {
   if (sourced.voxels > kManyVoxels)
     return "not counted: more than " + rounded(kManyVoxels) + " voxels; give a larger --resolution";
   try {
+    const WorkingLine working("looking for what can be observed");
     const sim::GroundTruth truth(
         sourced.world, resolution,
         sim::free_start(sourced.world, resolution, sourced.kind != WorldKind::kMesh));

@@ -10,6 +10,7 @@
 #include "explore/run_warnings.hpp"
 #include "interrupt.hpp"
 #include "setup/explore_setup.hpp"
+#include "terminal.hpp"
 
 #include <frontlux/planner/exploration.hpp>
 #include <frontlux/planner/recording.hpp>
@@ -223,10 +224,13 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   }
   ExploreOptions here = options;
   if (recording) here.source.world = find_world(options, run);
+  std::optional<WorkingLine> working;
+  if (!run.quiet) working.emplace("preparing " + here.source.world);
   ExploreSetup setup = make_setup(here, recording ? std::optional(recording->head.robots) : std::nullopt);
+  working.reset();
   if (recording) check_continues(*recording, setup.head, setup.exploration.max_steps, run);
 
-  const InterruptNote note;
+  const InterruptNote note("; what was recorded is kept, other files may be missing: " + how_to_resume(run));
   std::optional<std::string> stopped;  // what to say then
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {

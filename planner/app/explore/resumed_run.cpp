@@ -66,6 +66,9 @@ Recording read_run(const ExploreRun& run) {
   if (!fs::exists(run.folder, error))
     throw BadInput("--resume: there is no folder " + run.folder.string() +
                    "; name the one that was given to -o, or begin the run with -o");
+  if (fs::is_regular_file(run.folder, error))
+    throw BadInput("--resume: " + run.folder.string() + " is a file; name its folder, " +
+                   (run.folder.has_parent_path() ? run.folder.parent_path() : fs::path(".")).string());
   if (!fs::exists(file, error))
     throw BadInput(
         "--resume: " + run.folder.string() + " holds no " + std::string(kRecording) +

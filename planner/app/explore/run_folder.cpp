@@ -46,8 +46,9 @@ bool is_unused(const fs::path& folder) {
 }
 
 // What `frontlux report` makes of a run, beside the films' frames.
-std::vector<std::string> pictures() {
-  std::vector<std::string> names(kFilms.begin(), kFilms.end());
+std::vector<std::string> views() {
+  std::vector<std::string> names{kReport};
+  for (const char* film : kFilms) names.emplace_back(film);
   for (const std::string still : {kFinalMap, kCoverage})
     for (const char* ending : kStillEndings) names.push_back(still + ending);
   return names;
@@ -66,7 +67,7 @@ std::vector<std::string> pictures() {
 
 void remove_unfinished_files(const fs::path& folder) {
   for (const std::string_view file : kRunFiles) remove_unfinished(folder / file);
-  for (const std::string& file : pictures()) remove_unfinished(folder / file);
+  for (const std::string& file : views()) remove_unfinished(folder / file);
 }
 
 void check_folder(const ExploreRun& run, const std::string& world) {
@@ -94,6 +95,14 @@ void check_folder(const ExploreRun& run, const std::string& world) {
     if (fs::equivalent(run.folder / file, world, error))
       refuse_folder(run, "holds the world to explore, " + world + "; name another folder");
   }
+  if (fs::exists(run.folder / kRecording, error)) return;
+  std::vector<std::string> others(kRunFiles.begin(), kRunFiles.end());
+  for (const std::string& view : views()) others.push_back(view);
+  others.emplace_back(kFrames);
+  for (const std::string& file : others)
+    if (fs::exists(run.folder / file, error))
+      refuse_folder(
+          run, "holds " + file + ", but no run to which it belongs; move it away, or name another folder");
 }
 
 void make_folder(const ExploreRun& run, const std::string& world) {
@@ -117,9 +126,12 @@ void remove_old_files(const fs::path& folder) {
 
 void remove_views(const fs::path& folder) {
   std::error_code ignored;
-  fs::remove(folder / kReport, ignored);
-  for (const std::string& file : pictures()) fs::remove(folder / file, ignored);
+  for (const std::string& file : views()) fs::remove(folder / file, ignored);
   for (const char* frames : {kFrames, kUnfinishedFrames}) remove_frames(folder / frames);
+}
+
+std::string how_to_resume(const ExploreRun& run) {
+  return "frontlux explore --resume " + for_shell(run.folder.string()) + " continues the run";
 }
 
 std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head, std::size_t steps) {
@@ -135,7 +147,7 @@ std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& he
                                  : "; the recorded steps are kept";
     if (::access(file.c_str(), W_OK) != 0)
       return kept + ", but " + file.string() + " is read-only: make it writable to continue the run";
-    return kept + ": frontlux explore --resume " + for_shell(run.folder.string()) + " continues the run";
+    return kept + ": " + how_to_resume(run);
   } catch (const planner::UnbegunRecording&) {
     return nothing;
   } catch (const std::runtime_error&) {

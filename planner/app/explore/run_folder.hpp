@@ -35,6 +35,8 @@ void remove_views(const std::filesystem::path& folder);
 /// Of runs that were killed.
 void remove_unfinished_files(const std::filesystem::path& folder);
 
+/// That the command with which a run goes on does so, in words.
+[[nodiscard]] std::string how_to_resume(const ExploreRun& run);
 /// What is left of a run that was stopped or could not go on, as the end of a message.
 /// @param steps  that it has recorded
 [[nodiscard]] std::string what_is_kept(const ExploreRun& run, const planner::RecordingHead& head,

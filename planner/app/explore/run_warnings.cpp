@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kDone = 0.95;  // of the observable space, at an end that its user has not asked for
 
-constexpr double kWorthAHint = 0.01;  // of the observable space
+constexpr double kWorthAHint = 0.01;          // of the observable space
+constexpr std::size_t kEnoughPlannings = 20;  // to judge the latency by
 
 std::string late_planning(double planning, double latency) {
   constexpr double kUnit = 0.05;  // [s] of the latency that is advised
@@ -92,7 +93,8 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
       warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +
                          rounded(*failed) + " s, as --fail says");
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
-  if (!setup.lockstep && planning > latency) warnings.push_back(late_planning(planning, latency));
+  if (!setup.lockstep && planning > latency && sums.planning.size() >= kEnoughPlannings)
+    warnings.push_back(late_planning(planning, latency));
   return warnings;
 }
 

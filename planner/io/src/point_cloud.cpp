@@ -201,6 +201,10 @@ class PcdReader {
       }
       points.push_back(point);
     }
+    while (const auto line = lines_.next())
+      if (!words_of(*line).empty())
+        fail_here("comes after all " + std::to_string(count) + " points that the header announces",
+                  "make POINTS, WIDTH and HEIGHT agree with the lines");
     return points;
   }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace frontlux::io {
 namespace {
@@ -35,11 +37,12 @@ struct Row {
   }
 };
 
-// Calls `take(row)` for every line with content, except a first line of names: one that begins with `name`
-// and has no number in its field `numeric`.
+// Calls `take(row)` for every line with content, except a first line of names: one that begins with the first
+// name of these lists and has no number in its field `numeric`. It has to be one of the lists.
 template <class Take>
-void for_each_row(const std::filesystem::path& file, const char* format, std::string_view name,
-                  std::size_t numeric, const Take& take) {
+void for_each_row(const std::filesystem::path& file, const char* format,
+                  const std::vector<std::vector<std::string_view>>& names, std::size_t numeric,
+                  const Take& take) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const std::string bytes = read_file(file);
   std::string_view text = bytes;
@@ -54,10 +57,12 @@ void for_each_row(const std::filesystem::path& file, const char* format, std::st
       line->remove_prefix(comma + 1);
     }
     row.fields.push_back(trimmed(*line));
-    const bool names =
-        first && row.fields[0] == name && row.fields.size() > numeric && !to_number(row.fields[numeric]);
-    first = false;
-    if (names) continue;
+    if (std::exchange(first, false) && row.fields[0] == names[0][0] && row.fields.size() > numeric &&
+        !to_number(row.fields[numeric])) {
+      if (std::ranges::find(names, row.fields) == names.end())
+        row.fail_here("names other columns, or in another order");
+      continue;
+    }
     take(row);
     empty = false;
   }
@@ -93,14 +98,15 @@ RecordedPose recorded_pose(const Row& row) {
 
 std::vector<RecordedPose> read_pose_file(const std::filesystem::path& file) {
   std::vector<RecordedPose> poses;
-  for_each_row(file, "write file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw", "file", 1,
+  for_each_row(file, "write file,x,y,z,qx,qy,qz,qw or file,x,y,z,yaw",
+               {{"file", "x", "y", "z", "qx", "qy", "qz", "qw"}, {"file", "x", "y", "z", "yaw"}}, 1,
                [&](const Row& row) { poses.push_back(recorded_pose(row)); });
   return poses;
 }
 
 std::vector<ListedPose> read_pose_list(const std::filesystem::path& file) {
   std::vector<ListedPose> poses;
-  for_each_row(file, "write x,y,z,yaw", "x", 0, [&](const Row& row) {
+  for_each_row(file, "write x,y,z,yaw", {{"x", "y", "z", "yaw"}}, 0, [&](const Row& row) {
     if (row.fields.size() != 4)
       row.fail_here("has " + std::to_string(row.fields.size()) + " fields instead of 4");
     poses.push_back({{position_at(row, 0), yaw_at(row, 3)}, row.line});

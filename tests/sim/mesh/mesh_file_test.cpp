@@ -271,8 +271,12 @@ TEST_F(MeshFile, DamagedPlyDoesNoHarm) {
 }
 
 TEST_F(MeshFile, OtherFormatsSurviveTruncation) {
+  const std::string whole = house_stl();
+  ASSERT_TRUE(whole.starts_with("solid"));
+  for (const std::size_t part : {whole.size() / 2, whole.find("endsolid")})
+    expect_refused(save("cut.stl", whole.substr(0, part)), "ends before its last line");
   for (const auto& [name, bytes] :
-       {std::pair("cut.obj", house_obj()), std::pair("cut.stl", house_stl()),
+       {std::pair("cut.obj", house_obj()), std::pair("cut.stl", whole),
         std::pair("cut.dae", house_dae("Z_UP", "1")), std::pair("cut.gltf", house_gltf())})
     for (std::size_t size = 0; size < bytes.size(); size += 11) {
       SCOPED_TRACE(size);

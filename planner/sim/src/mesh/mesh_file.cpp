@@ -19,14 +19,31 @@ namespace {
 
 constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;
 
+// Of one in words: Assimp takes what there is. The others, which may begin with "solid" as well, tell their
+// length.
+void check_end_of_stl(const std::filesystem::path& file, std::string_view bytes) {
+  constexpr std::size_t kHeader = 80, kTriangle = 50;
+  std::size_t announced = 0;
+  if (bytes.size() >= kHeader + 4)
+    announced = kHeader + 4 + kTriangle * from_bytes<std::uint32_t>(&bytes[kHeader], std::endian::little);
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  if (announced == bytes.size() || first == std::string_view::npos ||
+      !bytes.substr(first).starts_with("solid"))
+    return;
+  const std::size_t last = bytes.rfind("endsolid");
+  if (last == std::string_view::npos || bytes.find("facet", last + 8) != std::string_view::npos)
+    fail(file, "ends before its last line, which begins with 'endsolid'",
+         "the file is incomplete: get another copy of it");
+}
+
 io::RawMesh read_raw(const std::filesystem::path& file, bool keep_frame) {
   constexpr std::array kImported = {".obj", ".stl", ".dae", ".gltf", ".glb"};
   const std::string extension = lower_extension(file);
   if (extension == ".ply") return io::read_ply(file, kMaxFileSize);
   if (std::ranges::find(kImported, extension) == kImported.end())
     fail(file, "is no mesh of a known format", "give a .ply, .obj, .stl, .dae, .gltf or .glb file");
-  static_cast<void>(
-      read_file(file, kMaxFileSize));  // it can be read; Assimp opens it and those that it names
+  const std::string bytes = read_file(file, kMaxFileSize);  // Assimp opens it again, and those that it names
+  if (extension == ".stl") check_end_of_stl(file, bytes);
   return import_mesh(file, extension.substr(1), keep_frame);
 }
 
