@@ -27,11 +27,11 @@ void check_end_of_stl(const std::filesystem::path& file, std::string_view bytes)
   if (bytes.size() >= kHeader + 4)
     announced = kHeader + 4 + kTriangle * from_bytes<std::uint32_t>(&bytes[kHeader], std::endian::little);
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (announced == bytes.size() || first == std::string_view::npos ||
+  if ((announced != 0 && announced <= bytes.size()) || first == std::string_view::npos ||
       !bytes.substr(first).starts_with("solid"))
     return;
   const std::size_t last = bytes.rfind("endsolid");
-  if (last == std::string_view::npos || bytes.find("facet", last + 8) != std::string_view::npos)
+  if (last == std::string_view::npos || bytes.find("facet", bytes.find('\n', last)) != std::string_view::npos)
     fail(file, "ends before its last line, which begins with 'endsolid'",
          "the file is incomplete: get another copy of it");
 }
