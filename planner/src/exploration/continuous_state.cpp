@@ -263,7 +263,10 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
     sort_once(now.still_unknown);
   };
   if (!std::exchange(member.looked, false)) {
-    const bool arrived = step.time >= member.motion.last().end();
+    constexpr double kAbout = 0.1;  // [rad]
+    const Trajectory& last = member.motion.last();
+    const bool arrived = step.time >= last.end() && is_near(member.sensed.back(), last.end_pose(),
+                                                            team.lattice().resolution() / 2, kAbout);
     if (member.sees_nothing && arrived && step.time - member.chosen >= team.options.commitment) {
       give_up_goal();
       team.abandoned.visited(now.still_unknown);
