@@ -19,13 +19,14 @@ constexpr std::array kSignals = {SIGINT, SIGTERM};
 constexpr std::int64_t kNone = -1;
 std::atomic<std::int64_t> noted_at = kNone;  // [ns]
 std::atomic<const char*> noted_advice = "";
+std::atomic<const char*> line_clearing = "";  // of a terminal, for a line of progress
 static_assert(std::atomic<std::int64_t>::is_always_lock_free &&
               std::atomic<const char*>::is_always_lock_free);
 
 // Only calls that a handler may make.
 extern "C" void end_at_once(int) {
   remove_own_unfinished();
-  for (const std::string_view part : {"frontlux: stopped", noted_advice.load(), "\n"})
+  for (const std::string_view part : {line_clearing.load(), "frontlux: stopped", noted_advice.load(), "\n"})
     static_cast<void>(!::write(STDERR_FILENO, part.data(), part.size()));
   ::_exit(kInterruptedCode);
 }
@@ -52,12 +53,12 @@ auto handle(int signal, void (*action)(int)) {
 }  // namespace
 
 void end_at_interrupts() {
+  if (::isatty(STDERR_FILENO) != 0) line_clearing = "\r\033[K";
   for (const int signal : kSignals) handle(signal, &end_at_once);
 }
 
-InterruptNote::InterruptNote(std::string advice) : advice_(std::move(advice)) {
+InterruptNote::InterruptNote() {
   noted_at = kNone;
-  noted_advice = advice_.c_str();
   for (std::size_t i = 0; i < kSignals.size(); ++i) before_[i] = handle(kSignals[i], &take_note);
 }
 
@@ -65,6 +66,11 @@ InterruptNote::~InterruptNote() {
   noted_advice = "";
   for (std::size_t i = 0; i < kSignals.size(); ++i)
     if (before_[i] != SIG_ERR) std::signal(kSignals[i], before_[i]);
+}
+
+void InterruptNote::advise(std::string advice) {
+  advice_ = std::move(advice);
+  noted_advice = advice_.c_str();
 }
 
 bool InterruptNote::taken() { return noted_at != kNone; }

@@ -27,11 +27,13 @@ void end_at_interrupts();
 /// second later or more, ends it at once. One at a time.
 class InterruptNote {
  public:
-  /// @param advice  what a second one says, as how to go on
-  explicit InterruptNote(std::string advice = "");
+  InterruptNote();
   ~InterruptNote();
   InterruptNote(const InterruptNote&) = delete;
   InterruptNote& operator=(const InterruptNote&) = delete;
+
+  /// What a second one says from now on, as how to go on. Once at most.
+  void advise(std::string advice);
 
   [[nodiscard]] static bool taken();
 

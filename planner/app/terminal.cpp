@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <iostream>
+#include <system_error>
 #include <utility>
 
 namespace frontlux::app {
@@ -55,8 +56,14 @@ void ProgressLine::clear() const {
   if (visible_) std::cerr << "\r\033[K" << std::flush;
 }
 
-WorkingLine::WorkingLine(std::string what) : what_(std::move(what)) {
-  if (line_.visible()) thread_ = std::thread([this] { tell(); });
+WorkingLine::WorkingLine(std::string what) : what_(without_controls(std::move(what))) {
+  std::ranges::replace(what_, '\n', '?');
+  if (!line_.visible()) return;
+  try {
+    thread_ = std::thread([this] { tell(); });
+  } catch (const std::system_error&) {
+    // Without a thread the work goes on, and nothing is told of it.
+  }
 }
 
 WorkingLine::~WorkingLine() {

@@ -3,6 +3,7 @@
 #include "bad_input.hpp"
 #include "map_file.hpp"
 #include "spelling.hpp"
+#include "terminal.hpp"
 #include "text.hpp"
 
 #include <frontlux/sim/built_in_worlds.hpp>
@@ -80,6 +81,7 @@ double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds
           : "give a larger --resolution";
   if (voxels > static_cast<double>(kMostVoxels))
     throw BadInput(what + ", too many: a map holds at most " + std::to_string(kMostVoxels) + "; " + advice);
+  ProgressLine().clear();
   std::cerr << "frontlux: warning: " << what << ", which may take much memory; " << advice << '\n';
   return voxels;
 }

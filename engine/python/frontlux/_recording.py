@@ -42,7 +42,7 @@ class Recording:
     poses         dict of arrays, one row a viewpoint or, in motion, a scan: step, robot (p,) int64, pose (p, 4) float64
     changes       dict of arrays, one row for each voxel that a robot changed in a step: step, robot (c,) int64; keys
                   (c, 3) uint16; before, after (c,) uint8, as in Occupancy
-    tours         dict of arrays, one row for each stop of the tour of a robot that planned in a step, in the tour's order:
+    tours         dict of arrays, one row for each stop of the tour of a robot that chose its goal in a step, in order:
                   step, robot (t,) int64; pose (t, 4) float64; clusters, frontiers (t,) int64, seen from there. Empty
                   without tours and in recordings of format 3
     trajectories  dict of arrays, one row for each pose along the trajectory of a robot in motion that planned in a step:

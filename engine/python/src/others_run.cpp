@@ -8,7 +8,7 @@ namespace frontlux::python {
 namespace {
 
 std::atomic<int> threads = 0;   // that compute
-std::atomic<pid_t> ending = 0;  // the thread that ends Python, before it does
+std::atomic<pid_t> ending = 0;  // the thread that ends Python; 0, the first one, until it begins to
 thread_local bool is_counted = false;
 
 void wait() {
@@ -25,7 +25,8 @@ bool python_ends_elsewhere() {
 #else
   const bool ends = _Py_IsFinalizing() != 0;
 #endif
-  return (ends || Py_IsInitialized() == 0) && ::gettid() != ending;
+  const pid_t thread = ending;
+  return (ends || Py_IsInitialized() == 0) && ::gettid() != (thread != 0 ? thread : ::getpid());
 }
 
 void Computing::begin() {

@@ -61,9 +61,9 @@ class BoxesOnDemand {
     const auto before = latest();
     auto boxes = before ? std::make_shared<const detail::BoxSnapshot>(grid_, *before)
                         : std::make_shared<const detail::BoxSnapshot>(grid_);
-    made_.store(boxes.get(), std::memory_order_release);
     const std::lock_guard lock(keeping_);
     latest_ = std::move(boxes);
+    made_.store(latest_.get(), std::memory_order_release);
   }
   // Waits for none that are being made.
   [[nodiscard]] std::shared_ptr<const detail::BoxSnapshot> latest() const {

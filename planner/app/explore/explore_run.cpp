@@ -230,7 +230,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   working.reset();
   if (recording) check_continues(*recording, setup.head, setup.exploration.max_steps, run);
 
-  const InterruptNote note("; what was recorded is kept, other files may be missing: " + how_to_resume(run));
+  InterruptNote note;
   std::optional<std::string> stopped;  // what to say then
   tbb::task_arena arena(run.threads == 0 ? tbb::task_arena::automatic : run.threads);
   arena.execute([&] {
@@ -239,6 +239,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
       exploring.emplace(run, options, setup, recording ? &*recording : nullptr, watch);
       exploring->repeat_recorded_steps();
       exploring->open_files();
+      note.advise("; what was recorded is kept, other files may be missing: " + how_to_resume(run));
       exploring->explore();
       exploring->write_result();
       if (!exploring->has_ended()) stopped = "stopped" + exploring->kept();

@@ -166,8 +166,9 @@ void bind_plan(py::module_& module) {
           "To be followed from its begin on; until then, the one before.")
       .def_property_readonly(
           "step", [](const PlanPointer& self) { return self->step; },
-          "The Step since the planning before. Of its goals and tours that of the robot that planned is "
-          "new.");
+          "The Step since the planning before. Of its goals that of the robot that planned is new, and it "
+          "has a "
+          "tour if it chose that anew.");
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
             for (const RobotStep& robot : self->robots) tours.push_back(tour_of(robot));
             return tours;
           },
-          "r dicts: where each robot that planned means to look from, in order: pose, float64 (n, 4); "
+          "r dicts: where each robot that chose its goal means to look from, in order: pose, float64 (n, 4); "
           "clusters "
           "and frontiers, int64 (n,), that it sees from there.")
       .def_property_readonly("travelled",

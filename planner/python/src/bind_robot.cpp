@@ -137,7 +137,7 @@ On a plane and on the ground: sensor_height: [m] above the floor; ground: (2,) [
 must not be missing; None: all under the box. On a plane: require_ground: it goes only where floor is known. On the ground:
 step: [m] the highest, at least a voxel; slope: [rad] the steepest.
 In space: min_height: [m] of its middle above the bottom of the bounds; None: half of its height. node_edge: [m] it moves through
-free octree nodes of this size, as in the paper, at least as wide as its body; None: wherever the body fits.
+free octree nodes of this size, as in the paper, at least as wide as its body; None, and on tours: wherever the body fits.
 speed [m/s], acceleration [m/s^2], yaw_rate [rad/s]: at most; per_axis: speed and acceleration along x, y and z each.
 Raises ValueError naming the value that is out of bounds.)")
       .def_static(

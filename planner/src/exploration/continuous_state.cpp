@@ -77,11 +77,10 @@ void ContinuousExploration::State::start_next_trajectories(double time) {
   }
 }
 
-// Whether its last scan was taken about where its trajectory ends.
-bool ContinuousExploration::State::has_looked_from_end(const Member& member) const {
+// Whether a pose is about where a robot's trajectory ends.
+bool ContinuousExploration::State::is_at_end(const Member& member, const Pose& pose) const {
   constexpr double kAligned = 0.1;  // [rad]
-  return member.last_look && is_near(*member.last_look, member.motion.last().end_pose(),
-                                     team.lattice().resolution() / 2, kAligned);
+  return is_near(pose, member.motion.last().end_pose(), team.lattice().resolution() / 2, kAligned);
 }
 
 // Whether a robot has taken a scan at its goal, or rests and takes scans all of which are from beside it. One
@@ -94,7 +93,7 @@ bool ContinuousExploration::State::has_looked(const Member& member, double time)
   if (!member.looked) return false;
   if (is_near(*member.last_look, trajectory.end_pose(), kNear, kAligned)) return true;
   return member.missed_looks >= kMostMissed ||
-         (time >= trajectory.end() + kSoon && has_looked_from_end(member));
+         (time >= trajectory.end() + kSoon && is_at_end(member, *member.last_look));
 }
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
@@ -263,10 +262,7 @@ void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reaso
     sort_once(now.still_unknown);
   };
   if (!std::exchange(member.looked, false)) {
-    constexpr double kAbout = 0.1;  // [rad]
-    const Trajectory& last = member.motion.last();
-    const bool arrived = step.time >= last.end() && is_near(member.sensed.back(), last.end_pose(),
-                                                            team.lattice().resolution() / 2, kAbout);
+    const bool arrived = step.time >= member.motion.last().end() && is_at_end(member, member.sensed.back());
     if (member.sees_nothing && arrived && step.time - member.chosen >= team.options.commitment) {
       give_up_goal();
       team.abandoned.visited(now.still_unknown);
@@ -416,7 +412,8 @@ void ContinuousExploration::State::count_low_gain(std::size_t robot, const Robot
 bool ContinuousExploration::State::has_nothing_to_do(const Member& member) const {
   if (member.is_lost()) return true;
   if (member.is_going() || member.others_rest) return false;
-  const double patience = (has_looked_from_end(member) ? kPatience : kLongPatience) * team.options.period;
+  const bool looked_from_end = member.last_look && is_at_end(member, *member.last_look);
+  const double patience = (looked_from_end ? kPatience : kLongPatience) * team.options.period;
   return member.waits > kMostWaits ||
          (member.waits == 0 && member.idle_since && *member.planned - *member.idle_since >= patience);
 }

@@ -84,7 +84,7 @@ struct ContinuousExploration::State {
 
   void set_motion(std::size_t robot, Trajectory trajectory);
   void start_next_trajectories(double time);
-  [[nodiscard]] bool has_looked_from_end(const Member& member) const;
+  [[nodiscard]] bool is_at_end(const Member& member, const Pose& pose) const;
   [[nodiscard]] bool has_looked(const Member& member, double time) const;
   [[nodiscard]] std::optional<PlanReason> reason_to_plan(const Member& member, double time) const;
   [[nodiscard]] PlannedMotion plan(std::size_t robot, PlanReason reason, double time);

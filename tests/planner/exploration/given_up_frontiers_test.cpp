@@ -162,5 +162,26 @@ TEST_P(GivenUpFrontiersBy, AreAtLastThoseOfASensorThatShowsNothing) {
   EXPECT_TRUE(exploration.end());
 }
 
+// The last scan before a sensor fails may show nothing, and be from anywhere.
+TEST_P(GivenUpFrontiersBy, AreNoneForAnEmptyScanFromElsewhere) {
+  const TeamInWorld team("room", 1, {small_uav()});
+  ExplorationOptions options = TeamInMotion::options(team, GetParam());
+  options.commitment = 2.0;
+  ContinuousExploration exploration(options, team.empty_map());
+  exploration.begin(team.starts, 0.0);
+  exploration.insert(0, team.starts[0].pose,
+                     scan_with(team.starts[0].pose, std::numeric_limits<float>::quiet_NaN(), 10.0));
+  std::size_t keys = 0, goals = 0;
+  for (double time = 0.0; time < 60.0; time += 0.1)
+    while (const auto now = exploration.plan(time)) {
+      keys += now->step.robots[0].still_unknown.size();
+      const auto& goal = now->step.robots[0].goal.pose;
+      // Farther than the half a voxel within which a scan counts as from there.
+      goals += goal && (goal->position - team.starts[0].pose.position).norm() > 0.16 ? 1 : 0;
+    }
+  EXPECT_GT(goals, 10U);
+  EXPECT_EQ(keys, 0U);
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -275,6 +275,8 @@ TEST_F(MeshFile, OtherFormatsSurviveTruncation) {
   ASSERT_TRUE(whole.starts_with("solid"));
   for (const std::size_t part : {whole.size() / 2, whole.find("endsolid")})
     expect_refused(save("cut.stl", whole.substr(0, part)), "ends before its last line");
+  for (const char* end : {"ENDSOLID", "end solid", "endsolid facets"})
+    static_cast<void>(read_mesh_world(save("whole.stl", test::replaced(whole, "endsolid", end))));
   for (const auto& [name, bytes] :
        {std::pair("cut.obj", house_obj()), std::pair("cut.stl", whole),
         std::pair("cut.dae", house_dae("Z_UP", "1")), std::pair("cut.gltf", house_gltf())})

@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxFileSize = std::uint64_t{1} << 30U;
 // Of one in words: Assimp takes what there is. The others, which may begin with "solid" as well, tell their
 // length.
 void check_end_of_stl(const std::filesystem::path& file, std::string_view bytes) {
-  constexpr std::size_t kHeader = 80, kTriangle = 50;
+  constexpr std::size_t kHeader = 80, kTriangle = 50, kEnd = 4096;  // bytes; the last line is in the last
   std::size_t announced = 0;
   if (bytes.size() >= kHeader + 4)
     announced = kHeader + 4 + kTriangle * from_bytes<std::uint32_t>(&bytes[kHeader], std::endian::little);
@@ -30,8 +30,11 @@ void check_end_of_stl(const std::filesystem::path& file, std::string_view bytes)
   if ((announced != 0 && announced <= bytes.size()) || first == std::string_view::npos ||
       !bytes.substr(first).starts_with("solid"))
     return;
-  const std::size_t last = bytes.rfind("endsolid");
-  if (last == std::string_view::npos || bytes.find("facet", bytes.find('\n', last)) != std::string_view::npos)
+  std::string end(bytes.substr(bytes.size() - std::min(bytes.size(), kEnd)));
+  for (char& c : end)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::size_t last = std::min(end.rfind("endsolid"), end.rfind("end solid"));
+  if (last == std::string::npos || end.find("facet", end.find('\n', last)) != std::string::npos)
     fail(file, "ends before its last line, which begins with 'endsolid'",
          "the file is incomplete: get another copy of it");
 }
