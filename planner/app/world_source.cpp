@@ -6,6 +6,7 @@
 #include "terminal.hpp"
 #include "text.hpp"
 
+#include <frontlux/machine.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
 #include <frontlux/sim/ground_truth.hpp>
@@ -81,8 +82,13 @@ double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds
           : "give a larger --resolution";
   if (voxels > static_cast<double>(kMostVoxels))
     throw BadInput(what + ", too many: a map holds at most " + std::to_string(kMostVoxels) + "; " + advice);
+  const auto bytes = static_cast<std::uint64_t>(voxels), available = available_memory();  // a byte each
+  if (bytes > available)
+    throw BadInput(what + ", which take " + bytes_text(bytes) + " of memory and more where " +
+                   bytes_text(available) + " are left; " + advice);
   ProgressLine().clear();
-  std::cerr << "frontlux: warning: " << what << ", which may take much memory; " << advice << '\n';
+  std::cerr << "frontlux: warning: " << what << ", which take " << bytes_text(bytes)
+            << " of memory and more; " << advice << '\n';
   return voxels;
 }
 

@@ -154,6 +154,20 @@ TEST_F(MapCommandTest, RefusesRaysThatSpreadOutTooFarForTheirNumber) {
   EXPECT_EQ(run(test::joined(words, {"--bounds", "-10,-10,-10,10,10,10"})).code, 0);
 }
 
+// Three bytes a point: a file of 100 kB, whose rays go through 260,000 cubes of eight voxels.
+TEST_F(MapCommandTest, RefusesManyRaysOfASmallFile) {
+  std::filesystem::create_directory(path("far"));
+  std::string cloud =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 33000\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nend_header\n";
+  test::Random random(2);
+  for (int i = 0; i < 3 * 33'000; ++i) cloud += static_cast<char>(random.below(256));
+  write("far/far.ply", cloud);
+  write("far/poses.csv", "far.ply,-128,-128,-128,0\n");
+  expect_refused({path("far"), "-o", path("far.bt"), "--resolution", "0.5"},
+                 "rays spread out too far for their number");
+}
+
 TEST_F(MapCommandTest, RefusesBadInputAndWritesNothing) {
   const std::string graph = path("scans.graph"), map = path("new.bt");
   expect_refused({path("none.graph"), "-o", map}, "no such file");

@@ -4,6 +4,7 @@
 #include "planner/recording/random_recording.hpp"
 #include "recording/record_bytes.hpp"
 #include "recording/recording_format.hpp"
+#include "setup/explore_options.hpp"
 #include "support/folder_test.hpp"
 
 #include <frontlux/file.hpp>
@@ -288,6 +289,37 @@ std::vector<std::string> run_json_seeds() {
     "clearance_min_m": 0.1, "separation_min_m": null, "by_robot": {"ugv0": {"idle_s": 1.5, "held_back": 2}}})"};
 }
 
+// The options of a run, in its recording and in run.json.
+bool read_options(const std::string& bytes) {
+  std::string written, again;
+  try {
+    written = app::json_text(app::explore_options_of(bytes));
+    again = app::json_text(app::explore_options_of(written));
+  } catch (const std::runtime_error&) {
+    if (written.empty()) return false;
+  }
+  if (written != again) throw std::logic_error("options are written as " + written + ", then as " + again);
+  return true;
+}
+
+std::vector<std::string> options_seeds() {
+  app::ExploreOptions given;
+  given.name = "night";
+  given.source.world = "office.ply";
+  given.source.box = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(8, 9.5, 3));
+  given.source.scale = 0.001;
+  given.source.start = Eigen::Vector3f(0.1F, 1, 1);
+  given.world_path = {"/home/\xff/office.ply"};
+  given.team.clear();
+  given.robots = io::read_task(fs::path(FRONTLUX_DATA_DIR) / "tasks" / "room.json").robots;
+  given.max_steps = 7;
+  given.epsilon = 0.5;
+  given.lockstep = true;
+  app::read("uav=1,2,1.5,-0.5", given.poses.emplace_back());
+  app::read("uav=120,ugv=3.5", given.failures);
+  return {app::json_text({}), app::json_text(given)};
+}
+
 }  // namespace
 
 const std::vector<Format>& formats() {
@@ -302,6 +334,7 @@ const std::vector<Format>& formats() {
       {"recording", read_run, run_seeds},
       {"record", read_record, record_seeds},
       {"run_json", read_run_json, run_json_seeds},
+      {"options", read_options, options_seeds},
       {"obj", read_mesh<kObj>, obj_seeds, false},
       {"stl", read_mesh<kStl>, stl_seeds, false},
       {"dae", read_mesh<kDae>, dae_seeds, false},

@@ -47,7 +47,8 @@ struct Recording {
   std::size_t scans = 0;
   std::function<std::string(std::size_t)> name;  // for messages
   std::function<RecordedScan(std::size_t)> scan;
-  std::string warning;  // empty: there is none
+  std::uintmax_t bytes = 0;  // of its files
+  std::string warning;       // empty: there is none
 };
 
 // Which clouds are not mapped, and which again and again, in words.
@@ -78,28 +79,41 @@ std::string differences(const std::filesystem::path& folder, const std::filesyst
   return what.empty() ? what : pose_file.string() + ": " + what;
 }
 
+std::uintmax_t size_of_file(const std::filesystem::path& file) {
+  std::error_code error;  // what is wrong with a file, reading says
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return error ? 0 : size;
+}
+
 // Work follows from the clouds' sizes: a line is few bytes, and each maps a cloud once more.
-void check_lines(const std::filesystem::path& folder, const std::filesystem::path& pose_file,
-                 const std::vector<io::RecordedPose>& poses) {
+// @return bytes of all clouds
+std::uintmax_t check_lines(const std::filesystem::path& folder, const std::filesystem::path& pose_file,
+                           const std::vector<io::RecordedPose>& poses) {
   constexpr int kMostLines = 10;
   std::map<std::filesystem::path, int> lines;
-  std::error_code error;  // what is wrong with a file, reading says
-  for (const io::RecordedPose& pose : poses)
-    if (++lines[std::filesystem::weakly_canonical(folder / pose.file, error)] > kMostLines)
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (const io::RecordedPose& pose : poses) {
+    const std::filesystem::path file = std::filesystem::weakly_canonical(folder / pose.file, error);
+    const int count = ++lines[file];
+    if (count == 1) bytes += size_of_file(file);
+    if (count > kMostLines)
       throw BadInput(pose_file.string() + ": " + quote(pose.file) + " has more than " +
                      std::to_string(kMostLines) + " lines; a cloud is mapped with each, so give it few");
+  }
+  return bytes;
 }
 
 Recording open_folder(const std::filesystem::path& folder, const std::string& given) {
   const std::filesystem::path pose_file = given.empty() ? folder / "poses.csv" : std::filesystem::path(given);
   const auto poses = std::make_shared<std::vector<io::RecordedPose>>(io::read_pose_file(pose_file));
-  check_lines(folder, pose_file, *poses);
+  const std::uintmax_t bytes = check_lines(folder, pose_file, *poses);
   const auto file = [folder, poses](std::size_t i) { return folder / (*poses)[i].file; };
   return {poses->size(), [file](std::size_t i) { return file(i).string(); },
           [file, poses](std::size_t i) {
             return RecordedScan{(*poses)[i].T_world_sensor, io::read_point_cloud(file(i))};
           },
-          differences(folder, pose_file, *poses)};
+          bytes, differences(folder, pose_file, *poses)};
 }
 
 Recording open_graph(const std::filesystem::path& file, const std::string& pose_file) {
@@ -115,6 +129,7 @@ Recording open_graph(const std::filesystem::path& file, const std::string& pose_
   return {scans->size(),
           [file](std::size_t i) { return file.string() + ": scan " + std::to_string(i + 1); },
           [scans](std::size_t i) { return (*scans)[i]; },
+          size_of_file(file),
           {}};
 }
 
@@ -137,18 +152,19 @@ void check_lengths(const std::vector<Eigen::Vector3f>& points, const Eigen::Vect
 }
 
 // How far the rays of all scans spread out. Isolated voxels take some 280 bytes, so that few rays that go far
-// apart take memory that does not follow from their number.
+// apart take memory that does not follow from the files' size.
 class Spread {
  public:
-  explicit Spread(const Mapping& mapping) : mapping_(mapping) {}
+  /// @param bytes  of all files
+  Spread(const Mapping& mapping, std::uintmax_t bytes)
+      : mapping_(mapping), most_(std::max(kFew, kForEachPoint * (bytes / kPointBytes))) {}
 
   void check(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& origin,
              const std::string& name) {
-    constexpr std::size_t kFew = 200'000, kForEachPoint = 20;  // cubes: 0.9 GB, 0.1 MB
     points_ += points.size();
     for (const Eigen::Vector3f& point : points) {
       if (mapping_.grid().lattice().key(point)) add_ray(origin, point);
-      if (cubes_.size() > std::max(kFew, kForEachPoint * points_))
+      if (cubes_.size() > most_)
         throw BadInput(name + ": up to here " + std::to_string(points_) +
                        " rays spread out too far for their number, and the map would take much memory; give "
                        "--max-range, --bounds, or a coarser --resolution");
@@ -168,7 +184,11 @@ class Spread {
     }
   }
 
+  static constexpr std::uintmax_t kFew = 200'000, kForEachPoint = 20;  // cubes: 0.9 GB, 0.1 MB
+  static constexpr std::uintmax_t kPointBytes = 12;                    // three numbers as clouds have them
+
   const Mapping& mapping_;
+  std::uintmax_t most_;
   std::size_t points_ = 0;
   std::unordered_set<std::uint64_t> cubes_;  // that rays go through
 };
@@ -177,7 +197,7 @@ Points map_scans(const Recording& recording, const Options& options, Mapping& ma
   const double max_range = options.max_range.value_or(std::numeric_limits<double>::infinity());
   const ProgressLine progress;
   Points points;
-  Spread spread(mapping);
+  Spread spread(mapping, recording.bytes);
   for (std::size_t i = 0; i < recording.scans; ++i) {
     progress.show("scan " + std::to_string(i + 1) + " of " + std::to_string(recording.scans));
     const RecordedScan scan = recording.scan(i);
