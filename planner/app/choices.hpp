@@ -66,12 +66,6 @@ inline constexpr auto kChoices<planner::TourPart> = choices_of(planner::kTourPar
 template <>
 inline constexpr auto kChoices<planner::SensorModel> = choices_of(planner::kSensorModelNames);
 
-/// The paper's robots.
-enum class RobotKind { kUgv, kUav };
-template <>
-inline constexpr std::array<Choice<RobotKind>, 2> kChoices<RobotKind>{
-    {{"ugv", RobotKind::kUgv}, {"uav", RobotKind::kUav}}};
-
 /// Has a table of choices.
 template <class Value>
 concept Chosen = !kChoices<Value>.empty();

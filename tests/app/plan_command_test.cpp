@@ -81,6 +81,34 @@ TEST_F(PlanCommandTest, WritesAPathForEachRobotAndPlanner) {
     }
 }
 
+TEST_F(PlanCommandTest, TakesARobotFromAFile) {
+  const auto words = [&](const std::string& robot, const std::string& from, const std::string& to) {
+    return std::vector<std::string>{path("hall.bt"), "--robot", robot, "--from",        from,
+                                    "--to",          to,        "-o",  path("path.csv")};
+  };
+  for (const auto& [robot, z] : {std::pair<std::string, std::string>("ugv", "0.75"), {"uav", "1.9"}}) {
+    const std::string file = FRONTLUX_DATA_DIR "/robots/" + robot + ".json";
+    expect_answer(words(robot, "1.5,1.1," + z + ",0", "7.5,1.3," + z));
+    const std::string path_by_word = content_of(path("path.csv"));
+    expect_answer(words(file, "1.5,1.1," + z + ",0", "7.5,1.3," + z));
+    EXPECT_EQ(content_of(path("path.csv")), path_by_word);
+  }
+  // In a corner where a ugv of 1.0 m does not fit.
+  const std::string small =
+      write("small.json", R"({"name": "mouse", "motion": "ground", "box_m": [0.2, 0.2, 0.4],
+    "mount_height_m": 0.35, "step_m": 0.3, "slope_deg": 0, "sensor": {"kind": "cone", "horizontal_deg": 30, "range_m": 5,
+    "columns": 10, "rows": 1}})");
+  expect_refused(words("ugv", "1.5,1.1,0.75,0", "0.3,0.3,0.75"), "--to: the path to 0.3,0.3,0.75 ");
+  expect_answer(words(small, "1.5,1.1,0.35,0", "0.3,0.3,0.35"), {"robot        mouse, "});
+  expect_refused(test::joined(words(small, "1.5,1.1,0.35,0", "0.3,0.3,0.35"), {"--require-ground", "off"}),
+                 "--require-ground: the mouse goes up and down");
+  const std::string low = write("low.json", R"({"name": "low", "motion": "ground", "box_m": [0.2, 0.2, 0.2],
+    "mount_height_m": 0.15, "step_m": 0.3, "sensor": {"kind": "cone", "horizontal_deg": 30, "range_m": 5,
+    "columns": 10, "rows": 1}})");
+  expect_refused(words(low, "1,1,1,0", "2,2,1"), "--robot: " + low + ": travel corridor: steps and slopes");
+  expect_refused(words(write("bad.json", "{"), "1,1,1,0", "2,2,1"), "bad.json: line 1");
+}
+
 TEST_F(PlanCommandTest, ArrivesLookingAheadWithoutAYaw) {
   expect_answer({path("hall.bt"), "--robot", "uav", "--from", "1,1.1,2,3", "--to", "1.3,3.1,2", "-o",
                  path("path.csv")});
@@ -161,7 +189,7 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
       }
     return test::joined(words, {option, value});
   };
-  expect_refused(with("--robot", "boat"), "--robot: 'boat' is none of ugv, uav");
+  expect_refused(with("--robot", "boat"), "--robot: 'boat' is none of ugv, uav, and no file");
   for (const std::string word : {"1,2,3", "1,nan,0.75,0", "1,2,0.75,1e999", "1,2,0.75,0,0"})
     expect_refused(with("--from", word), "--from: '" + word + "' is not four finite numbers");
   expect_refused(with("--from", "1,2,0.75,90"), "--from: '1,2,0.75,90' has a yaw of more than a turn");
@@ -171,7 +199,7 @@ TEST_F(PlanCommandTest, RefusesWhatItCannotUse) {
   expect_refused(with("--from", "-3,1.3,0.75,0"), "--from: at -3,1.3,0.75,0 the ugv is");
   for (const std::string word : {"1,2,3,4,5", "1,2", ""})
     expect_refused(with("--to", word), "--to: '" + word + "' is not three or four finite numbers");
-  expect_refused(with("--to", "7.5,1.3,2"), "--to: 7.5,1.3,2 is not on the ugv's plane");
+  expect_refused(with("--to", "7.5,1.3,2"), "--to: 7.5,1.3,2 is not on the plane of the ugv");
   expect_refused(with("--to", "4.65,1.3,0.75"), "--to: the path to 4.65,1.3,0.75 ");
   expect_refused(with("--planner", "prm"),
                  "--planner: 'prm' is none of corridor, rrt, rrt-connect, rrt-star");

@@ -137,6 +137,15 @@ TEST_F(RenderCommand, PointsHoldAllCells) {
   }
 }
 
+TEST_F(RenderCommand, TakesARobotFromAFile) {
+  for (const std::string robot : {"ugv", "uav"}) {
+    const std::string at = robot == "ugv" ? kStart : "5.25,5.25,1.65";
+    expect_answer(words(robot, at, "word.csv"), {});
+    expect_answer(words(FRONTLUX_DATA_DIR "/robots/" + robot + ".json", at, "file.csv"), {});
+    EXPECT_EQ(content_of(path("file.csv")), content_of(path("word.csv")));
+  }
+}
+
 TEST_F(RenderCommand, RefusesGiantLeavesBeforeTheWorkBegins) {
   for (unsigned depth = 2; depth < 7; ++depth)
     for (const std::string robot : {"ugv", "uav"}) {
@@ -160,7 +169,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("ugv", "nan,0,0", {}, {"--at: 'nan,0,0' is not three finite numbers"});
   refuse("ugv", "1,2", {}, {"--at: '1,2' is not three finite numbers"});
   refuse("ugv", "1e9,0,0", {}, {"--at: 1e+09, 0, 0", "key range"});
-  refuse("boat", kStart, {}, {"--robot: 'boat' is none of ugv, uav"});
+  refuse("boat", kStart, {}, {"--robot: 'boat' is none of ugv, uav, and no file"});
   expect_refused(words("ugv", kStart, "x.jpg"),
                  {"--output", "x.jpg does not end in .png or .svg or .pdf or .ply or .csv"});
   expect_refused(words("ugv", kStart, "no/x.png"), {"--output", "there is no folder"});
@@ -170,8 +179,8 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("ugv", kStart, {"--seed", "-1"}, {"--seed", "'-1'"});
   refuse("ugv", kStart, {"--mode", "fast"}, {"--mode", "fast"});
   refuse("ugv", kStart, {"--caster", "gpu"}, {"--caster", "gpu"});
-  refuse("ugv", kStart, {"--floor", "1"}, {"--floor: a ugv"});
-  refuse("uav", kStart, {"--any-ground"}, {"--any-ground: a uav"});
+  refuse("ugv", kStart, {"--floor", "1"}, {"--floor: the ugv stays on the ground"});
+  refuse("uav", kStart, {"--any-ground"}, {"--any-ground: the uav does not drive"});
   refuse("ugv", kStart, {"--bounds", "0,0,0,1,1"}, {"--bounds: '0,0,0,1,1' is not six finite numbers"});
   refuse("ugv", kStart, {"--bounds", "50,50,0,60,60,1"}, {"--bounds: no voxel within is known"});
   refuse("ugv", kStart, {"--bounds", "1,1,1,0,0,0"},

@@ -25,7 +25,7 @@ TEST_F(ScanCommand, MapsARoomTwiceTheSame) {
   };
   expect_answer(words("a.ot"),
                 {"world        room\n", "scans        ", "free         ", "occupied     ", "unknown      ",
-                 "% of the observable space", "UGV          starts at", "UAV          starts at"});
+                 "% of the observable space", "ugv          starts at", "uav          starts at"});
   expect_answer(words("b.ot"));
   EXPECT_TRUE(content_of(map("a.ot")) == content_of(map("b.ot")));
   EXPECT_EQ(std::get<std::shared_ptr<octomap::OcTree>>(read_octree(map("a.ot")))->getResolution(), 0.3);
@@ -43,6 +43,9 @@ TEST_F(ScanCommand, LooksFromThePosesOfAFile) {
       write("poses.csv", "x,y,z,yaw\n# the start\n" + start + ",1,0\n\n" + start + ",1.5,3.1\n");
   expect_answer({"room", "--poses", poses, "-o", map("both.bt")}, {"scans        4\n"});
   expect_answer({"room", "--poses", poses, "--robot", "uav", "-o", map("one.bt")}, {"scans        2\n"});
+  expect_answer(
+      {"room", "--poses", poses, "--robot", FRONTLUX_DATA_DIR "/robots/uav.json", "-o", map("file.bt")});
+  EXPECT_EQ(content_of(map("file.bt")), content_of(map("one.bt")));
 }
 
 TEST_F(ScanCommand, RefusesPosesByLine) {

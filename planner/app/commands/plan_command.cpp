@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "commands/robot_option.hpp"
 #include "map_file.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
@@ -34,8 +35,8 @@
 namespace frontlux::app {
 namespace {
 
-using planner::PathOptions, planner::PathPlan, planner::PathSearch, planner::Pose, planner::TravelCorridor,
-    planner::TravelOptions;
+using planner::Motion, planner::PathOptions, planner::PathPlan, planner::PathSearch, planner::Pose,
+    planner::TravelCorridor, planner::TravelOptions;
 
 // An end of the path, as the user gives it.
 struct End {
@@ -63,7 +64,7 @@ void read(std::string_view word, To& to) { read_end(word, to, false); }
 
 struct Options {
   std::string map, output;
-  std::optional<RobotKind> robot;
+  RobotWord robot;
   std::optional<Eigen::AlignedBox3d> bounds;
   From from;
   To to;
@@ -76,15 +77,12 @@ struct Options {
   std::optional<planner::Method> mode;
 };
 
+void refuse(bool given, const char* option, const std::string& why) {
+  if (given) throw BadInput(std::string(option) + ": " + why + "; leave the option out");
+}
+
 // Options that would change nothing beside the others.
 void check_options(const Options& options) {
-  const auto refuse = [](bool given, const char* option, const char* why) {
-    if (given) throw BadInput(std::string(option) + ": " + why + "; leave the option out");
-  };
-  if (options.robot == RobotKind::kUgv)
-    refuse(options.min_height.has_value(), "--min-height", "a ugv stays on the plane of --from");
-  else
-    refuse(options.require_ground.has_value(), "--require-ground", "a uav needs no ground");
   if (options.search == PathSearch::kCorridor) {
     refuse(options.iterations.has_value(), "--iterations", "the corridor's shortest path takes none");
     refuse(options.seed.has_value(), "--seed", "the corridor's shortest path is not random");
@@ -102,13 +100,16 @@ PathOptions path_options(const Options& options) {
 }
 
 planner::Robot make_robot(const Options& options) {
-  if (options.robot == RobotKind::kUav) {
-    planner::Robot robot = planner::uav();
-    robot.travel.min_height = options.min_height.value_or(robot.travel.min_height);
-    return robot;
-  }
-  planner::Robot robot = planner::ugv();
-  robot.travel.require_ground = options.require_ground.value_or(true);
+  planner::Robot robot = describe(options.robot).robot;
+  TravelOptions& travel = robot.travel;
+  const std::string name = "the " + robot.name;
+  refuse(options.min_height && travel.drives(), "--min-height", name + " stays on the ground");
+  refuse(options.require_ground && travel.motion == Motion::kSpace, "--require-ground",
+         name + " needs no ground");
+  refuse(options.require_ground && travel.motion == Motion::kGround, "--require-ground",
+         name + " goes up and down, and only where ground is known");
+  travel.min_height = options.min_height.value_or(travel.min_height);
+  travel.require_ground = options.require_ground.value_or(travel.require_ground);
   return robot;
 }
 
@@ -130,12 +131,14 @@ TravelCorridor make_corridor(TravelOptions travel, const VoxelGrid& grid, const 
 
 [[noreturn]] void complain(const Options& options, const planner::Robot& robot,
                            const TravelCorridor& corridor, const PathPlan& plan) {
+  const char* ground_advice =
+      robot.travel.motion == Motion::kPlane && robot.travel.require_ground ? ", or --require-ground off" : "";
   if (corridor.state() != planner::CorridorState::kReady)
     throw BadInput("--from: at " + options.from.word + " the " + robot.name + " " +
-                   std::string(planner::describe(corridor.state())) + "; give another start");
-  const bool on_ground = robot.travel.motion == planner::Motion::kPlane && robot.travel.require_ground;
+                   std::string(planner::describe(corridor.state())) + "; give another start" +
+                   (corridor.state() == planner::CorridorState::kWithoutGround ? ground_advice : ""));
   throw BadInput("--to: the path to " + options.to.word + " " + std::string(planner::describe(plan.outcome)) +
-                 "; give another goal" + (on_ground ? ", or --require-ground off" : ""));
+                 "; give another goal" + ground_advice);
 }
 
 // Without a yaw of --to the robot looks ahead when it arrives.
@@ -229,12 +232,14 @@ void plan(const Options& options) {
   const planner::Robot robot = make_robot(options);
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);
+  check(options.robot, robot, grid.lattice());
   const VoxelKey start = voxel_of(grid.lattice(), "--from", options.from);
   const VoxelKey goal = voxel_of(grid.lattice(), "--to", options.to);
-  if (options.robot == RobotKind::kUgv && goal.z != start.z) {
+  if (robot.travel.motion == Motion::kPlane && goal.z != start.z) {
     const double half = grid.resolution() / 2, middle = grid.lattice().center(start.z);
-    throw BadInput("--to: " + options.to.word + " is not on the ugv's plane, where z is from " +
-                   rounded(middle - half) + " to " + rounded(middle + half) + " m; give the z of --from");
+    throw BadInput("--to: " + options.to.word + " is not on the plane of the " + robot.name +
+                   ", where z is from " + rounded(middle - half) + " to " + rounded(middle + half) +
+                   " m; give the z of --from");
   }
   const KeyBox space = robot_space(map, grid, options.bounds, robot.travel.motion);
   std::optional<WorkingLine> working(std::in_place, "planning");
@@ -262,14 +267,17 @@ void add_plan_command(CLI::App& app) {
   command.add("--bounds", options->bounds, "X,Y,Z,X,Y,Z",
               "Part of the map to drive or fly in: its lowest and its highest corner [all]");
   command.group("Robot");
-  command.add("--robot", options->robot, "Ground robot of 1.0 x 1.0 x 0.7 m, or aerial robot of 0.8 m")
+  command
+      .add("--robot", options->robot, "ugv|uav|FILE",
+           "Ground robot of 1.0 x 1.0 x 0.7 m, aerial robot of 0.8 m, or one described in a .json file")
       .required();
   command.add("--from", options->from, "X,Y,Z,YAW", "Pose of the robot's sensor at the start").required();
   command.add("--to", options->to, "X,Y,Z[,YAW]", "Pose at the goal; without a yaw it looks ahead")
       .required();
-  command.add("--require-ground", options->require_ground, "ugv: drive only where the floor is known [on]");
+  command.add("--require-ground", options->require_ground,
+              "On a plane: drive only where the floor is known [on, or as in the file]");
   command.add("--min-height", options->min_height, "METRES",
-              "uav: least height of its centre above z = 0 [1.2]", kAnyNumber);
+              "In space: least height of its centre above z = 0 [1.2, or as in the file]", kAnyNumber);
   command.group("Path search");
   command.add("--planner", options->search, "Search method; corridor: the corridor's shortest path");
   command.add("--seed", options->seed, "N", "Random seed of the search [1]", kSeeds);

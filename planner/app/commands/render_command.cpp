@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "commands/robot_option.hpp"
 #include "draw/view_picture.hpp"
 #include "map_file.hpp"
 #include "terminal.hpp"
@@ -46,7 +47,7 @@ void read(std::string_view word, Samples& samples) {
 
 struct Options {
   std::string map, output;
-  std::optional<RobotKind> robot;
+  RobotWord robot;
   Eigen::Vector3f at = Eigen::Vector3f::Zero();
   std::optional<Eigen::AlignedBox3d> bounds;
   std::optional<double> floor;
@@ -60,10 +61,6 @@ struct Options {
 
 // Options that would change nothing beside the others.
 void check_options(const Options& options) {
-  if (options.robot == RobotKind::kUgv && options.floor)
-    throw BadInput("--floor: a ugv stays on the plane of --at; leave the option out");
-  if (options.robot == RobotKind::kUav && options.any_ground)
-    throw BadInput("--any-ground: a uav needs no ground; leave the option out");
   const auto ending = std::filesystem::path(options.output).extension();
   if (options.show && (ending == ".csv" || ending == ".ply"))
     throw BadInput("--show: a table holds all cells; leave the option out, or write a .png");
@@ -71,9 +68,15 @@ void check_options(const Options& options) {
 
 TeamMember make_member(const Options& options) {
   TeamMember member;
-  member.robot = options.robot == RobotKind::kUgv ? planner::ugv() : planner::uav(options.mode);
-  member.robot.travel.floor = options.floor.value_or(member.robot.travel.floor);
-  if (options.any_ground) member.robot.travel.require_ground = false;
+  member.robot = describe(options.robot, options.mode).robot;
+  planner::TravelOptions& travel = member.robot.travel;
+  if (options.floor && travel.drives())
+    throw BadInput("--floor: the " + member.robot.name + " stays on the ground; leave the option out");
+  if (options.any_ground && travel.motion != Motion::kPlane)
+    throw BadInput("--any-ground: the " + member.robot.name +
+                   " does not drive on a plane; leave the option out");
+  travel.floor = options.floor.value_or(travel.floor);
+  if (options.any_ground) travel.require_ground = false;
   member.options = planner::goal_options(member.robot, options.mode);
   member.options.prune = false;  // the picture shows them all
   if (options.samples) member.options.rendering.samples = options.samples->number;
@@ -234,9 +237,11 @@ void render(const Options& options) {
   check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"}, std::array{options.map});
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);
+  TeamMember member = make_member(options);
+  check(options.robot, member.robot, grid.lattice());
   const View view = [&] {
     const WorkingLine working("rendering");
-    return look(map, grid, options, make_member(options));
+    return look(map, grid, options, std::move(member));
   }();
   const Stopwatch writing;
   const auto ending = std::filesystem::path(options.output).extension();
@@ -267,12 +272,14 @@ void add_render_command(CLI::App& app) {
               "Part of the map to look at: its lowest and its highest corner [all]");
   command.add("--show", options->show, "Picture: the best cell of each column, or the robot's layer [best]");
   command.group("Robot");
-  command.add("--robot", options->robot, "Ground robot with a lidar, or aerial robot with a depth camera")
+  command
+      .add("--robot", options->robot, "ugv|uav|FILE",
+           "Ground robot with a lidar, aerial robot with a depth camera, or one described in a .json file")
       .required();
   command.add("--at", options->at, "X,Y,Z", "Position of its sensor").required();
-  command.add("--floor", options->floor, "METRES", "uav: height of the floor, above which it keeps 1.2 m [0]",
-              kAnyNumber);
-  command.add_flag("--any-ground", options->any_ground, "ugv: also drive where no floor is known");
+  command.add("--floor", options->floor, "METRES",
+              "In space: height of the floor, above which a uav keeps 1.2 m [0]", kAnyNumber);
+  command.add_flag("--any-ground", options->any_ground, "On a plane: also drive where no floor is known");
   command.group("Method");
   command.add("--mode", options->mode, "What works best, or as printed in the paper");
   command.add("--samples", options->samples, "N|all",

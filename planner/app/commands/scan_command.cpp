@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "commands/commands.hpp"
 #include "commands/output_file.hpp"
+#include "commands/robot_option.hpp"
 #include "commands/sensor_model_option.hpp"
 #include "interrupt.hpp"
 #include "terminal.hpp"
@@ -28,13 +29,25 @@ namespace {
 
 using planner::Mapping, planner::Pose, planner::RobotDescription, sim::GroundTruth, sim::View;
 
-enum class Sensors { kBoth, kUgv, kUav };
+// Whose sensors scan.
+struct Scanners {
+  std::vector<RobotWord> robots{{"ugv"}, {"uav"}};
+};
+void read(std::string_view word, Scanners& scanners) {
+  if (word == "both") return;
+  scanners.robots.assign(1, {});
+  try {
+    read(word, scanners.robots.front());
+  } catch (const BadInput& error) {
+    throw BadInput(error.what() + std::string("; or give both"));
+  }
+}
 
 struct Options {
   WorldSource source;
   std::string output, poses;
   double sweep = 2.5;  // [m]
-  Sensors sensors = Sensors::kBoth;
+  Scanners scanners;
   std::uint64_t seed = 1;
   sim::RangeErrors errors;
   planner::SensorModel sensor_model = planner::kOctomapSensorModel;
@@ -47,13 +60,6 @@ struct Plan {
   std::vector<View> views;
   std::string starts;  // rows of the summary
 };
-
-std::vector<RobotDescription> robots_of(Sensors sensors) {
-  std::vector<RobotDescription> robots;
-  if (sensors != Sensors::kUav) robots.push_back(planner::ugv_description());
-  if (sensors != Sensors::kUgv) robots.push_back(planner::uav_description());
-  return robots;
-}
 
 std::string place_text(const Eigen::Vector3d& at) {
   return rounded(at.x()) + ", " + rounded(at.y()) + ", " + rounded(at.z()) + " m";
@@ -86,7 +92,7 @@ void add_sweep(const Options& options, const GroundTruth& truth, const Eigen::Ve
   const auto starts = sim::find_starts(truth, around, robots);
   std::vector<View> after;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    const char* name = robots[i].name == "ugv" ? "UGV" : "UAV";
+    const std::string& name = robots[i].name;
     const std::optional<Pose>& pose = starts[i];
     if (!pose) {
       plan.starts += row(name, "does not fit within 15 m of the start: left out");
@@ -170,7 +176,10 @@ void run(Options& options) {
       sourced.world, source.resolution,
       sim::free_start(sourced.world, source.resolution, sourced.kind != WorldKind::kMesh));
   Plan plan;
-  plan.robots = robots_of(options.sensors);
+  for (const RobotWord& robot : options.scanners.robots) {
+    plan.robots.push_back(describe(robot));
+    check(robot, plan.robots.back().robot, Lattice(source.resolution));
+  }
   if (!options.poses.empty())
     add_listed_views(options, poses, truth, plan);
   else
@@ -187,10 +196,6 @@ void run(Options& options) {
 
 }  // namespace
 
-template <>
-inline constexpr std::array<Choice<Sensors>, 3> kChoices<Sensors>{
-    {{"both", Sensors::kBoth}, {"ugv", Sensors::kUgv}, {"uav", Sensors::kUav}}};
-
 void add_scan_command(CLI::App& app) {
   Command command(app, "scan", "Map a world with simulated sensors");
   const auto options = std::make_shared<Options>();
@@ -204,7 +209,9 @@ void add_scan_command(CLI::App& app) {
       .add("--poses", options->poses, "FILE",
            "Scan from these sensor poses: lines x,y,z,yaw [m, rad], before the --ground shift")
       .excludes(sweep);
-  command.add("--robot", options->sensors, "Sensors: the ugv's lidar (6 m), the uav's depth camera (10 m)");
+  command.add(
+      "--robot", options->scanners, "both|ugv|uav|FILE",
+      "Sensors of the ugv (lidar, 6 m), the uav (depth camera, 10 m), or a robot's .json file [both]");
   command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
   command.add("--dropout", options->errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
