@@ -307,6 +307,8 @@ class Maps(unittest.TestCase):
         grid = frontlux.VoxelGrid.from_occupancy(states, 0.2, corner=(-1.0, 0.4, 3.0))
         low = grid.keys_of((-0.9, 0.5, 3.1))
         np.testing.assert_array_equal(grid.states(low, low + np.uint16([8, 19, 16])), states)
+        self.assertEqual(repr(grid), "<frontlux.VoxelGrid of 0.2 m: known within 9 x 20 x 17 voxels>")
+        self.assertEqual(repr(frontlux.VoxelGrid(0.1)), "<frontlux.VoxelGrid of 0.1 m: all unknown>")
         self.assertEqual(grid.count()[1:], [(states == 1).sum(), (states == 2).sum()])
         np.testing.assert_array_equal(grid.keys(Occupancy.FREE), np.argwhere(states == 1) + low)
         np.testing.assert_array_equal(grid.at(grid.keys(Occupancy.OCCUPIED)), 2)

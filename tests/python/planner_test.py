@@ -143,6 +143,7 @@ class Robots(unittest.TestCase):
 
     def test_values_are_kept_and_bad_ones_named(self):
         robot = drone()
+        self.assertEqual(repr(robot), "<frontlux.planner.Robot 'drone': space, box of 0.6 x 0.6 x 0.4 m>")
         self.assertEqual((robot.name, robot.motion, robot.columns, robot.rows, robot.rate), ("drone", "space", 48, 36, 4.0))
         np.testing.assert_array_equal(robot.box, [0.6, 0.6, 0.4])
         rover = planner.Robot("rover", "ground", (0.6, 0.5, 0.4), robot.view, 8, 8, step=0.2, slope=0.3)
@@ -375,7 +376,10 @@ class InMotion(unittest.TestCase):
         pose = exploration.at(0, 1.2)["pose"]
         exploration.stopped(0, pose, 1.2)
         np.testing.assert_array_equal(exploration.at(0, 1.3)["pose"], pose)
-        self.assertEqual(exploration.plan(1.3).reason, "stopped")
+        plan = exploration.plan(1.3)
+        self.assertEqual(plan.reason, "stopped")
+        self.assertRegex(repr(plan), r"^<frontlux.planner.Plan of robot 0: stopped, 1.\d\d to \d+.\d\d s>$")
+        self.assertEqual(repr(plan.step), f"<frontlux.planner.Step {plan.step.number}: 1.30 s, {plan.step.frontiers} frontiers>")
 
     def test_a_displaced_robot_plans_from_where_it_is_and_keeps_its_cell(self):
         exploration = in_motion()

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace frontlux::python {
 namespace {
@@ -169,6 +170,18 @@ map's origin. A copy is a snapshot and costs nothing.)")
 states: shape (x, y, z), contiguous; bool (True is occupied, False free) or uint8 (0 unknown, 1 free, 2 occupied).
 resolution: [m] edge of a voxel. corner: [m] shape (3,), lower corner of states[0, 0, 0], rounded to the lattice.
 All other voxels are unknown.)")
+      .def("__repr__",
+           [](const Grid& self) {
+             const auto [resolution, box] = self->use(
+                 [](const VoxelGrid& grid) { return std::pair(grid.resolution(), grid.known_bounds()); });
+             const py::str text("<frontlux.VoxelGrid of {:g} m: {}>");
+             if (!box) return text.format(resolution, "all unknown");
+             const auto size = [](int low, int high) { return high - low + 1; };
+             return text.format(resolution,
+                                py::str("known within {} x {} x {} voxels")
+                                    .format(size(box->min.x, box->max.x), size(box->min.y, box->max.y),
+                                            size(box->min.z, box->max.z)));
+           })
       .def_property_readonly(
           "resolution",
           [](const Grid& self) { return self->use([](const VoxelGrid& grid) { return grid.resolution(); }); },

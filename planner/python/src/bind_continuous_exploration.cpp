@@ -155,6 +155,11 @@ auto property(Value value) {
 void bind_plan(py::module_& module) {
   py::class_<Plan, PlanPointer>(module, "Plan",
                                 "One robot's planning, and what all robots have done since the one before.")
+      .def("__repr__",
+           [](const PlanPointer& self) {
+             return py::str("<frontlux.planner.Plan of robot {}: {}, {:.2f} to {:.2f} s>")
+                 .format(self->robot, self->reason, self->trajectory->begin(), self->trajectory->end());
+           })
       .def_property_readonly(
           "robot", [](const PlanPointer& self) { return self->robot; },
           "Who planned: its number in the team.")

@@ -54,6 +54,11 @@ void bind_exploration_step(py::module_& module) {
                                     R"(What a team of r robots planned, did and mapped between two moments.
 
 Poses are x, y, z [m] and yaw [rad] of sensors, in the map's frame.)")
+      .def("__repr__",
+           [](const Self& self) {
+             return py::str("<frontlux.planner.Step {}: {:.2f} s, {} frontiers>")
+                 .format(self->number, self->time, self->frontiers);
+           })
       .def_property_readonly(
           "number", [](const Self& self) { return self->number; }, "From 0, the start.")
       .def_property_readonly(

@@ -148,6 +148,13 @@ Raises ValueError naming the value that is out of bounds.)")
           },
           py::arg("file"),
           "A robot of a JSON file. Raises RuntimeError naming the file and the value that is wrong.")
+      .def("__repr__",
+           [](const Self& self) {
+             const TravelOptions& travel = self->robot.travel;
+             return py::str("<frontlux.planner.Robot {!r}: {}, {} of {:g} x {:g} x {:g} m>")
+                 .format(self->robot.name, planner::name_of(travel.motion), planner::name_of(travel.shape),
+                         travel.extents.x(), travel.extents.y(), travel.extents.z());
+           })
       .def_property_readonly(
           "name", [](const Self& self) { return self->robot.name; }, "As in messages.")
       .def_property_readonly(
