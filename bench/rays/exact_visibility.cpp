@@ -11,7 +11,7 @@ namespace {
 
 std::array<int, 3> numbers_of(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
-bool is_visible(const VoxelGrid& grid, const KeySegment& segment) {
+bool is_visible(const VoxelGrid& grid, const KeySegment& segment, UnknownPolicy unknown) {
   auto at = numbers_of(segment.from);
   const auto end = numbers_of(segment.to);
   std::array<std::int64_t, 3> distance{}, crossed{};
@@ -29,16 +29,18 @@ bool is_visible(const VoxelGrid& grid, const KeySegment& segment) {
     ++crossed[next];
     at[next] += end[next] > at[next] ? 1 : -1;
     if (at == end) return true;
-    if (grid.at(make_key(at[0], at[1], at[2])) != Occupancy::kFree) return false;
+    const Occupancy state = grid.at(make_key(at[0], at[1], at[2]));
+    if (state == Occupancy::kOccupied || (state == Occupancy::kUnknown && unknown == UnknownPolicy::kBlock))
+      return false;
   }
 }
 
 }  // namespace
 
 void exact_visibility(const VoxelGrid& grid, std::span<const KeySegment> segments,
-                      std::span<std::uint8_t> visible) {
+                      std::span<std::uint8_t> visible, UnknownPolicy unknown) {
   for_each_chunk(segments.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i != end; ++i) visible[i] = is_visible(grid, segments[i]) ? 1 : 0;
+    for (std::size_t i = begin; i != end; ++i) visible[i] = is_visible(grid, segments[i], unknown) ? 1 : 0;
   });
 }
 

@@ -125,7 +125,7 @@ void Trial::add_visible(std::span<const Peer> peers) {
     entries_.push_back({c, c.caster != kOctomap, pass, read});
   }
   const auto by_definition = [this] {
-    exact_visibility(subject_.grid, workload_.segments, buffers_->visible);
+    exact_visibility(subject_.grid, workload_.segments, buffers_->visible, UnknownPolicy::kBlock);
   };
   reference_ = {{}, true, by_definition, read};
   for (const Peer& peer : peers) {

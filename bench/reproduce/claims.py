@@ -251,7 +251,7 @@ def paper_time_lines(results, mode, steps):
         seconds = [r["planning_mean_s"] for r in results.of(world, steps, timed=True) if r["planning_mean_s"] is not None]
         late = [s for s in seconds if s >= paper.LONGEST_PLANNING]
         yield Line(f"{mode}, {world}: planning takes less than 5 s a step on average",
-                   value(max(seconds), 3, " s") if seconds else "",
+                   f"{value(max(seconds), 3, ' s')} at most, {counted(len(seconds), 'run')}" if seconds else "",
                    NOT_MEASURED if not seconds else failed("not reproduced") if late else "reproduced")
 
 
@@ -366,7 +366,7 @@ def apart_line(who, runs, fewest):
 
 
 def mapped_line(who, runs, fewest):
-    failures = [r for r in runs if r.failure]
+    failures = [r for r in runs if r.failure or r["failed_before"]]
     return Line(f"{who}: every run ends by itself with the world mapped (99 %, hospital 90 %)",
                 f"{counted(len(failures), 'failure')} in {counted(len(runs), 'run')}" if runs else "",
                 none_of(failures, runs, fewest=fewest))
@@ -418,7 +418,8 @@ def sameness_lines(results):
               if r.run.method in casters}, lambda run: run.method in casters),
             ("One and two threads give the same run", {r.run[:3]: r for r in results.all.values() if r.run.timed},
              lambda run: run.timed)):
-        pairs = [(plain_runs[key], other) for key, other in others.items() if key in plain_runs]
+        pairs = [(plain_runs[key], other) for key, other in others.items()
+                 if key in plain_runs and not plain_runs[key].crashed and not other.crashed]
         unlike = [a for a, b in pairs if a["outcome"] != b["outcome"]]
         yield Line(claim, f"{len(pairs) - len(unlike)} of {len(pairs)} pairs of runs are the same" if pairs else "",
                    none_of(unlike, pairs, "pair", declared(results, is_other)))

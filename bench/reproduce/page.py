@@ -203,8 +203,8 @@ What was not mapped is in view only of smaller robots (narrow), of none (hidden)
 ## What must hold
 
 {summary(ours)} *Open* is what these runs do not decide: a verdict needs
-{NEEDED} pairs in each world ({NEEDED_OF_FILES} in worlds of others, where only the start differs), or so many runs, and of what is
-measured at the end at most a tenth of a method's runs failed. *Not judged* is the time to the end.
+{NEEDED} pairs in each world ({NEEDED_OF_FILES} in worlds of others, where only the start differs), or so many runs (of planning times, and
+of runs that are to be the same, as many as are declared), and of what is measured at the end at most a tenth of a method's runs failed. *Not judged* is the time to the end.
 
 {lines_table(ours)}
 **Would they notice?** Lines of the same kinds about runs that are spoilt on purpose, judged by as few pairs as are declared of

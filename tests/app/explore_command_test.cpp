@@ -200,8 +200,10 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   expect_refused(with({"--samples", "0"}), {"--samples"});
   for (const char* option : {"--dropout", "--drift", "--scan-loss"})
     expect_refused(with({option, "1.01"}), {option});
-  for (const char* option : {"--dropout", "--scan-loss"})
+  for (const char* option : {"--dropout", "--scan-loss"}) {
     expect_refused(with({option, "1"}), {option, "of 1 nothing is ever measured", "--stop-time"});
+    expect_refused(with({option, "1", "--fail", "uav=3"}), {option, "of 1 nothing is ever measured"});
+  }
   expect_refused(with({"--fix-every", "-1"}), {"--fix-every"});
   for (const char* option : {"--tracking-error", "--noise"})
     for (const char* metres : {"-0.1", "10.1", "nan"})

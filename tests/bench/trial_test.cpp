@@ -1,7 +1,7 @@
 // That the harness finds wrong answers, and by what it judges.
 #include "rays/trial.hpp"
 
-#include "octomap/own_castray.hpp"
+#include "rays/castray_loop.hpp"
 #include "rays/exact_visibility.hpp"
 #include "support/complaint.hpp"
 #include "support/folder_test.hpp"
@@ -109,23 +109,33 @@ TEST(ExactVisibility, IsThatOfTheGrid) {
     const VoxelGrid grid = make_voxel_grid(frontlux::test::make_random_tree(seed, 0.3));
     const auto segments = frontlux::test::adversarial_key_segments(grid, 20'000, seed);
     std::vector<std::uint8_t> expected(segments.size()), visible(segments.size());
-    make_grid_ray_caster(grid)->visible(segments, expected, UnknownPolicy::kBlock);
-    exact_visibility(grid, segments, visible);
-    EXPECT_EQ(visible, expected);
-    EXPECT_GT(std::ranges::count(visible, 1), 1000);
-    EXPECT_GT(std::ranges::count(visible, 0), 1000);
+    for (const UnknownPolicy unknown : {UnknownPolicy::kBlock, UnknownPolicy::kPass}) {
+      make_grid_ray_caster(grid)->visible(segments, expected, unknown);
+      exact_visibility(grid, segments, visible, unknown);
+      EXPECT_EQ(visible, expected);
+      EXPECT_GT(std::ranges::count(visible, 1), 1000);
+      EXPECT_GT(std::ranges::count(visible, 0), 1000);
+    }
   }
 }
 
-// The copy in OctoMap's library prints of each ray that leaves the key range.
+// Where castRay is timed, and where answers are compared with it. The copy in OctoMap's library prints of
+// each ray that leaves the key range.
 TEST(OwnCastray, IsNotTheOneInTheLibrary) {
-  const auto tree =
+  const Octree tree =
       frontlux::test::make_noise_tree(1, 0.1, 4);  // elsewhere, so that its class is not known here
-  octomap::point3d end;
+  const std::vector<Ray> rays = {{{9, 9, 9}, {1, 0, 0}, -1.0}};
+  constexpr float kLast = 3276.75F;  // [m] middle of the last voxel
+  CastRayAnswers answers(1);
+  std::vector<Hit> hits(1);
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(detail::own_castray(*tree, {9, 9, 9}, {1, 0, 0}, end, true, -1.0));
+  cast_ray_loop(tree, rays, UnknownPolicy::kPass, answers);
+  make_octomap_ray_caster(tree)->cast(rays, hits, UnknownPolicy::kPass);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_NEAR(end.x(), 3276.75, 0.01);  // of the last voxel
+  EXPECT_FALSE(answers.occupied[0]);
+  EXPECT_FALSE(hits[0].occupied());
+  EXPECT_NEAR(answers.end[0].x(), kLast, 0.01);
+  EXPECT_NEAR(hits[0].end.x(), kLast, 0.01);
 }
 
 using SubjectTest = frontlux::test::FolderTest;

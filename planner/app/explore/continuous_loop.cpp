@@ -63,6 +63,22 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
     note_end();  // with a limit of no plannings
     return first;
   }
+  // Of a step that is lost nothing is told: that would be of another moment than the recording.
+  const std::size_t moments = numbers_.mapped.size();
+  std::vector<Mapped> mapped = std::move(numbers_.mapped);
+  RunNumbers before = numbers_;
+  numbers_.mapped = std::move(mapped);
+  try {
+    return plan_or_finish(recorded);
+  } catch (const Interrupted&) {
+    before.mapped = std::move(numbers_.mapped);
+    before.mapped.resize(moments);
+    numbers_ = std::move(before);
+    throw;
+  }
+}
+
+ExplorationStep ContinuousLoop::plan_or_finish(const ExplorationStep* recorded) {
   std::optional<Stopwatch> waiting;  // since somebody wants the run to stop
   for (;;) {
     if (InterruptNote::taken()) {
@@ -78,7 +94,7 @@ ExplorationStep ContinuousLoop::go_on(const ExplorationStep* recorded) {
       }
     if (lose_robots()) note_end();
     if (end_) return exploration_.finish(time_);
-    sense();
+    move_and_sense();
     if (auto limit = limit_reached(setup_, numbers_.mapped.back())) {
       end_ = std::move(limit);
       return exploration_.finish(time_);
@@ -105,16 +121,36 @@ bool ContinuousLoop::lose_robots() {
   return any;
 }
 
-void ContinuousLoop::sense() {
+// [s] That of the next scan, or before it of something that waits for none.
+double ContinuousLoop::next_moment() const {
+  constexpr double kRounding = 1e-6;
+  const double scan = robots_.next_time();
+  double moment = scan;
+  const auto at_latest = [&](double time) {
+    if (time > time_ && time < moment) moment = time;
+  };
+  if (const double planning = time_ + exploration_.options().period; planning < scan - kRounding)
+    at_latest(planning);
+  if (setup_.stop_time) at_latest(*setup_.stop_time);
+  for (const std::optional<double>& failure : setup_.failures)
+    if (failure) at_latest(*failure);
+  return moment;
+}
+
+void ContinuousLoop::move_and_sense() {
   std::vector<sim::MovingRobots::Stopped> stopped;
-  const double next = robots_.next_time();
+  const double moment = next_moment();
   const auto where = [this](std::size_t robot, double time) { return exploration_.at(robot, time); };
-  sim::MovingRobots::Sensed sensed = robots_.advance(where, stopped);
-  time_ = next;
+  std::optional<sim::MovingRobots::Sensed> sensed;
+  if (moment < robots_.next_time())
+    robots_.move_until(moment, where, stopped);
+  else
+    sensed = robots_.advance(where, stopped);
+  time_ = moment;
   note_motion(stopped);
   judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
-  if (!numbers_.robots[sensed.robot].failed) scans_.send(std::move(sensed));
+  if (sensed && !numbers_.robots[sensed->robot].failed) scans_.send(std::move(*sensed));
   Mapped mapped = numbers_.mapped.back();
   for (const auto& [taken, robot, pose, scan] : scans_.arrived(time_))
     count(exploration_.insert(robot, pose, scan), mapped);

@@ -31,9 +31,11 @@ class ContinuousLoop final : public RunLoop {
  private:
   // The next step; `recorded` if it is taken again, with the times that it took then.
   planner::ExplorationStep go_on(const planner::ExplorationStep* recorded);
+  planner::ExplorationStep plan_or_finish(const planner::ExplorationStep* recorded);
   void note_end();
   bool lose_robots();
-  void sense();
+  [[nodiscard]] double next_moment() const;
+  void move_and_sense();
   void count(const MapChange& change, Mapped& mapped);
   void note_numbers(Mapped mapped);
   void judge_contacts();
@@ -49,7 +51,7 @@ class ContinuousLoop final : public RunLoop {
   std::vector<std::size_t> judged_;  // contacts of each robot, by the map
   std::optional<RunEnd> end_;
   bool begun_ = false;
-  double time_ = 0.0;          // [s] of the last scan
+  double time_ = 0.0;          // [s] until which robots have moved
   std::uint64_t samples_ = 0;  // of the motion
   MotionRows rows_;
 };

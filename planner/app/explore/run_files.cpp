@@ -152,7 +152,8 @@ void RunFiles::add(const RecordedStep& recorded) {
   sums_.bounding = fraction(bounding, head_.bounding);
   if (step.number > 0) {
     ++sums_.steps;
-    sums_.planning.push_back(step.planning_seconds());
+    // In the last one in motion nobody plans.
+    if (const double seconds = step.planning_seconds(); seconds > 0.0) sums_.planning.push_back(seconds);
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
       sums_.seconds[phase] += step.seconds[phase];
   }

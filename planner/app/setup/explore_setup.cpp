@@ -117,12 +117,12 @@ void check_errors_in_motion(const ExploreOptions& options) {
         or_in_task(options));
   for (const auto& [part, name] :
        {std::pair(options.errors.dropout, "--dropout"), {options.message_errors.loss, "--scan-loss"}})
-    if (part == 1.0 && !options.stop_time && !options.max_steps && !options.lockstep &&
-        options.failures.each.empty())
-      throw BadInput(std::string(name) +
-                     ": of 1 nothing is ever measured, so that the run would not end; give less, or "
-                     "--stop-time or --max-steps as well" +
-                     or_in_task(options));
+    if (part == 1.0 && !options.stop_time && !options.max_steps && !options.lockstep)
+      throw BadInput(
+          std::string(name) +
+          ": of 1 nothing is ever measured, so that the run would go on for long or for ever; give "
+          "less, or --stop-time or --max-steps as well" +
+          or_in_task(options));
 }
 
 // When each robot fails [s].
@@ -195,6 +195,32 @@ void check_apart(const GivenStarts& given, std::span<const RobotDescription> rob
     }
 }
 
+// [m] Of the lowest layer in which there is free space.
+double lowest_floor(const sim::GroundTruth& truth) {
+  KeyBox layer = truth.bounds();
+  const auto is_solid = [&](const VoxelKey& key) { return truth.at(key) != sim::Truth::kFree; };
+  for (; layer.min.z < truth.bounds().max.z; ++layer.min.z) {
+    layer.max.z = layer.min.z;
+    if (!all_of(layer, is_solid)) break;
+  }
+  return sim::lower_face(truth.lattice(), layer.min.z);
+}
+
+// Cells that are nodes begin where their nodes do.
+void check_height(const RobotDescription& robot, const Pose& start, const std::string& giver,
+                  const Lattice& lattice) {
+  constexpr double kRounding = 1e-6;  // [m]
+  const planner::TravelOptions& travel = robot.robot.travel;
+  const auto key = lattice.key(start.position.z());
+  if (travel.drives() || travel.node_edge > 0.0 || !key) return;
+  const double height = lattice.center(*key) - travel.floor;
+  if (height >= travel.min_height - kRounding) return;
+  throw BadInput((giver.empty() ? "the start of the robot '" + robot.robot.name + "'" : giver) + " is " +
+                 fixed(height, 2) + " m above the floor at z = " + fixed(travel.floor, 2) +
+                 " m, but the robot keeps " + fixed(travel.min_height, 2) +
+                 " m: give it a higher start with --pose, or lower its min_height_m");
+}
+
 // Where the robots do start, and how high above which floor those in the air have to be: in lock-step above
 // that which they start on, in motion above the world's lowest one, so that they may go down stairs.
 void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, ExploreSetup& setup) {
@@ -219,9 +245,9 @@ void find_starts(const GivenStarts& given, const Eigen::Vector3d& around, Explor
   }
   for (std::size_t r = 0; r < robots.size(); ++r) {
     if (robots[r].robot.travel.motion == Motion::kSpace)
-      robots[r].robot.travel.floor =
-          setup.lockstep ? ground.value_or(sim::ground_below(*setup.truth, around))
-                         : sim::lower_face(setup.truth->lattice(), setup.truth->bounds().min.z);
+      robots[r].robot.travel.floor = setup.lockstep ? ground.value_or(sim::ground_below(*setup.truth, around))
+                                                    : lowest_floor(*setup.truth);
+    check_height(robots[r], *starts[r], given.givers[r], setup.truth->lattice());
     setup.head.starts.push_back({*starts[r], sim::start_bubble(*setup.truth, robots[r].robot, *starts[r])});
   }
 }

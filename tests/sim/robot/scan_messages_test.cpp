@@ -31,6 +31,17 @@ TEST(ScanMessages, ArriveInOrderAfterTheDelay) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rest[i].robot, i + 1);
 }
 
+TEST(ScanMessages, ArriveInTimeWhateverIsRounded) {
+  for (const double rate : {10.0, 15.0, 30.0})
+    for (int periods = 1; periods < 5; ++periods) {
+      ScanMessages messages({.delay = periods / rate}, 1);
+      for (int i = 0; i < 200; ++i) {
+        messages.send(scan_at(i / rate, 0));
+        EXPECT_EQ(messages.arrived(i / rate).size(), i < periods ? 0U : 1U) << i << " of " << rate << " Hz";
+      }
+    }
+}
+
 TEST(ScanMessages, LoseThePartThatIsAskedFor) {
   for (const double loss : {0.0, 0.2, 1.0}) {
     constexpr std::size_t kCount = 10000;

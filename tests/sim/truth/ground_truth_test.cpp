@@ -241,6 +241,30 @@ TEST(GroundTruth, WallsOnTheOuterFacesOfTheBoundsAreObservable) {
       << "a box that somebody chose stays as it is";
 }
 
+// A house whose door leads to where its mesh ends.
+TEST(GroundTruth, NobodySeesOutOfTheWorld) {
+  const auto house = [](float low, float high) {
+    const auto box = [](float x0, float y0, float z0, float x1, float y1, float z1) {
+      return Eigen::AlignedBox3f(Eigen::Vector3f(x0, y0, z0), Eigen::Vector3f(x1, y1, z1));
+    };
+    World world =
+        world_of({box(low, low, low, high, high, 0.35F), box(low, low, 2.65F, high, high, 3 - low),
+                  box(low, low, low, 0.35F, high, 3 - low), box(low, low, low, high, 0.35F, 3 - low),
+                  box(low, 5.65F, low, high, high, 3 - low), box(5.65F, low, low, high, 2.4F, 3 - low),
+                  box(5.65F, 3.6F, low, high, high, 3 - low)},
+                 {});
+    world.bounds = bounds_of(world.mesh);
+    return world;
+  };
+  const Eigen::Vector3d start(3.05, 3.05, 1.55);
+  // Its outer faces are on those of voxels, or within them.
+  const World on_faces = house(0, 6), off_faces = house(0.02F, 5.98F);
+  const GroundTruth truth(on_faces, 0.3, start), expected(off_faces, 0.3, start);
+  EXPECT_EQ(truth.at(key_at(19, 9, 5)), Truth::kFree) << "the door";
+  EXPECT_EQ(observable_voxels(truth), observable_voxels(expected));
+  EXPECT_EQ(truth.bounds(), expected.bounds());
+}
+
 TEST(GroundTruth, SealedRoomsAreNotObservable) {
   const Eigen::AlignedBox3f room(Eigen::Vector3f(0.1F, 0.1F, 0.1F), Eigen::Vector3f(8.9F, 5.9F, 2.9F));
   const Eigen::AlignedBox3f vault(Eigen::Vector3f(5.0F, 1.0F, 0.4F), Eigen::Vector3f(7.9F, 4.0F, 2.6F));

@@ -5,6 +5,7 @@
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/planner/body_stencil.hpp>
+#include <frontlux/planner/continuous_exploration.hpp>
 #include <frontlux/planner/look_around.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/sim/scan_world.hpp>
@@ -219,7 +220,7 @@ TEST(StartPose, BodiesDoNotTouchAtFineVoxels) {
       const auto body = [&](std::size_t r) {
         return planner::body_of(team[r].travel).translated(starts[r].value().position);
       };
-      EXPECT_GE(body(i).exteriorDistance(body(k)), 0.1 - 1e-9) << i << " and " << k;
+      EXPECT_GE(body(i).exteriorDistance(body(k)), planner::kSeparation - 1e-9) << i << " and " << k;
     }
 }
 

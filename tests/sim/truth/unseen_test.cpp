@@ -60,6 +60,21 @@ TEST(Unseen, IsBehindWhatIsTooNarrow) {
   EXPECT_LT(narrow.narrow, 0.5);
 }
 
+// A wall without thickness on a face of voxels, which a body all but touches from either side.
+TEST(Unseen, IsInViewOfARobotThatStartsBesideAWall) {
+  World world{"screen", {}, {Vector3d(0, 0, 0), Vector3d(6.2, 6.2, 3.2)}, std::nullopt};
+  test::add_box(world.mesh, {Vector3f(0.05F, 0.05F, 0.05F), Vector3f(6.15F, 6.15F, 3.15F)});
+  test::add_quad(world.mesh, {3.1F, 0.05F, 0.05F}, {3.1F, 3.05F, 0.05F}, {3.1F, 3.05F, 3.15F},
+                 {3.1F, 0.05F, 3.15F});
+  const GroundTruth truth(world, kResolution, kStart.position);
+  for (const double x : {2.85, 3.35, 3.75}) {
+    const Unseen unseen = explain_unseen(truth, VoxelGrid(kResolution), {{robot(0.5)}},
+                                         {{planner::Pose{{x, 1.55, 1.55}, 0.0}}});
+    EXPECT_GT(unseen.in_view, 0.97) << x << ": " << unseen.narrow << " narrow, " << unseen.hidden
+                                    << " hidden";
+  }
+}
+
 // Only what the map does not know counts.
 TEST(Unseen, CountsWhatTheMapLacks) {
   VoxelGrid map(kResolution);

@@ -139,7 +139,8 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
     now.known_error = error(robot, time);
     now.since_fix = 0.0;
     // Of several that were due while it was held back it learns of the last one, and now.
-    now.fixes = std::max(now.fixes + 1, static_cast<std::uint64_t>(time / every));
+    constexpr double kMost = 1e18;  // that fit into the number
+    now.fixes = std::max(now.fixes + 1, static_cast<std::uint64_t>(std::min(time / every, kMost)));
     now.fixed_at = std::max(static_cast<double>(now.fixes) * every, time_);
     draw_direction(robot);
   }
@@ -211,13 +212,12 @@ void MovingRobots::measure_separation() {
     }
 }
 
-MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopped>& stopped) {
-  const double next = next_time();
+void MovingRobots::move_until(double until, const Where& where, std::vector<Stopped>& stopped) {
   const double begin = time_;
-  const auto ticks = static_cast<std::int64_t>(std::ceil((next - begin) / kTick));
+  const auto ticks = static_cast<std::int64_t>(std::ceil((until - begin) / kTick));
   for (Progress& robot : progress_) robot.halted = false;
   for (std::int64_t i = 1; i <= ticks; ++i) {
-    const double time = begin + (next - begin) * static_cast<double>(i) / static_cast<double>(ticks);
+    const double time = begin + (until - begin) * static_cast<double>(i) / static_cast<double>(ticks);
     for (std::size_t r = 0; r < robots_.size(); ++r)
       if (progress_[r].halted || progress_[r].failed)
         records_[r].idle += time - time_;
@@ -226,6 +226,11 @@ MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopp
     measure_separation();
     time_ = time;
   }
+}
+
+MovingRobots::Sensed MovingRobots::advance(const Where& where, std::vector<Stopped>& stopped) {
+  const double next = next_time();
+  move_until(next, where, stopped);
   std::size_t robot = 0;
   while (static_cast<double>(progress_[robot].scans) / robots_[robot].rate != next) ++robot;
   Progress& now = progress_[robot];

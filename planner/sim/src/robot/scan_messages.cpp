@@ -24,8 +24,10 @@ void ScanMessages::send(MovingRobots::Sensed scan) {
 }
 
 std::vector<MovingRobots::Sensed> ScanMessages::arrived(double time) {
+  constexpr double kRounding = 1e-9;  // [s] 0.1 + 0.2 is more than 0.3
   std::vector<MovingRobots::Sensed> scans;
-  for (; !underway_.empty() && underway_.front().time + errors_.delay <= time; underway_.pop_front())
+  for (; !underway_.empty() && underway_.front().time + errors_.delay <= time + kRounding;
+       underway_.pop_front())
     scans.push_back(std::move(underway_.front()));
   return scans;
 }

@@ -116,7 +116,7 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
            triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel of ",
            lattice_.resolution(), " m; start elsewhere, or use smaller voxels");
   }
-  flood(index(*first));
+  flood(index(*first), inside);
   drop_layers_that_show_nothing(inside);
 }
 
@@ -140,11 +140,14 @@ void GroundTruth::drop_layers_that_show_nothing(const KeyBox& inside) {
   bounds_ = box;
 }
 
-void GroundTruth::flood(std::size_t start) {
+// @param inside  what may be free; of voxels beyond, only walls are seen
+void GroundTruth::flood(std::size_t start, const KeyBox& inside) {
   const std::array<std::size_t, 3> size{bounds_.max.x - bounds_.min.x + std::size_t{1},
                                         bounds_.max.y - bounds_.min.y + std::size_t{1},
                                         bounds_.max.z - bounds_.min.z + std::size_t{1}};
   const std::array<std::size_t, 3> stride{1, size[0], size[0] * size[1]};
+  const auto low = (vector(inside.min) - vector(bounds_.min)).cast<std::size_t>().eval(),
+             high = (vector(inside.max) - vector(bounds_.min)).cast<std::size_t>().eval();
   // Two fronts instead of one stack: a front is as large as a surface, a stack may hold the whole volume.
   std::vector<std::uint32_t> front{static_cast<std::uint32_t>(start)}, next;
   cells_[start] |= cell::kReached;
@@ -152,22 +155,26 @@ void GroundTruth::flood(std::size_t start) {
     next.clear();
     for (const std::uint32_t here : front) {
       ++free_voxels_;
-      const auto enter = [&](std::size_t neighbour, std::uint8_t walls) {
+      const auto enter = [&](std::size_t neighbour, std::uint8_t walls, bool is_inside) {
         std::uint8_t& flags = cells_[neighbour];
         if ((flags & cell::kReached) != 0) return;
         if (walls != 0 || (flags & cell::kSolid) != 0) {
           flags |= cell::kNextToReached;
           return;
         }
+        if (!is_inside) return;
         flags |= cell::kReached;
         next.push_back(static_cast<std::uint32_t>(neighbour));
       };
       const std::array<std::size_t, 3> at{here % size[0], here / stride[1] % size[1], here / stride[2]};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const unsigned wall = unsigned{cell::kWallBelow} << axis;
-        if (at[axis] > 0) enter(here - stride[axis], static_cast<std::uint8_t>(cells_[here] & wall));
+        const auto a = static_cast<Eigen::Index>(axis);
+        if (at[axis] > 0)
+          enter(here - stride[axis], static_cast<std::uint8_t>(cells_[here] & wall), at[axis] > low[a]);
         if (at[axis] + 1 < size[axis])
-          enter(here + stride[axis], static_cast<std::uint8_t>(cells_[here + stride[axis]] & wall));
+          enter(here + stride[axis], static_cast<std::uint8_t>(cells_[here + stride[axis]] & wall),
+                at[axis] < high[a]);
       }
     }
     std::swap(front, next);

@@ -1,4 +1,5 @@
 #include <frontlux/key_box.hpp>
+#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/frontier_assignment.hpp>
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/ray_caster.hpp>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,16 +23,36 @@ using Keys = std::vector<VoxelKey>;
 constexpr std::uint64_t kSample = 4000;  // voxels
 constexpr double kSpacing = 0.3;         // [m] of the cells that robots look from
 
-// The whole world as a map. Of two free voxels with a wall between them the upper one counts as occupied, so
-// that nobody looks or goes through.
-VoxelGrid map_of(const GroundTruth& truth) {
+// What has to be free around robots at their starts.
+std::set<VoxelKey> room_at_starts(const Lattice& lattice, std::span<const planner::Robot> robots,
+                                  std::span<const planner::Pose> starts) {
+  std::set<VoxelKey> room;
+  for (std::size_t r = 0; r < robots.size(); ++r) {
+    planner::TravelOptions by_voxels = robots[r].travel;
+    by_voxels.node_edge = 0.0;
+    const planner::BodyStencil stencil(by_voxels, lattice.resolution());
+    if (const auto at = lattice.key(starts[r].position))
+      for_each_key(stencil.box_around(*at), [&](const VoxelKey& key) {
+        if (stencil.contains(*at, key)) room.insert(key);
+      });
+  }
+  return room;
+}
+
+// The whole world as a map. Of two free voxels with a wall between them the upper one counts as occupied, or
+// the lower one if a robot starts in the upper one, so that nobody looks or goes through.
+VoxelGrid map_of(const GroundTruth& truth, const std::set<VoxelKey>& starts) {
   VoxelGrid grid(truth.lattice().resolution());
   const auto free = [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; };
   for_each_key(truth.bounds(), [&](const VoxelKey& key) {
     bool open = free(key);
     for (std::size_t axis = 0; axis < 3 && open; ++axis) {
       const auto below = offset_key(key, axis == 0 ? -1 : 0, axis == 1 ? -1 : 0, axis == 2 ? -1 : 0);
-      open = !below || !free(*below) || truth.open(*below, axis);
+      if (!below || !free(*below) || truth.open(*below, axis)) continue;
+      if (starts.contains(key))
+        grid.set(*below, Occupancy::kOccupied);
+      else
+        open = false;
     }
     grid.set(key, open ? Occupancy::kFree : Occupancy::kOccupied);
   });
@@ -105,7 +127,7 @@ Unseen explain_unseen(const GroundTruth& truth, const VoxelGrid& map, std::span<
   if (map.resolution() != resolution)
     throw std::invalid_argument("unseen voxels: the map has voxels of " + std::to_string(map.resolution()) +
                                 " m, the ground truth of " + std::to_string(resolution) + " m");
-  const VoxelGrid grid = map_of(truth);
+  const VoxelGrid grid = map_of(truth, room_at_starts(truth.lattice(), robots, starts));
   Sample sample = sample_of_unseen(truth, map);
   if (sample.targets.empty()) return {};
   const auto caster = make_ray_caster(grid);

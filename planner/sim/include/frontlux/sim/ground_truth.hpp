@@ -33,9 +33,10 @@ enum class Truth : std::uint8_t {
 /// The voxels of a world that robots can observe. Coverage is measured against them.
 ///
 /// A surface within `kMargin` of a voxel's face counts as lying on the face. It belongs to neither voxel: it
-/// is a wall between the two. The mapping shifts end points beyond the surface by as much, so it maps the
-/// voxel behind such a wall as occupied, seen from either side. A free voxel therefore has no surface in it
-/// (but for the margin), the segment from its centre to that of a free neighbour is free unless there is a
+/// is a wall between the two. The mapping shifts end points along their rays by as much, so it maps the
+/// voxel behind such a wall as occupied, seen from either side, where that leads beyond the face: of a wall
+/// that is not quite on it, slanting rays map the voxel before it. A free voxel therefore has no surface in
+/// it (but for the margin), the segment from its centre to that of a free neighbour is free unless there is a
 /// wall between them, and free space does not leak through any wall, however thin.
 ///
 /// Takes a byte for each voxel of the bounds. A value; reading is safe from any number of threads.
@@ -51,7 +52,7 @@ class GroundTruth {
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   /// The voxels within the world's bounds. If those are where the mesh ends, also the voxels behind a face
-  /// on which it does, if they show a wall.
+  /// on which it does, if they show a wall. Nothing is free there, so that nobody sees out of the world.
   [[nodiscard]] const KeyBox& bounds() const { return bounds_; }
 
   [[nodiscard]] Truth at(const VoxelKey& key) const;
@@ -71,7 +72,7 @@ class GroundTruth {
  private:
   [[nodiscard]] std::size_t index(const VoxelKey& key) const { return place_in(bounds_, key); }
   void check_size() const;
-  void flood(std::size_t start);
+  void flood(std::size_t start, const KeyBox& inside);
   void drop_layers_that_show_nothing(const KeyBox& inside);
 
   Lattice lattice_;

@@ -37,8 +37,8 @@ struct MotionRecord {
   double revisited = 0.0;  ///< the part of that, 0 to 1, which led to where it had been: `PathRevisits`
   double idle = 0.0;       ///< [s] at rest, not turning
   /// [m] The least by which its body could have grown, on all sides or, if it drives, sideways, without
-  /// touching a surface, where it was every 20 ms; up to a metre. A cylinder grows by it in radius and on both
-  /// ends. In between it may have been nearer, by about half of its way in that time.
+  /// touching a surface, where it was every 20 ms; up to a metre. A cylinder grows by it in radius and on
+  /// both ends. In between it may have been nearer, by about half of its way in that time.
   double clearance = 1.0;
 };
 
@@ -89,8 +89,10 @@ class MovingRobots {
   /// [s] of the next scan
   [[nodiscard]] double next_time() const;
 
-  /// Moves all robots to the time of the next scan, and takes it. A robot that its bumper stops stays where
-  /// it is until the end of the call, whatever `where` says.
+  /// Moves all robots to a time [s], after the last one and not after the next scan. A robot that its bumper
+  /// stops stays where it is until the end of the call, whatever `where` says.
+  void move_until(double until, const Where& where, std::vector<Stopped>& stopped);
+  /// The same to the time of the next scan, and takes it.
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
   /// A robot moves no more, whatever `where` says. @pre it is one of them

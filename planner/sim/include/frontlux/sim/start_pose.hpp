@@ -37,12 +37,13 @@ namespace frontlux::sim {
 [[nodiscard]] Eigen::Vector3d free_start(const World& world, double resolution, bool faces_away);
 
 /// Where robots start: their sensors' poses, yaw 0. Robots that drive are placed first, then the others, in
-/// their order; each at the free position nearest to a point, at the lower key if several are as near, with
-/// its margin free too if that is possible. Their bodies have no voxel in common and are at least
-/// `planner::kSeparation` apart, by the straight distance. A robot that drives stands on its ground, the
-/// first layer boundary at or above the floor. A robot in space keeps its `min_height` above the highest of
-/// these grounds; if there are none, above the floor below `around` or the lower end of the bounds. A robot
-/// that moves through nodes starts in the middle of a node that is completely free, if there is one.
+/// their order; each at the free position that the fewest steps through faces of free voxels lead to, the
+/// same one each time if there are several, with its margin free too if that is possible. Their bodies have
+/// no voxel in common and are at least `planner::kSeparation` apart, by the straight distance. A robot that
+/// drives stands on its ground, the first layer boundary at or above the floor. A robot in space keeps its
+/// `min_height` above the highest of these grounds; if there are none, above the floor below `around` or the
+/// lower end of the bounds. A robot that moves through nodes starts in the middle of a node that is
+/// completely free, if there is one.
 /// @param around [m] a free point of the ground truth
 /// @return one for each robot; nothing if it fits nowhere within 15 m along each axis
 [[nodiscard]] std::vector<std::optional<planner::Pose>> find_starts(const GroundTruth& truth,
