@@ -1,4 +1,5 @@
 #include <frontlux/field_of_view.hpp>
+#include <frontlux/turned_view.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -24,23 +25,37 @@ void FieldOfView::check() const {
                                 " m, but has to be positive");
 }
 
-bool FieldOfView::contains(const Eigen::Vector3d& offset, double yaw) const {
-  if (shape == Shape::kSpinning) return contains_at_some_yaw(offset);
-  const double squared = offset.squaredNorm();
-  if (!(squared > 0.0 && squared <= max_range * max_range)) return false;
-  const double cosine = std::cos(yaw), sine = std::sin(yaw);
-  const double forward = offset.x() * cosine + offset.y() * sine;
-  const double left = offset.y() * cosine - offset.x() * sine;
-  switch (shape) {
-    case Shape::kSpinning:
+TurnedView::TurnedView(const FieldOfView& view, double yaw)
+    : shape_(view.shape), squared_range_(view.max_range * view.max_range) {
+  switch (shape_) {
+    case FieldOfView::Shape::kSpinning:
+      rise_ = view.slope();
+      return;
+    case FieldOfView::Shape::kPyramid:
+      side_ = std::tan(view.horizontal / 2);
+      rise_ = std::tan(view.vertical / 2);
       break;
-    case Shape::kPyramid:
-      return std::fabs(left) <= std::tan(horizontal / 2) * forward &&
-             std::fabs(offset.z()) <= std::tan(vertical / 2) * forward;
-    case Shape::kCone:
-      return forward >= std::cos(horizontal / 2) * std::sqrt(squared);
+    case FieldOfView::Shape::kCone:
+      side_ = std::cos(view.horizontal / 2);
+      break;
   }
-  return false;
+  cosine_ = std::cos(yaw);
+  sine_ = std::sin(yaw);
+}
+
+bool TurnedView::contains(const Eigen::Vector3d& offset) const {
+  const double squared = offset.squaredNorm();
+  if (!(squared > 0.0 && squared <= squared_range_)) return false;
+  if (shape_ == FieldOfView::Shape::kSpinning)
+    return std::fabs(offset.z()) <= rise_ * std::hypot(offset.x(), offset.y());
+  const double forward = offset.x() * cosine_ + offset.y() * sine_;
+  if (shape_ == FieldOfView::Shape::kCone) return forward >= side_ * std::sqrt(squared);
+  const double left = offset.y() * cosine_ - offset.x() * sine_;
+  return std::fabs(left) <= side_ * forward && std::fabs(offset.z()) <= rise_ * forward;
+}
+
+bool FieldOfView::contains(const Eigen::Vector3d& offset, double yaw) const {
+  return TurnedView(*this, yaw).contains(offset);
 }
 
 bool FieldOfView::contains_at_some_yaw(const Eigen::Vector3d& offset) const {

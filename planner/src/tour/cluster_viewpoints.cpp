@@ -5,6 +5,7 @@
 
 #include <frontlux/parallel.hpp>
 #include <frontlux/planner/pose.hpp>
+#include <frontlux/turned_view.hpp>
 
 #include <algorithm>
 #include <array>
@@ -107,8 +108,9 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
       ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], yaw_along(sum), 0, aim};
+      const TurnedView view(query.view, viewpoint.yaw);
       for (const Eigen::Vector3d& offset : offsets)
-        if (query.view.contains(offset, viewpoint.yaw)) ++viewpoint.seen;
+        if (view.contains(offset)) ++viewpoint.seen;
     }
   });
   return viewpoints;
@@ -153,11 +155,12 @@ NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewp
   for (std::size_t v = 0; v < viewpoints.size(); ++v) {
     const VoxelKey& cell = viewpoints[v].cell;
     const Eigen::Vector3d from = query.grid.lattice().exact_center(cell);
+    const TurnedView view(query.view, viewpoints[v].yaw);
     const KeyBox reach = grown({cell, cell}, query.region.reach());
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       if (!intersection(reach, clusters[c]->box)) continue;
       for (const VoxelKey& key : samples[c]) {
-        if (!query.view.contains(query.grid.lattice().exact_center(key) - from, viewpoints[v].yaw)) continue;
+        if (!view.contains(query.grid.lattice().exact_center(key) - from)) continue;
         segments.push_back({cell, key});
         pairs.emplace_back(v, c);
       }
@@ -175,11 +178,12 @@ NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewp
 std::vector<VoxelKey> visible_from(const ViewpointQuery& query, std::span<const VoxelKey> frontiers,
                                    const VoxelKey& cell, double yaw, Aim aim) {
   const Eigen::Vector3d from = query.grid.lattice().exact_center(cell);
+  const TurnedView view(query.view, yaw);
   std::vector<KeySegment> segments;
   std::vector<VoxelKey> shown;  // by each segment
   for (const VoxelKey& key : frontiers) {
     const auto end = end_of_line(query, cell, key, aim);
-    if (!end || !query.view.contains(query.grid.lattice().exact_center(*end) - from, yaw)) continue;
+    if (!end || !view.contains(query.grid.lattice().exact_center(*end) - from)) continue;
     segments.push_back({cell, *end});
     shown.push_back(key);
   }
