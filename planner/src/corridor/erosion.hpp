@@ -34,6 +34,7 @@ class Erosion {
   void erode(const VoxelColumns& columns);
 
   [[nodiscard]] bool whole(const VoxelKey& key) const { return whole_.holds(key); }
+  [[nodiscard]] const VoxelColumns& whole() const { return whole_; }
 
  private:
   // Columns of the stencil with the same layers, relative to the middle.

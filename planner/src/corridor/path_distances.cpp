@@ -72,6 +72,25 @@ std::uint32_t PathDistances::closed_around(std::size_t cell) const {
 
 // Dijkstra's algorithm with buckets as wide as the shortest step: distances in the nearest bucket are final,
 // whatever the order in which they are taken.
+void PathDistances::reset(const VoxelColumns& open) {
+  labels_.resize(frame_.bordered_size(), kClosed);
+  if (std::ranges::any_of(frame_.size, [](int size) { return size == 0; })) return;
+  for (int x = 0; x < frame_.size[0]; ++x)
+    for (int y = 0; y < frame_.size[1]; ++y) {
+      const auto [column, lowest] = open.place_of(frame_.key(x, y, 0));
+      const std::uint64_t* words = &open.bits[column];
+      Label* labels = &labels_[frame_.number(x, y, 0)];
+      for (unsigned z = 0; z < static_cast<unsigned>(frame_.size[2]); ++z) {
+        const unsigned bit = lowest + z;
+        labels[z] = (words[bit / 64] >> (bit % 64) & 1U) != 0 ? kUnreached : kClosed;
+      }
+    }
+}
+
+void PathDistances::close(const VoxelKey& key) {
+  if (const auto at = frame_.place(key)) labels_[frame_.number((*at)[0], (*at)[1], (*at)[2])] = kClosed;
+}
+
 void PathDistances::spread(const VoxelKey& from) {
   struct Entry {
     std::uint32_t cell;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "corridor/cell_frame.hpp"
+#include "corridor/voxel_columns.hpp"
 
 #include <frontlux/planner/travel_corridor.hpp>
 #include <frontlux/voxel_grid.hpp>
@@ -27,6 +28,11 @@ class PathDistances {
         for (int z = 0; z < frame_.size[2]; ++z)
           labels_[frame_.number(x, y, z)] = open(frame_.key(x, y, z)) ? kUnreached : kClosed;
   }
+
+  /// Opens the cells that are set. @pre cells are voxels of the columns' box
+  void reset(const VoxelColumns& open);
+  /// If there is such a cell.
+  void close(const VoxelKey& key);
 
   /// Finds the paths from an open cell.
   void spread(const VoxelKey& from);

@@ -161,6 +161,7 @@ struct TravelCorridor::State {
            std::ranges::none_of(kept_out, [&](const KeyBox& box) { return box.contains(cell); });
   }
   void open_own_cell(const VoxelKey& own);
+  void open_distances();
   [[nodiscard]] CorridorState find_state(const VoxelGrid& grid, const VoxelKey& robot) const;
 };
 
@@ -204,6 +205,7 @@ void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
                                   .half_x = half_width(extents.x(), resolution),
                                   .half_y = half_width(extents.y(), resolution),
                                   .reach = options.ground_reach,
+                                  .gap_width = gap_width(options, resolution),
                                   .exempt = options.without_ground};
   if (options.motion == Motion::kPlane) {
     if (robot.z < down) return;
@@ -211,7 +213,6 @@ void TravelCorridor::State::lay_ground(KeyBox box, const VoxelKey& robot) {
   } else {
     ground.above = ground.below = reached_from_below(options, resolution);
     ground.depth = voxels_in(options.step, resolution) - 1;
-    ground.gap_width = gap_width(options, resolution);
   }
   for (KeyBox& exempt : ground.exempt) {
     const bool flat = options.motion == Motion::kPlane;
@@ -278,6 +279,19 @@ void TravelCorridor::State::open_own_cell(const VoxelKey& own) {
   std::erase_if(kept_out, [&](KeyBox& box) { return !opened(box); });
 }
 
+// Where ground does not matter, columns of cells at once, and then the few that are closed all the same.
+void TravelCorridor::State::open_distances() {
+  if (needs_ground() || frame.stride > 1) {
+    distances->reset([this](const VoxelKey& cell) { return passable(cell); });
+    return;
+  }
+  distances->reset(erosion->whole());
+  for (const VoxelKey& cell : blocked) distances->close(cell);
+  for (const KeyBox& box : kept_out)
+    if (const auto within = intersection(box, bounds))
+      for_each_key(*within, [this](const VoxelKey& cell) { distances->close(cell); });
+}
+
 TravelCorridor::TravelCorridor(const TravelOptions& options, const Lattice& lattice, const KeyBox& bounds) {
   check(options, lattice.resolution(), bounds);
   state_ = std::make_unique<State>(options, lattice, bounds);
@@ -302,7 +316,7 @@ void TravelCorridor::update(const MapChange& change, const VoxelKey& robot, Corr
   if (!all || !all_before || !state_->distances)
     state_->distances.emplace(all ? state_->frame : state_->frame.around(*state_->start, kNearby),
                               state_->options.metric);
-  state_->distances->reset([this](const VoxelKey& cell) { return state_->passable(cell); });
+  state_->open_distances();
   if (state_->state != CorridorState::kReady) return;
   state_->distances->spread(*state_->start);
   if (all) state_->distances->reached(state_->cells);

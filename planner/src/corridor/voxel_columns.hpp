@@ -73,6 +73,12 @@ class VoxelColumns {
     return ((bits[first + static_cast<std::size_t>(z >> 6)] >> (z & 63)) & 1U) != 0;
   }
 
+  /// The first word of the column with a key's x and y, and the bit in it that counts from there on upwards.
+  /// @pre the key is in the box
+  [[nodiscard]] std::pair<std::size_t, unsigned> place_of(const VoxelKey& key) const {
+    return {column(key.x - box_.min.x, key.y - box_.min.y), static_cast<unsigned>(key.z - base_z_)};
+  }
+
   Bits bits;
   ColumnSet stale;  ///< columns that have changed
 

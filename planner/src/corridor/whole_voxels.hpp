@@ -42,9 +42,10 @@ inline constexpr int kMaxWindow = 1024;
   return voxels_over(options.ground_intrusion(), resolution);
 }
 
-/// [voxels] The widest gap in the ground that a robot gets over: as wide as its highest step.
+/// [voxels] The widest gap in the ground that a robot gets over: as wide as its highest step. On a plane one
+/// voxel: beams that graze the floor free single ones, and no robot that rests there measures them again.
 [[nodiscard]] inline int gap_width(const TravelOptions& options, double resolution) {
-  return options.motion == Motion::kGround ? voxels_in(options.step, resolution) : 0;
+  return options.motion == Motion::kGround ? voxels_in(options.step, resolution) : 1;
 }
 
 /// [m] Along x and y: where a robot that drives needs ground.

@@ -353,16 +353,16 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   // Along a tour a robot that has learnt next to nothing has no reason to change its mind: it would turn back
   // and forth between stops that are about as good.
   const bool as_before = !team.tours || static_cast<double>(member.gained) < team.tours->least_gain(robot);
-  const bool keeps = as_before && reason == PlanReason::kPeriod && member.is_going() && member.goal.pose &&
-                     !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
+  bool keeps = as_before && reason == PlanReason::kPeriod && member.is_going() && member.goal.pose &&
+               !member.goal_frontiers.empty() && time - member.chosen < team.options.commitment;
   member.gained = 0;
   if (keeps && team.tours)
-    team.keep_stop(robot, step);
+    keeps = team.keep_stop(robot, step);
   else if (keeps)
     team.update_corridor(robot, step);
-  else if (team.tours)
+  if (!keeps && team.tours)
     team.plan_tours(robot, starts, step);
-  else
+  else if (!keeps)
     team.select_goals(step, robot);
   if (team.tours) team.note_assignment(step);
   team.count_frontiers(step);

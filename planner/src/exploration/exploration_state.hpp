@@ -81,8 +81,8 @@ struct ExplorationState {
                        CorridorExtent extent = CorridorExtent::kAllCells);
   /// Writes how many frontiers there are, and how many of them are abandoned, or no robot's.
   void count_frontiers(ExplorationStep& step) const;
-  /// Leaves a robot the stop of its tour that it has for a goal.
-  void keep_stop(std::size_t robot, ExplorationStep& step);
+  /// Leaves a robot the stop of its tour that it has for a goal. @return false if no path leads there now
+  [[nodiscard]] bool keep_stop(std::size_t robot, ExplorationStep& step);
   void set_targets(std::size_t robot);
   /// Shares the frontiers out in tours, and gives a robot the first stop of its tour for a goal.
   /// @param starts  of all robots, when the robot's trajectory begins

@@ -60,7 +60,7 @@ void ExplorationState::set_targets(std::size_t robot) {
   std::ranges::set_difference(wanted, frontiers_of_others(robot), std::back_inserter(targets[robot]));
 }
 
-void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
+bool ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
   update_corridor(robot, step, extent_of_tours(robot));
   {
     const PhaseClock clock(step, Phase::kGoals);
@@ -68,9 +68,9 @@ void ExplorationState::keep_stop(std::size_t robot, ExplorationStep& step) {
     set_targets(robot);
   }
   const VoxelKey& cell = step.robots[robot].goal.cell;
-  if (find_path_to_stop(robot, cell, step)) return;
+  if (find_path_to_stop(robot, cell, step)) return true;
   const PhaseClock clock(step, Phase::kPaths);
-  selection->find_path(robot, cell, [](const VoxelKey&) { return true; });
+  return selection->find_path(robot, cell, [](const VoxelKey&) { return true; });
 }
 
 // The goal at the first stop of a robot's tour, or why there is none.
@@ -93,6 +93,9 @@ Goal ExplorationState::first_stop(std::size_t robot) const {
   const TourStop& first = tour.front();
   goal.state = GoalState::kAssigned;
   goal.pose = first.pose;
+  // A robot that sees all around looks where it goes.
+  if (options.team[robot].robot.view.sees_all_around())
+    goal.pose->yaw = yaw_along(first.pose.position - poses[robot].position);
   goal.cell = first.cell;
   goal.distance = tours->first_distance(robot);
   goal.gain = static_cast<double>(first.seen);

@@ -60,11 +60,10 @@ std::vector<VoxelKey> cells_around(const ViewpointQuery& query, const FrontierCl
   return cells;
 }
 
-// Where a line from a cell that is to show a frontier ends; none if the frontier turns no face to it.
-std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey& cell,
-                                    const VoxelKey& frontier, Aim aim) {
+// The voxel before the face that a frontier turns to a cell; none if it turns it none.
+std::optional<VoxelKey> before_face(const ViewpointQuery& query, const VoxelKey& cell,
+                                    const VoxelKey& frontier) {
   constexpr double kLeastCosine = 0.2;  // of the angle between the line and a face's normal
-  if (aim == Aim::kMiddle) return frontier;
   const std::array offset = {cell.x - frontier.x, cell.y - frontier.y, cell.z - frontier.z};
   const double least = kLeastCosine * std::hypot(offset[0], offset[1], offset[2]);
   std::optional<VoxelKey> before;
@@ -80,6 +79,12 @@ std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey&
     most = std::abs(along);
   }
   return before;
+}
+
+// Where a line from a cell that is to show a frontier ends, if there is one.
+inline std::optional<VoxelKey> end_of_line(const ViewpointQuery& query, const VoxelKey& cell,
+                                           const VoxelKey& frontier, Aim aim) {
+  return aim == Aim::kMiddle ? frontier : before_face(query, cell, frontier);
 }
 
 // What each cell sees of some frontiers.
@@ -108,6 +113,7 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
       ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], yaw_along(sum), 0, aim};
+      if (offsets.empty()) continue;
       const TurnedView view(query.view, viewpoint.yaw);
       for (const Eigen::Vector3d& offset : offsets)
         if (view.contains(offset)) ++viewpoint.seen;

@@ -62,7 +62,10 @@ double TourPlanning::seconds_between(const Query& query, const NextStops& next, 
   double distance = member.distances.between(next.viewpoints[a].cell, next.viewpoints[b].cell);
   if (distance == TourProblem::kNever)
     distance = next.distances[a] + next.distances[b];  // by where the robot is
-  return travel_seconds(member.robot, distance, turn_between(next.viewpoints[a].yaw, next.viewpoints[b].yaw));
+  const Eigen::Vector3d offset =
+      lattice_.exact_center(next.viewpoints[b].cell) - lattice_.exact_center(next.viewpoints[a].cell);
+  return travel_seconds(member.robot, distance, offset,
+                        turn_between(next.viewpoints[a].yaw, next.viewpoints[b].yaw));
 }
 
 // The stops in the order in which the robot gets to the clusters soon, each from its first viewpoint.
@@ -77,7 +80,7 @@ void TourPlanning::put_in_order(const Query& query, NextStops& next) {
     robot.first.push_back(seconds_to_first(query, next, first_of(s)));
     weights.push_back(static_cast<double>(next.stops[s].clusters.size()));
     order.push_back(static_cast<std::uint32_t>(s));
-    cells.push_back(next.viewpoints[first_of(s)].cell);
+    if (s + 1 < count) cells.push_back(next.viewpoints[first_of(s)].cell);
   }
   members_[query.robot].distances.measure_from(cells);
   for (std::size_t i = 0; i < count; ++i)
@@ -95,8 +98,9 @@ std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, con
   std::vector<std::vector<std::size_t>> stages;
   const std::size_t refined = options_.without == TourPart::kRefinement ? 0 : options_.refined;
   for (std::size_t s = 0; s < std::min(refined, next.stops.size()); ++s) {
+    if (s > 0)  // nothing is measured from the last ones
+      for (const std::size_t v : stages.back()) cells.push_back(next.viewpoints[v].cell);
     stages.push_back(next.stops[s].viewpoints);
-    for (const std::size_t v : stages.back()) cells.push_back(next.viewpoints[v].cell);
   }
   members_[query.robot].distances.measure_from(cells);
   std::vector<std::size_t> chosen = shortest_choice(

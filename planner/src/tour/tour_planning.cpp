@@ -148,10 +148,11 @@ bool TourPlanning::can_reach(std::size_t robot, const VoxelKey& cell) const {
 std::optional<VoxelKey> TourPlanning::place_to_see_from(
     std::size_t robot, const RayCaster& caster, const VoxelGrid& grid,
     const std::function<bool(const VoxelKey&)>& among) const {
+  // What others come to later it may see before them.
   const auto is_others = [&](const FrontierCluster& cluster) {
     for (std::size_t r = 0; r < members_.size(); ++r)
-      for (const TourStop& stop : members_[r].tour)
-        if (r != robot && std::ranges::find(stop.clusters, cluster.id) != stop.clusters.end()) return true;
+      if (r != robot && std::ranges::find(members_[r].going_for, cluster.id) != members_[r].going_for.end())
+        return true;
     return false;
   };
   const ViewpointQuery view = sight_of(robot, caster, grid);
@@ -173,8 +174,8 @@ ViewpointQuery TourPlanning::sight_of(std::size_t robot, const RayCaster& caster
 double TourPlanning::seconds_to(const Robot& robot, const MotionState& start,
                                 const ClusterViewpoint& viewpoint, double distance) const {
   constexpr double kReluctance = 2.0;  // to change direction; the time that it takes would be 1
-  const double time = travel_seconds(robot, distance, turn_between(start.pose.yaw, viewpoint.yaw));
   const Eigen::Vector3d offset = lattice_.exact_center(viewpoint.cell) - start.pose.position;
+  const double time = travel_seconds(robot, distance, offset, turn_between(start.pose.yaw, viewpoint.yaw));
   if (offset.isZero()) return time;
   const double lost = start.velocity.norm() - start.velocity.dot(offset.normalized());
   return time + kReluctance * lost / robot.limits.acceleration;
@@ -261,7 +262,7 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
     Eigen::Vector3d before = lattice_.exact_center(at[i]->cell);
     for (const std::uint32_t cluster : in_order(member, stops[i], before)) {
       const Eigen::Vector3d next = lattice_.exact_center(best_viewpoint(member, cluster)->cell);
-      within[i] += travel_seconds(member.robot, (next - before).norm(), 0.0);
+      within[i] += travel_seconds(member.robot, (next - before).norm(), next - before, 0.0);
       before = next;
     }
     robot.first[i] = seconds_to(member.robot, start, *at[i], distance) + within[i] / 2;
@@ -275,7 +276,9 @@ TourProblem::Robot TourPlanning::travel_times(const Query& query, std::size_t r,
     for (std::size_t j = 0; j < count; ++j)
       if (i != j && distances(i, j) != TourProblem::kNever)
         robot.between(i, j) =
-            travel_seconds(member.robot, distances(i, j), turn_between(at[i]->yaw, at[j]->yaw)) +
+            travel_seconds(member.robot, distances(i, j),
+                           lattice_.exact_center(at[j]->cell) - lattice_.exact_center(at[i]->cell),
+                           turn_between(at[i]->yaw, at[j]->yaw)) +
             (within[i] + within[j]) / 2;
   });
   return robot;

@@ -98,7 +98,7 @@ class TourPlanning {
   [[nodiscard]] std::function<bool(const VoxelKey&)> around_path_to(std::size_t robot,
                                                                     const VoxelKey& cell) const;
   /// Where the robot would have a stop among some cells if it could get to them: it sees a cluster from there
-  /// that is in no tour of another robot. Nothing if there is no such place.
+  /// to which no other robot is going now. Nothing if there is no such place.
   [[nodiscard]] std::optional<VoxelKey> place_to_see_from(
       std::size_t robot, const RayCaster& caster, const VoxelGrid& grid,
       const std::function<bool(const VoxelKey&)>& among) const;

@@ -54,6 +54,11 @@ struct Rule {
     if (ground < 0) return true;
     if (climb > 0) return is_on_ground(grid, cell);
     const VoxelKey below = moved(cell, 0, 0, low[2] - 1);
+    const auto is_hole = [&](const VoxelKey& v) {
+      const auto floor = [&](int x, int y) { return grid.at(moved(v, x, y, 0)) == Occupancy::kOccupied; };
+      return grid.at(v) == Occupancy::kFree && !(floor(-1, 0) && floor(1, 0)) &&
+             !(floor(0, -1) && floor(0, 1));
+    };
     const auto is = [&](Occupancy state) {
       return [&grid, state](const VoxelKey& v) { return grid.at(v) == state; };
     };
@@ -62,9 +67,9 @@ struct Rule {
     };
     for (const KeyBox& exempt : without_ground)
       if (exempt.contains({cell.x, cell.y, exempt.min.z}))
-        return !all_of(grown({below, below}, 1, 1, 0), is(Occupancy::kFree));
+        return !all_of(grown({below, below}, 1, 1, 0), is_hole);
     return any(grown({below, below}, 1, 1, 0), is(Occupancy::kOccupied)) &&
-           !any(grown({below, below}, ground, ground, 0), is(Occupancy::kFree));
+           !any(grown({below, below}, ground, ground, 0), is_hole);
   }
   [[nodiscard]] bool is_on_ground(const VoxelGrid& grid, const VoxelKey& cell) const;
 };

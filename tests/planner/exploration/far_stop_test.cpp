@@ -75,7 +75,7 @@ TEST_P(FarStop, IsGoneForInParts) {
   for (const int x : {200, 350, 550}) {
     tube.go_to(x);
     tube.step.robots[0].goal = goal;
-    tube.state.keep_stop(0, tube.step);
+    EXPECT_TRUE(tube.state.keep_stop(0, tube.step));
     const double rest = goal.pose->position.x() - tube.state.poses[0].position.x();
     if (rest > kMost + kNode) {
       EXPECT_NEAR(tube.ahead(), kMost, 2 * kNode);

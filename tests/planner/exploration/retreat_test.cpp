@@ -211,7 +211,7 @@ TEST(RetreatWithTours, IsOpenOnceAScanHasFoundItOpen) {
   seen.robots[0].goal = rooms.step.robots[0].goal;
   rooms.state.update_frontiers(seen);
   rooms.state.update_views(seen);
-  rooms.state.keep_stop(0, seen);
+  EXPECT_TRUE(rooms.state.keep_stop(0, seen));
   rooms.go_to(TwoRooms::at(30, 15));  // into the door
   rooms.step = rooms.state.new_step();
   rooms.state.update_frontiers(rooms.step);

@@ -194,7 +194,7 @@ TEST(TourPlanning, WithoutToursIsTheNearestStop) {
   for (OpenSpace* space : {&all, &nearest}) space->plan(corridor);
   const auto seconds = [&](const TourStop& stop) {
     return travel_seconds(all.robot, corridor.distance(stop.cell).value(),
-                          turn_between(all.pose.yaw, stop.pose.yaw));
+                          stop.pose.position - all.pose.position, turn_between(all.pose.yaw, stop.pose.yaw));
   };
   ASSERT_GT(all.planning.tour(0).size(), 5U);
   const TourStop first = *std::ranges::min_element(all.planning.tour(0), {}, seconds);
@@ -253,6 +253,28 @@ TEST(TourPlanning, LeavesToARobotWhatItGoesToSee) {
     EXPECT_EQ(kept, std::set(stop.clusters.begin(), stop.clusters.end())) << planning;
     EXPECT_FALSE(both.tour(1).empty());
   }
+}
+
+// All that there is is in the tour of one robot, and the other one asks for something to see.
+TEST(TourPlanning, LeavesToOthersOnlyWhatTheyAreGoingTo) {
+  OpenSpace space;
+  const std::array<Pose, 2> poses{space.pose, space.pose};
+  TourPlanning both({space.robot, space.robot}, poses, space.grid.lattice(), kBounds, {});
+  std::array<MotionState, 2> starts;
+  for (MotionState& start : starts) start.pose = space.pose;
+  const TravelCorridor corridor = space.corridor();
+  const auto plan = [&](std::size_t robot) {
+    both.update({robot, *space.caster, space.grid, corridor, space.frontiers.keys(), starts});
+  };
+  plan(1);
+  both.lose(1);  // which takes its tour, and leaves it what it knows of paths
+  plan(0);
+  ASSERT_GT(both.tour(0).size(), 1U);
+  ASSERT_TRUE(both.tour(1).empty());
+  const auto place = both.place_to_see_from(1, *space.caster, space.grid,
+                                            [&](const VoxelKey& key) { return corridor.contains(key); });
+  ASSERT_TRUE(place.has_value());
+  EXPECT_TRUE(corridor.contains(*place));
 }
 
 // A robot beside which something turned up is in no corridor for a while. Nothing else has changed.

@@ -77,15 +77,16 @@ struct FRONTLUX_EXPORT TravelOptions {
   PathMetric metric = PathMetric::kEuclidean;
 
   double sensor_height = 0.75;  ///< [m] of a robot that drives: of the sensor above the floor
-  /// On a plane: go only where no floor voxel under the box is known to be free, and one within
-  /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is below the box.
+  /// On a plane: go only where no floor voxel under the box is known to be a hole, and one within
+  /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is below the box. A hole
+  /// is known to be free, and those next to it along x, or along y, are not both known to be occupied.
   bool require_ground = true;
   /// [m] Along x and y: the part of the floor that must not be known to be free, on the ground in which no
   /// hole may be known; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;  ///< [voxels] along x and y
   /// Cells that need no ground, as the start: no sensor sees its floor. Holes count there, too: on a plane
-  /// if all floor within `ground_reach` is known to be free, on the ground holes of two voxels.
+  /// if all floor within `ground_reach` is holes, on the ground holes of two voxels.
   std::vector<KeyBox> without_ground;
 
   /// [m] On the ground: the highest step, at least a voxel, which is rounded down to whole ones. Floor is an
