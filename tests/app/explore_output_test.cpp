@@ -107,11 +107,11 @@ TEST_F(ExploreOutput, TheFolderIsNamedAfterWorldAndSeed) {
 }
 
 TEST_F(ExploreOutput, ResumingTellsWhatItRepeats) {
-  expect_explored("run");
-  expect_answer({"--report", "off", "--resume", path("run"), "--max-steps", "5"},
-                {"repeated 5 recorded steps, going on in " + path("run"), "step 5: mapped "});
-  expect_parts(on_terminal({"--report", "off", "--resume", "run", "--max-steps", "6"}, 0),
-               {"\rrun: repeated 2 of 6 recorded steps", "step 6; 0:0"});
+  expect_answer({"room", "--lockstep", "--max-steps", "2", "--report", "off", "-o", path("run")});
+  expect_answer({"--report", "off", "--resume", path("run"), "--max-steps", "3"},
+                {"repeated 3 recorded steps, going on in " + path("run"), "step 3: mapped "});
+  expect_parts(on_terminal({"--report", "off", "--resume", "run", "--max-steps", "4"}, 0),
+               {"\rrun: repeated 2 of 4 recorded steps", "step 4; 0:0"});
 }
 
 TEST_F(ExploreOutput, SigtermIsLikeCtrlC) {

@@ -132,8 +132,11 @@ TEST_F(TaskFile, ThoseThatShipAreOfThePapersRobots) {
       EXPECT_EQ(a.robot.limits, b.robot.limits);
       EXPECT_EQ(a.rate, b.rate);
     };
-    equal(task.robots[0].description, planner::ugv_description());
-    planner::RobotDescription uav = planner::uav_description();
+    // As in motion at 0.3 m.
+    planner::RobotDescription ugv = planner::ugv_description(), uav = planner::uav_description();
+    ugv.robot.travel.margin = 0.05;
+    uav.robot.travel.margin = 0.025;
+    equal(task.robots[0].description, ugv);
     uav.robot.travel.min_height = 0.4;  // half its height: it keeps apart from the UGV in time
     equal(task.robots[1].description, uav);
   }
