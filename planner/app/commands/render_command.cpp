@@ -129,7 +129,10 @@ void check_goal(const View& view, const GoalSelection& selection, const Options&
   const VoxelKey at = lattice.key(view.pose.position).value();
   throw BadInput("--at: at " + to_text(options.at) + " the " + view.member.robot.name + " " +
                  std::string(describe(corridor.state())) +
-                 (corridor.state() == planner::CorridorState::kWithoutGround ? " (see --any-ground)" : "") +
+                 (corridor.state() == planner::CorridorState::kWithoutGround &&
+                          view.member.robot.travel.motion == Motion::kPlane
+                      ? " (see --any-ground)"
+                      : "") +
                  nearest_fit(corridor, lattice, at, view.member.robot.travel.motion));
 }
 

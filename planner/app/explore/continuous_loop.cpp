@@ -123,14 +123,13 @@ bool ContinuousLoop::lose_robots() {
 
 // [s] That of the next scan, or before it of something that waits for none.
 double ContinuousLoop::next_moment() const {
-  constexpr double kRounding = 1e-6;
-  const double scan = robots_.next_time();
-  double moment = scan;
+  constexpr double kRounding = 1e-9;
+  double moment = robots_.next_time();
   const auto at_latest = [&](double time) {
-    if (time > time_ && time < moment) moment = time;
+    if (time > time_ + kRounding && time < moment - kRounding) moment = time;
   };
-  if (const double planning = time_ + exploration_.options().period; planning < scan - kRounding)
-    at_latest(planning);
+  at_latest(time_ + exploration_.options().period / 4);  // robots plan when a period is over
+  if (const auto arrival = scans_.next_arrival()) at_latest(*arrival);
   if (setup_.stop_time) at_latest(*setup_.stop_time);
   for (const std::optional<double>& failure : setup_.failures)
     if (failure) at_latest(*failure);

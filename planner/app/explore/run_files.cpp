@@ -152,8 +152,9 @@ void RunFiles::add(const RecordedStep& recorded) {
   sums_.bounding = fraction(bounding, head_.bounding);
   if (step.number > 0) {
     ++sums_.steps;
-    // In the last one in motion nobody plans.
-    if (const double seconds = step.planning_seconds(); seconds > 0.0) sums_.planning.push_back(seconds);
+    // In the last one in motion nobody looks for a goal.
+    if (step.seconds[static_cast<std::size_t>(planner::Phase::kGoals)] > 0.0)
+      sums_.planning.push_back(step.planning_seconds());
     for (std::size_t phase = 0; phase < planner::kPhases; ++phase)
       sums_.seconds[phase] += step.seconds[phase];
   }

@@ -18,7 +18,7 @@ struct RunSums {
   std::uint64_t steps = 0;                  ///< without the look around at the start
   std::vector<double> seconds;              ///< by planner::Phase
   std::vector<double> travelled;            ///< [m] of each robot
-  std::vector<double> planning = {};        ///< [s] of each step
+  std::vector<double> planning = {};        ///< [s] of each step in which somebody planned
 
   [[nodiscard]] double planning_mean() const;                   ///< [s] of a step
   [[nodiscard]] double planning_percentile(double part) const;  ///< [s] at a part of the sorted steps, 0 to 1

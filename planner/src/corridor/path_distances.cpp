@@ -70,8 +70,6 @@ std::uint32_t PathDistances::closed_around(std::size_t cell) const {
   return closed;
 }
 
-// Dijkstra's algorithm with buckets as wide as the shortest step: distances in the nearest bucket are final,
-// whatever the order in which they are taken.
 void PathDistances::reset(const VoxelColumns& open) {
   labels_.resize(frame_.bordered_size(), kClosed);
   if (std::ranges::any_of(frame_.size, [](int size) { return size == 0; })) return;
@@ -91,6 +89,8 @@ void PathDistances::close(const VoxelKey& key) {
   if (const auto at = frame_.place(key)) labels_[frame_.number((*at)[0], (*at)[1], (*at)[2])] = kClosed;
 }
 
+// Dijkstra's algorithm with buckets as wide as the shortest step: distances in the nearest bucket are final,
+// whatever the order in which they are taken.
 void PathDistances::spread(const VoxelKey& from) {
   struct Entry {
     std::uint32_t cell;

@@ -287,8 +287,10 @@ void TravelCorridor::State::open_distances() {
   }
   distances->reset(erosion->whole());
   for (const VoxelKey& cell : blocked) distances->close(cell);
+  if (frame.size[0] == 0 || frame.size[1] == 0 || frame.size[2] == 0) return;
+  const KeyBox all{frame.first, frame.key(frame.size[0] - 1, frame.size[1] - 1, frame.size[2] - 1)};
   for (const KeyBox& box : kept_out)
-    if (const auto within = intersection(box, bounds))
+    if (const auto within = intersection(box, all))
       for_each_key(*within, [this](const VoxelKey& cell) { distances->close(cell); });
 }
 

@@ -95,7 +95,7 @@ Goal ExplorationState::first_stop(std::size_t robot) const {
   goal.pose = first.pose;
   // A robot that sees all around looks where it goes.
   if (options.team[robot].robot.view.sees_all_around())
-    goal.pose->yaw = yaw_along(first.pose.position - poses[robot].position);
+    goal.pose->yaw = yaw_along(first.pose.position - poses[robot].position, poses[robot].yaw);
   goal.cell = first.cell;
   goal.distance = tours->first_distance(robot);
   goal.gain = static_cast<double>(first.seen);

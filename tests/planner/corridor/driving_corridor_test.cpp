@@ -39,6 +39,25 @@ TEST(TravelCorridor, KeepsToGround) {
   EXPECT_EQ(farthest, 12);  // half a box from the bounds
 }
 
+// On its plane, wherever the bounds are along z.
+TEST(TravelCorridor, KeepsOutOfBoxesOnAnyPlane) {
+  VoxelGrid grid(0.3);
+  for_each_key(kBounds, [&](const VoxelKey& key) { grid.set(key, Occupancy::kFree); });
+  TravelOptions options = ugv_travel();
+  options.require_ground = false;
+  KeyBox high = kBounds;
+  high.min.z = high.max.z;
+  for (const KeyBox& bounds : {kBounds, high}) {
+    TravelCorridor corridor(options, grid.lattice(), bounds);
+    corridor.keep_out_of({{key_at(4, -10, 2), key_at(6, 12, 2)}});
+    corridor.update({grid}, key_at(0, 0, 2));
+    ASSERT_EQ(corridor.state(), CorridorState::kReady);
+    int farthest = 0;
+    for (const VoxelKey& key : corridor.cells()) farthest = std::max(farthest, key.x - 32768);
+    EXPECT_EQ(farthest, 3) << bounds.min.z;
+  }
+}
+
 // A floor, a ramp as steep as its number of voxels along x for each one up, and a floor above.
 VoxelGrid ramp(int run, int rise) {
   VoxelGrid grid(0.1);

@@ -25,9 +25,11 @@ TEST(ScanMessages, ArriveInOrderAfterTheDelay) {
   ScanMessages messages({.delay = 1.0}, 1);
   for (std::size_t i = 0; i < 4; ++i) messages.send(scan_at(0.25 * static_cast<double>(i), i));
   EXPECT_TRUE(messages.arrived(0.99).empty());
+  EXPECT_EQ(messages.next_arrival(), 1.0);
   EXPECT_EQ(messages.arrived(1.0).size(), 1U);
   const auto rest = messages.arrived(1.75);
   ASSERT_EQ(rest.size(), 3U);
+  EXPECT_EQ(messages.next_arrival(), std::nullopt);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rest[i].robot, i + 1);
 }
 

@@ -81,8 +81,7 @@ struct FRONTLUX_EXPORT TravelOptions {
   /// `ground_reach` voxels of the cell's column is known to be occupied. The floor is below the box. A hole
   /// is known to be free, and those next to it along x, or along y, are not both known to be occupied.
   bool require_ground = true;
-  /// [m] Along x and y: the part of the floor that must not be known to be free, on the ground in which no
-  /// hole may be known; if not given, all of it.
+  /// [m] Along x and y: the part of the floor in which no hole may be known; if not given, all of it.
   std::optional<Eigen::Vector2d> ground_extents;
   int ground_reach = 1;  ///< [voxels] along x and y
   /// Cells that need no ground, as the start: no sensor sees its floor. Holes count there, too: on a plane

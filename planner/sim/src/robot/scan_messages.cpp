@@ -23,6 +23,10 @@ void ScanMessages::send(MovingRobots::Sensed scan) {
   if (random_of(seed_ + kLosses, sent_++).unit() >= errors_.loss) underway_.push_back(std::move(scan));
 }
 
+std::optional<double> ScanMessages::next_arrival() const {
+  return underway_.empty() ? std::nullopt : std::optional(underway_.front().time + errors_.delay);
+}
+
 std::vector<MovingRobots::Sensed> ScanMessages::arrived(double time) {
   constexpr double kRounding = 1e-9;  // [s] 0.1 + 0.2 is more than 0.3
   std::vector<MovingRobots::Sensed> scans;

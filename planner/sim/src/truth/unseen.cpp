@@ -40,7 +40,8 @@ std::set<VoxelKey> room_at_starts(const Lattice& lattice, std::span<const planne
 }
 
 // The whole world as a map. Of two free voxels with a wall between them the upper one counts as occupied, or
-// the lower one if a robot starts in the upper one, so that nobody looks or goes through.
+// the lower one if a robot starts in the upper one, so that nobody looks or goes through. Of two robots that
+// start beside such a wall on its both sides the lower one is not looked from.
 VoxelGrid map_of(const GroundTruth& truth, const std::set<VoxelKey>& starts) {
   VoxelGrid grid(truth.lattice().resolution());
   const auto free = [&](const VoxelKey& key) { return truth.at(key) == Truth::kFree; };

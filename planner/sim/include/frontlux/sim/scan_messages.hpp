@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 namespace frontlux::sim {
@@ -26,6 +27,8 @@ class ScanMessages {
   /// Those that have arrived by a time [s], in the order in which they set out, and no others since the last
   /// call.
   [[nodiscard]] std::vector<MovingRobots::Sensed> arrived(double time);
+  /// [s] When the next one of those that are under way arrives; nothing if there is none.
+  [[nodiscard]] std::optional<double> next_arrival() const;
 
  private:
   MessageErrors errors_;
