@@ -389,39 +389,6 @@ TEST_F(ExploreMotion, LargeVoxelsAndShortSensorsHaveSomethingToDo) {
   EXPECT_EQ(json_in("run").at("end"), "time_limit");
 }
 
-TEST_F(ExploreMotion, WaitsForNoScanToPlanToFailAndToEnd) {
-  const std::string slow = write("slow.json", R"({"name": "slow", "motion": "space", "body":
-    {"kind": "box", "size_m": [0.4, 0.4, 0.3]}, "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72,
-    "range_m": 5, "columns": 48, "rows": 36, "rate_hz": 0.1}})");
-  ASSERT_EQ(run({"room", "--team", "", "--robot", slow, "--robot", slow, "--stop-time", "12.5", "--fail",
-                 "slow2=7.25", "--report", "off", "-o", path("run")})
-                .code,
-            0);
-  EXPECT_EQ(json_in("run").at("time_s").at("end"), 12.5);
-  EXPECT_EQ(json_in("run").at("by_robot").at("slow2").at("failed_s"), 7.25);
-  const Table events(path("run/events.csv"));
-  std::vector<double> times;
-  for (std::size_t i = 0; i < events.size(); ++i)
-    if (events.text(i, "robot") == "slow1") times.push_back(events.number(i, "time_s"));
-  ASSERT_GT(times.size(), 9U);
-  for (std::size_t i = 1; i < times.size(); ++i) EXPECT_LE(times[i] - times[i - 1], 1.25 + 1e-9);
-}
-
-TEST_F(ExploreMotion, KeepsHeightsAboveTheLowestFloor) {
-  const std::string high =
-      write("high.json", R"({"name": "high", "motion": "space", "min_height_m": 1.2, "body":
-    {"kind": "box", "size_m": [0.4, 0.4, 0.3]}, "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 72,
-    "range_m": 5, "columns": 48, "rows": 36, "rate_hz": 4}})");
-  expect_answer(
-      {"room", "--team", "", "--robot", high, "--stop-time", "20", "--report", "off", "-o", path("run")});
-  const Table motion(path("run/motion.csv"));
-  double lowest = 9.0;
-  for (std::size_t i = 0; i < motion.size(); ++i) lowest = std::min(lowest, motion.number(i, "z_m"));
-  EXPECT_GE(lowest, 1.2 - 1e-6) << "the floor of the room is at 0";
-  expect_refused({"room", "--team", "", "--robot", high, "--pose", "high=8.45,8.35,0.75,0", "-o", path("no")},
-                 {"--pose: 'high=8.45,8.35,0.75,0' is 0.75 m above the floor at z = 0.00 m", "keeps 1.20 m"});
-}
-
 TEST_F(ExploreMotion, EndsInTimeIfNoScanArrives) {
   expect_answer(joined(quick("run", "3"), {"--scan-loss", "1"}));
   EXPECT_EQ(json_in("run").at("end"), "time_limit");
