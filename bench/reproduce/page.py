@@ -192,7 +192,7 @@ By pairs; with a ratio below 1, or below 0, tours are better.
 
 {pairs_table(results)}
 {figure("ratios", "Time until mapped of tours by that of the others, with intervals, and time to the end")}
-Way and safety: contacts, and those at which the map had all voxels around the body as free, since beams had passed the
+Paths and safety: contacts, and those at which the map had all voxels around the body as free, since beams had passed the
 surface that is in them; least clearance of a body to a surface and least distance of two bodies, of all runs; runs that ended with a
 robot cut off.
 

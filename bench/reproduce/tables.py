@@ -74,7 +74,7 @@ def times_table(results, tasks):
 
 
 def safety_table(results, tasks):
-    return table(["task", "method", "metres", "UAVs' metres", "revisited", "cut off", "contacts / in free voxels",
+    return table(["task", "method", "metres", "UAVs' metres", "of them revisited", "cut off", "contacts / in free voxels",
                   "clearance [m]", "bodies apart [m]"],
                  rows_of(results, tasks, lambda runs, done: [
                      means(done, lambda r: r.metres()), means(done, lambda r: r.metres("uav")),
@@ -187,7 +187,7 @@ def steps_table(results):
                 means(done, lambda r: r.share("uav"), 0, " %", 100),
                 means(done, lambda r: r.efficiency("uav"), 1)])
     return table(["world", "", "runs", "failed", "mapped, by all runs", "runs with a contact", "paper, mapped in steps", "steps",
-                  "steps to 90 %", "UAV's metres", "revisited", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
+                  "steps to 90 %", "UAV's metres", "of them revisited", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
 
 
 def optimisation_table(results):

@@ -4,6 +4,8 @@
 #include <octomap/OcTree.h>
 
 #include <iostream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 // castRay's arguments in their order, answered by any caster, as that of a LiveMap.
@@ -17,12 +19,10 @@ static bool cast_ray(const frontlux::RayCaster& caster, const octomap::point3d& 
   return hit.occupied();
 }
 
-int main(int, char** arguments) {
+int main(int argc, char** arguments) try {
+  if (argc != 2) throw std::invalid_argument("usage: drop_in MAP.bt");
   octomap::OcTree tree(arguments[1]);  // nothing is in it if there is no such file
-  if (tree.size() == 0) {
-    std::cerr << arguments[1] << " is no .bt file with a map\n";
-    return 2;
-  }
+  if (tree.size() == 0) throw std::runtime_error(std::string(arguments[1]) + " is no .bt file with a map");
   const octomap::point3d origin(2.0F, 2.0F, 1.0F), direction(1.0F, 0.7F, 0.1F), sensor(5.0F, 5.0F, 1.5F);
   octomap::point3d end, theirs, ours;
   octomap::Pointcloud scan;
@@ -51,4 +51,7 @@ int main(int, char** arguments) {
     same += hits[i].occupied() == theirs_hit && same_end ? 1 : 0;
   }
   std::cout << same << " of " << rays.size() + 2 << " answers are castRay's\n";
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 
 using namespace frontlux;
 
-int main(int, char** arguments) {
+int main(int argc, char** arguments) try {
+  if (argc != 6) throw std::invalid_argument("usage: lidar_scan MAP.bt X Y Z YAW");
   const VoxelGrid grid = make_voxel_grid(read_octree(arguments[1]));
   const auto caster = make_ray_caster(grid);
   const auto number = [&](int i) { return std::stod(arguments[i]); };
@@ -32,4 +34,7 @@ int main(int, char** arguments) {
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
   std::cout << returns << " of " << rays.size() << " rays return, " << scan.size() << " points in "
             << seen.size() << " voxels\n";
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

@@ -7,10 +7,12 @@
 #include <octomap/OcTree.h>
 
 #include <iostream>
+#include <stdexcept>
 
 using namespace frontlux;
 
-int main(int, char** arguments) {
+int main(int argc, char** arguments) try {
+  if (argc != 2) throw std::invalid_argument("usage: next_best_view WORLD.bt");
   const OctreeRayCaster world(read_octree(arguments[1]));  // what the lidar sees
   const FieldOfView lidar{FieldOfView::Shape::kSpinning, 0.0, 0.6, 12.0};
   const auto directions = sensor_directions(lidar, 720, 32);
@@ -32,4 +34,7 @@ int main(int, char** arguments) {
     std::cout << "scan " << scan << ": " << free.size() << " voxels free, " << frontiers.size()
               << " frontiers\n";
   }
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

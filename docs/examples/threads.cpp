@@ -11,6 +11,7 @@
 #include <atomic>
 #include <iostream>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -24,7 +25,8 @@ struct Change {
   std::vector<VoxelKey> keys;
 };
 
-int main(int, char** arguments) {
+int main(int argc, char** arguments) try {
+  if (argc != 2) throw std::invalid_argument("usage: threads MAP.bt");
   const OctreeRayCaster world(read_octree(arguments[1]));  // what the lidar sees
   const auto directions = sensor_directions({FieldOfView::Shape::kSpinning, 0.0, 0.6, 12.0}, 720, 32);
   octomap::OcTree tree(0.1);
@@ -72,4 +74,7 @@ int main(int, char** arguments) {
   caster.cast(rays, hits, UnknownPolicy::kBlock);
   std::cout << batches << " batches meanwhile; now " << std::ranges::count_if(hits, &Hit::occupied) << " of "
             << hits.size() << " rays hit something, and there are " << frontiers.size() << " frontiers\n";
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

@@ -54,6 +54,9 @@ std::string unknown_command(const std::string& name, const CLI::App& app) {
 std::string describe(const CLI::ParseError& error, const CLI::App& app) {
   const auto strays = app.remaining(true);
   const auto commands = app.get_subcommands();
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)
+    return error.what() + std::string("; give true or false");  // all but flags are read by ourselves
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && strays.empty()) return error.what();
   if (strays.empty() && commands.empty()) return "give a command";
   if (strays.empty()) {
     const bool both = dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr;

@@ -18,17 +18,6 @@ std::optional<Number> number_in(std::string_view word) {
   return number;
 }
 
-template <class Number>
-std::optional<std::vector<Number>> list_in(std::string_view word) {
-  std::vector<Number> numbers;
-  for (std::string_view rest = word;; rest.remove_prefix(rest.find(',') + 1)) {
-    const auto number = number_in<Number>(rest.substr(0, rest.find(',')));
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-    if (rest.find(',') == std::string_view::npos) return numbers;
-  }
-}
-
 std::string describe(const Range<double>& range) {
   const bool bounded = range.high < std::numeric_limits<double>::max();
   if (range.low == kAnyNumber.low && !bounded) return "a finite number";
@@ -62,11 +51,12 @@ void read(std::string_view word, std::uint64_t& number, const Range<std::uint64_
 }
 
 void read(std::string_view word, Eigen::Vector3f& point) {
-  const auto numbers = list_in<float>(word);
+  const auto numbers = numbers_in(word);
   if (!numbers || numbers->size() != 3)
     throw BadInput(quote(word) +
                    " is not three finite numbers; write x,y,z without blanks, as in 1.5,-2,0.4");
-  point = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  point = Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]).cast<float>();
+  if (!point.allFinite()) throw BadInput(quote(word) + " is too large: no map reaches as far");
 }
 
 void read(std::string_view word, Eigen::AlignedBox3d& box) {
@@ -78,7 +68,15 @@ void read(std::string_view word, Eigen::AlignedBox3d& box) {
   box = {corner.col(0), corner.col(1)};
 }
 
-std::optional<std::vector<double>> numbers_in(std::string_view word) { return list_in<double>(word); }
+std::optional<std::vector<double>> numbers_in(std::string_view word) {
+  std::vector<double> numbers;
+  for (std::string_view rest = word;; rest.remove_prefix(rest.find(',') + 1)) {
+    const auto number = number_in<double>(rest.substr(0, rest.find(',')));
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+    if (rest.find(',') == std::string_view::npos) return numbers;
+  }
+}
 
 void check_yaw(std::string_view word, double yaw) {
   if (!io::is_within_a_turn(yaw))

@@ -245,7 +245,7 @@ TEST_F(ExploreCommand, RefusesFoldersAndRecordingsThatDoNotFit) {
   fs::create_directory(path("mine"));
   fs::copy_file(fs::path(FRONTLUX_DATA_DIR) / "maps/room_0.2m.ot", path("mine/map.ot"));
   expect_refused({path("mine/map.ot"), "--start", "6,3,1", "--force", "-o", path("mine")},
-                 {"holds the world to explore, " + path("mine/map.ot")});
+                 {"holds what is read, " + path("mine/map.ot")});
   expect_refused({"--resume", path("kept")}, {"--resume", "holds no run.frontlux"});
   expect_refused({"--resume", path("nowhere")}, {"--resume: there is no folder " + path("nowhere")});
   expect_refused({"--resume", path("file")}, {"is a file; name its folder, " + folder_.string()});

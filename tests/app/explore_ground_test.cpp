@@ -76,5 +76,18 @@ TEST_F(ExploreGround, NeedsVoxelsThatTellStepsFromFloor) {
   EXPECT_FALSE(std::filesystem::exists(path("run")));
 }
 
+// Voxels of any size: its sensor is seldom in the middle of one.
+TEST_F(ExploreGround, StaysOnItsPlaneAtTheHeightOfItsSensor) {
+  for (const char* resolution : {"0.27", "0.4"}) {
+    SCOPED_TRACE(resolution);
+    expect_answer({"room", "--team", "ugv", "--resolution", resolution, "--bumper", "off", "--stop-time",
+                   "25", "--report", "off", "--force", "-o", path("run")},
+                  {"contacts     0"});
+    const Table motions(path("run/motion.csv"));
+    for (std::size_t i = 0; i < motions.size(); ++i) ASSERT_NEAR(motions.number(i, "z_m"), 0.75, 1e-3) << i;
+    EXPECT_GT(json_in("run").at("coverage_observable"), 0.8);
+  }
+}
+
 }  // namespace
 }  // namespace frontlux::planner

@@ -322,12 +322,13 @@ TEST_F(InfoCastCommand, RefusesWrongWords) {
 TEST_F(InfoCastCommand, RefusesWrongNumbers) {
   for (const std::string vector :
        {"", "1", "1,2", "1,2,3,4", "1,2,", ",,", "a,b,c", "1, 2, 3", "1;2;3", "1,2,nan", "inf,0,0",
-        "-inf,0,0", "-nan,0,0", "1e39,0,0", "0x1,0,0", "1,2,3 "}) {
+        "-inf,0,0", "-nan,0,0", "1e399,0,0", "0x1,0,0", "1,2,3 "}) {
     const std::string told = ": '" + vector + "' is not three finite numbers; write x,y,z";
     expect_refused(cast({"--from", vector, "--direction", "1,0,0"}), {"--from" + told});
     expect_refused(cast({"--from", "0,0,0", "--direction", vector}), {"--direction" + told});
     expect_refused(cast({"--from", "0,0,0", "--to", vector}), {"--to" + told});
   }
+  expect_refused(cast({"--from", "1e39,0,0", "--direction", "1,0,0"}), {"--from: '1e39,0,0' is too large"});
   for (const std::string range : {"0", "-1", "nan", "inf", "-inf", "1e999", "1m", "ten", "", "--json"})
     expect_refused(cast({"--from", "0,0,0", "--to", "1,0,0", "--range", range}),
                    {"--range: '" + range + "' is not a number above 0"});

@@ -1,3 +1,4 @@
+#include "app/paper_robot.hpp"
 #include "octomap/quiet_octomap.hpp"
 #include "support/command_test.hpp"
 #include "support/giant_leaf.hpp"
@@ -87,7 +88,7 @@ TEST_F(PlanCommandTest, TakesARobotFromAFile) {
                                     "--to",          to,        "-o",  path("path.csv")};
   };
   for (const auto& [robot, z] : {std::pair<std::string, std::string>("ugv", "0.75"), {"uav", "1.9"}}) {
-    const std::string file = FRONTLUX_DATA_DIR "/robots/" + robot + ".json";
+    const std::string file = write(robot + ".json", test::paper_robot(robot));
     expect_answer(words(robot, "1.5,1.1," + z + ",0", "7.5,1.3," + z));
     const std::string path_by_word = content_of(path("path.csv"));
     expect_answer(words(file, "1.5,1.1," + z + ",0", "7.5,1.3," + z));

@@ -1,5 +1,6 @@
 // `frontlux render` from the outside: its files against brute force, and what it refuses.
 
+#include "app/paper_robot.hpp"
 #include "octomap/quiet_octomap.hpp"
 #include "planner/goal/goal_room.hpp"
 #include "support/command_test.hpp"
@@ -141,7 +142,7 @@ TEST_F(RenderCommand, TakesARobotFromAFile) {
   for (const std::string robot : {"ugv", "uav"}) {
     const std::string at = robot == "ugv" ? kStart : "5.25,5.25,1.65";
     expect_answer(words(robot, at, "word.csv"), {});
-    expect_answer(words(FRONTLUX_DATA_DIR "/robots/" + robot + ".json", at, "file.csv"), {});
+    expect_answer(words(write(robot + ".json", test::paper_robot(robot)), at, "file.csv"), {});
     EXPECT_EQ(content_of(path("file.csv")), content_of(path("word.csv")));
   }
 }
@@ -184,7 +185,7 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   refuse("ugv", kStart, {"--bounds", "0,0,0,1,1"}, {"--bounds: '0,0,0,1,1' is not six finite numbers"});
   refuse("ugv", kStart, {"--bounds", "50,50,0,60,60,1"}, {"--bounds: no voxel within is known"});
   refuse("ugv", kStart, {"--bounds", "1,1,1,0,0,0"},
-         {"--bounds: the box goes from 1.000000 m to 0.000000 m along x: give the lower corner first"});
+         {"--bounds: the box goes from 1 m to 0 m along x: give the lower corner first"});
   refuse("uav", kStart, {"--floor", "inf"}, {"--floor: 'inf' is not a finite number"});
   refuse("uav", "5.25,5.25,0.45", {}, {"--at", "below its minimum height"});
   refuse("ugv", "5.25,5.25,-0.15", {}, {"--at", "occupied voxel"});

@@ -61,6 +61,13 @@ TEST_F(ResumeElsewhere, FindsTheWorldWhereItWas) {
   expect_answer(test::joined(resume_, {"--world", path("moved/worlds/room.ply")}), {}, in("there"));
   expect_refused(test::joined(resume_, {"--world", path("none.ply")}), {path("none.ply"), "no such file"});
   expect_refused({"room", "--world", "x.ply", "-o", path("new")}, {"--world", "--resume"});
+  // Its file got another name; the report still has all that only run.json tells.
+  fs::rename(path("moved/worlds/room.ply"), path("moved/worlds/other.ply"));
+  expect_answer({"--resume", path("run"), "--max-steps", "3", "--report", "off", "--world",
+                 path("moved/worlds/other.ply")});
+  const test::Answer report = test::run_frontlux({"report", path("run")}, folder_);
+  EXPECT_EQ(report.code, 0) << report.err;
+  EXPECT_EQ(report.err, "");
 }
 
 TEST_F(ResumeElsewhere, LeavesBuiltInWorldsAlone) {

@@ -39,6 +39,17 @@ TEST_F(PoseFile, TakesAByteOrderMarkAtTheBegin) {
   expect_refused("poses.csv", "a.pcd,1,2,3,0\n" + mark + "b.pcd,1,2,3,zero\n", "line 2: 'zero'");
 }
 
+// As spreadsheets write them.
+TEST_F(PoseFile, TakesFieldsInQuotes) {
+  const auto table = read_pose_file(
+      save("poses.csv", "\"file\",\"x\",\"y\",\"z\",\"yaw\"\n \"a, \"\"b\"\".pcd\" ,\"1\",2,3,\"0\"\n"));
+  ASSERT_EQ(table.size(), 1U);
+  EXPECT_EQ(table[0].file, "a, \"b\".pcd");
+  EXPECT_EQ(table[0].T_world_sensor.translation(), Eigen::Vector3d(1, 2, 3));
+  for (const std::string row : {"\"a.pcd,1,2,3,0\n", "\"a\".pcd,1,2,3,0\n", "a.pcd,1,2,3,\"0\n"})
+    expect_refused("poses.csv", row, "line 1: has a quote that does not end where a field does");
+}
+
 TEST_F(PoseFile, RefusesBadPoses) {
   const auto bad = [&](const std::string& bytes, const std::string& part) {
     expect_refused("poses.csv", bytes, part);

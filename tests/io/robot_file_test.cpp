@@ -24,9 +24,12 @@ void expect_equal(const RobotDescription& a, const RobotDescription& b) {
 
 const std::filesystem::path kRobots = std::filesystem::path(FRONTLUX_DATA_DIR) / "robots";
 
-TEST_F(RobotFile, ThoseOfThePaperAreTheBuiltInOnesToTheLastBit) {
-  expect_equal(read_robot(kRobots / "ugv.json"), planner::ugv_description());
-  expect_equal(read_robot(kRobots / "uav.json"), planner::uav_description());
+TEST_F(RobotFile, ThoseThatShipAreTheBuiltInOnesInMotionToTheLastBit) {
+  for (auto [file, robot] :
+       {std::pair("ugv.json", planner::ugv_description()), {"uav.json", planner::uav_description()}}) {
+    robot.robot = planner::in_motion(robot.robot, 0.3);
+    expect_equal(read_robot(kRobots / file), robot);
+  }
   EXPECT_EQ(planner::ugv_description().columns * planner::ugv_description().rows, 32U * 720U);
   EXPECT_EQ(planner::uav_description().columns, 160U);
 }

@@ -87,6 +87,12 @@ class Robots(unittest.TestCase):
             self.assertAlmostEqual(read.yaw_rate, robot.yaw_rate)
             self.assertEqual(read.view.max_range, robot.view.max_range)
             np.testing.assert_array_equal(read.box, robot.box)
+            moving = robot.in_motion(0.3)
+            self.assertEqual((read.margin, read.min_height), (moving.margin, moving.min_height))
+            self.assertGreater(moving.margin, robot.margin)
+        self.assertEqual(planner.uav().in_motion(0.2).margin, 0.05)
+        with self.assertRaisesRegex(ValueError, "resolution"):
+            planner.uav().in_motion(0.0)
 
     def test_a_robot_of_values_is_the_one_of_its_file(self):
         files = {
@@ -317,6 +323,13 @@ class InMotion(unittest.TestCase):
         times = np.arange(0, 6, 0.1)
         np.testing.assert_array_equal(by_run.at(0, times)["pose"], by_hand.at(0, times)["pose"])
         self.assertEqual(by_hand.finish(3.5).time, 3.5)
+
+    def test_a_robot_with_rare_scans_plans_between_them(self):
+        exploration, plans = planner.ContinuousExploration([drone("slow", 0.2)], room().bounds, 0.2), []
+        exploration.begin([room().start])
+        planner.run(exploration, sense_for(exploration), until=12.0, planned=lambda plan: plans.append(exploration.time))
+        self.assertEqual(exploration.period, 1.0)
+        self.assertLessEqual(np.diff([*plans, 12.0]).max(), 1.25 + 1e-9)
 
     def test_runs_in_parts_are_one_run(self):
         runs = []

@@ -203,6 +203,35 @@ class Recordings(unittest.TestCase):
         self.assertEqual(grid.count()[1:], [1, 2])
         np.testing.assert_array_equal(grid.at(changes["keys"]), [1, 2, 2, 2])
 
+    def test_zeros_from_any_byte_on_are_an_unfinished_step(self):
+        whole = (self.run_folder / "run.frontlux").read_bytes()
+        file = pathlib.Path(self.folder.name) / "zeros.frontlux"
+        begins, at = [], whole.index(b"\n") + 1
+        while at < len(whole):
+            begins.append(at)
+            at += 20 + struct.unpack_from("<I", whole, at + 4)[0]
+        random = np.random.default_rng(3)
+        last = begins[-1]  # the record of the end
+        for number, begin, end in ((3, begins[4], begins[5]), (len(begins) - 2, last, len(whole))):
+            # Where a record ends in zeros of its own it is whole.
+            for place in sorted({begin, begin + 1, begin + 8, begin + 15, begin + 16, end - 5, *random.integers(begin, end, 20)}):
+                if not whole[place:end].strip(b"\0"):
+                    continue
+                file.write_bytes(whole[:place] + bytes(len(whole) - place + 100))
+                with self.subTest(number=number, place=place - begin):
+                    recording = frontlux.read_recording(file)
+                    self.assertEqual((len(recording.steps["number"]), recording.end, recording.truncated), (number, None, True))
+
+    def test_a_world_whose_files_name_is_not_utf_8_is_read(self):
+        whole = (self.run_folder / "run.frontlux").read_bytes()
+        begin = whole.index(b"\n") + 1
+        packed = struct.unpack_from("<I", whole, begin + 4)[0]
+        head = zlib.decompress(whole[begin + 16:begin + 16 + packed])
+        self.assertEqual(head[:5], b"\4room")
+        file = pathlib.Path(self.folder.name) / "name.frontlux"
+        file.write_bytes(whole[:begin] + record(b"head", b"\4h\xe4us" + head[5:]) + whole[begin + 20 + packed:])
+        self.assertEqual(frontlux.read_recording(file).world, "h\ufffdus")
+
     def test_a_recording_that_is_cut_off_is_read_up_to_there(self):
         whole = (self.run_folder / "run.frontlux").read_bytes()
         file = pathlib.Path(self.folder.name) / "cut.frontlux"
@@ -214,7 +243,11 @@ class Recordings(unittest.TestCase):
         self.assertLess(steps, len(self.recording.steps["number"]))
         self.assertEqual(recording.grid(), self.recording.grid(steps - 1))
         file.write_bytes(whole + b"\0" * 5000)
-        self.assertTrue(frontlux.read_recording(file).truncated)
+        recording = frontlux.read_recording(file)
+        self.assertEqual((recording.end, recording.truncated), (self.recording.end, False))
+        file.write_bytes(whole + b"abc")
+        with self.assertRaisesRegex(RuntimeError, "goes on after its end"):
+            frontlux.read_recording(file)
         with self.assertRaises(FileNotFoundError):
             frontlux.read_recording(self.run_folder / "none")
 

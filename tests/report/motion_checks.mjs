@@ -206,7 +206,7 @@ export async function candidatesAreRight(browser) {
       const anywhere = scene.images.find((image) => image.pick && image.placeOf), r = anywhere.robot;
       timeline.seek(run.images.findIndex((image, i) => image && i % run.robots === r) / run.robots | 0);
       for (const name of ["voxels", "frontiers", "planned", "tours"]) document.getElementById(`layer-${name}`)?.click();
-      const image = anywhere.imageAt(anywhere.shown), best = image.quality.indexOf(255);
+      const image = anywhere.shownImage, best = image.quality.indexOf(255);
       const p = scene.camera.position.clone().set(...anywhere.placeOf(image, best)).project(scene.camera);
       return { visible: anywhere.mesh.visible, kind: report.pickAt(((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height)?.kind, name: run.facts.robots[r].name };
     });

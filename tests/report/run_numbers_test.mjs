@@ -8,10 +8,11 @@ const part = (name) => import(pathToFileURL(resolve(process.argv[2], "src", name
 const { clockTime, cubicMetres, lastUpTo, numbersOf, percent, stepOfCoverage } = await part("run_numbers.js");
 const { ending, warnings } = await part("facts_view.js");
 const { Timeline } = await part("timeline.js");
+const { placeText, readPlace } = await part("place.js");
 
 /** Of two robots; a step is [time, known of each, length of each, who plans (-1: all)]. */
 function factsOf(rows, other = {}) {
-  const robot = (r, length, plans) => ({ gain_tangent: 0, gain_predicted: plans ? 10 * (r + 1) : 0, gained: 1, length, path: plans ? "was found by the search" : "has no length: start and goal are the same point" });
+  const robot = (r, length, plans) => ({ gain_predicted: plans ? 10 * (r + 1) : 0, gained: 1, length, path: plans ? "was found by the search" : "has no length: start and goal are the same point" });
   return {
     observable: 1000, bounding: 2000, resolution: 0.5, options: '{"lockstep": false}', end: "low_gain", truncated: false,
     phases: ["frontiers", "caster", "goals", "paths", "optimization", "moving"], robots: [{ name: "a" }, { name: "b" }],
@@ -45,7 +46,8 @@ const RUN = [
   assert.deepEqual([0.5, 0.9, 0.95, 0.99, 1].map((part) => stepOfCoverage(numbers, part)), [3, 4, 5, 6, -1]);
   const { result } = numbers;
   assert.deepEqual([result.time, result.length, result.volume, result.steps], [9, 14, 248.75, 6]);
-  assert.ok(Math.abs(result.planningMost - 0.3) < 1e-12 && Math.abs(result.planningMean - (5 * 0.3 + 0.1) / 6) < 1e-12);
+  assert.ok(Math.abs(result.planningMost - 0.3) < 1e-12 && Math.abs(result.planningMean - 0.3) < 1e-12);
+  assert.equal(result.plannings, 5, "in the last step nobody plans");
 }
 { // In lock-step, or if nothing is said, each step is as it is.
   for (const options of ['{"lockstep": true}', "{}", "none", "null", "[1]"]) {
@@ -93,6 +95,21 @@ const RUN = [
   assert.equal(cubicMetres(1234.5), "1,235 m³");
   assert.equal(cubicMetres(9.96), "10.0 m³");
   assert.equal(percent(0.9999), "99.9 %");
+}
+{ // What is shown comes back from its link, also where several steps end at the same time, or one a little after another.
+  const times = [0, 0, 0, 2.5, 1 / 3 + 2.5, 2.8334, 4, 4, 7.25];
+  for (const along of [1, 0.4])
+    times.forEach((_, step) => {
+      const from = new Timeline(times), to = new Timeline(times);
+      Object.assign(from, { step, along: times[step] > (times[step - 1] ?? 0) ? along : 1 });
+      const link = placeText({ time: from.time, step: from.along === 1 ? step : null, run: 0 }), place = readPlace(link);
+      to.seekTime(place.time, place.step);
+      assert.equal(to.step, step, link);
+      assert.ok(Math.abs(to.along - from.along) < 1e-9, link);
+    });
+  const elsewhere = new Timeline([0, 3, 5]); // a link to a run that is not this one any more: the moment counts
+  elsewhere.seekTime(4, 1);
+  assert.deepEqual(elsewhere.position, { step: 2, along: 0.5 });
 }
 { // It plays by the clock: at 2 seconds of the run in a second, and so fast that a frame passes several steps.
   let frame = null, now = 1000;

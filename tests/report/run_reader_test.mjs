@@ -44,9 +44,8 @@ const textOf = (facts, data) => BASE64(deflateSync(packed(facts, data)));
 
 function factsOf(steps, robots) {
   const robotStep = (r) => ({
-    state: "reachable", reason: "", assigned: 3, released: 0, received: 0, uncovered: 0, path: "was found by the search",
-    gain_tangent: 1.5, gain_predicted: 2, gained: 1, length: 2.5, still_unknown: 0,
-    ...(r === 0 ? { goal: [1, 2, 0.5, 0.25], distance: 2, gain: 3, standard_error: 0.1, quality: null } : {}),
+    state: "reachable", reason: "", path: "was found by the search", gain_predicted: 2, gained: 1, length: null,
+    ...(r === 0 ? { goal: [1, 2, 0.5, 0.25] } : {}),
   });
   const list = (length, of) => Array.from({ length }, (_, i) => of(i));
   return {

@@ -64,11 +64,11 @@ export async function addressIsRight(browser) {
   });
   await page.waitForFunction(() => location.hash !== "");
   const [hash, time, place] = await page.evaluate(() => [location.hash, window.frontlux.page.timeline.time, window.frontlux.page.scene.place]);
-  assert.match(hash, /^#t=[\d.]+&camera=[-\d.,]+$/);
+  assert.match(hash, /^#t=[\d.]+&step=7&camera=[-\d.,]+$/);
   const shown = (where) => where.evaluate(() => [window.frontlux.page.timeline.time, window.frontlux.page.scene.place, window.frontlux.page.shown]);
   const other = await open(browser, explored, {}, hash);
   const [theirTime, theirPlace] = await shown(other.page);
-  assert.ok(Math.abs(theirTime - time) < 0.001, `${theirTime} s instead of ${time} s`);
+  assert.deepEqual([theirTime, await other.page.evaluate(() => window.frontlux.page.timeline.step)], [time, 7]);
   theirPlace.forEach((value, i) => assert.ok(Math.abs(value - place[i]) < 0.01, `camera ${theirPlace} instead of ${place}`));
   await other.page.evaluate(() => (location.hash = "#t=3"));
   await other.page.waitForFunction(() => Math.abs(window.frontlux.page.timeline.time - 3) < 1e-9);

@@ -57,11 +57,11 @@ function makeRun(seed) {
 function drawn(mesher, corner) {
   const out = [];
   for (let f = 0; f < mesher.faces; ++f) {
-    const at = (corner_, k) => mesher.corners[16 * f + 4 * corner_ + k], tag = at(0, 3), axis = (tag & 7) >> 1;
+    const at = (corner_, k) => mesher.corners[16 * f + 4 * corner_ + k], tag = at(0, 3), axis = (tag % 6) >> 1;
     const low = [0, 1, 2].map((k) => Math.min(at(0, k), at(2, k))), high = [0, 1, 2].map((k) => Math.max(at(0, k), at(2, k)));
-    const side = tag & 7, inside = side & 1 ? -1 : 0; // the voxel behind the face
+    const side = tag % 6, inside = side & 1 ? -1 : 0; // the voxel behind the face
     const range = (k) => (k === axis ? [low[k] + inside] : Array.from({ length: high[k] - low[k] }, (_, i) => low[k] + i));
-    for (const x of range(0)) for (const y of range(1)) for (const z of range(2)) out.push(`face ${[corner[0] + x, corner[1] + y, corner[2] + z]} ${side} ${tag >> 3}`);
+    for (const x of range(0)) for (const y of range(1)) for (const z of range(2)) out.push(`face ${[corner[0] + x, corner[1] + y, corner[2] + z]} ${side} ${Math.floor(tag / 6)}`);
     // Counter-clockwise as seen from the side that it looks to.
     const u = [0, 1, 2].map((k) => at(1, k) - at(0, k)), v = [0, 1, 2].map((k) => at(2, k) - at(1, k));
     const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];

@@ -7,7 +7,7 @@
 namespace frontlux {
 
 /// How this thread computes with floating-point numbers, for as long as the object lives; then the caller's
-/// mode comes back. Exceptions are masked meanwhile.
+/// mode comes back. Exceptions are masked meanwhile; their flags (`std::fetestexcept`) may be raised.
 class FRONTLUX_EXPORT FloatingPointMode {
  public:
   /// How floating-point numbers are rounded.

@@ -20,7 +20,7 @@ enum class Adjacency : std::uint8_t {
 /// The frontiers of a map: the unknown voxels inside the bounds that have a free neighbour.
 ///
 /// An update looks at the bricks around the changed voxels, and copies the sorted list if that has changed;
-/// the result is the same as that of a new set. Thread safety: as a standard container.
+/// the result is the same as that of a new set that does not throw. Thread safety: as a standard container.
 class FRONTLUX_EXPORT FrontierSet {
  public:
   /// @param bounds  voxels outside are not frontiers; free voxels outside count as neighbours
@@ -35,7 +35,8 @@ class FRONTLUX_EXPORT FrontierSet {
   FrontierSet& operator=(FrontierSet&&) noexcept;
 
   /// @param change  since the last update
-  /// @throws std::length_error as the constructor does; the set is as it was
+  /// @throws std::length_error if there are more frontiers than the constructor was told; the set is as it
+  ///         was, and the next change that is given has to hold this one as well
   void update(const MapChange& change);
 
   /// All frontiers, sorted. Valid until the next update.

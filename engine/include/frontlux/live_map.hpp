@@ -33,8 +33,8 @@ class FRONTLUX_EXPORT LiveMap {
   LiveMap(LiveMap&&) noexcept;
   LiveMap& operator=(LiveMap&&) noexcept;
 
-  /// Takes in what changed in the tree since the last call, in time that grows with the change; once rays
-  /// have passed unknown voxels, with the map where its known bounds grow. Returns what is new; its grid and
+  /// Takes in what changed in the tree since the last call, in time that grows with the change; where the
+  /// map's known bounds grow, with the map. Returns what is new; its grid and
   /// keys are valid until the next call. If it throws, the next call that returns has what is new, unless
   /// that was too much.
   /// @throws std::length_error as `changed_keys` does; grid and caster are up to date all the same

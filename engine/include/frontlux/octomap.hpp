@@ -108,6 +108,7 @@ class FRONTLUX_EXPORT OctreeMirror {
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree);
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(
     const octomap::ColorOcTree& tree);
+/// The same for what `read_octree` returns, which the caster shares.
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree);
 
 /// A drop-in for `tree.castRay(...)`: the same signature, the same results bit for bit, many times faster.

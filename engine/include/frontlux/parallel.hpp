@@ -16,7 +16,8 @@ FRONTLUX_EXPORT void isolate(const void* work, void (*call)(const void* work));
 }  // namespace detail
 
 /// Calls `work(begin, end)` for ranges that make up [0, size), on the threads of TBB's current task arena;
-/// for as few as keep the threads busy.
+/// for as few as keep the threads busy. Numbers are rounded to the nearest in there, whatever the caller's
+/// mode. All of it is done unless `work` throws, also where the caller's own TBB group is cancelled.
 template <class Work>
 void for_each_range(std::size_t size, const Work& work) {
   struct Loop {
@@ -33,7 +34,7 @@ void for_each_range(std::size_t size, const Work& work) {
 
 /// Calls `work(begin, end)` for the chunks of [0, size): each has `chunk` elements, the last one may have
 /// fewer. Chunks run on the threads of TBB's current task arena. A single chunk runs on the calling thread,
-/// so that a single query costs nothing but itself. @pre chunk > 0
+/// so that a single query costs nothing but itself; so does an empty one. @pre chunk > 0
 template <class Work>
 void for_each_chunk(std::size_t size, std::size_t chunk, const Work& work) {
   if (size <= chunk) {

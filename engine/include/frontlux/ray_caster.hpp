@@ -118,14 +118,15 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 /// for between two updates, and by rays in sectors where few start of a map too wide for one table.
 /// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
 ///                       building: `make_grid_ray_caster(grid)`
-/// @throws std::runtime_error (by the first query that needs the BVH) if Embree cannot make its device
+/// @throws std::runtime_error if `FRONTLUX_ISA` in the environment is none of its values (machine.hpp), and
+///         by the first query that needs the BVH if Embree cannot make its device
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(
     const VoxelGrid& grid, std::uint64_t expected_rays = kManyRays);
 
 /// Embree's BVH of boxes, without tables. Where its rounding could change an answer, the grid's walk decides;
 /// of a segment between voxels the grid is asked for the voxel before its end first, which blocks most that
 /// are blocked.
-/// @throws std::runtime_error if Embree cannot make its device
+/// @throws std::runtime_error if Embree cannot make its device, or for `FRONTLUX_ISA` as above
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_embree_ray_caster(const VoxelGrid& grid);
 
 /// Walks the grid voxel by voxel: castRay's own traversal, with its rounding, over `VoxelGrid`. The

@@ -102,8 +102,8 @@ struct AzimuthWindow {
                                                         double opening,
                                                         std::optional<double> containing = std::nullopt);
 
-/// The view quality of many viewpoints (the paper's Monte-Carlo rendering), which is updated as the map
-/// changes.
+/// The view quality of many viewpoints (the paper's Monte-Carlo rendering, Sec. V), which is updated as the
+/// map changes.
 ///
 /// A viewpoint's value depends only on the map, the field of view, the targets near it, the options and its
 /// own key: not on the other viewpoints, their order, the caster (OctoMap's own aside) or the number of

@@ -13,6 +13,7 @@ from ._engine import VoxelGrid
 _TITLE = b"frontlux recording, format "
 _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no reassigned frontiers
 _MOST_BYTES = 1 << 30  # of a record
+_MOST_RATIO = 1032  # zlib compresses to no less than that part, and a few bytes more
 _MOST_ROBOTS = 1000
 _PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
 _POSE = struct.Struct("<4d")
@@ -27,7 +28,7 @@ class Recording:
     """A run: n steps (in motion: plannings) of r robots. Step 0 is the start. Times are in seconds on the run's clock,
     lengths in metres, poses (x, y, z, yaw) of sensors in metres and radians in the map's frame.
 
-    world         str, for people
+    world         str, for people; what of a file's name is not UTF-8 is replaced
     resolution    float [m], the edge of a voxel
     bounds        (2, 3) uint16, the least and the greatest key of the map
     options       dict, the run's own options
@@ -152,7 +153,7 @@ class _Bytes:
         return self.take(8 * int(np.prod(shape))).view("<f8").astype(np.float64).reshape(shape)
 
     def text(self):
-        return self.take(self.length()).tobytes().decode()
+        return self.take(self.length()).tobytes().decode("utf-8", "replace")
 
     def keys(self, how_many):
         """(how_many, 3) uint16, from differences: all x, then y, then z"""
@@ -261,33 +262,45 @@ def _read_step(record, number, head, run, version):
     run["steps"].append(step)
 
 
-def _records(file, title):
+def _records(data, title):
     """The format, then (tag, bytes) of each record; None at the end if one is unfinished."""
-    line = file.readline(len(title) + 20)
-    if not line.startswith(title) or not line.endswith(b"\n"):
+    at = data.find(b"\n", 0, len(title) + 20) + 1
+    if not data.startswith(title) or not at:
         raise ValueError("is no recording of frontlux")
-    version = line[len(title):-1].decode("ascii", "replace")
+    version = data[len(title):at - 1].decode("ascii", "replace")
     if version not in map(str, _FORMATS):
         raise ValueError(f"has format {version}, but this frontlux reads {_FORMATS[0]} to {_FORMATS[-1]}")
     yield int(version)
-    while header := file.read(16):
-        # What a file grew by before the machine lost its power may read as zeros.
-        if len(header) < 16 or not (header.strip(b"\0") or file.read().strip(b"\0")):
+    # What a file grew by before the machine lost its power may read as zeros: here they begin.
+    zeros = len(data.rstrip(b"\0"))
+    tag = None
+    while at < len(data):
+        if zeros > at and tag == b"end ":
+            raise ValueError("goes on after its end")
+        begin = at + 16
+        if zeros <= at or begin > len(data):
             yield None
             return
-        tag, packed, plain, header_checksum = struct.unpack("<4s3I", header)
-        if zlib.crc32(header[:12]) != header_checksum or plain > _MOST_BYTES:
-            raise ValueError(f"is damaged before byte {file.tell()}")
-        payload, checksum = file.read(packed), file.read(4)
-        if len(payload) < packed or len(checksum) < 4:
-            yield None
-            return
-        if zlib.crc32(payload) != struct.unpack("<I", checksum)[0]:
-            raise ValueError(f"is damaged before byte {file.tell()}")
-        data = zlib.decompressobj().decompress(payload, plain + 1)
-        if len(data) != plain:
-            raise ValueError(f"is damaged before byte {file.tell()}")
-        yield tag, data
+        tag, packed, plain, checksum = struct.unpack_from("<4s3I", data, at)
+        if zlib.crc32(data[at:begin - 4]) != checksum:
+            if zeros < begin:
+                yield None
+                return
+            raise ValueError(f"is damaged at byte {at}")
+        if plain > min(_MOST_BYTES, _MOST_RATIO * (packed + 1)):
+            raise ValueError(f"is damaged at byte {at}: a record announces {plain} bytes, more than it can hold")
+        end = begin + packed + 4
+        payload = data[begin:end - 4]
+        if end > len(data) or zlib.crc32(payload) != struct.unpack_from("<I", data, end - 4)[0]:
+            if zeros < end:
+                yield None
+                return
+            raise ValueError(f"is damaged at byte {at}")
+        unpacked = zlib.decompressobj().decompress(payload, plain + 1)
+        if len(unpacked) != plain:
+            raise ValueError(f"is damaged at byte {at}")
+        yield tag, unpacked
+        at = end
 
 
 def _columns(rows, *shapes):
@@ -309,11 +322,11 @@ def read_recording(file):
     run = {"steps": [], "poses": [], "changes": [], "tours": [], "trajectories": [], "reassigned": []}
     with open(file, "rb") as opened:
         try:
-            parts = _records(opened, _TITLE)
+            parts = _records(opened.read(), _TITLE)
             version = next(parts)
             for part in parts:
                 if part is None:
-                    truncated = True
+                    truncated = end is None
                     break
                 tag, record = part[0], _Bytes(part[1])
                 if (head is None) != (tag == b"head"):

@@ -15,7 +15,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -143,7 +143,10 @@ struct BoxScene::Embree {
     hand_over(view.get());
     const unsigned id = rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    if (id == RTC_INVALID_GEOMETRY_ID) throw std::runtime_error("Embree cannot take another geometry");
+    if (id == RTC_INVALID_GEOMETRY_ID) {
+      check("take another geometry");
+      throw std::runtime_error("Embree cannot take another geometry");
+    }
     if (id >= views.size()) views.resize(id + 1);
     views[id] = std::move(view);
   }
@@ -167,6 +170,13 @@ struct BoxScene::Embree {
         return visit.template operator()<1>();
     }
   }
+  /// @throws std::bad_alloc or std::runtime_error if Embree has failed at something
+  void check(const std::string& what) const {
+    const RTCError error = rtcGetDeviceError(device->get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree cannot " + what + " (error " + std::to_string(error) + ")");
+  }
   void detach(std::size_t id) {
     rtcDetachGeometry(scene, static_cast<unsigned>(id));
     views[id].reset();
@@ -179,10 +189,10 @@ BoxScene::~BoxScene() = default;
 
 void BoxScene::update(const Blockers& blockers) {
   Eigen::AlignedBox3d keys;  // bounds, in keys
-  std::unordered_map<const BoxGroup*, bool> wanted;
+  std::unordered_set<const BoxGroup*> wanted;
   for (const auto& group : blockers.groups) {
     if (group->boxes.empty()) continue;
-    wanted.emplace(group.get(), true);
+    wanted.insert(group.get());
     keys.extend(Eigen::Vector3d(group->bounds.min.x, group->bounds.min.y, group->bounds.min.z));
     keys.extend(Eigen::Vector3d(group->bounds.max.x + 1, group->bounds.max.y + 1, group->bounds.max.z + 1));
   }
@@ -235,11 +245,7 @@ void BoxScene::update(const Blockers& blockers) {
   rtcCommitScene(embree_->scene);
   for (const auto& view : embree_->views)
     if (view) take_over(&view->cell);
-  const RTCError error = rtcGetDeviceError(embree_->device->get());
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (error != RTC_ERROR_NONE)
-    throw std::runtime_error("Embree cannot build a scene of " + std::to_string(blockers.box_count()) +
-                             " boxes (error " + std::to_string(error) + ")");
+  embree_->check("build a scene of " + std::to_string(blockers.box_count()) + " boxes");
 }
 
 void BoxScene::occluded(std::span<const Probe> probes, std::span<Sight> sights) const {

@@ -4,11 +4,11 @@
 
 #include <stdexcept>
 #include <string>
-#include <variant>
 
 namespace frontlux {
 namespace {
 
+// @param tree  as `make_octomap_ray_caster` takes it
 template <class Tree>
 std::unique_ptr<RayCaster> make(CasterKind kind, const VoxelGrid& grid, const Tree& tree) {
   switch (kind) {
@@ -36,7 +36,8 @@ std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& gri
   return make(kind, grid, tree);
 }
 std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind, const VoxelGrid& grid, const Octree& tree) {
-  return std::visit([&](const auto& t) { return make(kind, grid, *detail::there(t)); }, tree);
+  static_cast<void>(detail::to_read(tree));  // whatever the kind, there has to be one
+  return make(kind, grid, tree);
 }
 
 }  // namespace frontlux

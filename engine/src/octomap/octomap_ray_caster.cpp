@@ -13,6 +13,8 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <utility>
+#include <variant>
 
 namespace frontlux {
 namespace {
@@ -24,7 +26,8 @@ using detail::to_octomap;
 template <class Tree>
 class OctomapRayCaster final : public RayCaster {
  public:
-  explicit OctomapRayCaster(const Tree& tree) : RayCaster(Lattice(tree.getResolution())), tree_(tree) {}
+  explicit OctomapRayCaster(std::shared_ptr<const Tree> tree)
+      : RayCaster(Lattice(tree->getResolution())), shared_(std::move(tree)), tree_(*shared_) {}
 
  private:
   Hit cast_one(const Ray& ray, UnknownPolicy unknown) const {
@@ -158,19 +161,25 @@ class OctomapRayCaster final : public RayCaster {
 
   void do_update(const VoxelGrid&) override {}
 
+  const std::shared_ptr<const Tree> shared_;
   const Tree& tree_;
 };
+
+template <class Tree>
+std::unique_ptr<RayCaster> make(std::shared_ptr<const Tree> tree) {
+  return std::make_unique<OctomapRayCaster<Tree>>(std::move(tree));
+}
 
 }  // namespace
 
 std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree& tree) {
-  return std::make_unique<OctomapRayCaster<octomap::OcTree>>(tree);
+  return make(detail::borrowed(tree));
 }
 std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree& tree) {
-  return std::make_unique<OctomapRayCaster<octomap::ColorOcTree>>(tree);
+  return make(detail::borrowed(tree));
 }
 std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree) {
-  return std::visit([](const auto& t) { return make_octomap_ray_caster(*detail::there(t)); }, tree);
+  return std::visit([](const auto& t) { return make(t); }, detail::to_read(tree));
 }
 
 }  // namespace frontlux

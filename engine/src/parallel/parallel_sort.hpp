@@ -1,8 +1,10 @@
 #pragma once
 
+#include <frontlux/parallel.hpp>
 #include <frontlux/thread_sanitizer.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #ifndef FRONTLUX_THREAD_SANITIZER
 #include <tbb/parallel_sort.h>
@@ -17,7 +19,8 @@ void parallel_sort(List& list, const Less& less = {}) {
 #ifdef FRONTLUX_THREAD_SANITIZER
   std::sort(list.begin(), list.end(), less);
 #else
-  tbb::parallel_sort(list.begin(), list.end(), less);
+  // In a group of its own, which nobody cancels.
+  for_each_range(1, [&](std::size_t, std::size_t) { tbb::parallel_sort(list.begin(), list.end(), less); });
 #endif
 }
 

@@ -3,6 +3,7 @@
 #include "view/hidden_changes.hpp"
 #include "view/view_render.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/parallel.hpp>
 #include <frontlux/view_quality.hpp>
 
@@ -172,9 +173,9 @@ std::size_t ViewQualityImage::remake(const RayCaster& caster, std::span<const Vo
                                      std::shared_ptr<const detail::TargetIndex> targets,
                                      std::span<const Kept> kept) {
   if (caster.lattice().resolution() != resolution_)
-    throw std::invalid_argument("view quality on voxels of " + std::to_string(resolution_) +
-                                " m, but the caster's are of " +
-                                std::to_string(caster.lattice().resolution()) + " m");
+    throw std::invalid_argument("view quality on voxels of " + decimals_of(resolution_) +
+                                " m, but the caster's are of " + decimals_of(caster.lattice().resolution()) +
+                                " m");
   const std::size_t bins = this->bins();
   const bool same = order == order_;
   std::vector<VoxelKey> keys(viewpoints.begin(), viewpoints.end());

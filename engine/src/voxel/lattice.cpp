@@ -1,3 +1,4 @@
+#include <frontlux/file.hpp>
 #include <frontlux/floating_point_mode.hpp>
 #include <frontlux/lattice.hpp>
 
@@ -20,7 +21,7 @@ double inverse_of(double resolution) {
 Lattice::Lattice(double resolution) : resolution_(resolution), factor_(inverse_of(resolution)) {
   if (!(std::isfinite(resolution) && resolution > 0. && std::isfinite(factor_)))
     throw std::invalid_argument("resolution must be a positive, finite length in metres, got " +
-                                std::to_string(resolution));
+                                decimals_of(resolution));
 }
 
 }  // namespace frontlux

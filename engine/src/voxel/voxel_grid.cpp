@@ -1,3 +1,4 @@
+#include <frontlux/file.hpp>
 #include <frontlux/voxel_grid.hpp>
 
 #include <algorithm>
@@ -159,8 +160,8 @@ bool operator==(const VoxelGrid& a, const VoxelGrid& b) {
 void for_each_change(const VoxelGrid& before, const VoxelGrid& after,
                      const std::function<void(const Block&)>& visit) {
   if (before.resolution() != after.resolution())
-    throw std::invalid_argument("voxels of " + std::to_string(before.resolution()) + " and of " +
-                                std::to_string(after.resolution()) + " m cannot be compared");
+    throw std::invalid_argument("voxels of " + decimals_of(before.resolution()) + " and of " +
+                                decimals_of(after.resolution()) + " m cannot be compared");
   if (before.world_ == after.world_) return;
   visit_changes(*before.world_, *after.world_, {}, visit);
 }

@@ -1,3 +1,4 @@
+#include <frontlux/file.hpp>
 #include <frontlux/floating_point_mode.hpp>
 #include <frontlux/ray_caster.hpp>
 
@@ -68,9 +69,8 @@ void RayCaster::count(std::span<const KeySegment> segments, std::span<PathCount>
 
 void RayCaster::update(const VoxelGrid& grid) {
   if (grid.resolution() != lattice_.resolution())
-    throw std::invalid_argument("a caster of resolution " + std::to_string(lattice_.resolution()) +
-                                " m cannot be updated to a grid of " + std::to_string(grid.resolution()) +
-                                " m");
+    throw std::invalid_argument("a caster of resolution " + decimals_of(lattice_.resolution()) +
+                                " m cannot be updated to a grid of " + decimals_of(grid.resolution()) + " m");
   const FloatingPointMode mode(FloatingPointMode::kToNearest);
   do_update(grid);
 }

@@ -43,7 +43,11 @@ void check_output(const fs::path& file, std::initializer_list<std::string_view> 
   if (std::find(endings.begin(), endings.end(), file.extension().string()) == endings.end()) {
     std::string list;
     for (const std::string_view ending : endings) list.append(list.empty() ? "" : " or ").append(ending);
-    throw BadInput("--output: " + file.string() + " does not end in " + list);
+    throw BadInput(
+        "--output: " + file.string() +
+        (file.extension().empty() && std::ranges::find(endings, file.filename().string()) != endings.end()
+             ? " has no name before its ending"
+             : " does not end in " + list));
   }
   check_writable("--output", file);
   for (const std::string& input : inputs) {

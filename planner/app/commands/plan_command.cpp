@@ -228,7 +228,8 @@ void print(const Options& options, const planner::Robot& robot, const TravelCorr
 
 void plan(const Options& options) {
   check_options(options);
-  if (!options.output.empty()) check_output(options.output, {".csv", ".ply"}, std::array{options.map});
+  if (!options.output.empty())
+    check_output(options.output, {".csv", ".ply"}, std::array{options.map, options.robot.word});
   const planner::Robot robot = make_robot(options);
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);

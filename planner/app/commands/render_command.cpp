@@ -237,7 +237,8 @@ void print(const Options& options, const View& view, double write_ms) {
 
 void render(const Options& options) {
   check_options(options);
-  check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"}, std::array{options.map});
+  check_output(options.output, {".png", ".svg", ".pdf", ".ply", ".csv"},
+               std::array{options.map, options.robot.word});
   const MapFile map = read_map_file(options.map);
   const VoxelGrid grid = make_grid(map);
   TeamMember member = make_member(options);

@@ -17,7 +17,6 @@
 #include <frontlux/sim/start_pose.hpp>
 #include <frontlux/stopwatch.hpp>
 
-#include <array>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -157,7 +156,9 @@ void run(Options& options) {
   const Stopwatch watch;
   WorldSource& source = options.source;
   if (is_built_in_world(source.world)) source.seed = options.seed;
-  check_output(options.output, {".bt", ".ot"}, std::array{source.world, options.poses});
+  std::vector<std::string> inputs{source.world, options.poses};
+  for (const RobotWord& robot : options.scanners.robots) inputs.push_back(robot.word);
+  check_output(options.output, {".bt", ".ot"}, inputs);
   std::vector<io::ListedPose> poses;
   if (!options.poses.empty()) poses = io::read_pose_list(options.poses);
 

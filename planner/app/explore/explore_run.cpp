@@ -31,6 +31,12 @@
 namespace frontlux::app {
 namespace {
 
+std::vector<std::string> inputs_of(const ExploreOptions& options) {
+  std::vector<std::string> files{options.source.world, options.task};
+  files.insert(files.end(), options.robot_files.begin(), options.robot_files.end());
+  return files;
+}
+
 namespace fs = std::filesystem;
 using planner::RecordedStep, planner::Recording;
 
@@ -111,7 +117,7 @@ class Run {
     if (recording_ != nullptr) {
       writer_.emplace(file(), *recording_);
     } else {
-      make_folder(how_, options_.source.world);
+      make_folder(how_, inputs_of(options_));
       remove_link(file());
       writer_.emplace(file(), setup_.head);
       remove_old_files(how_.folder);
@@ -219,7 +225,7 @@ void explore(ExploreOptions options, const ExploreRun& run) {
     recording = read_run(run);
     options = options_of(*recording, run);
   } else {
-    check_folder(run, options.source.world);
+    check_folder(run, inputs_of(options));
     note_paths(options);
   }
   ExploreOptions here = options;
@@ -228,7 +234,10 @@ void explore(ExploreOptions options, const ExploreRun& run) {
   if (!run.quiet) working.emplace("preparing " + here.source.world);
   ExploreSetup setup = make_setup(here, recording ? std::optional(recording->head.robots) : std::nullopt);
   working.reset();
-  if (recording) check_continues(*recording, setup.head, setup.exploration.max_steps, run);
+  if (recording) {
+    check_continues(*recording, setup.head, setup.exploration.max_steps, run);
+    setup.head.world = recording->head.world;  // its file may have another name by now
+  }
 
   InterruptNote note;
   std::optional<std::string> stopped;  // what to say then

@@ -83,8 +83,7 @@ void RunDisplay::step(const ExplorationStep& step, const RunSums& sums, double s
                std::to_string(step.number) + "; " + minutes(seconds) + " so far" + to_go);
   if (!lines_) return;
   std::string line = "step " + std::to_string(step.number) + ": mapped " + percent(sums.observable);
-  line += setup_.lockstep ? " after " + fixed(seconds, 1) + " s" : " at " + clock;
-  line += ", " + std::to_string(step.frontiers) + " frontiers";
+  line += " at " + clock + ", " + std::to_string(step.frontiers) + " frontiers";
   for (std::size_t r = 0; r < step.robots.size(); ++r)
     line +=
         "; " + setup_.head.robots[r].robot.name + " " + moves(step.robots[r], step.number, setup_.lockstep);

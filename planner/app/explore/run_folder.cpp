@@ -70,7 +70,7 @@ void remove_unfinished_files(const fs::path& folder) {
   for (const std::string& file : views()) remove_unfinished(folder / file);
 }
 
-void check_folder(const ExploreRun& run, const std::string& world) {
+void check_folder(const ExploreRun& run, std::span<const std::string> inputs) {
   std::error_code error;
   if (!fs::exists(run.folder, error)) {
     fs::path folder = run.folder.has_filename() ? run.folder : run.folder.parent_path();
@@ -92,8 +92,9 @@ void check_folder(const ExploreRun& run, const std::string& world) {
   for (const std::string_view file : kRunFiles) {
     if (fs::is_directory(run.folder / file, error))
       refuse_folder(run, "holds a folder " + std::string(file) + "; move it away, or name another folder");
-    if (fs::equivalent(run.folder / file, world, error))
-      refuse_folder(run, "holds the world to explore, " + world + "; name another folder");
+    for (const std::string& input : inputs)
+      if (fs::equivalent(run.folder / file, input, error))
+        refuse_folder(run, "holds what is read, " + input + "; name another folder");
   }
   if (fs::exists(run.folder / kRecording, error)) return;
   std::vector<std::string> others(kRunFiles.begin(), kRunFiles.end());
@@ -105,8 +106,8 @@ void check_folder(const ExploreRun& run, const std::string& world) {
           run, "holds " + file + ", but no run to which it belongs; move it away, or name another folder");
 }
 
-void make_folder(const ExploreRun& run, const std::string& world) {
-  check_folder(run, world);  // again: another process may have begun a run there since
+void make_folder(const ExploreRun& run, std::span<const std::string> inputs) {
+  check_folder(run, inputs);  // again: another process may have begun a run there since
   std::error_code error;
   if (run.make_parents) fs::create_directories(run.folder.parent_path(), error);
   if (!fs::exists(run.folder, error) && !fs::create_directory(run.folder, error))

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,12 +20,12 @@ inline constexpr auto kRunFiles =
                                      "motion.csv", "tours.csv", "map.ot", "map.bt", kReport});
 
 /// Whether a new run may have its folder. Removes what killed runs left there unfinished.
-/// @param world  which the run must not overwrite
+/// @param inputs  files that the run must not overwrite
 /// @throws BadInput
-void check_folder(const ExploreRun& run, const std::string& world);
+void check_folder(const ExploreRun& run, std::span<const std::string> inputs);
 /// The same, and makes the folder if there is none.
 /// @throws BadInput
-void make_folder(const ExploreRun& run, const std::string& world);
+void make_folder(const ExploreRun& run, std::span<const std::string> inputs);
 
 /// A link in the place of a file of the run: what it points to is none of the run's.
 void remove_link(const std::filesystem::path& file);

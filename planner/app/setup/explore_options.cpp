@@ -164,17 +164,12 @@ void take(const Json& json, std::optional<Value>& value, const Limits&... limits
 }  // namespace
 
 void read(std::string_view word, StartPose& start) {
-  const std::size_t equals = word.find('='), comma = word.rfind(',');
-  try {
-    if (equals > word.size() || comma > word.size() || comma < equals) throw BadInput("");
-    Eigen::Vector3f position;
-    read(word.substr(equals + 1, comma - equals - 1), position);
-    read(word.substr(comma + 1), start.pose.yaw, kAnyNumber);
-    start.pose.position = position.cast<double>();
-  } catch (const BadInput&) {
+  const std::size_t equals = word.find('=');
+  const auto numbers = equals == std::string_view::npos ? std::nullopt : numbers_in(word.substr(equals + 1));
+  if (!numbers || numbers->size() != 4)
     throw BadInput(quote(word) +
                    " is not a start; give NAME=x,y,z,yaw in metres and radians, as in ugv=1.5,-2,0.75,0");
-  }
+  start.pose = {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}, (*numbers)[3]};
   check_yaw(word, start.pose.yaw);
   start.word = word;
   start.robot = word.substr(0, equals);

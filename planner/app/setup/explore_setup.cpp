@@ -3,13 +3,11 @@
 #include "bad_input.hpp"
 #include "text.hpp"
 
-#include <frontlux/planner/body_stencil.hpp>
 #include <frontlux/planner/path_optimizer.hpp>
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -18,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace frontlux::app {
 namespace {
@@ -42,20 +41,6 @@ void number_equal_names(std::span<RobotDescription> robots) {
   }
 }
 
-// [m] Half of what the voxels around a body leave it to its sides, so that no passage is closed by it: off
-// the middles of voxels a body comes near to surfaces in voxels that the map has as free.
-double margin_in_voxels(const planner::TravelOptions& travel, double resolution) {
-  constexpr double kMost = 0.05, kWhole = 0.001;  // [m]
-  const planner::BodyStencil stencil(travel, resolution);
-  double room = 4 * kMost;
-  for (const int axis : {0, 1, 2}) {
-    if (axis == 2 && travel.drives()) continue;
-    const auto a = static_cast<std::size_t>(axis);
-    room = std::min(room, (stencil.high()[a] - stencil.low()[a] + 1) * resolution - travel.extents[axis]);
-  }
-  return std::max(0.0, std::floor(room / 4 / kWhole + 1e-6) * kWhole);
-}
-
 // Those on the ground come first, since they choose first.
 std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
   std::vector<RobotDescription> robots;
@@ -66,11 +51,8 @@ std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Metho
   }
   // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground.
   if (!options.lockstep && method == Method::kDefault)
-    for (RobotDescription& robot : robots) {
-      planner::TravelOptions& travel = robot.robot.travel;
-      travel.margin = margin_in_voxels(travel, options.source.resolution);
-      if (travel.motion == Motion::kSpace) travel.min_height = travel.extents.z() / 2;
-    }
+    for (RobotDescription& robot : robots)
+      robot.robot = planner::in_motion(std::move(robot.robot), options.source.resolution);
   for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);
   for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
   if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,12 +21,39 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kBlank) + 1);
 }
 
+// The fields of a line of a table, without blanks around them. One in quotes may hold commas and, doubled,
+// quotes. Nothing if a quote does not end, or has something behind it.
+std::optional<std::vector<std::string>> fields_of(std::string_view line) {
+  std::vector<std::string> fields;
+  for (;;) {
+    line = trimmed(line);
+    std::string& field = fields.emplace_back();
+    if (!line.starts_with('"')) {
+      field = trimmed(line.substr(0, line.find(',')));
+      line.remove_prefix(std::min(line.find(','), line.size()));
+    } else {
+      do {
+        line.remove_prefix(1);
+        const std::size_t end = line.find('"');
+        if (end == std::string_view::npos) return std::nullopt;
+        field += line.substr(0, end);
+        line.remove_prefix(end + 1);
+        if (line.starts_with('"')) field += '"';
+      } while (line.starts_with('"'));
+      line = trimmed(line);
+      if (!line.empty() && !line.starts_with(',')) return std::nullopt;
+    }
+    if (line.empty()) return fields;
+    line.remove_prefix(1);
+  }
+}
+
 // A line of a table.
 struct Row {
   const std::filesystem::path& file;
   const char* format;
   std::size_t line;
-  std::vector<std::string_view> fields;
+  std::vector<std::string> fields;
 
   [[noreturn]] void fail_here(const std::string& what) const {
     fail(file, "line " + std::to_string(line) + ": " + what, format);
@@ -41,8 +69,7 @@ struct Row {
 // name of these lists and has no number in its field `numeric`. It has to be one of the lists.
 template <class Take>
 void for_each_row(const std::filesystem::path& file, const char* format,
-                  const std::vector<std::vector<std::string_view>>& names, std::size_t numeric,
-                  const Take& take) {
+                  const std::vector<std::vector<std::string>>& names, std::size_t numeric, const Take& take) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const std::string bytes = read_file(file);
   std::string_view text = bytes;
@@ -52,11 +79,9 @@ void for_each_row(const std::filesystem::path& file, const char* format,
   while (auto line = lines.next()) {
     if (trimmed(*line).empty() || trimmed(*line).starts_with('#')) continue;
     Row row{file, format, lines.number(), {}};
-    for (std::size_t comma = line->find(','); comma != std::string_view::npos; comma = line->find(',')) {
-      row.fields.push_back(trimmed(line->substr(0, comma)));
-      line->remove_prefix(comma + 1);
-    }
-    row.fields.push_back(trimmed(*line));
+    auto fields = fields_of(*line);
+    if (!fields) row.fail_here("has a quote that does not end where a field does");
+    row.fields = std::move(*fields);
     if (std::exchange(first, false) && row.fields[0] == names[0][0] && row.fields.size() > numeric &&
         !to_number(row.fields[numeric])) {
       if (std::ranges::find(names, row.fields) == names.end())
@@ -76,7 +101,7 @@ Eigen::Vector3d position_at(const Row& row, std::size_t i) {
 double yaw_at(const Row& row, std::size_t i) {
   const double yaw = row.finite(i);
   if (!is_within_a_turn(yaw))
-    row.fail_here("has a yaw of " + std::string(row.fields[i]) + ", more than a turn: yaws are in radians");
+    row.fail_here("has a yaw of " + row.fields[i] + ", more than a turn: yaws are in radians");
   return yaw;
 }
 
@@ -91,7 +116,7 @@ RecordedPose recorded_pose(const Row& row) {
                   : Eigen::Quaterniond(row.finite(7), row.finite(4), row.finite(5), row.finite(6));
   const auto pose = rigid_pose(position, orientation);
   if (!pose) row.fail_here("the quaternion is not of length 1");
-  return {std::string(row.fields[0]), row.line, *pose};
+  return {row.fields[0], row.line, *pose};
 }
 
 }  // namespace

@@ -10,10 +10,11 @@ _TAKEN = weakref.WeakKeyDictionary()  # by an exploration's runs: of each robot,
 def run(exploration, sense, until=math.inf, planned=None):
     """Explores by a clock of its own, second by second: robots follow their trajectories exactly, and take scans at their rates.
 
-    exploration: ContinuousExploration that has begun. sense(robot, pose, time): called for each scan with the robot's number,
+    exploration: ContinuousExploration that has begun; it may plan after each scan, and where scans are rare every quarter of its
+    `period`. sense(robot, pose, time): called for each scan with the robot's number,
     the pose of its sensor, float64 (4,), and the time [s]; returns (directions, ranges) as `insert` takes them, or None for no
     scan. Robots that are lost take none. until: [s] of the clock. planned(plan): called with each Plan. Exceptions of both end the
-    run. Returns the time [s] of the last scan, or `exploration.time` if there was none.
+    run. Returns the time [s] of the last scan or, between scans, moment to plan; `exploration.time` if there was none.
 
     Scans are due at multiples of their periods since the exploration's begin, so that some runs one after the other are the same
     as one. What was due before `exploration.time` is left out; a scan whose `sense` raised an exception is due again.
@@ -33,9 +34,11 @@ def run(exploration, sense, until=math.inf, planned=None):
         lost = exploration.lost
         due = {robot: begin + taken[robot] / rate for robot, rate in enumerate(rates) if robot not in lost}
         earliest = min(due.values(), default=now)
-        if due and earliest > until:
+        to_plan = now + exploration.period / 4
+        moment = to_plan if to_plan < earliest - 1e-9 else earliest
+        if due and moment > until:
             break
-        now = earliest
+        now = moment
         for robot in [robot for robot, time in due.items() if time == now]:
             pose = exploration.at(robot, now)["pose"]
             scan = sense(robot, pose, now)

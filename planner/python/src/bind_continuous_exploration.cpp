@@ -304,6 +304,9 @@ that. It plans anew from there.)")
                                return state.begun ? std::optional(state.begin_time) : std::nullopt;
                              }),
                              "[s] That was given to begin; None before.")
+      .def_property_readonly("period",
+                             property([](const Continuous& state) { return state.team.options.period; }),
+                             "[s] After which a robot plans anew at the latest.")
       .def_property_readonly("time", property([](const Continuous& state) { return state.time; }),
                              "[s] The latest time that was given.")
       .def_property_readonly(

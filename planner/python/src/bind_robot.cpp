@@ -148,6 +148,17 @@ Raises ValueError naming the value that is out of bounds.)")
           },
           py::arg("file"),
           "A robot of a JSON file. Raises RuntimeError naming the file and the value that is wrong.")
+      .def(
+          "in_motion",
+          [](const Self& self, double resolution) {
+            RobotDescription robot = *self;
+            robot.robot = planner::in_motion(std::move(robot.robot), resolution);
+            return std::make_shared<RobotDescription>(std::move(robot));
+          },
+          py::arg("resolution"),
+          "The same robot with the margin, and in space the least height, that `frontlux explore` gives its "
+          "own "
+          "in motion, in a map of this resolution [m]. Raises ValueError if its body does not go with it.")
       .def("__repr__",
            [](const Self& self) {
              const TravelOptions& travel = self->robot.travel;

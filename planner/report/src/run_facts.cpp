@@ -39,24 +39,10 @@ json facts_of(const planner::RobotDescription& description) {
 
 json facts_of(const planner::RobotStep& robot) {
   const planner::Goal& goal = robot.goal;
-  json facts = {{"state", name_of(goal.state)},
-                {"reason", goal.reason},
-                {"assigned", goal.assigned},
-                {"released", goal.released},
-                {"received", goal.received},
-                {"uncovered", goal.uncovered},
-                {"path", describe(robot.path)},
-                {"gain_tangent", robot.gain_tangent},
-                {"gain_predicted", robot.gain_predicted},
-                {"gained", robot.gained},
-                {"length", robot.length},
-                {"still_unknown", robot.still_unknown.size()}};
-  if (goal.pose)
-    facts.update({{"goal", numbers_of(*goal.pose)},
-                  {"distance", goal.distance},
-                  {"gain", goal.gain},
-                  {"standard_error", goal.standard_error},
-                  {"quality", goal.quality}});
+  json facts = {{"state", name_of(goal.state)}, {"reason", goal.reason},
+                {"path", describe(robot.path)}, {"gain_predicted", robot.gain_predicted},
+                {"gained", robot.gained},       {"length", robot.length}};
+  if (goal.pose) facts["goal"] = numbers_of(*goal.pose);
   return facts;
 }
 

@@ -371,6 +371,18 @@ bool TravelCorridor::fits(const VoxelKey& key) const {
   return state_->distances && state_->frame.place(key) && state_->fits(key);
 }
 
+Eigen::Vector3d TravelCorridor::place_in(const VoxelKey& cell) const {
+  constexpr double kInside = 1e-6;  // [m] of a voxel whose face the sensor is level with
+  const TravelOptions& options = state_->options;
+  const double edge = state_->lattice.resolution();
+  Eigen::Vector3d place = state_->lattice.exact_center(cell);
+  if (options.drives()) {
+    const double above = options.sensor_height - detail::layers_below(options, edge) * edge;
+    place.z() += std::clamp(above, kInside, edge - kInside) - edge / 2;
+  }
+  return place;
+}
+
 const BodyStencil& TravelCorridor::stencil() const { return state_->stencil; }
 const Eigen::Vector3d& TravelCorridor::reach() const { return state_->stencil.reach(); }
 

@@ -1,7 +1,5 @@
 #include "exploration/continuous_state.hpp"
 
-#include <frontlux/planner/visible_pairs.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "exploration/continuous_state.hpp"
 
 #include "casting/counting_ray_caster.hpp"
-#include "exploration/frontiers_in_view.hpp"
 #include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
 #include "mapping/directions.hpp"
@@ -35,21 +34,25 @@ bool is_near(const Pose& pose, const Pose& other, double length, double angle) {
          std::abs(detail::turn(other.yaw, pose.yaw)) < angle;
 }
 
+// [m] From a place to a line, and not to what lies beyond its ends: a robot may brake and turn back.
+double off_line(const Eigen::Vector3d& place, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
+  const Eigen::Vector3d line = end - begin, along = line.stableNormalized(), to = place - begin;
+  return (to - std::clamp(to.dot(along), 0.0, line.norm()) * along).norm();
+}
+
+constexpr double kOff = 0.03;  // [m] of a robot's places from the lines that stand for its path
+
 // Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
 // about straight.
 std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
-  constexpr double kStep = 0.1, kOff = 0.03, kMost = 1000.0;  // [s], [m], poses
+  constexpr double kStep = 0.1, kMost = 10'000.0;  // [s], poses
   const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
   const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
   std::vector<Pose> all, some;
   for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
   const auto straight = [&](std::size_t a, std::size_t b) {
-    const Eigen::Vector3d line = all[b].position - all[a].position, along = line.stableNormalized();
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const Eigen::Vector3d to = all[i].position - all[a].position;
-      // Not of the line beyond: a robot may brake and turn back.
-      if ((to - std::clamp(to.dot(along), 0.0, line.norm()) * along).norm() > kOff) return false;
-    }
+    for (std::size_t i = a + 1; i < b; ++i)
+      if (off_line(all[i].position, all[a].position, all[b].position) > kOff) return false;
     return true;
   };
   for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
@@ -136,7 +139,8 @@ void ContinuousExploration::State::stay_on_plane(std::size_t robot, Pose& pose, 
     pose.position.z() = members[robot].motion.at(time).pose.position.z();
 }
 
-// A robot has followed its trajectory up to a time. Scans may be lost.
+// A robot has followed its trajectory up to a time. Scans may be lost. Places of the trail are at most about
+// a voxel apart, and the lines between them are where the robot was.
 void ContinuousExploration::State::extend_trail(std::size_t robot, double until) {
   constexpr double kStep = 0.1;  // [s]
   Member& member = members[robot];
@@ -144,9 +148,20 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
   std::vector<Pose>& trail = team.trails[robot];
   const auto add = [&](const Pose& place, double apart) {
     const auto key = team.lattice().key(place.position);
-    const bool is_in_map = key && team.mapping.bounds().contains(*key);
-    if (is_in_map && (trail.empty() || (place.position - trail.back().position).norm() > apart))
+    if (!key || !team.mapping.bounds().contains(*key)) return;
+    const auto is_off = [&](const Pose& passed) {
+      return off_line(passed.position, trail.back().position, place.position) > kOff;
+    };
+    if (!trail.empty() && std::ranges::any_of(member.passed, is_off)) {
+      trail.push_back(member.passed.back());
+      member.passed.clear();
+    }
+    if (trail.empty() || (place.position - trail.back().position).norm() > apart) {
       trail.push_back(place);
+      member.passed.clear();
+    } else {
+      member.passed.push_back(place);
+    }
   };
   const auto next = [&] { return trajectory.begin() + kStep * static_cast<double>(member.samples); };
   for (; next() < std::min(until, trajectory.end()); ++member.samples)
@@ -159,6 +174,7 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
 void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vector3d& rests) {
   constexpr double kLate = 10.0;  // [s] after which a stop is told at most
   std::vector<Pose>& trail = team.trails[robot];
+  members[robot].passed.clear();
   double rest = kLate * team.options.team[robot].robot.limits.speed;  // [m]
   double nearest = std::numeric_limits<double>::infinity();
   std::size_t last = trail.size();
@@ -178,6 +194,7 @@ void ContinuousExploration::State::leave_trail(std::size_t robot, double toleran
   const Eigen::Vector3d here = members[robot].motion.last().end_pose().position;
   if ((trail.back().position - here).norm() <= tolerance) return;
   const auto is_free = [&](const VoxelKey& key) { return team.mapping.grid().at(key) == Occupancy::kFree; };
+  members[robot].passed.clear();
   if (!SegmentVoxels(team.lattice(), trail.back().position, here).all_of(is_free)) trail.clear();
 }
 
@@ -185,8 +202,8 @@ void ContinuousExploration::State::leave_trail(std::size_t robot, double toleran
 void ContinuousExploration::State::note_scan(std::size_t robot, const MapChange& change) {
   for (const VoxelKey& key : change.keys) {
     touched.emplace_back(key, robot);
-    if (change.grid.at(key) == Occupancy::kFree) continue;
-    for (Member& member : members) member.note_closed(key);
+    const bool is_free = change.grid.at(key) == Occupancy::kFree;
+    for (Member& member : members) is_free ? member.note_opened(key) : member.note_closed(key);
   }
 }
 

@@ -51,9 +51,12 @@ struct ContinuousExploration::State {
     Keys goal_frontiers = {};       // in view at the goal; sorted
     Keys needed = {};               // voxels that its trajectory needs free; sorted
     Keys closed = {};               // of these, since it was last looked whether it has passed them
+    Keys floor = {};                // voxels that must not become holes under its trajectory; sorted
+    Keys opened = {};               // of these, since the same time
     Keys held_back_from = {};       // cells that it could not enter since the last planning
     std::vector<Pose> sensed = {};  // where it took scans, from the last one before the last planning on
     std::size_t samples = 0;        // of its trajectory that its trail has, or passes near by
+    std::vector<Pose> passed = {};  // of these, since the last one that the trail has
     std::optional<Pose> last_look = {};          // where it took its last scan that shows something
     std::vector<Eigen::Vector3f> measured = {};  // directions of that scan in which it shows something
     bool sees_nothing = false;                   // all its scans since have shown nothing, and there is one
@@ -68,6 +71,9 @@ struct ContinuousExploration::State {
 
     void note_closed(const VoxelKey& key) {
       if (std::ranges::binary_search(needed, key)) closed.push_back(key);
+    }
+    void note_opened(const VoxelKey& key) {
+      if (std::ranges::binary_search(floor, key)) opened.push_back(key);
     }
     [[nodiscard]] bool is_lost() const { return activity == Activity::kLost; }
     /// Whether it moves, or tries again at once.
@@ -133,7 +139,7 @@ struct ContinuousExploration::State {
   [[nodiscard]] SegmentTest segment_test(std::size_t robot) const;
   [[nodiscard]] Keys cells_on(const BodyStencil& stencil, const Trajectory& trajectory, double since,
                               bool retreats) const;
-  [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory) const;
+  [[nodiscard]] Keys voxels_needed(std::size_t robot, const Trajectory& trajectory, Keys& floor) const;
 };
 
 }  // namespace frontlux::planner

@@ -1,7 +1,5 @@
 #include "exploration/exploration_state.hpp"
 
-#include <frontlux/planner/visible_pairs.hpp>
-
 #include <stdexcept>
 #include <string>
 #include <utility>

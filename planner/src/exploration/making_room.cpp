@@ -137,7 +137,7 @@ std::vector<Pose> ContinuousExploration::State::path_aside(std::size_t robot) co
     if (is_beside(cell)) {
       if (cell == *here) return {};
       Pose place = team.poses[robot];
-      place.position = team.lattice().exact_center(cell);
+      place.position = corridor.place_in(cell);
       return plan_path(corridor, team.lattice(), team.poses[robot], place,
                        {team.options.seed, team.number, robot}, team.options.path)
           .viewpoints;

@@ -1,5 +1,6 @@
 // The trajectory that a robot takes next: to its goal, back, or to rest, apart from the others.
 
+#include "corridor/floor_below.hpp"
 #include "exploration/continuous_state.hpp"
 #include "exploration/frontiers_in_view.hpp"
 #include "exploration/phase_clock.hpp"
@@ -14,6 +15,7 @@
 namespace frontlux::planner {
 namespace {
 
+using detail::sort_once;
 using Keys = std::vector<VoxelKey>;
 
 }  // namespace
@@ -62,11 +64,14 @@ Keys ContinuousExploration::State::cells_on(const BodyStencil& stencil, const Tr
   return cells;
 }
 
-// What has to stay free for a trajectory.
-Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory) const {
+// What has to stay free for a trajectory, sorted.
+// @param floor  learns what must not become a hole: the floor below, as far as it is not known to be free
+Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajectory& trajectory,
+                                                 Keys& floor) const {
   const BodyStencil& stencil = team.path_corridor(robot).stencil();
   const bool retreats = members[robot].activity == Activity::kRetreats;
   Keys cells = cells_on(stencil, trajectory, trajectory.begin(), retreats);
+  floor.clear();
   if (retreats) return team.fills_its_voxel(robot) ? cells : Keys{};
   Keys voxels;
   for (const VoxelKey& cell : cells)
@@ -74,6 +79,12 @@ Keys ContinuousExploration::State::voxels_needed(std::size_t robot, const Trajec
       if (team.mapping.grid().at(key) == Occupancy::kFree) voxels.push_back(key);
     });
   sort_once(voxels);
+  const detail::FloorBelow below(team.options.team[robot].robot.travel, team.lattice().resolution());
+  for (const VoxelKey& cell : cells)
+    below.for_each(cell, [&](const VoxelKey& key) {
+      if (team.mapping.grid().at(key) != Occupancy::kFree) floor.push_back(key);
+    });
+  sort_once(floor);
   return voxels;
 }
 
@@ -82,12 +93,17 @@ void ContinuousExploration::State::look_for_blocked(double time) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
     const Keys closed = std::exchange(member.closed, {});
-    if (closed.empty() || member.blocked) continue;
+    Keys holes = std::exchange(member.opened, {});
+    const detail::FloorBelow below(team.options.team[r].robot.travel, team.lattice().resolution());
+    std::erase_if(holes, [&](const VoxelKey& key) { return !below.is_hole(team.mapping.grid(), key); });
+    if ((closed.empty() && holes.empty()) || member.blocked) continue;
     const BodyStencil& stencil = team.path_corridor(r).stencil();
     const bool retreats = member.activity == Activity::kRetreats;
     const auto needs = [&](const VoxelKey& cell) {
       return std::ranges::any_of(
-          closed, [&](const VoxelKey& key) { return retreats ? cell == key : stencil.contains(cell, key); });
+                 closed,
+                 [&](const VoxelKey& key) { return retreats ? cell == key : stencil.contains(cell, key); }) ||
+             std::ranges::any_of(holes, [&](const VoxelKey& key) { return below.contains(cell, key); });
     };
     member.blocked = std::ranges::any_of(cells_on(stencil, member.motion.last(), time, retreats), needs);
   }
@@ -140,7 +156,7 @@ Trajectory ContinuousExploration::State::find_trajectory(std::size_t robot, doub
   {
     const detail::PhaseClock clock(step, Phase::kPaths);
     Pose to = *now.goal.pose;
-    if (team.ahead[robot]) to.position = team.lattice().exact_center(*team.ahead[robot]);
+    if (team.ahead[robot]) to.position = team.path_corridor(robot).place_in(*team.ahead[robot]);
     bool found = false;  // a path; that of the departure is one of those found
     const auto path_from = [&](const Pose& from) {
       PathPlan plan = plan_path(team.path_corridor(robot), team.lattice(), from, to,
@@ -175,7 +191,7 @@ void ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   const bool apart = keeps_apart(robot, trajectory);
   if (!apart) member.goal_frontiers.clear();  // it does not get there
   if (apart || brakes_instead(robot, start, trajectory)) {
-    member.needed = voxels_needed(robot, trajectory);
+    member.needed = voxels_needed(robot, trajectory, member.floor);
     member.motion.next = trajectory;
     if (!apart) tell_of_stop(robot, start);
     return;

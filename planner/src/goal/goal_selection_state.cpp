@@ -282,11 +282,11 @@ void GoalSelection::State::set_goal(Goal& goal, std::size_t robot, const Rendere
   goal.gain = best.gain;
   goal.standard_error = best.standard_error;
   goal.quality = best.quality;
-  const Eigen::Vector3d center = lattice.exact_center(best.cell);
+  const Eigen::Vector3d place = members[robot].corridor.place_in(best.cell);
   // A robot that sees all around looks where it goes.
   goal.pose =
-      Pose{center,
-           team[robot].robot.view.sees_all_around() ? yaw_along(center - members[robot].position) : best.yaw};
+      Pose{place,
+           team[robot].robot.view.sees_all_around() ? yaw_along(place - members[robot].position) : best.yaw};
 }
 
 }  // namespace frontlux::planner

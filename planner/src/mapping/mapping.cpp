@@ -1,6 +1,7 @@
 #include "mapping/scan_tree.hpp"
 #include "mapping/scan_voxels.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/octomap.hpp>
 #include <frontlux/planner/mapping.hpp>
 #include <frontlux/stopwatch.hpp>
@@ -62,16 +63,16 @@ KeyBox voxels_of(const Lattice& lattice, const Eigen::AlignedBox3d& box) {
                        last = ((high - kOnFace).ceil() - 1.0).min(Lattice::kKeysPerAxis - 1.0);
   for (Eigen::Index a = 0; a < 3; ++a)
     if (box.min()[a] > box.max()[a])
-      throw std::invalid_argument("the box goes from " + std::to_string(box.min()[a]) + " m to " +
-                                  std::to_string(box.max()[a]) + " m along " + "xyz"[a] +
+      throw std::invalid_argument("the box goes from " + decimals_of(box.min()[a]) + " m to " +
+                                  decimals_of(box.max()[a]) + " m along " + "xyz"[a] +
                                   ": give the lower corner first");
   for (Eigen::Index a = 0; a < 3; ++a)
     if (!(low[a] < high[a]) || !(first[a] <= last[a]))
-      throw std::invalid_argument("the box from " + std::to_string(box.min()[a]) + " m to " +
-                                  std::to_string(box.max()[a]) + " m along " + "xyz"[a] +
+      throw std::invalid_argument("the box from " + decimals_of(box.min()[a]) + " m to " +
+                                  decimals_of(box.max()[a]) + " m along " + "xyz"[a] +
                                   " holds no voxel of the map, which goes from " +
-                                  std::to_string(-Lattice::kOrigin * lattice.resolution()) + " m to " +
-                                  std::to_string(Lattice::kOrigin * lattice.resolution()) + " m");
+                                  decimals_of(-Lattice::kOrigin * lattice.resolution()) + " m to " +
+                                  decimals_of(Lattice::kOrigin * lattice.resolution()) + " m");
   const auto key = [](const Eigen::Array3d& k) {
     return make_key(std::int64_t(k.x()), std::int64_t(k.y()), std::int64_t(k.z()));
   };

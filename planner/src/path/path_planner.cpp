@@ -66,7 +66,7 @@ std::vector<VoxelKey> cells_between(const TravelCorridor& corridor, const VoxelK
 // axes on which the body reaches beyond the collision box.
 Eigen::Vector3d nearest_fit(const TravelCorridor& corridor, const Lattice& lattice,
                             const Eigen::Vector3d& point) {
-  return (corridor.reach().array() > 0.0).select(lattice.exact_center(*lattice.key(point)), point);
+  return (corridor.reach().array() > 0.0).select(corridor.place_in(*lattice.key(point)), point);
 }
 
 // This path needs no check. From cell to cell the corridor cuts no corner, so two successive cells, and what
@@ -81,7 +81,7 @@ Polyline corridor_path(const TravelCorridor& corridor, const Lattice& lattice, c
     if (point != path.back()) path.push_back(point);
   };
   add(nearest_fit(corridor, lattice, start));
-  for (std::size_t i = 1; i + 1 < cells.size(); ++i) add(lattice.exact_center(cells[i]));
+  for (std::size_t i = 1; i + 1 < cells.size(); ++i) add(corridor.place_in(cells[i]));
   add(nearest_fit(corridor, lattice, goal));
   add(goal);
   return path;

@@ -111,9 +111,10 @@ std::vector<std::size_t> TourPlanning::chosen_viewpoints(const Query& query, con
   return chosen;
 }
 
-TourStop TourPlanning::stop_at(const NextStops& next, const JoinedStop& joined, std::size_t viewpoint) const {
+TourStop TourPlanning::stop_at(const Query& query, const NextStops& next, const JoinedStop& joined,
+                               std::size_t viewpoint) const {
   const ClusterViewpoint& at = next.viewpoints[viewpoint];
-  TourStop stop{{}, {lattice_.exact_center(at.cell), at.yaw}, at.cell, 0};
+  TourStop stop{{}, {query.corridor.place_in(at.cell), at.yaw}, at.cell, 0};
   double seen = 0.0;
   for (const std::size_t c : joined.clusters) {
     stop.clusters.push_back(next.clusters[c]->id);
@@ -133,7 +134,8 @@ void TourPlanning::join_next_stops(const Query& query) {
   if (options_.without != TourPart::kArrival) put_in_order(query, next);
   const std::vector<std::size_t> chosen = chosen_viewpoints(query, next);
   std::vector<TourStop> tour;
-  for (std::size_t s = 0; s < next.stops.size(); ++s) tour.push_back(stop_at(next, next.stops[s], chosen[s]));
+  for (std::size_t s = 0; s < next.stops.size(); ++s)
+    tour.push_back(stop_at(query, next, next.stops[s], chosen[s]));
   tour.insert(tour.end(), member.tour.begin() + static_cast<std::ptrdiff_t>(next.clusters.size()),
               member.tour.end());
   member.tour = std::move(tour);

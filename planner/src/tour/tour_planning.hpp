@@ -173,7 +173,7 @@ class TourPlanning {
   [[nodiscard]] NextStops next_stops(const Query& query) const;
   void put_in_order(const Query& query, NextStops& next);
   [[nodiscard]] std::vector<std::size_t> chosen_viewpoints(const Query& query, const NextStops& next);
-  [[nodiscard]] TourStop stop_at(const NextStops& next, const JoinedStop& joined,
+  [[nodiscard]] TourStop stop_at(const Query& query, const NextStops& next, const JoinedStop& joined,
                                  std::size_t viewpoint) const;
   [[nodiscard]] double seconds_to_first(const Query& query, const NextStops& next,
                                         std::size_t viewpoint) const;

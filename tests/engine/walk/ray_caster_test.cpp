@@ -8,10 +8,13 @@
 #include "support/ray_samples.hpp"
 #include "support/voxel_keys.hpp"
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <atomic>
 #include <cfenv>
+#include <optional>
 #include <thread>
 
 namespace frontlux::test {
@@ -273,6 +276,42 @@ TEST(RayCaster, UpdateEqualsANewCaster) {
         expect_equal(expected, questions.ask(*caster, 1000));
       }
     }
+  }
+}
+
+// As when another task of the caller's group has thrown: what is half-made must not count as complete.
+TEST(RayCaster, IsWholeThoughTheCallersGroupIsCancelled) {
+  const auto in_cancelled_group = [](const auto& work) {
+    tbb::task_group_context group;
+    tbb::parallel_for(
+        0, 1,
+        [&](int) {
+          group.cancel_group_execution();
+          work();
+        },
+        group);
+  };
+  Random random(13);
+  VoxelGrid grid = make_voxel_grid(*make_noise_tree(3, 0.3, 90));
+  std::vector<std::unique_ptr<RayCaster>> casters;
+  in_cancelled_group([&] {
+    casters.push_back(make_ray_caster(grid));
+    casters.push_back(make_embree_ray_caster(grid));
+  });
+  ASSERT_EQ(casters.size(), 2U);
+  for (int round = 0; round < 3; ++round) {
+    const Questions questions(grid, 3000);
+    const Answers expected = questions.ask(*make_grid_ray_caster(grid), 1000);
+    for (const auto& caster : casters) {
+      std::optional<Answers> answers;
+      in_cancelled_group([&] { answers = questions.ask(*caster, 1000); });
+      expect_equal(expected, *answers);
+    }
+    for (int i = 0; i < 200; ++i)
+      grid.fill(random.block_in(cube({32688, 32688, 32688}, 160), random.below(4)), random.state());
+    in_cancelled_group([&] {
+      for (const auto& caster : casters) caster->update(grid);
+    });
   }
 }
 

@@ -36,7 +36,9 @@ struct PlannedMotion {
   std::size_t robot = 0;
   /// Why it planned.
   PlanReason reason = PlanReason::kStart;
-  Trajectory trajectory;  ///< to be followed from its begin on; until then, the one before
+  /// To be followed from its begin on; until then, the one before. If it begins before the time for which it
+  /// was planned, it is the one that the robot is on: nothing better was found.
+  Trajectory trajectory;
   /// Of each robot what it has done; goal, tour, path, image and gains are those of the robot that planned.
   ExplorationStep step;
 };
@@ -54,7 +56,8 @@ struct PlannedMotion {
 ///     exploration.begin(starts, now());
 ///     while (!exploration.end()) {
 ///       exploration.insert(robot, pose, scan);                     // as they come
-///       while (const auto planned = exploration.plan(now())) {     // until none has a reason to plan
+///       const double time = now();                                 // of all that plan
+///       while (const auto planned = exploration.plan(time)) {      // until none has a reason to plan
 ///         send(planned->robot, planned->trajectory);               // its poses at their times
 ///         if (exploration.end()) break;
 ///       }

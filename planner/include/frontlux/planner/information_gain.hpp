@@ -37,8 +37,8 @@ struct PoseGradient {
   double yaw = 0.0;                                    ///< [1/rad]
 };
 
-/// The information gain of a path: how many frontiers its viewpoints see, as a differentiable function of the
-/// viewpoints' yaws.
+/// The information gain of a path (the paper's Sec. VII): how many frontiers its viewpoints see, as a
+/// differentiable function of the viewpoints' yaws.
 ///
 /// Viewpoint i sees frontier j with membership m_ij in [0, 1]: visibility times a product of logistic
 /// functions of the distances to the planes that bound the view, and to its range. `sharpness` is their

@@ -77,8 +77,8 @@ struct OptimizedPath {
   OptimizationEnd end = OptimizationEnd::kConverged;
 };
 
-/// Turns the viewpoints between the first and the last so that the path sees more frontiers. Of the yaws in
-/// `viewpoints`, only the first and the last are used.
+/// Turns the viewpoints between the first and the last so that the path sees more frontiers (the paper's
+/// Sec. VII and Alg. 1, line 7). Of the yaws in `viewpoints`, only the first and the last are used.
 ///
 /// Returns the yaws with most distinct frontiers in view among the tangent, the start and every step of the
 /// ascent. A start from bins looks along the path, to the nearest of them, where nothing is to be seen. There

@@ -43,6 +43,14 @@ struct FRONTLUX_EXPORT Robot {
 /// where its box fits; as printed, through free octree nodes of 1.2 m. 1.5 m/s, else as the ground robot.
 [[nodiscard]] FRONTLUX_EXPORT Robot uav(Method method = Method::kDefault);
 
+/// A robot for motion, where robots keep apart in time instead of by height, as `frontlux explore` has those
+/// above: in space it goes as low as its body allows. Its margin is half of what the voxels around its body
+/// leave it to each side, so that no passage is closed by it, and at most 0.05 m: off the middles of voxels a
+/// body comes near to surfaces in voxels that the map has as free.
+/// @param resolution  [m] of the map
+/// @throws std::invalid_argument unless that is a length
+[[nodiscard]] FRONTLUX_EXPORT Robot in_motion(Robot robot, double resolution);
+
 /// A robot with the number of rays in a scan of its sensor, and how often it takes one.
 struct RobotDescription {
   /// Its body, its sensor and its limits.

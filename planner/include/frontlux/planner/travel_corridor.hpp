@@ -228,6 +228,10 @@ class FRONTLUX_EXPORT TravelCorridor {
   /// Whether a cell would be passable, wherever other robots are. Searches no path.
   [[nodiscard]] bool fits(const VoxelKey& key) const;
 
+  /// Where the robot's sensor is in a cell: in the middle, but of a robot that drives as high above the
+  /// cell's lower face as its `sensor_height` has it.
+  [[nodiscard]] Eigen::Vector3d place_in(const VoxelKey& cell) const;
+
   /// The voxels around a cell that have to be free.
   [[nodiscard]] const BodyStencil& stencil() const;
   /// `BodyStencil::reach` of the robot.

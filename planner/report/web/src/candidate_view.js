@@ -22,15 +22,15 @@ export class CandidateView {
     this.mesh.frustumCulled = false;
   }
 
-  /** The candidates of a step; null if it has none. */
-  imageAt(step) {
-    return step < 0 ? null : this.run.images[step * this.run.robots + this.robot];
+  /** The candidates of the step that is shown; null if it has none. */
+  get shownImage() {
+    return this.shown >= 0 ? this.run.images[this.shown * this.run.robots + this.robot] : null;
   }
 
   show(step) {
     if (this.shown === step) return;
     this.shown = step;
-    const image = this.imageAt(step);
+    const image = this.shownImage;
     this.mesh.visible = image !== null;
     if (!image) return;
     for (let i = 0; i < image.count; ++i) {
@@ -58,7 +58,7 @@ export class CandidateView {
 
   /** The candidate nearest to the viewer among those at a ray: { i, distance } or null. */
   pick(ray) {
-    const image = this.imageAt(this.shown), within = 0.5 * this.run.facts.resolution;
+    const image = this.shownImage, within = 0.5 * this.run.facts.resolution;
     let best = null;
     for (let i = 0; image && i < image.count; ++i) {
       spot.set(...this.placeOf(image, i));

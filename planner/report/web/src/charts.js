@@ -123,7 +123,7 @@ export class Charts {
 
   make(spec) {
     const values = spec.series.map(() => el("span", { class: "value" }));
-    const legend = el("ul", { class: "legend" }, ...spec.series.map((series, i) => (series.edge ? null : el("li", {}, swatch(series.color, series.band ? "band" : series.dash ? "dashed" : "line"), el("span", { text: series.name }), values[i]))));
+    const legend = el("ul", { class: "legend" }, ...spec.series.map((series, i) => (series.edge ? null : el("li", {}, swatch(series.color, series.band ? "band" : series.dash ? "line dashed" : "line", series.dash), el("span", { text: series.name }), values[i]))));
     const mark = el("div", { class: "chart-mark", "aria-hidden": "true" });
     const button = (kind, title, act) => el("button", { type: "button", class: "small", title, text: kind, "aria-label": `${kind}: ${title}, ${spec.title}`, on: { click: act } });
     const buttons = el("span", { class: "save" }, button("SVG", "save as a picture", () => this.savePicture(spec.id)), button("CSV", "save the numbers", () => save(`${this.fileName(spec)}.csv`, new Blob([chartTable(spec)], { type: "text/csv" }))));

@@ -13,10 +13,18 @@ export function el(tag, properties = {}, ...children) {
   return element;
 }
 
-/** A coloured mark of a legend; the colour is set as a property, which the content policy allows. */
-export function swatch(color, kind = "") {
+/**
+ * A coloured mark of a legend; the colour is set as a property, which the content policy allows.
+ * @param dash of a dashed line: lengths of dashes and gaps in turn [px]
+ */
+export function swatch(color, kind = "", dash = []) {
   const mark = el("span", { class: `swatch ${kind}`, "aria-hidden": "true" });
   mark.style.background = color;
+  if (dash.length > 0) {
+    let from = 0;
+    const parts = dash.map((length, i) => `${i % 2 === 0 ? "#000" : "transparent"} ${from}px ${(from += length)}px`);
+    mark.style.mask = `repeating-linear-gradient(to right, ${parts.join(", ")})`;
+  }
   return mark;
 }
 

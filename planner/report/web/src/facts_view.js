@@ -73,7 +73,7 @@ export function header(runs) {
         numbers.clock ? tile("time", clockTime(result.time), [0.5, 0.9, 0.99].filter((part) => result.coverage >= part).map((part) => `${percent(part, 0)} after ${reached(numbers, part, (s) => clockTime(numbers.time[s]))}`).join(", ")) : tile("steps", whole(result.steps)),
         tile("explored volume", cubicMetres(result.volume)),
         tile("path length", metres(result.length), facts.robots.length > 1 ? facts.robots.map((robot, r) => `${robot.name} ${metres(result.lengths[r])}`).join(", ") : ""),
-        tile("planning time", seconds(result.planningMean), numbers.motion ? `mean of ${whole(result.steps)} plannings, 99 % within ${seconds(result.planningUsual)}${charged(result)}` : `mean of ${whole(result.steps)} steps, max ${seconds(result.planningMost)}`),
+        tile("planning time", seconds(result.planningMean), numbers.motion ? `mean of ${whole(result.plannings)} plannings, 99 % within ${seconds(result.planningUsual)}${charged(result)}` : `mean of ${whole(result.steps)} steps, max ${seconds(result.planningMost)}`),
         tile("contacts", whole(result.contacts), bumpers(result)))
     : null;
   return [
@@ -115,7 +115,7 @@ export function details(run, written) {
       ["Coverage", `${percent(result.coverage)} of the observable space, ${percent(result.coverageBox)} of the box`],
       ["Explored volume", cubicMetres(result.volume)],
       ["Robots", numbers.motion ? "in motion: each plans for itself while it moves" : "in lock-step: all plan, then all move"],
-      ["Steps", numbers.motion ? `${whole(result.steps)}, one for each planning` : `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
+      ["Steps", numbers.motion ? `${whole(result.steps)}, with a planning in ${whole(result.plannings)}` : `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
       ["Planning", `${seconds(result.planningTotal)} in total; for each ${numbers.motion ? "planning" : "step"}: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
       ...(numbers.motion ? [
         ["Latency charged", Number.isFinite(result.latency) ? `${seconds(result.latency)} for each planning` : "not recorded"],

@@ -9,7 +9,7 @@ const point = new Vector3();
 export function onFloor(run, robot) {
   const of = (list) => list.filter((part, i) => part && i % run.robots === robot);
   if (!run.facts.robots[robot].plane || of(run.tours).length > 0) return false;
-  const { low, columns, rows } = boxOf(run, robot);
+  const { columns, rows } = boxOf(run, robot);
   return columns <= MOST && rows <= MOST && of(run.images).every((image) => image.z.every((key) => key === image.z[0]));
 }
 
@@ -34,11 +34,16 @@ export class ImageView {
     this.mesh.renderOrder = 1;
   }
 
+  /** Of the step that is shown; null if it has none. */
+  get shownImage() {
+    return this.shown >= 0 ? this.run.images[this.shown * this.run.robots + this.robot] : null;
+  }
+
   /** Shows the image of a step; hides it if the step has none. */
   show(step) {
     if (this.shown === step) return;
     this.shown = step;
-    const image = step < 0 ? null : this.run.images[step * this.run.robots + this.robot];
+    const image = this.shownImage;
     this.mesh.visible = image !== null;
     if (!image) return;
     const { low, columns } = this.box;
@@ -60,7 +65,7 @@ export class ImageView {
 
   /** The cell of the image that is shown where a ray meets the floor: { i, distance } or null. */
   pick(ray) {
-    const image = this.shown >= 0 ? this.run.images[this.shown * this.run.robots + this.robot] : null;
+    const image = this.shownImage;
     if (!image || !ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -this.mesh.position.z), point)) return null;
     const [x, y] = [point.x, point.y].map((k) => Math.floor(k / this.run.facts.resolution) + ORIGIN);
     for (let i = 0; i < image.count; ++i) if (image.x[i] === x && image.y[i] === y) return { i, distance: point.distanceTo(ray.origin) - 0.05 };

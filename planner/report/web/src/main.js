@@ -130,17 +130,18 @@ class Page {
   }
 
   place() {
-    return placeText({ time: this.timeline.time, run: this.shown, camera: this.scene?.place });
+    const { time, step, along } = this.timeline;
+    return placeText({ time, step: along === 1 ? step : null, run: this.shown, camera: this.scene?.place });
   }
 
   /** Shows the run, the moment and the place that an address names. */
   goTo(hash) {
-    const { time, run, camera } = readPlace(hash);
+    const { time, step, run, camera } = readPlace(hash);
     if (run !== null && run !== this.shown && this.runs[run]) {
       this.select(run);
       document.getElementById("run").value = String(run);
     }
-    if (time !== null) this.timeline.seekTime(time);
+    if (time !== null) this.timeline.seekTime(time, step);
     if (camera && this.scene) this.scene.place = camera;
   }
 
@@ -182,7 +183,7 @@ class Page {
     const { run, timeline } = this, { facts } = run, number = facts.steps[timeline.step].number;
     const moment = run.numbers.clock ? clockTime(timeline.time) : `step ${number}`;
     const robots = facts.robots.map((robot) => ({ name: robot.name, color: robotColor(robot, this.scene.theme) }));
-    const blob = await viewPicture(this.scene, `${facts.world}, ${moment}, ${percent(run.numbers.coverage[timeline.step])} mapped`, robots);
+    const blob = await viewPicture(this.scene, `${facts.world}, ${moment}, ${percent(run.numbers.coverage[this.scene.mapStep] ?? 0)} mapped`, robots);
     save(`${run.name}_${moment}.png`, blob);
   }
 

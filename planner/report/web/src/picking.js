@@ -65,7 +65,7 @@ function pickStop(tour, ray) {
 
 function pickCell(image, ray) {
   const hit = image.mesh.visible ? image.pick(ray) : null;
-  return hit && { kind: "cell", robot: image.robot, ...hit };
+  return hit && { kind: "cell", robot: image.robot, image: image.shownImage, ...hit };
 }
 
 /** What was picked, in words: [name, value] pairs. */
@@ -85,7 +85,7 @@ export function describePick(scene, hit) {
   }
   const name = facts.robots[hit.robot].name, step = scene.position.step;
   if (hit.kind === "cell") {
-    const image = run.images[step * run.robots + hit.robot];
+    const { image } = hit;
     return [
       ["Candidate", `${metres([image.x[hit.i], image.y[hit.i], image.z[hit.i]])}, ${name}`],
       ["View quality", ((image.quality[hit.i] / 255) ** 2 * image.qualityMost).toFixed(1)],

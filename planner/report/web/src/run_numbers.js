@@ -15,6 +15,8 @@ export function numbersOf(facts) {
   const sum = (list) => list.reduce((a, b) => a + b, 0);
   const of = (count, total) => (total > 0 ? count / total : NaN);
   const volume = (voxels) => voxels * facts.resolution ** 3;
+  // In the last step in motion nobody looks for a goal: only frontiers were updated.
+  const goals = facts.phases.indexOf("goals"), isPlanned = (step) => step.seconds[goals] > 0;
   const motion = inMotion(facts), clock = steps > 0 && facts.steps[steps - 1].time > 0;
   const numbers = {
     motion, clock,
@@ -23,7 +25,6 @@ export function numbersOf(facts) {
     coverage: column((step) => of(sum(step.known.map((known) => known[0])), facts.observable)),
     coverageBox: column((step) => of(sum(step.known.map((known) => known[1])), facts.bounding)),
     robotCoverage: perRobot((step, r) => of(step.known[r][0], facts.observable)),
-    robotBox: perRobot((step, r) => of(step.known[r][1], facts.bounding)),
     volume: column((step) => volume(sum(step.known.map((known) => known[1])))),
     robotVolume: perRobot((step, r) => volume(step.known[r][1])),
     frontiers: held(column((step) => (motion && !isPlanned(step) ? null : step.frontiers))),
@@ -33,7 +34,6 @@ export function numbersOf(facts) {
     contacts: column((step) => step.contacts),
     phases: facts.phases.map((_, p) => column((step) => step.seconds[p])),
     planning: column((step) => sum(step.seconds.slice(0, -1))), // moving is the last
-    tangent: perRobot((step, r) => step.robots[r].gain_tangent),
     predicted: perRobot((step, r) => step.robots[r].gain_predicted).map((list, r) => (motion ? held(list.map((gain, s) => (gain > 0 || hasPath(facts.steps[s].robots[r]) ? gain : null))) : list)),
     gained: perRobot((step, r) => step.robots[r].gained),
     length: perRobot((step, r) => step.robots[r].length),
@@ -41,10 +41,10 @@ export function numbersOf(facts) {
   numbers.travelled = numbers.length.map(runningSum);
   numbers.teamTravelled = facts.steps.map((_, s) => sum(numbers.travelled.map((list) => list[s])));
   const { measured } = facts, known = (number) => number ?? NaN, { latency, bumper } = recordedOptions(facts) ?? {};
-  const last = steps - 1, planned = facts.steps.map((_, s) => s).filter((s) => facts.steps[s].number > 0);
-  const planning = planned.map((s) => numbers.planning[s]);
+  const last = steps - 1, planning = numbers.planning.filter((_, s) => facts.steps[s].number > 0 && isPlanned(facts.steps[s]));
   numbers.result = {
-    steps: planned.length,
+    steps: facts.steps.filter((step) => step.number > 0).length,
+    plannings: planning.length,
     coverage: steps ? numbers.coverage[last] : NaN,
     coverageBox: steps ? numbers.coverageBox[last] : NaN,
     fractions: facts.robots.map((_, r) => (steps ? of(facts.steps[last].known[r][0], sum(facts.steps[last].known.map((known) => known[0]))) : NaN)),
@@ -89,11 +89,6 @@ function rising(list) {
 function held(list) {
   let last = 0;
   return list.map((value) => (last = value ?? last));
-}
-
-/** The run's last step has no planning if a limit ended it while robots moved: only frontiers were updated. */
-function isPlanned(step) {
-  return step.seconds.slice(1, -1).some((time) => time > 0);
 }
 
 const hasPath = (robot) => !robot.path.startsWith("has no length");

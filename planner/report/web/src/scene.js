@@ -95,17 +95,23 @@ export class ReplayScene {
   show(position) {
     const { step, along } = position;
     this.position = { step, along };
-    this.store.seek(this.asPlanned || along < 1 ? step - 1 : step);
+    this.store.seek(this.mapStep);
     this.voxels.update();
     const old = this.follow >= 0 ? this.robots[this.follow].pose.slice() : null;
     for (const robot of this.robots) robot.show(step, along, (this.store.heights[0] + 1 - ORIGIN) * this.run.facts.resolution);
-    // A robot in motion plans at the end of a step.
+    // A robot in motion plans at the end of a step, in lock-step at its begin.
     for (const tour of this.tours) tour.show(along < 1 ? step - 1 : step, this.robots[tour.r].pose);
     for (const trajectory of this.trajectories) trajectory.show(along < 1 ? step - 1 : step);
-    for (const image of this.images) image.show(step);
+    for (const image of this.images) image.show(this.run.motion && along < 1 ? step - 1 : step);
     if (old) this.moveBy(this.robots[this.follow].pose, old);
     this.applyLayers();
     this.draw();
+  }
+
+  /** The step after which the map was as it is shown; -1: before the start. */
+  get mapStep() {
+    const { step, along } = this.position;
+    return this.asPlanned || along < 1 ? step - 1 : step;
   }
 
   moveBy(pose, old) {
@@ -141,9 +147,7 @@ export class ReplayScene {
     }
     for (const tour of this.tours) tour.group.visible = layers.tours && tour.there;
     for (const trajectory of this.trajectories) trajectory.line.visible = layers.trajectories && trajectory.there;
-    for (const image of this.images)
-      image.mesh.visible = layers.quality && this.run.images[this.position.step * this.run.robots + image.robot] !== null;
-    this.labels.forEach((label) => (label.hidden = !layers.robots));
+    for (const image of this.images) image.mesh.visible = layers.quality && image.shownImage !== null;
   }
 
   setLayer(name, on) {

@@ -1,4 +1,4 @@
-// A corner's bytes: x, y, z within the chunk, then side | owner << 3; of a frontier, owner.
+// A corner's bytes: x, y, z within the chunk, then side + 6 * owner; of a frontier, owner.
 export const VOXEL_VERTEX = `
 precision highp float;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -8,8 +8,8 @@ out float height;
 flat out int side, owner;
 void main() {
   int tag = int(corner.w + 0.5);
-  side = tag & 7;
-  owner = tag >> 3;
+  side = tag % 6;
+  owner = tag / 6;
   place = corner.xyz;
   vec4 world = modelMatrix * vec4(corner.xyz, 1.0);
   height = world.z;
@@ -18,7 +18,7 @@ void main() {
 
 export const VOXEL_FRAGMENT = `
 precision highp float;
-uniform vec3 heights[4], owners[16];
+uniform vec3 heights[4], owners[33];
 uniform float lowest, highest, shade, edges;
 uniform bool by_owner;
 in vec3 place;
@@ -56,7 +56,7 @@ void main() {
 
 export const POINT_FRAGMENT = `
 precision mediump float;
-uniform vec3 tints[16];
+uniform vec3 tints[33];
 flat in int owner;
 out vec4 color;
 void main() {

@@ -25,8 +25,8 @@ export class Timeline extends EventTarget {
 
   /** The clock's time that is shown. */
   get time() {
-    const from = this.times[this.step - 1] ?? 0;
-    return from + this.along * ((this.times[this.step] ?? 0) - from);
+    const from = this.times[this.step - 1] ?? 0, to = this.times[this.step] ?? 0;
+    return this.along === 1 ? to : from + this.along * (to - from);
   }
 
   reset(times) {
@@ -41,10 +41,10 @@ export class Timeline extends EventTarget {
     this.notify();
   }
 
-  /** Shows a moment of the clock. */
-  seekTime(time) {
+  /** Shows a moment of the clock; of several steps that end then, this one. */
+  seekTime(time, step = null) {
     this.pause();
-    Object.assign(this, positionAt(this.times, time));
+    Object.assign(this, this.times[step] === time ? { step, along: 1 } : positionAt(this.times, time));
     this.notify();
   }
 

@@ -20,12 +20,12 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
     const [text, title] = motion && name === "planned" ? ["Scans", "where robots took scans since the planning before, "] : [NAMES[name], ""];
     return el("label", { class: "chip", title: `${title}key ${(i + 1) % 10}` }, boxes[name], el("span", { text }));
   };
-  const select = (id, label, choices, change) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text }))));
-  const check = (id, label, title, change) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));
+  const select = (id, label, choices, change, chosen) => el("label", { class: "field" }, el("span", { text: label }), el("select", { id, on: { change: (event) => change(event.target.value) } }, ...choices.map(([value, text]) => el("option", { value, text, selected: value === chosen }))));
+  const check = (id, label, title, change, checked) => el("label", { class: "chip", title }, el("input", { type: "checkbox", id, checked, on: { change: (event) => change(event.target.checked) } }), el("span", { text: label }));
   const colors = select("colors", "Colour by", [["height", "height"], ["owner", "first robot"]], (value) => {
     scene.setByOwner(value === "owner");
     drawKey();
-  });
+  }, scene.byOwner ? "owner" : "height");
   const unit = numbers.clock ? "s" : "steps";
   const trail = select("trail", "Trail", [["Infinity", "whole"], ["30", `last 30 ${unit}`], ["10", `last 10 ${unit}`]], (value) => scene.setTrail(Number(value)));
   const follow = select("follow", "Follow", [["-1", "none"], ...facts.robots.map((robot, r) => [String(r), robot.name])], (value) => scene.setFollow(Number(value)));
@@ -49,7 +49,7 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
       el("div", { class: "names" }, dot(SCENE[theme].frontier, assigned ? "frontier of nobody or several" : "frontier", "dot"), ...(assigned ? facts.robots.map((robot) => dot(robotColor(robot, theme), `of ${robot.name}`, "dot")) : []), ...facts.robots.map((robot) => dot(robotColor(robot, theme), robot.name))),
       el("div", { class: "names" }, dot(ink, "travelled", "line"), dot(ink, motion ? "scan" : "planned", "thin"),
         scene.trajectories.length > 0 ? dot(ink, "planned trajectory", "dotted") : null,
-        scene.tours.length > 0 ? dot(ink, "planned tour", "dashed") : null, dot(ink, "goal", "diamond"),
+        scene.tours.length > 0 ? dot(ink, "planned tour", "tour") : null, dot(ink, "goal", "diamond"),
         scene.images.some((image) => image instanceof CandidateView) ? dot(`rgb(${qualityColor(0.5).join(",")})`, "candidate") : null));
   };
   drawKey();
@@ -58,8 +58,8 @@ export function makeToolbar(scene, { facts, motion, numbers }, savePicture) {
     el("fieldset", {}, el("legend", { text: "View" }),
       view("view-home", "Whole map", "the whole map from one side (H)", () => scene.home()), view("view-top", "From above", "the whole map from above (T)", () => scene.top()), el("button", { type: "button", id: "save-view", title: "save what the view shows as a PNG picture (P)", text: "Save PNG", on: { click: savePicture } }), follow, sensor, trail, colors,
       el("label", { class: "field", title: "hide the voxels above" }, el("span", { text: "Cut above" }), cut),
-      check("closed", "Back faces", "also show the faces next to unknown space", (on) => scene.setClosed(on)),
-      check("as-planned", "Before the step", "show the map on which the step was planned, instead of the map after it", (on) => scene.setAsPlanned(on))));
+      check("closed", "Back faces", "also show the faces next to unknown space", (on) => scene.setClosed(on), false),
+      check("as-planned", "Before the step", "show the map on which the step was planned, instead of the map after it", (on) => scene.setAsPlanned(on), scene.asPlanned)));
   return {
     bar, key, drawKey,
     toggleLayer(i) {

@@ -3,6 +3,8 @@ import { CHUNK, FREE, OCCUPIED, UNKNOWN } from "./run_data.js";
 const P = CHUNK + 2; // edge of a chunk with a layer of its neighbours around
 const STRIDE = [1, P, P * P];
 const STATE = 3;
+/** Robots that are told apart, as many as a task has at most; any others count as the last of them. */
+export const MOST_OWNERS = 32;
 
 /**
  * Makes the shapes of one chunk: the faces of occupied voxels next to free space, merged into rectangles
@@ -17,7 +19,7 @@ export class VoxelMesher {
     this.closed = false; // also faces next to unknown space
     this.padded = new Uint8Array(P * P * P);
     this.mask = new Uint8Array(CHUNK * CHUNK);
-    this.corners = new Uint8Array(16 * 4096); // x, y, z, side | owner << 3; four for each face
+    this.corners = new Uint8Array(16 * 4096); // x, y, z, side + 6 * owner; four for each face
     this.faces = 0;
     this.points = new Uint8Array(4 * 4096);
     this.frontiers = 0;
@@ -101,7 +103,7 @@ export class VoxelMesher {
           if (!same) break;
         }
         for (let h = 0; h < height; ++h) mask.fill(0, (j + h) * CHUNK + i, (j + h) * CHUNK + i + width);
-        this.addFace(side | (Math.min(value >> 2, 15) << 3), axis, u, v, depth, i, j, width, height);
+        this.addFace(side + 6 * Math.min(value >> 2, MOST_OWNERS), axis, u, v, depth, i, j, width, height);
         i += width;
       }
   }
@@ -145,6 +147,6 @@ export class VoxelMesher {
       larger.set(this.points);
       this.points = larger;
     }
-    this.points.set([x, y, z, Math.min(owner, 15)], 4 * this.frontiers++);
+    this.points.set([x, y, z, Math.min(owner, MOST_OWNERS)], 4 * this.frontiers++);
   }
 }

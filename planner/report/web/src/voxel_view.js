@@ -2,7 +2,7 @@ import { BufferAttribute, BufferGeometry, Color, GLSL3, Group, Mesh, Points, Raw
 import { CHUNK } from "./run_data.js";
 import { POINT_FRAGMENT, POINT_VERTEX, VOXEL_FRAGMENT, VOXEL_VERTEX } from "./shaders.js";
 import { SCENE, robotColor } from "./palette.js";
-import { VoxelMesher } from "./voxel_mesher.js";
+import { MOST_OWNERS, VoxelMesher } from "./voxel_mesher.js";
 
 const ORIGIN = 32768; // key of the voxel whose lower corner lies at 0
 
@@ -19,7 +19,7 @@ export class VoxelView {
       glslVersion: GLSL3, vertexShader: VOXEL_VERTEX, fragmentShader: VOXEL_FRAGMENT,
       uniforms: {
         heights: { value: Array.from({ length: 4 }, () => new Vector3()) },
-        owners: { value: Array.from({ length: 16 }, () => new Vector3()) },
+        owners: { value: Array.from({ length: MOST_OWNERS + 1 }, () => new Vector3()) },
         lowest: { value: (store.heights[0] - ORIGIN) * this.resolution },
         highest: { value: (store.heights[1] + 1 - ORIGIN) * this.resolution },
         shade: { value: 1 }, edges: { value: 0.16 }, by_owner: { value: false },
@@ -27,13 +27,12 @@ export class VoxelView {
     });
     this.pointsMaterial = new RawShaderMaterial({
       glslVersion: GLSL3, vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
-      uniforms: { size: { value: 100 }, tints: { value: Array.from({ length: 16 }, () => new Vector3()) } },
+      uniforms: { size: { value: 100 }, tints: { value: Array.from({ length: MOST_OWNERS + 1 }, () => new Vector3()) } },
       transparent: true, depthWrite: false,
     });
     this.index = makeIndex(4096);
     this.meshes = store.chunks.map((_, c) => this.makeChunk(c, Mesh, this.facesMaterial, this.voxels));
     this.clouds = store.chunks.map((_, c) => this.makeChunk(c, Points, this.pointsMaterial, this.frontiers));
-    this.rebuilt = 0; // chunks, for tests
   }
 
   makeChunk(c, Kind, material, group) {
@@ -58,7 +57,6 @@ export class VoxelView {
       if (!store.dirty[c]) continue;
       store.dirty[c] = 0;
       mesher.make(c);
-      ++this.rebuilt;
       this.fill(this.meshes[c], mesher.corners, 16 * mesher.faces);
       this.fill(this.clouds[c], mesher.points, 4 * mesher.frontiers);
       this.meshes[c].geometry.setDrawRange(0, 6 * mesher.faces);
@@ -114,7 +112,7 @@ export class VoxelView {
     // Paler than the robots themselves, so that their paths stand out.
     setVector(wall, scene.wall);
     const robots = this.robotFacts;
-    for (let i = 1; i < 16; ++i) {
+    for (let i = 1; i <= MOST_OWNERS; ++i) {
       setVector(uniforms.owners.value[i], robotColor(robots[(i - 1) % robots.length], theme));
       uniforms.owners.value[i].lerp(wall, 0.5);
     }
@@ -131,10 +129,6 @@ export class VoxelView {
 
   countFrontiers() {
     return this.clouds.reduce((sum, cloud) => sum + (cloud.visible ? cloud.geometry.drawRange.count : 0), 0);
-  }
-
-  countTriangles() {
-    return this.meshes.reduce((sum, mesh) => sum + (mesh.visible ? mesh.geometry.drawRange.count / 3 : 0), 0);
   }
 
   dispose() {
