@@ -65,8 +65,7 @@ TEST_F(RenderCommand, TableAgreesWithBruteForce) {
 
   std::string first;
   for (const char* used : {"grid", "embree", "fast"}) {
-    const std::string out = expect_answer(
-        words("ugv", kStart, "room.csv", {"--samples", "all", "--caster", used, "--seed", "7"}));
+    const std::string out = expect_answer(words("ugv", kStart, "room.csv", {"--caster", used}));
     const std::string csv = content_of(path("room.csv"));
     if (first.empty()) first = csv;
     EXPECT_EQ(csv, first);
@@ -176,8 +175,11 @@ TEST_F(RenderCommand, RefusesWhatItCannotWorkWith) {
   expect_refused(words("ugv", kStart, "no/x.png"), {"--output", "there is no folder"});
   expect_refused(words("ugv", kStart, "x.csv", {"--show", "layer"}), {"--show: "});
   for (const std::string samples : {"0", "x", "1.5", ""})
-    refuse("ugv", kStart, {"--samples", samples}, {"--samples: '" + samples + "' is not", ", or all"});
-  refuse("ugv", kStart, {"--seed", "-1"}, {"--seed", "'-1'"});
+    refuse("uav", kStart, {"--samples", samples}, {"--samples: '" + samples + "' is not", ", or all"});
+  refuse("uav", kStart, {"--seed", "-1"}, {"--seed", "'-1'"});
+  refuse("ugv", kStart, {"--samples", "5"}, {"--samples: of the ugv all frontiers are counted, not drawn"});
+  refuse("ugv", kStart, {"--seed", "5"}, {"--seed: all frontiers are counted, not drawn"});
+  refuse("uav", kStart, {"--samples", "all", "--seed", "5"}, {"--seed: all frontiers are counted"});
   refuse("ugv", kStart, {"--mode", "fast"}, {"--mode", "fast"});
   refuse("ugv", kStart, {"--caster", "gpu"}, {"--caster", "gpu"});
   refuse("ugv", kStart, {"--floor", "1"}, {"--floor: the ugv stays on the ground"});

@@ -114,6 +114,8 @@ TEST_F(ScanCommand, RefusesOutputsBeforeItScans) {
   std::filesystem::copy_file(std::filesystem::path(FRONTLUX_DATA_DIR) / "maps/room_0.2m.ot", path("room.ot"));
   expect_refused({path("room.ot"), "--start", "6,3,1", "-o", path("room.ot")},
                  {"--output", "is what is read: " + path("room.ot")});
+  expect_refused({path("room.ot"), "--start", "6,3,1", "--seed", "2", "-o", path("new.bt")},
+                 {"--seed: " + path("room.ot") + " is not a built-in world"});
   const std::string robot = write("robot.bt", content_of(FRONTLUX_DATA_DIR "/robots/uav.json"));
   expect_refused({"room", "--robot", robot, "-o", robot}, {"--output", "is what is read: " + robot});
 }

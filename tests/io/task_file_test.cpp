@@ -245,6 +245,8 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
       {with(R"("seed": 7)", R"("seed": 7, "seed": 8)"), "the member 'seed' is there twice; keep one"},
       {with(R"("rate_hz": 20)", R"("rate_hz": 20, "rows": 3)"), "the member 'rows' is there twice"},
       {with(R"("seed": 7)", R"("seed": [[[[[[1]]]]]])"), "'seed' is nested too deeply; see docs/tasks.md"},
+      {with(R"("seed": 7)", R"("version": "0.1.0", "task": {"robots": [{"body": {"size_m": [1]}}]})"),
+       "holds the results of a run; save its member task alone"},
       {std::string(200'000, '['), "is nested too deeply"},
       {with("[1, 0, 1, 45]", "[" + std::string(100'000, '1') + "]"), "is too large"},
       {with("7,", "7 " + std::string(1 << 20, ' ') + ","),

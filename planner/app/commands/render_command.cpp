@@ -54,7 +54,7 @@ struct Options {
   bool any_ground = false;
   Method mode = Method::kDefault;
   std::optional<Samples> samples;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   CasterKind caster = CasterKind::kFast;
   std::optional<Shown> show;
 };
@@ -64,6 +64,16 @@ void check_options(const Options& options) {
   const auto ending = std::filesystem::path(options.output).extension();
   if (options.show && (ending == ".csv" || ending == ".ply"))
     throw BadInput("--show: a table holds all cells; leave the option out, or write a .png");
+}
+
+// The same for those of the draws, of which there may be none.
+void check_draws(const Options& options, const TeamMember& member) {
+  const bool exact = member.options.rendering.renderer == ViewQualityOptions::Renderer::kExact;
+  if (exact && options.samples)
+    throw BadInput("--samples: of the " + member.robot.name +
+                   " all frontiers are counted, not drawn; leave the option out, or give --mode paper");
+  if (options.seed && (exact || member.options.rendering.samples == ViewQualityOptions::kAll))
+    throw BadInput("--seed: all frontiers are counted, not drawn; leave the option out");
 }
 
 TeamMember make_member(const Options& options) {
@@ -80,7 +90,8 @@ TeamMember make_member(const Options& options) {
   member.options = planner::goal_options(member.robot, options.mode);
   member.options.prune = false;  // the picture shows them all
   if (options.samples) member.options.rendering.samples = options.samples->number;
-  member.options.rendering.seed = options.seed;
+  member.options.rendering.seed = options.seed.value_or(1);
+  check_draws(options, member);
   return member;
 }
 

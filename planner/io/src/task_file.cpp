@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json, nlohmann::ordered_json;
 using planner::Pose;
 
-constexpr std::size_t kTaskDepth = 5;  // task, robots, robot, body, size
+constexpr std::size_t kTaskDepth = 6;  // of what may hold it, task, robots, robot, body, size
 constexpr std::size_t kLongestName = 255;
 constexpr JsonContent kTask{"a task", "docs/tasks.md", kTaskDepth};
 
@@ -152,6 +152,8 @@ std::string_view name_of(const TaskMethod& method) {
 
 Task read_task(const std::filesystem::path& file) {
   const json object = read_json(file, kTask);
+  if (object.contains("task") && object.contains("version"))
+    fail(file, "holds the results of a run", "save its member task alone, see docs/reproducing.md");
   Members members(file, object);
   Task task;
   task.name = read_name(members, file.stem().string());
