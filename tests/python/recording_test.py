@@ -248,6 +248,10 @@ class Recordings(unittest.TestCase):
         file.write_bytes(whole + b"abc")
         with self.assertRaisesRegex(RuntimeError, "goes on after its end"):
             frontlux.read_recording(file)
+        last = whole.rindex(b"end ")
+        file.write_bytes(whole[:last] + b"abc")
+        with self.assertRaisesRegex(RuntimeError, "no record begins here"):
+            frontlux.read_recording(file)
         with self.assertRaises(FileNotFoundError):
             frontlux.read_recording(self.run_folder / "none")
 

@@ -15,6 +15,7 @@ _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no reassigned fron
 _MOST_BYTES = 1 << 30  # of a record
 _MOST_RATIO = 1032  # zlib compresses to no less than that part, and a few bytes more
 _MOST_ROBOTS = 1000
+_TAGS = (b"head", b"step", b"end ")
 _PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
 _POSE = struct.Struct("<4d")
 _CUBE = 16  # [voxels]
@@ -278,6 +279,9 @@ def _records(data, title):
         if zeros > at and tag == b"end ":
             raise ValueError("goes on after its end")
         begin = at + 16
+        written = data[at:max(at, min(zeros, at + 4))]
+        if not any(known.startswith(written) for known in _TAGS):
+            raise ValueError(f"is damaged at byte {at}: no record begins here")
         if zeros <= at or begin > len(data):
             yield None
             return

@@ -299,7 +299,7 @@ void add_render_command(CLI::App& app) {
   command.add("--mode", options->mode, "What works best, or as printed in the paper");
   command.add("--samples", options->samples, "N|all",
               "Frontiers drawn for each cell, where they are drawn [by mode]");
-  command.add("--seed", options->seed, "N", "Random seed of the draws", kSeeds);
+  command.add("--seed", options->seed, "N", "Random seed of the draws [1]", kSeeds);
   command.add("--caster", options->caster, "Ray caster");
   command.examples(R"(Examples:
   frontlux render hall.bt --robot ugv --at 0,0,0.75 -o hall.png

@@ -225,7 +225,8 @@ void add_scan_command(CLI::App& app) {
   command.add("--stray", options->errors.stray, "P",
               "Probability that a ray returns from nowhere, as from dust, before any surface", kProbability);
   add_sensor_model_option(command, options->sensor_model);
-  command.add("--seed", options->given_seed, "N", "Random seed (layout of a built-in world, noise)", kSeeds);
+  command.add("--seed", options->given_seed, "N", "Random seed (layout of a built-in world, noise) [1]",
+              kSeeds);
   add_world_options(command, options->source, "off");
   command.examples(R"(Examples:
   frontlux scan storage --seed 4 -o storage.bt

@@ -153,7 +153,7 @@ std::string_view name_of(const TaskMethod& method) {
 Task read_task(const std::filesystem::path& file) {
   const json object = read_json(file, kTask);
   if (object.contains("task") && object.contains("version"))
-    fail(file, "holds the results of a run", "save its member task alone, see docs/reproducing.md");
+    fail(file, "holds the results of a run", "save its member task alone, see docs/tasks.md");
   Members members(file, object);
   Task task;
   task.name = read_name(members, file.stem().string());

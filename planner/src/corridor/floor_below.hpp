@@ -22,15 +22,14 @@ class FloorBelow {
     const int reach = on_ground ? reached_from_below(travel, resolution) : 0;
     around_.emplace(Around{half_width(extents.x(), resolution) + gap,
                            half_width(extents.y(), resolution) + gap, layers_below(travel, resolution) + 1,
-                           reach});
+                           reach, gap});
   }
 
   template <class Visit>
   void for_each(const VoxelKey& cell, const Visit& visit) const {
     if (!around_) return;
-    const auto [x, y, down, reach] = *around_;
-    if (const auto middle = offset_key(cell, 0, 0, -down))
-      for_each_key(grown({*middle, *middle}, x, y, reach), visit);
+    if (const auto middle = offset_key(cell, 0, 0, -around_->down))
+      for_each_key(grown({*middle, *middle}, around_->x, around_->y, around_->reach), visit);
   }
 
   /// Whether a voxel is part of it.
@@ -39,10 +38,20 @@ class FloorBelow {
            std::abs(key.z - (cell.z - around_->down)) <= around_->reach;
   }
 
-  /// Whether a voxel of it that is free may be a hole, as `TravelOptions` has them: nothing above or below it
-  /// is occupied, and it is no gap of a single voxel.
+  /// Calls `visit(key)` for what may be holes, as `TravelOptions` has them, since a voxel has become free:
+  /// that one, and gaps that it has bridged or holes that it has filled.
+  template <class Visit>
+  void for_each_hole_near(const VoxelGrid& grid, const VoxelKey& opened, const Visit& visit) const {
+    if (!around_) return;
+    for_each_key(grown({opened, opened}, around_->gap, around_->gap, around_->reach),
+                 [&](const VoxelKey& key) {
+                   if (grid.at(key) == Occupancy::kFree && is_hole(grid, key)) visit(key);
+                 });
+  }
+
+ private:
+  // Nothing above or below it is occupied, and it is no gap of a single voxel.
   [[nodiscard]] bool is_hole(const VoxelGrid& grid, const VoxelKey& key) const {
-    if (!around_) return false;
     const auto is_occupied = [&](int dx, int dy, int dz) {
       const auto other = offset_key(key, dx, dy, dz);
       return other && grid.at(*other) == Occupancy::kOccupied;
@@ -53,11 +62,11 @@ class FloorBelow {
            !(is_occupied(0, -1, 0) && is_occupied(0, 1, 0));
   }
 
- private:
   struct Around {
     int x, y;   // [voxels] to each side
     int down;   // from a cell to its floor
     int reach;  // layers above and below that one
+    int gap;    // [voxels] the widest that is bridged
   };
   std::optional<Around> around_;
 };

@@ -116,8 +116,7 @@ void ContinuousExploration::rest(std::size_t robot, const Pose& pose, double tim
   state.set_motion(robot, Trajectory(resting, time));
   member.stopped = true;
   member.blocked = false;
-  member.needed.clear();
-  member.closed.clear();
+  for (auto* const keys : {&member.needed, &member.closed, &member.floor, &member.opened}) keys->clear();
 }
 
 void ContinuousExploration::stopped(std::size_t robot, const Pose& pose, double time,

@@ -46,6 +46,7 @@ constexpr double kOff = 0.03;  // [m] of a robot's places from the lines that st
 // about straight.
 std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
   constexpr double kStep = 0.1, kMost = 10'000.0;  // [s], poses
+  constexpr std::size_t kMostLeftOut = 200;        // in a row: each is looked at for each that follows
   const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
   const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
   std::vector<Pose> all, some;
@@ -56,7 +57,7 @@ std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
     return true;
   };
   for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
-    if (i > 0 && i + 1 < all.size() && straight(kept, i + 1)) continue;
+    if (i > 0 && i + 1 < all.size() && i - kept < kMostLeftOut && straight(kept, i + 1)) continue;
     some.push_back(all[i]);
     kept = i;
   }
@@ -149,6 +150,8 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
   const auto add = [&](const Pose& place, double apart) {
     const auto key = team.lattice().key(place.position);
     if (!key || !team.mapping.bounds().contains(*key)) return;
+    if (!trail.empty() && place.position == (member.passed.empty() ? trail : member.passed).back().position)
+      return;  // it rests
     const auto is_off = [&](const Pose& passed) {
       return off_line(passed.position, trail.back().position, place.position) > kOff;
     };
@@ -174,7 +177,14 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
 void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vector3d& rests) {
   constexpr double kLate = 10.0;  // [s] after which a stop is told at most
   std::vector<Pose>& trail = team.trails[robot];
-  members[robot].passed.clear();
+  // Around a corner that the trail has not yet.
+  std::vector<Pose>& passed = members[robot].passed;
+  const auto is_off = [&](const Pose& pose) {
+    return off_line(pose.position, trail.back().position, rests) > kOff;
+  };
+  if (!trail.empty() && std::ranges::any_of(passed, is_off))
+    trail.insert(trail.end(), passed.begin(), passed.end());
+  passed.clear();
   double rest = kLate * team.options.team[robot].robot.limits.speed;  // [m]
   double nearest = std::numeric_limits<double>::infinity();
   std::size_t last = trail.size();

@@ -93,10 +93,14 @@ void ContinuousExploration::State::look_for_blocked(double time) {
   for (std::size_t r = 0; r < members.size(); ++r) {
     Member& member = members[r];
     const Keys closed = std::exchange(member.closed, {});
-    Keys holes = std::exchange(member.opened, {});
+    const Keys opened = std::exchange(member.opened, {});
+    if ((closed.empty() && opened.empty()) || member.blocked) continue;
     const detail::FloorBelow below(team.options.team[r].robot.travel, team.lattice().resolution());
-    std::erase_if(holes, [&](const VoxelKey& key) { return !below.is_hole(team.mapping.grid(), key); });
-    if ((closed.empty() && holes.empty()) || member.blocked) continue;
+    Keys holes;
+    for (const VoxelKey& key : opened)
+      below.for_each_hole_near(team.mapping.grid(), key,
+                               [&](const VoxelKey& hole) { holes.push_back(hole); });
+    sort_once(holes);
     const BodyStencil& stencil = team.path_corridor(r).stencil();
     const bool retreats = member.activity == Activity::kRetreats;
     const auto needs = [&](const VoxelKey& cell) {

@@ -62,8 +62,8 @@ std::vector<VoxelKey> cells_between(const TravelCorridor& corridor, const VoxelK
   return cells;
 }
 
-// The nearest place where a robot certainly fits if its cell is passable: the middle of the voxel, along the
-// axes on which the body reaches beyond the collision box.
+// The nearest place where a robot certainly fits if its cell is passable: its place in there, along the axes on
+// which the body reaches beyond the collision box.
 Eigen::Vector3d nearest_fit(const TravelCorridor& corridor, const Lattice& lattice,
                             const Eigen::Vector3d& point) {
   return (corridor.reach().array() > 0.0).select(corridor.place_in(*lattice.key(point)), point);

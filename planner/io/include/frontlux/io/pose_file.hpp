@@ -14,7 +14,7 @@
 namespace frontlux::io {
 
 /// Both readers pass over a first line of names, empty lines and lines that begin with a #. Commas separate
-/// fields.
+/// fields, which may be in double quotes; one that begins with such a quote has to be, with its quotes doubled.
 
 /// Where the sensor was when a file was recorded.
 struct RecordedPose {
