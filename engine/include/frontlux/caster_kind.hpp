@@ -41,7 +41,8 @@ inline constexpr std::array<std::pair<std::string_view, CasterKind>, 4> kCasterN
 }
 
 /// @param grid  the mirror of `tree`
-/// @param tree  if `kind` is kOctomap, queried by reference: must outlive the caster
+/// @param tree  if `kind` is kOctomap, queried by reference: must outlive the caster, which shares an
+/// `Octree`
 /// @throws std::runtime_error if Embree cannot make its device
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(CasterKind kind,
                                                                          const VoxelGrid& grid,

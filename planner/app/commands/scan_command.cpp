@@ -42,13 +42,14 @@ void read(std::string_view word, Scanners& scanners) {
   }
 }
 
+constexpr std::uint64_t kSeed = 1;  // unless one is given
+
 struct Options {
   WorldSource source;
   std::string output, poses;
   double sweep = 2.5;  // [m]
   Scanners scanners;
-  std::optional<std::uint64_t> given_seed;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   sim::RangeErrors errors;
   planner::SensorModel sensor_model = planner::kOctomapSensorModel;
 };
@@ -129,8 +130,8 @@ void scan(const SourcedWorld& sourced, const GroundTruth& truth, const Plan& pla
     return !InterruptNote::taken();
   };
   mapping.mark_free(plan.bubble);
-  sim::scan_world(sim::Surface(sourced.world.mesh), plan.robots, plan.views, {options.errors, options.seed},
-                  mapping, report);
+  sim::scan_world(sim::Surface(sourced.world.mesh), plan.robots, plan.views,
+                  {options.errors, options.seed.value_or(kSeed)}, mapping, report);
   if (InterruptNote::taken()) throw Interrupted();
 }
 
@@ -157,11 +158,10 @@ void run(Options& options) {
   const Stopwatch watch;
   WorldSource& source = options.source;
   const bool errs = options.errors.sigma > 0.0 || options.errors.dropout > 0.0 || options.errors.stray > 0.0;
-  if (options.given_seed && !errs && !is_built_in_world(source.world))
+  if (options.seed && !errs && !is_built_in_world(source.world))
     throw BadInput("--seed: " + source.world +
                    " is not a built-in world, and sensors make no errors; leave the option out");
-  options.seed = options.given_seed.value_or(options.seed);
-  if (is_built_in_world(source.world)) source.seed = options.seed;
+  if (is_built_in_world(source.world)) source.seed = options.seed.value_or(kSeed);
   std::vector<std::string> inputs{source.world, options.poses};
   for (const RobotWord& robot : options.scanners.robots) inputs.push_back(robot.word);
   check_output(options.output, {".bt", ".ot"}, inputs);
@@ -225,8 +225,7 @@ void add_scan_command(CLI::App& app) {
   command.add("--stray", options->errors.stray, "P",
               "Probability that a ray returns from nowhere, as from dust, before any surface", kProbability);
   add_sensor_model_option(command, options->sensor_model);
-  command.add("--seed", options->given_seed, "N", "Random seed (layout of a built-in world, noise) [1]",
-              kSeeds);
+  command.add("--seed", options->seed, "N", "Random seed (layout of a built-in world, noise) [1]", kSeeds);
   add_world_options(command, options->source, "off");
   command.examples(R"(Examples:
   frontlux scan storage --seed 4 -o storage.bt

@@ -31,14 +31,15 @@
 namespace frontlux::app {
 namespace {
 
+namespace fs = std::filesystem;
+using planner::RecordedStep, planner::Recording;
+
+// Files that a run reads and must not overwrite.
 std::vector<std::string> inputs_of(const ExploreOptions& options) {
   std::vector<std::string> files{options.source.world, options.task};
   files.insert(files.end(), options.robot_files.begin(), options.robot_files.end());
   return files;
 }
-
-namespace fs = std::filesystem;
-using planner::RecordedStep, planner::Recording;
 
 constexpr const char* kStopped = "stopped";
 

@@ -177,14 +177,8 @@ void ContinuousExploration::State::extend_trail(std::size_t robot, double until)
 void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vector3d& rests) {
   constexpr double kLate = 10.0;  // [s] after which a stop is told at most
   std::vector<Pose>& trail = team.trails[robot];
-  // Around a corner that the trail has not yet.
-  std::vector<Pose>& passed = members[robot].passed;
-  const auto is_off = [&](const Pose& pose) {
-    return off_line(pose.position, trail.back().position, rests) > kOff;
-  };
-  if (!trail.empty() && std::ranges::any_of(passed, is_off))
-    trail.insert(trail.end(), passed.begin(), passed.end());
-  passed.clear();
+  // It may have gone around a corner that the trail has not yet.
+  for (const Pose& pose : std::exchange(members[robot].passed, {})) trail.push_back(pose);
   double rest = kLate * team.options.team[robot].robot.limits.speed;  // [m]
   double nearest = std::numeric_limits<double>::infinity();
   std::size_t last = trail.size();
