@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 DECLARED = Path(__file__).resolve().parent / "experiments.json"
-FIRST_SEED = 101  # what comes before is for choosing and trying
+FIRST_SEED = 201  # what comes before is for choosing and trying, or has been looked at
 COMPLETE = 0.99  # of the observable space, unless the task says otherwise
 COMPLETES = (0.9, 0.95, 0.99)  # parts for which runs say when they had mapped them
 FIRST_PASS = 2  # seeds of each block that come before all others, unless it says otherwise
@@ -158,7 +158,7 @@ class Experiments:
         return robots
 
     def task_file(self, run):
-        """What the run is, without the folder of the world's file."""
+        """What the run is, with the name and the hash of the world's file instead of its path."""
         declared = self.tasks[run.task]
         task = merged(merged(self.common, declared.get("task", {})), self.methods[run.method]["task"])
         task["name"], task["seed"] = run.name, run.seed + self.seed_offset
@@ -172,4 +172,4 @@ class Experiments:
             task["robots"] = [{**task["robots"][0], "start": start}, *task["robots"][1:]]
         else:
             task = merged(task, {"options": {"start": ",".join(map(str, start))}})
-        return {**task, "world": self.file_of(run.task)}
+        return {**task, "world": self.file_of(run.task), "world_sha256": declared["sha256"]}

@@ -117,6 +117,19 @@ def worst_of_limits(file, robots):
     return None if worst is None else round(worst, 6)
 
 
+def with_world(task, file):
+    """The task of a world from a file, with its path. Raises OSError if that is another file than the declared one."""
+    task = dict(task)
+    declared = task.pop("world_sha256")
+    if not Path(file).is_file():
+        raise OSError(f"there is no {file} on {socket.gethostname()}: copy it there")
+    found = hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    if found != declared:
+        raise OSError(f"{file} on {socket.gethostname()} is another file than the declared one: its SHA-256 is {found} instead of "
+                      f"{declared}")
+    return {**task, "world": str(file)}
+
+
 def explore(command, program, task, world, threads=1, folder=None):
     """Runs a task: what came of it, either "facts", "gains" and "curve", or why it failed, "failure"; "measured"
     depends on the machine, nothing else does. The world's file is given apart, or empty. Files go to a new folder in
@@ -125,10 +138,10 @@ def explore(command, program, task, world, threads=1, folder=None):
     if found != program:
         raise OSError(f"{file} on {socket.gethostname()} is {found.version} ({found.sha256}) instead of "
                       f"{program.version} ({program.sha256}): install that")
-    if world and not Path(world).is_file():
-        raise OSError(f"there is no {world} on {socket.gethostname()}: copy it there")
+    if world:
+        task = with_world(task, world)
     with tempfile.TemporaryDirectory(prefix="frontlux-", dir=folder) as temporary:
-        outcome = run_in(Path(temporary), file, {**task, "world": world} if world else task, threads)
+        outcome = run_in(Path(temporary), file, task, threads)
     if "failure" in outcome:
         outcome["failure"] = outcome["failure"].replace(temporary, "")
     outcome["measured"].update(program=program.sha256, date=datetime.now(timezone.utc).date().isoformat())

@@ -4,6 +4,7 @@
 import argparse
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -119,6 +120,19 @@ def world_file(name, options):
     return ""
 
 
+def commit_of(command):
+    """Of the sources that a program lies in the build of, if it is ours; a word more if they have changed since."""
+    def git(*arguments):
+        return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=True).stdout.strip()
+    if not Path(shutil.which(command) or command).resolve().is_relative_to(ROOT):
+        return ""
+    try:
+        changed = git("status", "--porcelain", "--", "engine", "planner", "cmake", "CMakeLists.txt")
+        return f" of commit {git('rev-parse', '--short=10', 'HEAD')}" + (" with changes" if changed else "")
+    except (OSError, subprocess.SubprocessError):
+        return ""
+
+
 def say(line):
     print(line, flush=True)
 
@@ -143,6 +157,7 @@ def execute(experiments, runs, options, published):
             raise ValueError(f"the workers have different programs {options.command}: " + ", ".join(
                 f"{p.version} ({p.sha256})" for p in found) + "; install the same file everywhere")
         program = found[0]
+        version = program.version + commit_of(options.command)
         tasks = {run: experiments.task_file(run) for run in runs}
         programs = {program.sha256, *options.like}
         left = []
@@ -164,7 +179,7 @@ def execute(experiments, runs, options, published):
             run = by_name[name]
             if before := failed_before(folder, run, tasks[run], program.sha256):
                 result["measured"]["failed_before"] = before
-            write_result(folder, run, tasks[run], program.version, result)
+            write_result(folder, run, tasks[run], version, result)
             minutes = (time.monotonic() - begin) / number_done * (len(left) - number_done) / 60
             took = result["measured"].get("wall_s")
             say(f"[{number_done}/{len(left)}] {name}: {describe(result)}" + (f"; took {took:.0f} s" if took else "") +

@@ -932,10 +932,14 @@ class Exploring(Made):
     def test_the_worlds_file_is_given_apart(self):
         mesh = self.folder / "mesh.ply"
         mesh.touch()
+        self.task = {**self.task, "world": "mesh.ply", "world_sha256": hashlib.sha256(b"").hexdigest()}
         self.is_program('cat "$3" >&2; exit 2')
         self.assertIn(str(mesh), self.explore(str(mesh))["failure"])
         with self.assertRaisesRegex(OSError, "there is no .*none.ply on .*: copy it there"):
             self.explore(str(self.folder / "none.ply"))
+        mesh.write_text("another mesh")
+        with self.assertRaisesRegex(OSError, r"mesh.ply on .* is another file than the declared one: its SHA-256 is [0-9a-f]{64} instead"):
+            self.explore(str(mesh))
 
     def test_failures(self):
         for script, said in (("echo no; echo why >&2; exit 3", "exit code 3: why"), ("kill -SEGV $$", "ended by SIGSEGV"),
