@@ -20,7 +20,9 @@ def connect(scheduler, workers, folder):
     dask.config.set({"distributed.scheduler.allowed-failures": LOST_WORKERS,
                      # A busy machine takes a while to start another worker, and none would come after the usual 15 s.
                      "distributed.deploy.lost-worker-timeout": "10 minutes",
-                     "distributed.comm.timeouts.connect": "10s"})
+                     "distributed.comm.timeouts.connect": "10s",
+                     # Each process would take a twentieth of a core to watch itself.
+                     "distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s"})
     for name in ("distributed", "tornado.application"):  # they report lost workers, and so do we
         logging.getLogger(name).setLevel(logging.CRITICAL)
     if scheduler:
