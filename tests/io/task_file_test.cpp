@@ -27,17 +27,35 @@ class TaskFile : public test::InputTest {
   [[nodiscard]] Task read(const std::string& text) const { return read_task(save("t.json", text)); }
 };
 
+// Member by member, and no member is left out: the binding takes all.
 void expect_equal(const Task& a, const Task& b) {
-  EXPECT_EQ(task_text(a), task_text(b));
-  ASSERT_EQ(a.robots.size(), b.robots.size());
-  for (std::size_t r = 0; r < a.robots.size(); ++r) {
-    EXPECT_EQ(test::listed(a.robots[r].description), test::listed(b.robots[r].description));
-    EXPECT_EQ(a.robots[r].description.robot.limits, b.robots[r].description.robot.limits);
-    EXPECT_EQ(a.robots[r].description.rate, b.robots[r].description.rate);
-    ASSERT_EQ(a.robots[r].start.has_value(), b.robots[r].start.has_value());
-    if (!a.robots[r].start) continue;
-    EXPECT_EQ(a.robots[r].start->position, b.robots[r].start->position);
-    EXPECT_EQ(a.robots[r].start->yaw, b.robots[r].start->yaw);
+  const auto& [name, world, world_seed, box, resolution, seed, latency, lockstep, method, end_coverage,
+               end_time, team, robots, options] = a;
+  EXPECT_EQ(name, b.name);
+  EXPECT_EQ(world, b.world);
+  EXPECT_EQ(world_seed, b.world_seed);
+  ASSERT_EQ(box.has_value(), b.box.has_value());
+  if (box) {
+    EXPECT_EQ(box->min(), b.box->min());
+    EXPECT_EQ(box->max(), b.box->max());
+  }
+  EXPECT_EQ(resolution, b.resolution);
+  EXPECT_EQ(seed, b.seed);
+  EXPECT_EQ(latency, b.latency);
+  EXPECT_EQ(lockstep, b.lockstep);
+  EXPECT_EQ(method, b.method);
+  EXPECT_EQ(end_coverage, b.end_coverage);
+  EXPECT_EQ(end_time, b.end_time);
+  EXPECT_EQ(team, b.team);
+  EXPECT_EQ(options, b.options);
+  ASSERT_EQ(robots.size(), b.robots.size());
+  for (std::size_t r = 0; r < robots.size(); ++r) {
+    const auto& [description, start] = robots[r];
+    EXPECT_EQ(test::listed(description), test::listed(b.robots[r].description));
+    ASSERT_EQ(start.has_value(), b.robots[r].start.has_value());
+    if (!start) continue;
+    EXPECT_EQ(start->position, b.robots[r].start->position);
+    EXPECT_EQ(start->yaw, b.robots[r].start->yaw);
   }
 }
 
@@ -102,22 +120,40 @@ TEST_F(TaskFile, TakesRobotsFromFiles) {
 }
 
 TEST_F(TaskFile, IsReadAsItWasWritten) {
-  const Task task = read(kGood);
+  Task task;
+  task.name = "a \"name\" ";
+  task.world = "maze";
+  task.world_seed = 3;
+  task.box = Eigen::AlignedBox3d(Eigen::Vector3d(-1.5, -2.0, 1e-3), Eigen::Vector3d(1.0 / 3.0, 7.0, 2.5));
+  task.resolution = 0.17;
+  task.seed = 18446744073709551615ULL;
+  task.latency = 0.25;
+  task.lockstep = true;
+  task.method = TaskMethod{};
+  task.end_coverage = 0.99;
+  task.end_time = 1200.5;
+  task.team = "2uav";
+  task.options = {{"bumper", "off"}, {"noise", "0.02"}};
   expect_equal(read(task_text(task)), task);
-  Task built_in;
-  built_in.name = "a \"name\" ";
-  built_in.world = "maze";
-  built_in.world_seed = 3;
-  built_in.method = TaskMethod{};
+  task.method = TaskMethod{planner::GoalSearch::kNearest};
+  task.lockstep = false;
+  expect_equal(read(task_text(task)), task);
+
+  task.team.reset();
+  task.box.reset();
   for (const auto& description : {planner::ugv_description(), planner::uav_description(),
                                   planner::uav_description(planner::Method::kPaper)})
-    built_in.robots.push_back({description, planner::Pose{{0.1, 1.0 / 3.0, -7e-9}, -1.2345}});
-  built_in.robots[0].description.robot.limits.yaw_rate = 0.7;
-  expect_equal(read(task_text(built_in)), built_in);
-  Task robots;
-  robots.robots = robots_of(robots_text(built_in.robots));
-  Task same;
-  same.robots = built_in.robots;
+    task.robots.push_back({description, planner::Pose{{0.1, 1.0 / 3.0, -7e-9}, -1.2345}});
+  task.robots.push_back({read(kGood).robots[0].description, std::nullopt});
+  planner::RobotDescription& ugv = task.robots[0].description;
+  ugv.rate = 7.5;
+  ugv.robot.limits = {0.5, 0.3, 0.7, true};
+  ugv.robot.travel.margin = 0.07;
+  ugv.robot.travel.require_ground = false;
+  expect_equal(read(task_text(task)), task);
+  Task robots, same;
+  robots.robots = robots_of(robots_text(task.robots));
+  same.robots = task.robots;
   expect_equal(robots, same);
 }
 

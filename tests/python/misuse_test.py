@@ -173,12 +173,15 @@ def first_explorations():
     return [*objects, lockstep]
 
 
-def run(misuse, end):
-    while time.monotonic() < end:
-        try:
-            misuse.step()
-        except EXPECTED:
-            pass
+def run(misuse, end, failures):
+    try:
+        while time.monotonic() < end:
+            try:
+                misuse.step()
+            except EXPECTED:
+                pass
+    except Exception as failure:  # which a thread would only print
+        failures.append(failure)
 
 
 def main():
@@ -187,12 +190,15 @@ def main():
     objects = first_objects()
     users = [Misuse(SEED + i, objects) for i in range(3)]  # threads that share their objects
     end = time.monotonic() + SECONDS
-    threads = [threading.Thread(target=run, args=(user, end)) for user in users[1:]]
+    failures = []
+    threads = [threading.Thread(target=run, args=(user, end, failures)) for user in users[1:]]
     for thread in threads:
         thread.start()
-    run(users[0], end)
+    run(users[0], end, failures)
     for thread in threads:
         thread.join()
+    if failures:
+        raise failures[0]
     calls, answered = sum(user.calls for user in users), sum((user.answers for user in users), collections.Counter())
     answers = answered.total()
     print(f"{calls} calls, {answers} of them with an answer and no exception")

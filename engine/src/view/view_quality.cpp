@@ -94,9 +94,10 @@ void ViewQualityOptions::check() const {
                                 ", " + reason);
   };
   if (renderer > Renderer::kExact) refuse("renderer", renderer, "which is none of the values of Renderer");
-  if (samples < 1) refuse("samples", samples, "but has to be at least 1");
   if (azimuth_bins < 0 || azimuth_bins > kMaxAzimuthBins)
     refuse("azimuth_bins", azimuth_bins, "but has to lie between 0 and " + std::to_string(kMaxAzimuthBins));
+  if (renderer == Renderer::kExact) return;  // it ignores the rest
+  if (samples < 1) refuse("samples", samples, "but has to be at least 1");
   if (sampling > Sampling::kBuckets) refuse("sampling", sampling, "which is none of the values of Sampling");
   if (estimator > Estimator::kPaper)
     refuse("estimator", estimator, "which is none of the values of Estimator");

@@ -184,11 +184,23 @@ TEST(WideMap, ThatGrowsGoesFromOneTableToSectorsAndToNone) {
   const MapTables high(grid, wide);
   ASSERT_NE(high.whole(), nullptr);
   EXPECT_TRUE(high.whole()->empty());
-  // What is forgotten does not make it higher.
-  VoxelGrid low = grid;
-  low.fill({{0, 0, 0}, 15}, Occupancy::kFree);
-  low.fill({{0, 0, 0}, 15}, Occupancy::kUnknown);
-  EXPECT_EQ(MapTables(low, wide).whole() == nullptr, MapTables(grid, wide).whole() == nullptr);
+}
+
+// A change may be told as a block that is far larger and higher than what was known in it.
+TEST(WideMap, IsNoHigherForWhatIsForgotten) {
+  VoxelGrid grid(0.2);
+  const VoxelKey here = make_key(kGround, kGround, kGround),
+                 lone = make_key(kGround + 9000, kGround, kGround);
+  for (const VoxelKey& key : {here, lone, make_key(kGround, kGround + 9000, kGround)})
+    grid.set(key, Occupancy::kFree);
+  const MapTables wide(grid, UnknownPolicy::kPass);
+  ASSERT_EQ(wide.whole(), nullptr);
+  const std::uint32_t sector = wide.sector_of(here);
+  EXPECT_TRUE(wide.is_worth_a_table(sector, 100'000));
+  grid.set(lone, Occupancy::kUnknown);
+  const MapTables later(grid, wide);
+  ASSERT_EQ(later.whole(), nullptr);
+  EXPECT_TRUE(later.is_worth_a_table(sector, 1)) << "it is still known to be asked often";
 }
 
 }  // namespace

@@ -42,37 +42,43 @@ InstructionSet expected() {
 // In a process of its own, since the variable is read once. GoogleTest runs suites named so before all
 // others, so that it has not been read yet; a forked process is one that an emulator of another processor can
 // make as well.
+constexpr int kRefused = 3;  // exit code
 void with_variable(const char* value) {
   setenv("FRONTLUX_ISA", value, 1);
   try {
     std::cerr << frontlux::instruction_set_name();
   } catch (const std::runtime_error& error) {
     std::cerr << error.what();
+    std::exit(kRefused);
   }
   std::exit(0);
 }
 
 class InstructionSetDeathTest : public testing::Test {
  protected:
-  static void expect(const char* variable, const std::string& output) {
-    EXPECT_EXIT(with_variable(variable), testing::ExitedWithCode(0), output) << variable;
+  static void expect(const char* variable, InstructionSet set) {
+    EXPECT_EXIT(with_variable(variable), testing::ExitedWithCode(0), std::string("^") + name_of(set) + "$")
+        << variable;
+  }
+  static void expect_refused(const char* variable, const std::string& complaint) {
+    EXPECT_EXIT(with_variable(variable), testing::ExitedWithCode(kRefused), "^" + complaint) << variable;
   }
 };
 
-TEST_F(InstructionSetDeathTest, IsTheWidestThatTheProcessorHas) { expect("", name_of(expected())); }
+TEST_F(InstructionSetDeathTest, IsTheWidestThatTheProcessorHas) { expect("", expected()); }
 
 TEST_F(InstructionSetDeathTest, IsWhatTheVariableAsksFor) {
   for (int set = static_cast<int>(expected()); set <= static_cast<int>(InstructionSet::kNone); ++set) {
-    const char* name = name_of(static_cast<InstructionSet>(set));
-    expect(name, std::string("^") + name + "$");
+    const auto asked = static_cast<InstructionSet>(set);
+    expect(name_of(asked), asked);
   }
 }
 
 TEST_F(InstructionSetDeathTest, RefusesWhatIsNotThere) {
-  expect("sse9", "FRONTLUX_ISA is 'sse9', but has to be avx512, avx2, vector or none");
-  expect("AVX2", "FRONTLUX_ISA is 'AVX2', but has to be avx512, avx2, vector or none");
+  expect_refused("sse9", "FRONTLUX_ISA is 'sse9', but has to be avx512, avx2, vector or none");
+  expect_refused("AVX2", "FRONTLUX_ISA is 'AVX2', but has to be avx512, avx2, vector or none");
   if (expected() != InstructionSet::kAvx512)
-    expect("avx512", "FRONTLUX_ISA is 'avx512', but the widest this machine and build have is");
+    expect_refused("avx512", "FRONTLUX_ISA is 'avx512', but the widest this machine and build have is");
 }
 
 TEST_F(InstructionSetDeathTest, AVariableThatIsWrongIsToldWhenACasterIsMade) {
@@ -81,13 +87,13 @@ TEST_F(InstructionSetDeathTest, AVariableThatIsWrongIsToldWhenACasterIsMade) {
     try {
       (void)factory(VoxelGrid(0.1));
     } catch (const std::runtime_error&) {
-      std::exit(3);
+      std::exit(kRefused);
     }
     std::exit(0);
   };
-  EXPECT_EXIT(make([](const VoxelGrid& grid) { return make_ray_caster(grid); }), testing::ExitedWithCode(3),
-              "");
-  EXPECT_EXIT(make(make_embree_ray_caster), testing::ExitedWithCode(3), "");
+  EXPECT_EXIT(make([](const VoxelGrid& grid) { return make_ray_caster(grid); }),
+              testing::ExitedWithCode(kRefused), "");
+  EXPECT_EXIT(make(make_embree_ray_caster), testing::ExitedWithCode(kRefused), "");
 }
 
 // A build that lost its vector code would still answer, and only be slow.

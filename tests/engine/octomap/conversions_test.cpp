@@ -6,6 +6,8 @@
 
 #include <frontlux/caster_kind.hpp>
 
+#include <typeinfo>
+
 namespace frontlux::test {
 namespace {
 
@@ -41,6 +43,29 @@ TEST(OctomapConversions, ACloudHoldsTheCentresThatCastRayReturns) {
   EXPECT_GT(cloud.size(), 10U);
   EXPECT_LT(cloud.size(), rays.size());
   EXPECT_TRUE(std::ranges::equal(cloud, expected));
+}
+
+// They answer alike: only their types tell them apart.
+TEST(CastersOfAnOctree, AreOfTheKindThatIsAskedFor) {
+  const Octree file = read_octree(FRONTLUX_DATA_DIR "/maps/room_0.2m.ot");
+  const octomap::OcTree& tree = *std::get<0>(file);
+  const VoxelGrid grid = make_voxel_grid(tree);
+  std::map<CasterKind, std::unique_ptr<RayCaster>> expected;
+  expected[CasterKind::kFast] = make_ray_caster(grid);
+  expected[CasterKind::kEmbree] = make_embree_ray_caster(grid);
+  expected[CasterKind::kGrid] = make_grid_ray_caster(grid);
+  expected[CasterKind::kOctomap] = make_octomap_ray_caster(tree);
+  std::set<std::string> types;
+  for (const auto& [name, kind] : kCasterNames) {
+    const RayCaster& caster = *expected.at(kind);
+    types.insert(typeid(caster).name());
+    for (const auto& made : {make_ray_caster(kind, grid, tree), make_ray_caster(kind, grid, file)}) {
+      const RayCaster& now = *made;
+      EXPECT_EQ(typeid(now), typeid(caster)) << name;
+      EXPECT_EQ(now.grid().has_value(), kind != CasterKind::kOctomap) << name;
+    }
+  }
+  EXPECT_EQ(types.size(), kCasterNames.size());
 }
 
 TEST(CastersOfAnOctree, AnswerAsThoseOfItsTree) {

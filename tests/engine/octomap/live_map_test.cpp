@@ -4,6 +4,7 @@
 #include "support/maps.hpp"
 #include "support/plain_frontiers.hpp"
 #include "support/random.hpp"
+#include "support/tree_state.hpp"
 #include "support/views.hpp"
 #include "support/voxel_keys.hpp"
 
@@ -99,6 +100,23 @@ TEST(LiveMap, TellsOfAChangeAfterAnUpdateThatFailed) {
   EXPECT_THROW(map.update(), std::invalid_argument);
   tree.setResolution(0.1);
   EXPECT_EQ(map.update().keys.size(), 1U);
+  EXPECT_TRUE(map.update().keys.empty());
+}
+
+TEST(LiveMap, IsUpToDateAfterAChangeThatIsTooMuchToTell) {
+  octomap::OcTree tree(0.1);
+  LiveMap map(tree);
+  std::stringstream lone_root(full_record(1.0F, 0));
+  tree.readData(lone_root);
+  EXPECT_THROW(map.rebuild(), std::length_error);
+  EXPECT_TRUE(map.grid() == make_voxel_grid(tree));
+  EXPECT_EQ(map.grid().at({}), Occupancy::kOccupied);
+  EXPECT_TRUE(map.caster().grid() == map.grid());
+  EXPECT_TRUE(map.caster().cast({{1, 2, 3}, {1, 0, 0}}, UnknownPolicy::kPass).occupied());
+  const VoxelKey freed{1, 2, 3};
+  tree.setNodeValue(tree_key(freed), -2.0F);
+  EXPECT_TRUE(std::ranges::equal(map.rebuild().keys, std::array{freed}));
+  EXPECT_EQ(map.caster().grid()->at(freed), Occupancy::kFree);
   EXPECT_TRUE(map.update().keys.empty());
 }
 

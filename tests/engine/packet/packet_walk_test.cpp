@@ -195,6 +195,19 @@ TEST(OpenVoxels, FollowAMapThatChangesAndGrows) {
       }
 }
 
+TEST(OpenVoxels, HaveRoomForWhatIsForgotten) {
+  VoxelGrid grid = corner_grid(0, 5);
+  const VoxelKey lone{80, 20, 20};  // alone in its cube of 64 voxels
+  grid.set(lone, Occupancy::kFree);
+  for (const UnknownPolicy unknown : kPolicies) {
+    OpenVoxels table = table_of(grid, unknown, kAllVoxels);
+    VoxelGrid after = grid;
+    after.set(lone, Occupancy::kUnknown);
+    EXPECT_TRUE(table.update(grid, after));
+    EXPECT_EQ(table.open(table.layout().index(lone)), !detail::blocks(Occupancy::kUnknown, unknown));
+  }
+}
+
 TEST(OpenVoxels, StayEmptyWhereThereIsNothingOrFarTooMuch) {
   VoxelGrid grid(0.1);
   EXPECT_TRUE(table_of(grid, UnknownPolicy::kBlock, kAllVoxels).empty());

@@ -228,15 +228,17 @@ TEST(ExactViewQuality, IsWhatRaysToAllTargetsSay) {
     for (const auto& caster : {make_grid_ray_caster(some.grid), make_ray_caster(some.grid)}) {
       ViewQualityOptions options = exact(36);
       // What is drawn, and how, means nothing.
-      options.samples = 3;
+      options.samples = 0;
       options.sampling = Sampling::kBuckets;
+      options.estimator = ViewQualityOptions::Estimator::kPaper;
       const auto render = [&] {
         return render_view_quality(*caster, some.grid.lattice(), some.viewpoints, some.targets, some.view,
                                    options);
       };
       const auto image = render();
-      EXPECT_EQ(image.options().samples, 3);
+      EXPECT_EQ(image.options().samples, 0);
       options.renderer = Renderer::kRays;
+      options.estimator = ViewQualityOptions::Estimator::kUnbiased;
       options.sampling = Sampling::kFeasible;
       options.samples = ViewQualityOptions::kAll;
       expect_equal(image, render());
@@ -398,7 +400,18 @@ TEST(ExactViewQuality, FallsBackOnRaysWhereTheTrieWouldBeTooLarge) {
   grid.fill({{32768, 32768, 32768}, 6}, Occupancy::kFree);
   const std::vector<VoxelKey> viewpoints{{32770, 32770, 32770}, {32772, 32770, 32770}};
   const std::vector<VoxelKey> targets{{32800, 32810, 32780}, {32780, 32767, 32770}};
-  const Case some{"far", grid, {Shape::kSpinning, 0, 100 * kDegree, 900 * kResolution}, viewpoints, targets};
+  const Case some{"far", grid, {Shape::kSpinning, 0, 100 * kDegree, 80 * kResolution}, viewpoints, targets};
+  const ViewRegion region(some.view, kResolution);
+  EXPECT_FALSE(detail::RayTrie::make(region, 6, 1, 1));
+  // Even if a walk over a trie paid for each viewpoint.
+  const detail::TargetIndex index(targets);
+  detail::RayTries tries;
+  std::vector<ViewQuality> values(viewpoints.size());
+  std::vector<std::uint32_t> bin_hits(6 * viewpoints.size());
+  const auto left =
+      detail::render_exactly({grid, region, index, detail::trie_walks().front(), tries, 6, {1, 1, 128, 1}},
+                             all_stale(viewpoints), values, bin_hits);
+  EXPECT_EQ(left.size(), viewpoints.size());
   const auto caster = make_grid_ray_caster(grid);
   const auto image = render_view_quality(*caster, grid.lattice(), viewpoints, targets, some.view, exact(6));
   expect_equal(image, brute_force(some, 6));

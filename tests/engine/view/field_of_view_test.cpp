@@ -51,13 +51,32 @@ TEST(FieldOfView, SensorItselfAndBrokenNumbersAreOutOfView) {
 }
 
 TEST(FieldOfView, ChecksItsValues) {
-  EXPECT_NO_THROW(lidar().check());
-  EXPECT_NO_THROW(sonar().check());
-  FieldOfView flat = camera(), blind = camera(), broken = lidar();
-  flat.horizontal = std::numbers::pi;
-  blind.max_range = 0;
-  broken.vertical = std::nan("");
-  for (const FieldOfView& view : {flat, blind, broken}) EXPECT_REFUSED(view.check());
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  struct Member {
+    double FieldOfView::*value;
+    std::string name;
+    std::vector<double> bad;
+    std::set<FieldOfView::Shape> unused;
+  };
+  using Shape = FieldOfView::Shape;
+  const std::vector<double> no_angle = {nan, -infinity, -0.1, 0.0, std::numbers::pi, 4.0, infinity};
+  const Member members[] = {{&FieldOfView::horizontal, "horizontal", no_angle, {Shape::kSpinning}},
+                            {&FieldOfView::vertical, "vertical", no_angle, {Shape::kCone}},
+                            {&FieldOfView::max_range, "max_range", {nan, -1.0, 0.0, infinity}, {}}};
+  for (const FieldOfView& view : {lidar(), camera(), sonar()}) {
+    EXPECT_NO_THROW(view.check());
+    for (const Member& member : members)
+      for (const double bad : member.bad) {
+        SCOPED_TRACE(testing::Message() << member.name << ' ' << bad);
+        FieldOfView wrong = view;
+        wrong.*member.value = bad;
+        if (member.unused.contains(view.shape)) {
+          EXPECT_NO_THROW(wrong.check());
+        } else {
+          expect_complaint([&] { wrong.check(); }, {member.name + ' ', "is " + std::to_string(bad)});
+        }
+      }
+  }
 }
 
 }  // namespace

@@ -18,6 +18,10 @@ TEST(SensorDirections, OfALidarAreBeamsByAzimuths) {
   EXPECT_LT((directions[8 + 2] - Eigen::Vector3d(0.0, 1.0, 0.0)).norm(), 1e-12);  // a quarter left
   EXPECT_NEAR(std::asin(directions[3].z()), 0.3, 1e-12);                          // the top row
   EXPECT_NEAR(std::asin(directions[16 + 3].z()), -0.3, 1e-12);
+  const auto level = sensor_directions(view, 4, 1);
+  ASSERT_EQ(level.size(), 4U);
+  EXPECT_LT((level[0] - Eigen::Vector3d(1.0, 0.0, 0.0)).norm(), 1e-12);
+  EXPECT_LT((level[3] - Eigen::Vector3d(0.0, -1.0, 0.0)).norm(), 1e-12);
 }
 
 TEST(PinholeDirections, GoThroughTheCentresOfPixels) {

@@ -310,6 +310,21 @@ TEST(ViewQuality, RefusesACasterOfOtherVoxels) {
   EXPECT_EQ(image.size(), 0U);
 }
 
+TEST(ViewQualityImage, OfEqualViewpointsTheFirstIsTheBest) {
+  VoxelGrid grid(0.3);
+  fill(grid, {key_at(0, 0, 0), key_at(8, 0, 0)}, Occupancy::kFree);
+  const auto best = [&](const std::vector<VoxelKey>& viewpoints) {
+    return render_view_quality(*make_grid_ray_caster(grid), grid.lattice(), viewpoints, {{key_at(4, 0, 0)}},
+                               lidar())
+        .best();
+  };
+  const VoxelKey left = key_at(1, 0, 0), right = key_at(7, 0, 0), hidden = key_at(4, 5, 0);
+  EXPECT_EQ(best({left, right}), 0U);
+  EXPECT_EQ(best({right, left}), 0U);
+  EXPECT_EQ(best({hidden, right, left}), 1U);
+  EXPECT_EQ(best({hidden, key_at(4, -5, 0)}), 0U);
+}
+
 // Edits of all kinds, reported as the voxels that changed or also some that did not; each time the image has
 // to be what rendering makes.
 TEST(ViewQualityImage, AfterUpdatesEqualsRenderingAgain) {

@@ -188,6 +188,15 @@ TEST(VoxelGrid, RejectsStatesThatThereAreNot) {
   EXPECT_TRUE(grid == VoxelGrid(0.1));
 }
 
+TEST(VoxelGrid, ListsNoMoreVoxelsThanItMay) {
+  VoxelGrid grid(0.1);
+  EXPECT_REFUSED(keys_in(grid, Occupancy::kUnknown));
+  grid.fill({{}, 16}, Occupancy::kFree);
+  EXPECT_REFUSED(keys_in(grid, Occupancy::kUnknown));
+  EXPECT_THROW(static_cast<void>(keys_in(grid, Occupancy::kFree)), std::length_error);
+  EXPECT_TRUE(keys_in(grid, Occupancy::kOccupied).empty());
+}
+
 TEST(VoxelGrid, OfAnotherResolutionIsNotCompared) {
   EXPECT_FALSE(VoxelGrid(0.1) == VoxelGrid(0.2));
   EXPECT_REFUSED(changed_keys(VoxelGrid(0.1), VoxelGrid(0.2)));

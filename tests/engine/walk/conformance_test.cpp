@@ -2,6 +2,7 @@
 // map; FRONTLUX_LONG=1 takes three million rays on each, the generated buildings and FRONTLUX_EXTRA_MAPS
 // included.
 
+#include "engine/embree/slab_oracle.hpp"
 #include "rays/exact_visibility.hpp"
 #include "support/casters.hpp"
 #include "support/maps.hpp"
@@ -94,6 +95,31 @@ struct Subject {
   OctreeRayCaster drop_in;
 };
 
+// castRay tells neither entry nor distance: they are those of the ray and the voxel in which it ended. Since
+// castRay counts in float, the voxel may be a little larger or smaller.
+std::string fault_of_entry(const Lattice& lattice, const Ray& ray, const Hit& hit) {
+  if (hit.stop == RayStop::kInvalid || !ray.direction.allFinite()) return "";
+  using Exact = Eigen::Vector3<long double>;
+  const auto exact = [](const Eigen::Vector3f& v) -> Exact { return v.cast<long double>(); };
+  const Eigen::Vector3f &o = ray.origin, &d = ray.direction, middle = lattice.center(hit.key);
+  const auto edge = static_cast<float>(lattice.resolution());
+  const float center[] = {middle.x(), middle.y(), middle.z()}, half[] = {edge / 2, edge / 2, edge / 2},
+              origin[] = {o.x(), o.y(), o.z()}, direction[] = {d.x(), d.y(), d.z()};
+  const long double length = exact(d).norm(), distance = hit.distance,
+                    leeway = 1e-6L * std::max({1.0L, distance, exact(o).cwiseAbs().maxCoeff()});  // [m]
+  const auto entry = [&](long double larger) {
+    return entry_time(center, half, larger, origin, direction, 0.0F, std::numeric_limits<float>::infinity());
+  };
+  const auto soonest = entry(leeway), latest = entry(-leeway);
+  if (!soonest) return "\n  no entry";
+  const bool is_between =
+      distance >= *soonest * length - leeway && (!latest || distance <= *latest * length + leeway);
+  const Exact beside = exact(hit.entry) - exact(o) - distance * exact(d).normalized();
+  if (is_between && beside.cwiseAbs().maxCoeff() <= leeway) return "";
+  return "\n  entry " + words_of(hit.entry) + " after " + std::to_string(hit.distance) +
+         " m, but it is after " + std::to_string(*soonest * length) + " m";
+}
+
 // castRay's bool and `end` by the drop-in and by every caster. The casters also agree on what castRay does
 // not return.
 void expect_casts_conform(const Subject& subject, std::span<const Ray> rays, UnknownPolicy unknown,
@@ -122,6 +148,7 @@ void expect_casts_conform(const Subject& subject, std::span<const Ray> rays, Unk
               "\n  the drop-in " + std::to_string(drop_in_hit) + " at " + words_of(vector_of(drop_in_end));
         for (std::size_t c = 0; c < all.size(); ++c)
           if (!same(walked, hits[c][i])) fault += "\n  " + all[c].first + " " + words_of(hits[c][i]);
+        fault += fault_of_entry(subject.casters.grid.lattice(), rays[i], walked);
         return fault.empty() ? fault : "\n  grid " + words_of(walked) + fault;
       },
       [&](std::size_t i) { return subject.map.name + ": " + words_of(rays[i], unknown); });

@@ -315,33 +315,55 @@ TEST(RayCaster, IsWholeThoughTheCallersGroupIsCancelled) {
   }
 }
 
-// Readers see the map before or after an update, whole, and never wait for it.
+// Readers see the map before or after an update, whole, and never wait for it: where an update makes more
+// than a copy of the grid, batches begin and end while it goes on.
 TEST(RayCaster, QueriesGoOnDuringUpdates) {
   VoxelGrid open(0.1), closed(0.1);
-  open.fill({{32768, 32768, 32768}, 6}, Occupancy::kFree);
+  open.fill({{32768, 32768, 32768}, 8}, Occupancy::kFree);
   closed = open;
-  fill(closed, {{32800, 32768, 32768}, {32800, 32831, 32831}}, Occupancy::kOccupied);
+  // One wall would do; with two, updates take longer than a single core leaves to one thread.
+  for (const int x : {32800, 33000})
+    fill(closed, {make_key(x, 32768, 32768), make_key(x, 33023, 33023)}, Occupancy::kOccupied);
   std::vector<KeySegment> across;
   for (int y = 1; y < 63; ++y) across.push_back({key_at(2, y, 12), key_at(62, y, 22)});
   for (const auto& caster : casters_of(open)) {
     std::atomic<bool> done{false};
-    std::atomic<int> mixed{0}, batches{0};
+    std::atomic<int> moment{0};  // odd during an update
+    std::atomic<int> batches{0}, opens{0}, closes{0}, mixed{0}, during{0};
     std::vector<std::thread> readers;
     for (int i = 0; i < 2; ++i)
       readers.emplace_back([&] {
         std::vector<std::uint8_t> visible(across.size());
         while (!done) {
+          const int before = moment;
           caster->visible(across, visible, UnknownPolicy::kBlock);
-          if (std::adjacent_find(visible.begin(), visible.end(), std::not_equal_to<>()) != visible.end())
-            ++mixed;
+          const bool went_on = before == moment;
+          const auto seen = std::ranges::count(visible, 1);
+          ++(seen == 0 ? closes : seen == std::ssize(visible) ? opens : mixed);
+          // It has seen the map from before the update, so it has not waited for the next one.
+          const bool was_open = before % 4 == 1;
+          during += before % 2 == 1 && went_on && (seen > 0) == was_open ? 1 : 0;
           ++batches;
         }
       });
-    for (int i = 0; i < 60; ++i) caster->update(i % 2 == 0 ? closed : open);
-    while (batches < 10) std::this_thread::yield();
+    const bool takes_long = caster->memory_bytes() > 0;
+    constexpr int kMost = 50, kEnough = 5;
+    int overlapped = 0;  // by batches
+    for (int i = 0; i < kMost && (i < 2 * kEnough || (takes_long && overlapped < kEnough)); ++i) {
+      const int before = during;
+      ++moment;
+      caster->update(i % 2 == 0 ? closed : open);
+      ++moment;
+      overlapped += during > before ? 1 : 0;
+      // The last of so many began after the update.
+      for (const int until = batches + 3; batches < until;) std::this_thread::yield();
+    }
     done = true;
     for (auto& reader : readers) reader.join();
     EXPECT_EQ(mixed, 0);
+    EXPECT_GE(opens, kEnough);
+    EXPECT_GE(closes, kEnough);
+    EXPECT_TRUE(!takes_long || overlapped >= kEnough) << overlapped;
   }
 }
 

@@ -249,7 +249,6 @@ TEST(TravelCorridor, EqualsANewCorridorAfterEveryChange) {
   }
 }
 
-// Near by the same as with all cells, as far as the paths do not lead away and back; far away by a search.
 // Who follows the map looks at so many cells around what has changed.
 TEST(TravelCorridor, NoVoxelDecidesBeyondItsReach) {
   for (const Robot& robot : robots()) {
@@ -280,7 +279,8 @@ TEST(TravelCorridor, NoVoxelDecidesBeyondItsReach) {
   }
 }
 
-TEST(TravelCorridor, KnowsTheSameNearByAndSearchesFarWays) {
+// Near by the same as with all cells, as far as the paths do not lead away and back.
+TEST(TravelCorridor, KnowsTheSameNearBy) {
   std::size_t near = 0, none = 0;
   for (const Robot& robot : robots()) {
     Random random(9);

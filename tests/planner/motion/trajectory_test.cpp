@@ -1,48 +1,18 @@
-#include "support/test.hpp"
+#include "planner/motion/within_limits.hpp"
 
 #include <frontlux/planner/trajectory.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 namespace frontlux::planner {
 namespace {
 
-constexpr double kStep = 0.01;       // [s]
-constexpr double kTolerance = 1e-3;  // of a limit
+using test::expect_within;
+
+constexpr double kStep = 0.01;  // [s]
 
 const SegmentTest kAllFree = [](const auto&, const auto&, const auto&) { return true; };
 const SegmentTest kNothingFree = [](const auto&, const auto&, const auto&) { return false; };
-
-double norm(const Eigen::Vector3d& v, const MotionLimits& limits) {
-  return limits.per_axis ? v.cwiseAbs().maxCoeff() : v.norm();
-}
-
-// How far above its limits a robot gets, by differences between samples: from its positions alone.
-void expect_within(const Trajectory& trajectory, const MotionLimits& limits) {
-  const auto at = [&](double time) { return trajectory.at(time).pose; };
-  const auto steps = static_cast<int>(std::ceil((trajectory.end() - trajectory.begin()) / kStep)) + 2;
-  double speed = 0.0, acceleration = 0.0, yaw_rate = 0.0;
-  for (int i = 1; i < steps; ++i) {
-    const double time = trajectory.begin() + i * kStep;
-    const Pose before = at(time - kStep), now = at(time), after = at(time + kStep);
-    speed = std::max(speed, norm((now.position - before.position) / kStep, limits));
-    acceleration = std::max(
-        acceleration, norm((after.position - 2 * now.position + before.position) / (kStep * kStep), limits));
-    yaw_rate =
-        std::max(yaw_rate, std::abs(std::remainder(now.yaw - before.yaw, 2 * std::numbers::pi)) / kStep);
-  }
-  EXPECT_LE(speed, limits.speed * (1 + kTolerance));
-  EXPECT_LE(acceleration, limits.acceleration * (1 + kTolerance));
-  EXPECT_LE(yaw_rate, limits.yaw_rate * (1 + kTolerance));
-}
 
 class Random {
  public:
@@ -197,8 +167,39 @@ TEST(Trajectory, IsNoneForARobotThatIsTooFast) {
   EXPECT_TRUE(Trajectory::through({way.front(), {1, 0, 0}}, 0.0, way, {2.0, 3.0, 1.0}, kAllFree));
 }
 
+// Its places lie on the curve of another, in its order.
+void expect_on_curve(const Trajectory& trajectory, const Trajectory& curve) {
+  double low = trajectory.begin();
+  for (double time = low; time < trajectory.end() + kStep; time += kStep) {
+    const Eigen::Vector3d place = trajectory.at(time).pose.position;
+    // The curve's time at the place, which lies ahead of the one before.
+    double high = low + 2 * kStep;
+    for (int i = 0; i < 30; ++i) {
+      const double middle = (low + high) / 2;
+      const MotionState there = curve.at(middle);
+      (there.velocity.dot(place - there.pose.position) > 0.0 ? low : high) = middle;
+    }
+    ASSERT_LT((curve.at(low).pose.position - place).norm(), 1e-6) << "at " << time;
+  }
+}
+
+TEST(Trajectory, BrakesAsHardAsItMay) {
+  const std::vector<Pose> path = {{{0, 0, 0}, 0.0}, {{10, 0, 0}, 0.0}};
+  const MotionLimits limits{2.0, 3.0, 1.0};
+  const auto old = Trajectory::through({path.front()}, 0.0, path, limits, kAllFree);
+  ASSERT_TRUE(old);
+  constexpr double kTime = 2.5, kBraking = 2.0 / 3.0, kDistance = 2.0 * 2.0 / (2 * 3.0);  // [s], [s], [m]
+  ASSERT_NEAR(old->at(kTime).velocity.x(), limits.speed, 1e-9);
+  const Trajectory stop = old->after_stop(kTime, {}, limits, kAllFree);
+  EXPECT_NEAR(stop.end(), kTime + kBraking, 0.005);
+  EXPECT_NEAR(stop.length(), kDistance, 0.005);
+  EXPECT_NEAR(old->stop(kTime, limits).position.x(), old->at(kTime).pose.position.x() + kDistance, 0.005);
+  expect_within(stop, limits);
+}
+
 TEST(Trajectory, GoesOnFromAnotherWithoutAJump) {
   Random random(2);
+  int sooner = 0;
   for (int i = 0; i < 200; ++i) {
     SCOPED_TRACE(i);
     const MotionLimits limits = random.limits();
@@ -214,11 +215,17 @@ TEST(Trajectory, GoesOnFromAnotherWithoutAJump) {
     EXPECT_LT((trajectory.at(time).velocity - old->at(time).velocity).norm(), 1e-6 * limits.speed);
     expect_within(trajectory, limits);
     EXPECT_LT((trajectory.at(trajectory.end()).pose.position - next.back().position).norm(), 1e-9);
-    // It brakes at once: not after the old one's end, and on its path.
+    // It brakes at once: not after the old one's end, and on its curve.
     const Trajectory stop = old->after_stop(time, {}, limits, kAllFree);
     EXPECT_LE(stop.end(), std::max(time, old->end()) + 1e-9);
     EXPECT_LE(stop.length(), old->length());
+    expect_on_curve(stop, *old);
+    expect_within(stop, limits);
+    const Eigen::Vector3d rest = old->stop(time, limits).position;
+    EXPECT_LT((rest - stop.end_pose().position).norm(), 1e-9);
+    sooner += stop.end() < old->end() - 0.1 ? 1 : 0;
   }
+  EXPECT_GT(sooner, 50);
 }
 
 TEST(Trajectory, StopAndGoTakesTheTimeOfEachPart) {

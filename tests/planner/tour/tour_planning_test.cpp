@@ -157,6 +157,25 @@ TEST(TourPlanning, WithoutZonesFarClustersAreStopsOfTheirOwn) {
 }
 
 TEST(TourPlanning, WithoutRefinementEachStopIsTheFirstOfItsViewpoints) {
+  // Clusters that are not joined are stops where they are seen best, which is their first candidate.
+  std::map<ClusterId, std::pair<VoxelKey, double>> best;
+  for (const auto& [clusters, at] : stops_of({.joined = 0})) best.emplace(clusters.at(0), at);
+  OpenSpace space({.joined = 0});
+  space.plan(space.corridor());
+  std::size_t others = 0;
+  double most = 0.0;  // seen of a cluster
+  for (const RenderedCell& candidate : space.planning.candidates(0)) {
+    const bool is_first = std::ranges::any_of(
+        best, [&](const auto& stop) { return stop.second == std::pair(candidate.cell, candidate.yaw); });
+    if (is_first) most = candidate.gain;
+    EXPECT_LE(candidate.gain, most);
+    others += is_first ? 0 : 1;
+  }
+  EXPECT_GT(others, best.size());
+  const auto single = stops_of({.refined = 0, .without = TourPart::kJoining});
+  EXPECT_EQ(single.size(), best.size());
+  for (const auto& [clusters, at] : single) EXPECT_EQ(at, best.at(clusters.at(0)));
+  EXPECT_NE(single, stops_of({.without = TourPart::kJoining}));
   const auto first = stops_of({.without = TourPart::kRefinement});
   EXPECT_EQ(first, stops_of({.refined = 0}));
   EXPECT_NE(first, stops_of({}));

@@ -1,5 +1,6 @@
 #include "tour/travel_graph.hpp"
 
+#include "corridor/path_search.hpp"
 #include "support/random.hpp"
 #include "support/voxel_keys.hpp"
 #include "tour/graph_distances.hpp"
@@ -259,7 +260,22 @@ TEST(TravelGraph, SpreadsCellsOverAllParts) {
   EXPECT_GT(fewer, 15U);
 }
 
-TEST(TravelGraph, FindsTheCellsAroundAWay) {
+// The nodes that have cells beside those of each node.
+std::vector<std::set<std::uint32_t>> touching_nodes(const TravelGraph& graph) {
+  std::vector<std::set<std::uint32_t>> touching(graph.size());
+  for_each_key(kBounds, [&](const VoxelKey& key) {
+    const auto node = graph.node(key);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto next = graph.node(*offset_key(key, axis == 0, axis == 1, axis == 2));
+      if (!node || !next || node == next) continue;
+      touching[*node].insert(*next);
+      touching[*next].insert(*node);
+    }
+  });
+  return touching;
+}
+
+TEST(TravelGraph, FindsTheCellsAroundAPath) {
   Random random(55);
   std::size_t fewer = 0;
   for (int round = 0; round < 30; ++round) {
@@ -275,17 +291,23 @@ TEST(TravelGraph, FindsTheCellsAroundAWay) {
     const auto back = graph.path_back(lengths, graph.node(goal).value());
     EXPECT_EQ(back.front(), graph.node(goal));
     EXPECT_EQ(back.back(), graph.node(robot));
+    const auto touching = touching_nodes(graph);
     for (std::size_t i = 0; i < back.size(); ++i) {
       EXPECT_TRUE(std::ranges::binary_search(nodes, back[i]));
+      EXPECT_TRUE(std::ranges::includes(nodes, touching[back[i]]));
       EXPECT_EQ(graph.node(graph.middle_cell(back[i])), back[i]);
       if (i > 0) {
         EXPECT_LT(lengths[back[i]], lengths[back[i - 1]]);
       }
     }
     fewer += nodes.size() < graph.size() ? 1 : 0;
-    EXPECT_TRUE(corridor.find_path(goal, [&](const VoxelKey& cell) {
-      return std::ranges::binary_search(nodes, graph.node(cell).value());
-    }));
+    const CellFrame frame{kBounds.min,
+                          {kBounds.max.x - kBounds.min.x + 1, kBounds.max.y - kBounds.min.y + 1,
+                           kBounds.max.z - kBounds.min.z + 1}};
+    const auto path = shortest_path(frame, PathMetric::kEuclidean, robot, goal, [&](const VoxelKey& cell) {
+      return corridor.passable(cell) && std::ranges::binary_search(nodes, graph.node(cell).value());
+    });
+    EXPECT_FALSE(path.empty());
   }
   EXPECT_GT(fewer, 15U);
 }
