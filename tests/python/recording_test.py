@@ -1,6 +1,7 @@
 """Recordings as arrays, against what the same run wrote as tables and as a map; and damaged ones."""
 import csv
 import dataclasses
+import json
 import os
 import pathlib
 import struct
@@ -151,6 +152,18 @@ class Recordings(unittest.TestCase):
         self.assertGreater(len(handed["keys"]), 100)
         low, high = recording.bounds
         self.assertTrue(((handed["keys"] >= low) & (handed["keys"] <= high)).all())
+
+    def test_a_robot_on_the_ground(self):
+        folder = pathlib.Path(self.folder.name) / "ground"
+        robot = pathlib.Path(self.folder.name) / "ground.json"
+        robot.write_text(json.dumps({
+            "name": "rover", "motion": "ground", "step_m": 0.3, "slope_deg": 20, "mount_height_m": 0.5,
+            "body": {"kind": "cylinder", "diameter_m": 0.6, "height_m": 0.5},
+            "sensor": {"kind": "spinning", "vertical_deg": 40, "range_m": 6, "columns": 90, "rows": 16, "rate_hz": 2}}))
+        explore(folder, "--team", "uav", "--robot", str(robot), "--max-steps", "4")
+        recording = frontlux.read_recording(folder / "run.frontlux")
+        self.assertEqual(recording.robots, ["rover", "uav"])
+        self.assertEqual(recording.grid(), frontlux.VoxelGrid.read(folder / "map.bt"))
 
     def test_damage_is_found_and_named(self):
         whole = (self.run_folder / "run.frontlux").read_bytes()

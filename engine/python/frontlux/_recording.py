@@ -192,11 +192,16 @@ class _Bytes:
         return poses, seen
 
 
+_MOTIONS = "plane", "space", "ground"
+
+
 def _read_robot(record):
     name = record.text()
-    record.count(), record.doubles(3), record.count(), record.doubles(2), record.count()
+    motion = record.count() % len(_MOTIONS)  # and the body's shape
+    record.doubles(3), record.count(), record.doubles(2), record.count()
     record.doubles(2 if record.count() else 0)
     record.count(), record.counts(6 * record.length()), record.doubles(3)
+    record.doubles(2 if _MOTIONS[motion] == "ground" else 0)  # its highest step and its steepest slope
     record.count(), record.doubles(3)  # its field of view
     record.doubles(3), record.count()  # its limits
     record.doubles(1), record.counts(2)
