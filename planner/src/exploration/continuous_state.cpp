@@ -1,13 +1,8 @@
 #include "exploration/continuous_state.hpp"
 
-#include "casting/counting_ray_caster.hpp"
-#include "exploration/frontiers_near_path.hpp"
 #include "exploration/phase_clock.hpp"
-#include "mapping/directions.hpp"
+#include "exploration/trail.hpp"
 #include "mapping/sort_once.hpp"
-#include "motion/yaw.hpp"
-
-#include <frontlux/planner/segment_voxels.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,41 +24,6 @@ constexpr double kSoonest = 0.4;  // of the period, before a robot with such a g
 constexpr double kPatience = 1.5;
 constexpr double kLongPatience = 10.0;  // without a scan from where it rests
 
-bool is_near(const Pose& pose, const Pose& other, double length, double angle) {
-  return (pose.position - other.position).norm() < length &&
-         std::abs(detail::turn(other.yaw, pose.yaw)) < angle;
-}
-
-// [m] From a place to a line, and not to what lies beyond its ends: a robot may brake and turn back.
-double off_line(const Eigen::Vector3d& place, const Eigen::Vector3d& begin, const Eigen::Vector3d& end) {
-  const Eigen::Vector3d line = end - begin, along = line.stableNormalized(), to = place - begin;
-  return (to - std::clamp(to.dot(along), 0.0, line.norm()) * along).norm();
-}
-
-constexpr double kOff = 0.03;  // [m] of a robot's places from the lines that stand for its path
-
-// Where a trajectory leads from a time on [s]: of poses close to each other, the fewest between which it is
-// about straight.
-std::vector<Pose> poses_along(const Trajectory& trajectory, double from) {
-  constexpr double kStep = 0.1, kMost = 10'000.0;  // [s], poses
-  constexpr std::size_t kMostLeftOut = 200;        // in a row: each is looked at for each that follows
-  const double begin = std::max(from, trajectory.begin()), time = std::max(0.0, trajectory.end() - begin);
-  const double steps = std::clamp(std::ceil(time / kStep), 1.0, kMost);
-  std::vector<Pose> all, some;
-  for (double i = 0.0; i <= steps; ++i) all.push_back(trajectory.at(begin + i / steps * time).pose);
-  const auto straight = [&](std::size_t a, std::size_t b) {
-    for (std::size_t i = a + 1; i < b; ++i)
-      if (off_line(all[i].position, all[a].position, all[b].position) > kOff) return false;
-    return true;
-  };
-  for (std::size_t kept = 0, i = 0; i < all.size(); ++i) {
-    if (i > 0 && i + 1 < all.size() && i - kept < kMostLeftOut && straight(kept, i + 1)) continue;
-    some.push_back(all[i]);
-    kept = i;
-  }
-  return some;
-}
-
 }  // namespace
 
 void ContinuousExploration::State::set_motion(std::size_t robot, Trajectory trajectory) {
@@ -79,25 +39,6 @@ void ContinuousExploration::State::start_next_trajectories(double time) {
     extend_trail(r, next->begin());
     set_motion(r, Trajectory(*next));
   }
-}
-
-// Whether a pose is about where a robot's trajectory ends.
-bool ContinuousExploration::State::is_at_end(const Member& member, const Pose& pose) const {
-  constexpr double kAligned = 0.1;  // [rad]
-  return is_near(pose, member.motion.last().end_pose(), team.lattice().resolution() / 2, kAligned);
-}
-
-// Whether a robot has taken a scan at its goal, or rests and takes scans all of which are from beside it. One
-// that is told that it is a little beside its trajectory's end will not get nearer; scans may be rare, or
-// late.
-bool ContinuousExploration::State::has_looked(const Member& member, double time) const {
-  constexpr double kNear = 0.01, kAligned = 0.01, kSoon = 0.5;  // [m], [rad], [s]
-  constexpr int kMostMissed = 3;
-  const Trajectory& trajectory = member.motion.last();
-  if (!member.looked) return false;
-  if (is_near(*member.last_look, trajectory.end_pose(), kNear, kAligned)) return true;
-  return member.missed_looks >= kMostMissed ||
-         (time >= trajectory.end() + kSoon && is_at_end(member, *member.last_look));
 }
 
 std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Member& member,
@@ -138,68 +79,6 @@ std::optional<PlanReason> ContinuousExploration::State::reason_to_plan(const Mem
 void ContinuousExploration::State::stay_on_plane(std::size_t robot, Pose& pose, double time) const {
   if (team.options.team[robot].robot.travel.motion == Motion::kPlane)
     pose.position.z() = members[robot].motion.at(time).pose.position.z();
-}
-
-// A robot has followed its trajectory up to a time. Scans may be lost. Places of the trail are at most about
-// a voxel apart, and the lines between them are where the robot was.
-void ContinuousExploration::State::extend_trail(std::size_t robot, double until) {
-  constexpr double kStep = 0.1;  // [s]
-  Member& member = members[robot];
-  const Trajectory& trajectory = member.motion.now;
-  std::vector<Pose>& trail = team.trails[robot];
-  const auto add = [&](const Pose& place, double apart) {
-    const auto key = team.lattice().key(place.position);
-    if (!key || !team.mapping.bounds().contains(*key)) return;
-    if (!trail.empty() && place.position == (member.passed.empty() ? trail : member.passed).back().position)
-      return;  // it rests
-    const auto is_off = [&](const Pose& passed) {
-      return off_line(passed.position, trail.back().position, place.position) > kOff;
-    };
-    if (!trail.empty() && std::ranges::any_of(member.passed, is_off)) {
-      trail.push_back(member.passed.back());
-      member.passed.clear();
-    }
-    if (trail.empty() || (place.position - trail.back().position).norm() > apart) {
-      trail.push_back(place);
-      member.passed.clear();
-    } else {
-      member.passed.push_back(place);
-    }
-  };
-  const auto next = [&] { return trajectory.begin() + kStep * static_cast<double>(member.samples); };
-  for (; next() < std::min(until, trajectory.end()); ++member.samples)
-    add(trajectory.at(next()).pose, team.lattice().resolution());
-  if (until >= trajectory.end()) add(trajectory.end_pose(), 0.0);
-}
-
-// A robot has come to rest before the end of its trajectory, some time ago perhaps: it has been nowhere
-// beyond.
-void ContinuousExploration::State::cut_trail(std::size_t robot, const Eigen::Vector3d& rests) {
-  constexpr double kLate = 10.0;  // [s] after which a stop is told at most
-  std::vector<Pose>& trail = team.trails[robot];
-  // It may have gone around a corner that the trail has not yet.
-  for (const Pose& pose : std::exchange(members[robot].passed, {})) trail.push_back(pose);
-  double rest = kLate * team.options.team[robot].robot.limits.speed;  // [m]
-  double nearest = std::numeric_limits<double>::infinity();
-  std::size_t last = trail.size();
-  for (std::size_t i = trail.size(); i-- > 0 && rest >= 0.0;) {
-    const double off = (trail[i].position - rests).norm();
-    if (off <= nearest) last = i;
-    nearest = std::min(nearest, off);
-    if (i > 0) rest -= (trail[i].position - trail[i - 1].position).norm();
-  }
-  if (last < trail.size()) trail.resize(last + 1);
-}
-
-// A robot that is farther from its trail than `tolerance` [m] goes back over it only if it can get there.
-void ContinuousExploration::State::leave_trail(std::size_t robot, double tolerance) {
-  std::vector<Pose>& trail = team.trails[robot];
-  if (trail.empty()) return;
-  const Eigen::Vector3d here = members[robot].motion.last().end_pose().position;
-  if ((trail.back().position - here).norm() <= tolerance) return;
-  const auto is_free = [&](const VoxelKey& key) { return team.mapping.grid().at(key) == Occupancy::kFree; };
-  members[robot].passed.clear();
-  if (!SegmentVoxels(team.lattice(), trail.back().position, here).all_of(is_free)) trail.clear();
 }
 
 // Takes note of what a scan has changed.
@@ -266,61 +145,6 @@ ExplorationStep ContinuousExploration::State::collect(double time) {
   }
   clock.reset();
   return step;
-}
-
-// Frontiers in view of the robot's last scan, in directions in which it measured, that have stayed unknown
-// all the same. Where it has arrived these are also the ones for which it came: planning, between the middles
-// of voxels, may see past an edge that hides them from where it is. So are they if all scans come from beside
-// it, or if none shows anything for so long that it would choose its goal anew.
-void ContinuousExploration::State::note_look(std::size_t robot, PlanReason reason, ExplorationStep& step) {
-  const detail::PhaseClock clock(step, Phase::kGoals);
-  constexpr double kNear = 0.05, kAligned = 0.05;  // [m], [rad] of two scans of a robot at rest
-  RobotStep& now = step.robots[robot];
-  Member& member = members[robot];
-  const auto give_up_goal = [&] {
-    for (const VoxelKey& key : member.goal_frontiers)
-      if (team.frontiers.contains(key)) now.still_unknown.push_back(key);
-    sort_once(now.still_unknown);
-  };
-  if (!std::exchange(member.looked, false)) {
-    const bool arrived = step.time >= member.motion.last().end() && is_at_end(member, member.sensed.back());
-    if (member.sees_nothing && arrived && step.time - member.chosen >= team.options.commitment) {
-      give_up_goal();
-      team.abandoned.visited(now.still_unknown);
-    }
-    return;
-  }
-  const Pose& pose = *member.last_look;
-  const FieldOfView& view = team.options.team[robot].robot.view;
-  const Keys frontiers =
-      detail::frontiers_near_path(team.lattice(), team.frontiers.keys(), {&pose, 1}, view.max_range);
-  const detail::CountingRayCaster counting(*team.caster, team.lattice());
-  const VisiblePairs seen = visible_pairs(counting, team.mapping.grid(), {&pose, 1}, frontiers, view);
-  const detail::Directions directions(member.measured);
-  const auto is_measured = [&](const Eigen::Vector3f& direction) {
-    constexpr float kFound = detail::Directions::kFound;
-    bool found = false;
-    directions.for_each_near(direction, [&](std::uint32_t i) {
-      found = found || (member.measured[i] - direction).squaredNorm() < kFound * kFound;
-    });
-    return found;
-  };
-  for (const std::uint32_t i : seen.frontiers_of(0)) {
-    const Eigen::Vector3d offset = team.lattice().exact_center(frontiers[i]) - pose.position;
-    if (view.contains(offset, pose.yaw) && is_measured(offset.normalized().cast<float>()))
-      now.still_unknown.push_back(frontiers[i]);
-  }
-  const Trajectory& last = member.motion.last();
-  const bool goes_there = member.goal.pose && team.lattice().key(member.goal.pose->position) ==
-                                                  team.lattice().key(last.end_pose().position);
-  const bool has_not_moved = member.look_before && is_near(pose, *member.look_before, kNear, kAligned);
-  member.look_before = pose;
-  const bool missed =
-      goes_there && has_not_moved && reason != PlanReason::kArrival && step.time >= last.end();
-  member.missed_looks = missed ? member.missed_looks + 1 : 0;
-  if (goes_there && reason == PlanReason::kArrival) give_up_goal();
-  step.rays += counting.rays();
-  team.abandoned.visited(now.still_unknown);
 }
 
 // The cells in whose middle a robot would be too near to another one that is at a place, or more of them.
@@ -402,7 +226,7 @@ PlannedMotion ContinuousExploration::State::plan(std::size_t robot, PlanReason r
   member.blocked = member.meets_other = member.stopped = false;
   count_low_gain(robot, step.robots[robot], keeps);
   ++team.number;
-  step.robots[robot].trajectory = poses_along(trajectory, start);
+  step.robots[robot].trajectory = detail::poses_along(trajectory, start);
   PlannedMotion planned{robot, reason, std::move(trajectory), std::move(step)};
   // While it keeps its goal another robot's planning may have arranged the rest of its tour anew.
   if (team.tours && !keeps)
