@@ -34,6 +34,10 @@ std::string in_red(const std::string& text, int stream) {
   return "\033[31m" + text + "\033[0m";
 }
 
+void warn(const std::string& text) {
+  std::cerr << in_red("frontlux: warning: " + without_controls(text), STDERR_FILENO) << '\n';
+}
+
 bool is_open_to_write(int stream) {
   const int flags = ::fcntl(stream, F_GETFL);
   return flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;

@@ -18,6 +18,9 @@ namespace frontlux::app {
 /// @param stream  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] std::string in_red(const std::string& text, int stream);
 
+/// Writes a warning on standard error.
+void warn(const std::string& text);
+
 /// Whether a stream was not closed when the program began.
 /// @param stream  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] bool is_open_to_write(int stream);

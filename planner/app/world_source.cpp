@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -87,8 +86,7 @@ double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds
     throw BadInput(what + ", which take " + bytes_text(bytes) + " of memory and more where " +
                    bytes_text(available) + " are left; " + advice);
   ProgressLine().clear();
-  std::cerr << "frontlux: warning: " << what << ", which take " << bytes_text(bytes)
-            << " of memory and more; " << advice << '\n';
+  warn(what + ", which take " + bytes_text(bytes) + " of memory and more; " + advice);
   return voxels;
 }
 
@@ -123,11 +121,11 @@ void add_world_options(Command& command, WorldSource& source, const char* ground
   command.add("--resolution", source.resolution, "METRES", "Edge length of a voxel", kVoxelEdges);
   command.add("--start", source.start, "X,Y,Z",
               "Free point near which robots start, before the --ground shift");
-  command.group("World", Command::Shown::kInHelpAll);
   command.add("--ground", source.ground, "auto|off|Z",
               ("Shift the floor to just below a voxel boundary; auto: the floor below the start [" +
                std::string(ground_default) + "]")
                   .c_str());
+  command.group("World", Command::Shown::kInHelpAll);
   command.add("--scale", source.scale, "METRES", "Length of a mesh file's unit [1]", kAboveZero);
   command.add("--up", source.up, "Axis of a mesh file that points up [as the format defines, else z]");
 }

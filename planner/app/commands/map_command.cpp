@@ -251,8 +251,7 @@ void map(const Options& options) {
                                          to_text(Lattice::kOrigin * options.resolution) +
                                          " m of the origin along each axis"));
   mapping.write(options.output);
-  if (!recording.warning.empty())
-    std::cerr << "frontlux: warning: " << without_controls(recording.warning) << '\n';
+  if (!recording.warning.empty()) warn(recording.warning);
   std::string left_out;
   if (points.beyond > 0)
     left_out += row("beyond", std::to_string(points.beyond) + " of them beyond " +

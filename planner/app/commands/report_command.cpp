@@ -70,9 +70,7 @@ std::vector<Run> read_runs(const Options& options, const std::vector<std::string
     if (std::any_of(runs.begin(), runs.end(), same)) name = given;
     runs.push_back({file, std::move(name), planner::read_recording(file)});
     const planner::Recording& recording = runs.back().recording;
-    if (recording.truncated)
-      std::cerr << "frontlux: " << without_controls(file.string())
-                << ": the last step is not complete and is left out\n";
+    if (recording.truncated) warn(file.string() + ": the last step is not complete and is left out");
     if (recording.steps.empty()) throw BadInput(file.string() + ": the recording holds no step");
   }
   return runs;
@@ -135,8 +133,7 @@ std::string run_json_of(const std::filesystem::path& folder, const planner::Reco
     wrong = error.what();
   }
   if (wrong.empty()) return json;
-  std::cerr << "frontlux: warning: " << without_controls(wrong)
-            << "; the report leaves out what only run.json tells\n";
+  warn(wrong + "; the report leaves out what only run.json tells");
   return {};
 }
 

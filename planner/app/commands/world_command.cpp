@@ -96,8 +96,8 @@ void add_world_command(CLI::App& app) {
                   "Built-in world, mesh (.ply, .obj, .stl, .dae, .gltf, .glb) or OctoMap file (.bt, .ot)\n"
                   "[list the built-in worlds]");
   command.add("-o,--output", options->output, "FILE.ply", "Write the world's surface to this file");
-  add_world_options(command, source, "off");
   command.add("--seed", source.seed, "N", "Layout of a built-in world [1]", kSeeds);
+  add_world_options(command, source, "off");
   command.examples(R"(Example:
   frontlux world factory --seed 7 -o factory.ply
 prints the measures of the seventh factory and writes it as a mesh.)");

@@ -27,8 +27,8 @@ void write_frames(const std::filesystem::path& folder, const planner::Recording&
 /// Removes what `write_frames` and `write_film` have written there, and the folder if nothing else is in it.
 void remove_frames(const std::filesystem::path& folder);
 
-/// Makes a film of a folder's frames by ffmpeg, in the format of the file's ending: .mp4, or .gif at half the
-/// rate. The file appears complete or not at all.
+/// Makes a film of a folder's frames by ffmpeg, in the format of the file's ending: .mp4, or .gif at a third
+/// of the rate. The file appears complete or not at all.
 /// @throws std::runtime_error naming the file, if it cannot be made; Interrupted
 void write_film(const std::filesystem::path& file, const std::filesystem::path& folder);
 
