@@ -37,6 +37,12 @@ class Sampler {
   // anywhere.
   float along(std::uint16_t key, int half_edges) {
     const double low = (static_cast<int>(key) - Lattice::kOrigin) * grid_.resolution();
+    if (std::abs(key - Lattice::kOrigin) <= 1 &&
+        random_.one_in(4))  // around 0, where floats lie close together
+      return static_cast<float>(
+          std::ldexp(random_.uniform(-1.0, 1.0) * grid_.resolution(), -random_.below(150)));
+    if (low != 0.0 && random_.one_in(20))  // on either side of which they have other spaces
+      return static_cast<float>(std::copysign(std::exp2(std::floor(std::log2(std::fabs(low)))), low));
     if (half_edges == 1) return static_cast<float>(grid_.lattice().center(key));
     double offset = half_edges >= 0 ? half_edges * 0.5 : random_.uniform(0.0, 1.0);
     if (random_.one_in(6))
@@ -113,6 +119,20 @@ class Sampler {
     return d;
   }
 
+  // Of a ray: at, or right beside, the distance of a centre near its line.
+  double range_to_center(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
+    const Lattice& lattice = grid_.lattice();
+    const double far = random_.uniform(0.0, 60.0) * grid_.resolution();
+    const auto key = lattice.key(origin + (static_cast<float>(far) * direction.normalized()).eval());
+    if (!key) return range();
+    double squared = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const float off = lattice.center(*key)[i] - origin[i];
+      squared += static_cast<double>(off * off);
+    }
+    return std::sqrt(squared) * (1.0 + random_.below(9) * 0x1p-26 - 0x1p-24);
+  }
+
   double range() {
     const double voxel = grid_.resolution();
     switch (random_.below(12)) {
@@ -148,7 +168,9 @@ std::vector<Ray> adversarial_rays(const VoxelGrid& grid, std::size_t count, std:
   for (Ray& ray : rays) {
     ray.origin = sample.origin();
     ray.direction = sample.direction(ray.origin);
-    ray.max_range = sample.random().one_in(500) ? -1.0 : sample.range();
+    ray.max_range = sample.random().one_in(500) ? -1.0
+                    : sample.random().one_in(5) ? sample.range_to_center(ray.origin, ray.direction)
+                                                : sample.range();
   }
   return rays;
 }

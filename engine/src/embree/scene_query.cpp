@@ -204,7 +204,9 @@ SceneQuery::By SceneQuery::prepare(const Segment& segment, Probe& sight, bool& t
     const auto a = static_cast<std::size_t>(i);
     const double d = line.direction[i];
     if (std::fabs(d) < kParallel) {
-      if (as_array(*from)[a] != target[a]) return By::kWalk;
+      // As close to a face as the tolerance, the line may cross it all the same.
+      const double inside = line.origin[i] - (target[a] - base[a]), margin = 4.0 * scene_.tolerance();
+      if (as_array(*from)[a] != target[a] || inside < margin || 1.0 - inside < margin) return By::kWalk;
       enter[a] = 0.0;
       leave[a] = std::numeric_limits<double>::infinity();
       continue;

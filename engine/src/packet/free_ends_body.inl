@@ -10,7 +10,7 @@ inline void find_free_ends(const Lattice& lattice, RayBatch& batch) {
   for (std::size_t i = 0; i < batch.size; ++i) {
     const std::uint32_t at = batch.stopped_at[i];
     const double range = batch.max_range[i];
-    const bool free = at < kFirstWalkEnd ? batch.in_range[i] == 0
+    const bool free = at < kFirstWalkEnd ? batch.in_range[i] == kOutOfRange
                                          : at == kWentThrough && is_walked_whole(range, resolution);
     number[size] = static_cast<std::uint32_t>(i);
     size += free && range > resolution ? 1 : 0;

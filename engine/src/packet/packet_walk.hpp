@@ -51,6 +51,13 @@ enum WalkEnd : std::uint32_t {
   kFirstWalkEnd = kFreeEnd
 };
 
+/// Whether the range of a ray holds the centre of the voxel that stopped it.
+enum InRange : std::uint8_t {
+  kOutOfRange,
+  kInRange,       ///< and those of all voxels before it
+  kCloseToLimit,  ///< it does, but a voxel before it may be out of range
+};
+
 /// Rays and what comes of them, as arrays. What the walk of a ray found is of use only if it was stopped, or
 /// has a free end.
 struct RayBatch {
@@ -64,7 +71,7 @@ struct RayBatch {
   alignas(64) PerAxisAndLine<float> end;          ///< [m] its centre
   alignas(64) PerAxisAndLine<float> entry;        ///< [m] where the ray enters it
   alignas(64) PerLine<float> distance;            ///< [m] from the origin to there
-  alignas(64) PerLine<std::uint8_t> in_range;     ///< whether its centre is; of those that a voxel stopped
+  alignas(64) PerLine<std::uint8_t> in_range;     ///< an `InRange`, of those that a voxel stopped
 };
 
 /// How far rays are walked [voxels]. This is where a BVH becomes about as fast (docs/benchmarking.md); times

@@ -105,12 +105,12 @@ inline void rate_steps(PacketLines& lines) {
     }
 }
 
-// The voxels that stopped rays, and out_of_range.
+// The voxels that stopped rays, and whether they are in range.
 inline void locate(const Lattice& lattice, const OpenVoxels& table, RayBatch& batch) {
   const double resolution = lattice.resolution();
   const OpenVoxels::Layout& layout = table.layout();
-  alignas(64) PerLine<double> distance_sq;
-  for (std::size_t i = 0; i < batch.size; ++i) distance_sq[i] = 0.0;
+  alignas(64) PerLine<double> distance_sq, origin_sum;
+  for (std::size_t i = 0; i < batch.size; ++i) distance_sq[i] = origin_sum[i] = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const int corner = layout.corner[a];
     const std::uint32_t low_shift = 3U * static_cast<std::uint32_t>(a), high_shift = layout.shift(a),
@@ -125,12 +125,15 @@ inline void locate(const Lattice& lattice, const OpenVoxels& table, RayBatch& ba
       end[i] = static_cast<float>((cell + 0.5) * resolution);
       const float offset = end[i] - origin[i], squared = offset * offset;
       distance_sq[i] += static_cast<double>(squared);
+      origin_sum[i] += static_cast<double>(std::fabs(origin[i]));
     }
   }
   for (std::size_t i = 0; i < batch.size; ++i) {
-    const double range = batch.max_range[i];
-    const std::uint8_t unlimited = range > 0.0 ? 0 : 1, too_far = distance_sq[i] > range * range ? 1 : 0;
-    batch.in_range[i] = static_cast<std::uint8_t>(unlimited | (too_far ^ 1));
+    const double range = batch.max_range[i], sure = range_of_sure_paths(range, origin_sum[i]);
+    const int unlimited = range > 0.0 ? 0 : 1, near = distance_sq[i] > sure * sure ? 0 : 1,
+              too_far = distance_sq[i] > range * range ? 1 : 0;
+    const int in = unlimited | near, close = (in | too_far) ^ 1;
+    batch.in_range[i] = static_cast<std::uint8_t>(in * kInRange + close * kCloseToLimit);
   }
 }
 

@@ -38,7 +38,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
     };
     const std::array<int, 3> cell = per_axis(batch.cell);
     const bool is_free = stopped_at == kFreeEnd;
-    if (is_free || (stopped_at < kFirstWalkEnd && batch.in_range[i] != 0 && is_inside(cell))) {
+    if (is_free || (stopped_at < kFirstWalkEnd && batch.in_range[i] == kInRange && is_inside(cell))) {
       const VoxelKey key = as_key(cell);
       const Occupancy state = is_free ? grid_.at(key) : blocker_state(grid_, key, unknown_);
       const auto end = per_axis(batch.end), entry = per_axis(batch.entry);

@@ -118,6 +118,15 @@ inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& e
   return distance_sq > max_range * max_range;
 }
 
+/// [m] If a voxel's centre is within this, no voxel on a ray's path to it is out of range. Centres never get
+/// closer along a path, but from either side of a face at a power of two floats have other spaces: each of
+/// two distances is off by at most 2^-24 (2 range + |centre|).
+/// @param origin_sum  of the magnitudes of the origin's coordinates
+inline double range_of_sure_paths(double max_range, double origin_sum) {
+  constexpr double kRounding = 0x1p-21;
+  return std::max(0.0, max_range * (1.0 - kRounding) - kRounding * origin_sum);
+}
+
 /// No voxel that a ray enters before this time is out of range: a voxel's centre is less than 0.87 of its
 /// edge further away than the point of entry. There is no such time if the direction is not of unit length.
 inline double time_surely_in_range(double max_range, double resolution, const Eigen::Vector3f& direction) {
