@@ -38,7 +38,7 @@ class CMakeBuild(build_ext):
                         *(f"-D{key}={value}" for key, value in options.items())], check=True)
         targets = ["frontlux_python"] + (["frontlux_python_planner"] if PLANNER else [])
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count())  # make alone starts all at once
-        subprocess.run(["cmake", "--build", build, "--parallel", jobs, "--target", *targets], check=True)
+        subprocess.run(["cmake", "--build", build, "--config", "Release", "--parallel", jobs, "--target", *targets], check=True)
 
 
 version = re.search(r"project\(frontlux VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]

@@ -48,8 +48,12 @@ endmacro()
 
 # Embree 4 or, where there is none, 3.13: `embree_VERSION_MAJOR` tells which, and our sources know both.
 macro(frontlux_find_embree)
+  set(frontlux_given_embree "${embree_DIR}")  # which is forgotten if it has another version than is asked for
   find_package(embree 4 QUIET)
   if(NOT embree_FOUND)
+    if(frontlux_given_embree)
+      set(embree_DIR "${frontlux_given_embree}" CACHE PATH "Folder of embree's CMake files" FORCE)
+    endif()
     frontlux_find(embree 3.13 DEBIAN libembree-dev)
   endif()
 endmacro()
