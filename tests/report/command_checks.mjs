@@ -4,8 +4,10 @@ import { readFile } from "node:fs/promises";
 import { chartsAreRight, milestonesAreRight, readTable } from "./number_checks.mjs";
 import { both, explored, lockstep, open } from "./open_report.mjs";
 
-/** What run.json says of planning, distances, contacts and idle robots. */
-export async function safetyIsRight(page, json) {
+const percent = (part) => `${(100 * part).toFixed(1)} %`;
+
+/** What run.json says of planning, distances, contacts, idle robots, unseen places and the map. */
+export async function factsAreRight(page, json) {
   const table = (caption) => page.evaluate((name) => {
     const { tBodies } = [...document.querySelectorAll(".details table")].find((one) => one.caption.textContent === name);
     return Object.fromEntries([...tBodies[0].rows].map((row) => [row.cells[0].textContent, [...row.cells].slice(1).map((cell) => cell.textContent)]));
@@ -15,6 +17,10 @@ export async function safetyIsRight(page, json) {
   assert.deepEqual(run.Contacts, [`${json.contacts}; robots held back ${json.held_back === 1 ? "once" : `${json.held_back} times`}`]);
   assert.deepEqual(team.idle, json.robots.map((name) => `${json.by_robot[name].idle_s.toFixed(1)} s`));
   assert.deepEqual(team["held back"], json.robots.map((name) => `${json.by_robot[name].held_back} times`));
+  assert.deepEqual(await table("The last goals"), Object.fromEntries(json.robots.map((name) => [name, [json.by_robot[name].goal]])));
+  const found = (cells) => cells?.[0].match(/\d+\.\d %/g), { unseen, map } = json;
+  assert.deepEqual(found(run.Unseen), unseen ? [unseen.narrow, unseen.hidden, unseen.in_view].map(percent) : undefined);
+  assert.deepEqual(found(run["Accuracy of the map"]), [map.surface_found, map.false_free, map.false_occupied].map(percent));
   assert.deepEqual([run["Latency charged"], run.Clearance, run["Between robots"]].map((cells) => cells?.[0].split(" ")[0]),
     json.lockstep ? [undefined, undefined, undefined] : [(await time(json.latency_s)).split(" ")[0], json.clearance_min_m.toFixed(2), json.separation_min_m.toFixed(2)]);
 }
@@ -30,7 +36,7 @@ export async function commandIsRight(browser) {
     const text = await page.textContent("header");
     for (const part of [`${json.time_s.end.toFixed(1)} s`, `${json.explored_m3.toFixed(json.explored_m3 < 100 ? 1 : 0)} m³`]) assert.ok(text.includes(part), `${part} is not in ${text}`);
     assert.equal(await page.locator(".warning").count(), json.warnings.length, `warnings instead of ${json.warnings.join("; ")}`);
-    await safetyIsRight(page, json);
+    await factsAreRight(page, json);
     assert.deepEqual(trouble, []);
     await page.close();
     runs.push({ rows, json });
@@ -39,9 +45,12 @@ export async function commandIsRight(browser) {
   for (const [i, { rows, json }] of runs.entries()) {
     await page.selectOption("#run", String(i));
     await chartsAreRight(page, rows);
-    const cells = await page.locator(`.comparison tbody tr:nth-child(${i + 1}) > *`).allTextContents();
-    assert.deepEqual(cells.slice(-2), [String(json.contacts), `${json.held_back} times`]);
-    assert.equal(cells.at(-5), `${Object.values(json.by_robot).reduce((sum, robot) => sum + robot.idle_s, 0).toFixed(1)} s`);
+    const cellsOf = (caption) => page.locator(".comparison table", { has: page.locator("caption", { hasText: caption }) }).locator(`tbody tr:nth-child(${i + 1}) > *`).allTextContents();
+    const cells = await cellsOf("Comparison"), safety = await cellsOf("Planning and safety"), { unseen, map } = json;
+    assert.deepEqual(safety.slice(-2), [String(json.contacts), `${json.held_back} times`]);
+    const parts = [unseen?.narrow, unseen?.hidden, unseen?.in_view].map((part) => (unseen ? percent(part) : "–"));
+    assert.deepEqual((await cellsOf("Unseen places and the map")).slice(1), [...parts, "–", ...[map.surface_found, map.false_free, map.false_occupied].map(percent)]);
+    assert.equal(safety.at(-5), `${Object.values(json.by_robot).reduce((sum, robot) => sum + robot.idle_s, 0).toFixed(1)} s`);
     assert.equal(cells[5], json.lockstep ? "lock-step" : "in motion");
     assert.deepEqual(cells.slice(1, 4), ["room", "1", "0.3 m"]);
     assert.equal(cells[6], json.end.replaceAll("_", " "));

@@ -67,38 +67,99 @@ TEST_F(ReportTest, NumbersAreThoseOfTheRecording) {
 
 TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   Recording recording = room();
+  recording.steps.resize(1);  // of many reports
   recording.end = "low_gain";
   recording.head.robots[1].robot.name = "fly\xff";
-  const nlohmann::json whole = {{"world", recording.head.world},
-                                {"robots", {recording.head.robots[0].robot.name, "fly\xef\xbf\xbd"}},
-                                {"end", "low_gain"},
-                                {"steps", recording.steps.back().step.number},
-                                {"clearance_min_m", 0.125},
-                                {"separation_min_m", nullptr},
-                                {"by_robot",
-                                 {{recording.head.robots[0].robot.name, {{"idle_s", 3.5}, {"held_back", 2}}},
-                                  {"fly\xef\xbf\xbd", {{"idle_s", nullptr}, {"held_back", 0}}}}}};
+  const std::string ugv = recording.head.robots[0].robot.name, fly = "fly\xef\xbf\xbd";
+  const nlohmann::json unseen = {{"in_view", 0.25}, {"narrow", 0.125}, {"hidden", 0}};
+  const nlohmann::json map = {{"false_free", 0.5}, {"false_occupied", 0.0625}, {"surface_found", 1}};
+  const nlohmann::json why = {{"narrow_by_m", 0.15}, {"in_view_then", 0.1}, {"without_min_height", 0.05}};
+  const nlohmann::json whole = {
+      {"world", recording.head.world},
+      {"robots", {ugv, fly}},
+      {"end", "low_gain"},
+      {"steps", recording.steps.back().step.number},
+      {"clearance_min_m", 0.125},
+      {"separation_min_m", nullptr},
+      {"contacts_in_free", 3},
+      {"warnings", {"it ended; early", "it was late"}},
+      {"unseen", unseen},
+      {"unseen_why", {{ugv, {{"narrow_by_m", nullptr}, {"in_view_then", 0}}}, {fly, why}}},
+      {"map", map},
+      {"by_robot",
+       {{ugv, {{"idle_s", 3.5}, {"held_back", 2}, {"goal", "no goal: \xe2\x80\xa6"}}},
+        {fly, {{"idle_s", nullptr}, {"held_back", 0}, {"goal", "its first stop"}}}}}};
   const auto measured = [&](const std::string& text) {
     return decode(packed_runs(page_of({{"room", &recording, text}})).at(0)).facts["measured"];
   };
   EXPECT_EQ(measured(whole.dump()), (nlohmann::json{{"clearance_min_m", 0.125},
                                                     {"separation_min_m", nullptr},
-                                                    {"idle", {3.5, nullptr}},
-                                                    {"held_back", {2, 0}}}));
+                                                    {"contacts_in_free", 3},
+                                                    {"warnings", {"it ended; early", "it was late"}},
+                                                    {"unseen", unseen},
+                                                    {"map", map},
+                                                    {"robots",
+                                                     {{{"idle_s", 3.5},
+                                                       {"held_back", 2},
+                                                       {"narrow_by_m", nullptr},
+                                                       {"in_view_then", 0},
+                                                       {"without_min_height", nullptr},
+                                                       {"goal", "no goal: \xe2\x80\xa6"}},
+                                                      {{"idle_s", nullptr},
+                                                       {"held_back", 0},
+                                                       {"narrow_by_m", 0.15},
+                                                       {"in_view_then", 0.1},
+                                                       {"without_min_height", 0.05},
+                                                       {"goal", "its first stop"}}}}}));
   nlohmann::json odd = whole;
   odd["by_robot"] = nlohmann::json::array({1});
-  EXPECT_EQ(measured(odd.dump())["idle"], nlohmann::json({nullptr, nullptr}));
+  EXPECT_EQ(measured(odd.dump())["robots"][0]["idle_s"], nullptr);
+  EXPECT_EQ(measured(odd.dump())["robots"][0]["goal"], "");
+  // What an older frontlux did not write, and values that are none, are unknown.
+  const std::array kNewer = {"contacts_in_free", "warnings", "unseen", "unseen_why", "map"};
+  nlohmann::json older = whole;
+  for (const char* name : kNewer) older.erase(name);
+  for (auto& robot : older["by_robot"]) robot.erase("goal");
+  std::vector<nlohmann::json> runs = {older};
+  for (const nlohmann::json& value :
+       {nlohmann::json(nullptr), nlohmann::json("text"), nlohmann::json({1, nullptr}),
+        nlohmann::json({{"narrow", "much"}, {"false_free", nlohmann::json::object()}, {ugv, 1}})}) {
+    runs.push_back(whole);
+    for (const char* name : kNewer) runs.back()[name] = value;
+    for (auto& robot : runs.back()["by_robot"]) robot["goal"] = value.is_string() ? nlohmann::json(1) : value;
+  }
+  for (const nlohmann::json& run : runs) {
+    const nlohmann::json found = measured(run.dump());
+    EXPECT_EQ(found["clearance_min_m"], 0.125) << run;
+    EXPECT_TRUE(found["contacts_in_free"].is_null()) << run;
+    EXPECT_EQ(found["warnings"], nlohmann::json::array()) << run;
+    for (const char* name : {"unseen", "map"}) {
+      EXPECT_EQ(found[name].size(), 3U) << run;
+      for (const auto& part : found[name]) EXPECT_TRUE(part.is_null()) << name << run;
+    }
+    for (const auto& robot : found["robots"]) {
+      EXPECT_EQ(robot["goal"], "") << run;
+      for (const char* name : {"narrow_by_m", "in_view_then", "without_min_height"})
+        EXPECT_TRUE(robot[name].is_null()) << name << run;
+    }
+    EXPECT_EQ(found["robots"][0]["held_back"], 2) << run;
+  }
+  odd = whole;
+  odd["warnings"] = std::vector<std::string>(1000, "again");
+  EXPECT_EQ(measured(odd.dump())["warnings"].size(), 100U);
   // Of another run, of another end of this one, damaged, and no run.json at all.
   nlohmann::json other = whole, longer = whole, words = whole;
   other["end"] = "stopped";
   longer["steps"] = recording.steps.back().step.number + 1;
-  words["by_robot"]["fly\xef\xbf\xbd"]["idle_s"] = "long";
+  words["by_robot"][fly]["idle_s"] = "long";
   // As deep as a stranger likes.
-  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']'), all = whole.dump();
-  const std::string name = "\"" + recording.head.robots[0].robot.name + "\":";
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']'), all = whole.dump();
+  const std::string name = "\"" + ugv + "\":";
   const std::size_t at = all.find(name) + name.size();
-  EXPECT_EQ(measured(all.substr(0, at) + deep + all.substr(all.find('}', at) + 1))["held_back"],
-            nlohmann::json({nullptr, 0}));
+  const nlohmann::json robots =
+      measured(all.substr(0, at) + deep + all.substr(all.find('}', at) + 1))["robots"];
+  EXPECT_EQ(robots[0]["held_back"], nullptr);
+  EXPECT_EQ(robots[1]["held_back"], 0);
   EXPECT_FALSE(measured("{\"coverage_observable\":" + deep + "," + all.substr(1)).is_null());
   for (const auto& [member, value] : whole.items()) {
     const std::string begin = "\"" + member + "\":", text = value.dump();

@@ -1,4 +1,4 @@
-// The numbers, warnings and times that the page makes of a run: run_numbers_test.mjs WEB, where WEB is
+// The numbers, warnings, times and tables that the page makes of a run: run_numbers_test.mjs WEB, where WEB is
 // planner/report/web. The runs are made up; what is expected is written down here, or found by search.
 import assert from "node:assert/strict";
 import { resolve } from "node:path";
@@ -6,7 +6,8 @@ import { pathToFileURL } from "node:url";
 
 const part = (name) => import(pathToFileURL(resolve(process.argv[2], "src", name)).href);
 const { clockTime, cubicMetres, lastUpTo, numbersOf, percent, stepOfCoverage } = await part("run_numbers.js");
-const { ending, warnings } = await part("facts_view.js");
+const { contactsText, details, ending, warnings } = await part("facts_view.js");
+const { comparison } = await part("comparison_view.js");
 const { Timeline } = await part("timeline.js");
 const { placeText, readPlace } = await part("place.js");
 
@@ -76,14 +77,79 @@ const RUN = [
   assert.deepEqual([said("cut_off", 5), said("cut_off", 7), said("time_limit", 7, true)], [1, 1, 1]);
 }
 { // Plannings that take longer than the clock charges; in lock-step nobody moves meanwhile.
-  const result = (options, measured) => numbersOf(factsOf(RUN, { options: JSON.stringify(options), measured })).result;
-  const said = (options) => warnings({ facts: factsOf(RUN, { options: JSON.stringify(options) }), numbers: { result: result(options) } });
+  const said = (options) => {
+    const facts = factsOf(RUN, { options: JSON.stringify(options) });
+    return warnings({ facts, numbers: numbersOf(facts) });
+  };
   assert.match(said({ lockstep: false, latency: 0.25 }).join(), /up to 300 ms, and 250 ms are charged/);
   for (const options of [{ lockstep: false, latency: 0.31 }, { lockstep: true, latency: 0.25 }, { lockstep: false }, { lockstep: false, latency: "0.1" }]) assert.deepEqual(said(options), [], JSON.stringify(options));
-  // What only run.json knows.
-  const measured = { clearance_min_m: 0.125, separation_min_m: null, idle: [1.5, null], held_back: [0, 3] }, shown = result({ lockstep: false, latency: 0.25 }, measured);
+}
+const ofRobot = (numbers, goal = "") => ({ idle_s: null, held_back: null, narrow_by_m: null, in_view_then: null, without_min_height: null, ...numbers, goal });
+{ // What only run.json knows; what it does not know is NaN, or no text.
+  const measured = {
+    clearance_min_m: 0.125, separation_min_m: null, contacts_in_free: 2, warnings: [], unseen: { in_view: 0.01, narrow: 0.25, hidden: 0 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
+    robots: [ofRobot({ idle_s: 1.5, held_back: 0, narrow_by_m: 0.15, in_view_then: 0.2, without_min_height: 0.01 }, "no goal"), ofRobot({ held_back: 3, in_view_then: 0 })],
+  };
+  const result = (options, facts) => numbersOf(factsOf(RUN, { options: JSON.stringify(options), ...facts })).result;
+  const shown = result({ lockstep: false, latency: 0.25 }, { measured });
   assert.deepEqual([shown.latency, shown.clearance, shown.separation, shown.idle, shown.heldBack, shown.bumpers], [0.25, 0.125, NaN, [1.5, NaN], [0, 3], true]);
-  assert.deepEqual([result({}, null).clearance, result({}).idle, result({ bumper: false }).bumpers], [NaN, [NaN, NaN], false]);
+  assert.deepEqual([shown.contactsInFree, shown.unseen, shown.map], [2, { inView: 0.01, narrow: 0.25, hidden: 0 }, { falseFree: 0.02, falseOccupied: NaN, surfaceFound: 0.9 }]);
+  assert.deepEqual([shown.narrowBy, shown.inViewThen, shown.withoutMinHeight, shown.goals], [[0.15, NaN], [0.2, 0], [0.01, NaN], ["no goal", ""]]);
+  for (const facts of [{ measured: null }, {}]) {
+    const none = result({ bumper: false }, facts);
+    assert.deepEqual([none.clearance, none.contactsInFree, none.idle, none.narrowBy, none.goals, none.bumpers], [NaN, NaN, [NaN, NaN], [NaN, NaN], ["", ""], false]);
+    assert.deepEqual([none.unseen, none.map], [{ inView: NaN, narrow: NaN, hidden: NaN }, { falseFree: NaN, falseOccupied: NaN, surfaceFound: NaN }]);
+  }
+  // Its warnings say why; without any, what the recording tells is enough to warn.
+  const said = (list, other) => {
+    const facts = factsOf(RUN.slice(0, 5), { measured: { ...measured, warnings: list }, ...other });
+    return warnings({ facts, numbers: numbersOf(facts) });
+  };
+  const why = ["the run has ended with 90.0 % mapped; 9.0 % are hidden", "the robot 'a' failed"];
+  assert.deepEqual(said(why), why);
+  assert.deepEqual(said(why, { truncated: true }), [...why, "the last step of the recording is incomplete and is not shown"]);
+  assert.match(said([]).join(), /^the exploration ended by itself, but only 90.0 % of the observable space was mapped$/);
+  assert.deepEqual(said([], { end: "stopped" }), []);
+  for (const [contacts, inFree, text] of [[0, 0, "0"], [3, 0, "3, 0 with surfaces in free voxels"], [3, 2, "3, 2 with surfaces in free voxels"], [3, NaN, "3"]])
+    assert.equal(contactsText({ contacts, contactsInFree: inFree }), text);
+}
+{ // The tables have it, and leave out what is not known.
+  const element = (tag) => ({ tag, children: [], textContent: "", setAttribute() {}, append(...more) { this.children.push(...more); } });
+  const all = (node) => [node, ...node.children.flatMap(all)];
+  const rowsOf = (blocks, caption) => {
+    const block = blocks.find((one) => all(one).some(({ tag, textContent }) => tag === "caption" && textContent === caption));
+    return block && all(block).filter(({ tag }) => tag === "tr").map((row) => row.children.map((cell) => cell.textContent));
+  };
+  const robots = ["a", "b"].map((name) => ({ name, plane: true, extents: [1, 1, 1], shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 0, rows: 0 }));
+  const runOf = (measured, plane = true) => {
+    const facts = factsOf(RUN, { world: "room", bounds: [], robots: robots.map((robot, r) => ({ ...robot, plane: plane || r === 0 })), measured });
+    return { name: "run", facts, numbers: numbersOf(facts) };
+  };
+  const known = { in_view: 0.0123, narrow: 0.25, hidden: 0 };
+  const full = {
+    clearance_min_m: null, separation_min_m: null, contacts_in_free: null, warnings: [], unseen: known, map: { false_free: 0.02, false_occupied: 0, surface_found: 0.9 },
+    robots: [ofRobot({ narrow_by_m: 0.15, in_view_then: 0.2, without_min_height: 0 }, "no goal"), ofRobot({ in_view_then: 0, without_min_height: 0.05 })],
+  };
+  const bare = { ...full, unseen: { in_view: null, narrow: null, hidden: null }, map: { false_free: null, false_occupied: null, surface_found: null }, robots: [ofRobot({}), ofRobot({})] };
+  globalThis.document = { createElement: element };
+  const shown = details(runOf(full), "1"), row = (blocks, caption, name) => rowsOf(blocks, caption).find(([head]) => head === name)?.slice(1);
+  assert.deepEqual(row(shown, "The run", "Unseen"), ["25.0 % of the observable space where only smaller robots, or those that fly, see it, 0.0 % hidden from everywhere, 1.2 % that the robots could have seen"]);
+  assert.match(row(details(runOf(full, false), "1"), "The run", "Unseen")[0], /only smaller robots see it/);
+  assert.deepEqual(row(shown, "The run", "Accuracy of the map"), ["90.0 % of the surface voxels are occupied, 2.0 % of the free voxels hold a surface, 0.0 % of the occupied ones are in free space"]);
+  assert.deepEqual(row(shown, "The team", "openings too narrow"), ["by 0.15 m, 20.0 % behind them", "a smaller body does not help"]);
+  assert.deepEqual(row(shown, "The team", "in view without minimum height"), ["0.0 %", "5.0 %"]);
+  assert.deepEqual(rowsOf(shown, "The last goals"), [["a", "no goal"], ["b", "unknown"]]);
+  for (const measured of [bare, null]) {
+    const without = details(runOf(measured), "1");
+    for (const [caption, name] of [["The run", "Unseen"], ["The run", "Accuracy of the map"], ["The team", "openings too narrow"], ["The team", "in view without minimum height"]]) assert.equal(row(without, caption, name), undefined, name);
+    assert.equal(rowsOf(without, "The last goals"), undefined);
+  }
+  assert.deepEqual(rowsOf(comparison([runOf(full), runOf(null)]), "Unseen places and the map").slice(1),
+    [["run", "25.0 %", "0.0 %", "1.2 %", "a by 0.15 m, 20.0 % behind them", "90.0 %", "2.0 %", "0.0 %"], ["run", ...Array(7).fill("–")]]);
+  assert.equal(rowsOf(comparison([runOf(null), runOf(null)]), "Unseen places and the map"), undefined);
+  delete globalThis.document;
+}
+{
   assert.match(ending(factsOf(RUN)), /plannings/);
   assert.match(ending(factsOf(RUN, { options: "{}" })), /steps/);
 }
@@ -134,4 +200,4 @@ const RUN = [
   }
   Object.defineProperty(globalThis, "performance", { value: performance, configurable: true });
 }
-console.log("numbers, warnings and times are right");
+console.log("numbers, warnings, times and tables are right");

@@ -12,6 +12,7 @@ const source = (name) => import(pathToFileURL(resolve(process.argv[2], "src", na
 const { RunError } = await source("byte_reader.js");
 const { poseAt, readRun } = await source("run_data.js");
 const { numbersOf, optionsOf } = await source("run_numbers.js");
+const { warnings } = await source("facts_view.js");
 const { VoxelStore } = await source("voxel_store.js");
 const { VoxelMesher } = await source("voxel_mesher.js");
 
@@ -52,6 +53,10 @@ function factsOf(steps, robots) {
     name: "run", written_by: "0.1.0", world: "room", resolution: 0.5, bounds: [[32700, 32700, 32700], [32900, 32900, 32800]],
     observable: 1000, bounding: 2000, options: '{"lockstep": false, "robots": {"a": [1, 2]}}', end: "low_gain", truncated: false,
     phases: ["frontiers", "goals", "moving"],
+    measured: {
+      clearance_min_m: 0.25, separation_min_m: null, contacts_in_free: 0, warnings: ["too little"], unseen: { in_view: 0.01, narrow: 0.1, hidden: 0 }, map: { false_free: 0.02, false_occupied: null, surface_found: 0.9 },
+      robots: list(robots, (r) => ({ idle_s: 1.5, held_back: r, narrow_by_m: 0.15, in_view_then: 0.06, without_min_height: 0, goal: "no goal" })),
+    },
     robots: list(robots, (r) => ({ name: `robot ${r}`, plane: r === 0, extents: [1, 1, 0.5], sensor_height: 0.7, shape: "cone", horizontal: 1, vertical: 1, max_range: 9, columns: 16, rows: 8, colors: ["#0072b2", "#56b4e9"], start: [0, 0, 1, 0] })),
     steps: list(steps, (s) => ({ number: s, time: s / 2, frontiers: 5, unassigned: 1, abandoned: 0, rays: 9, contacts: 0, seconds: [0.1, 0.2, 3], known: list(robots, () => [s, 2 * s]), robots: list(robots, robotStep) })),
   };
@@ -124,9 +129,10 @@ function damagedBytes(bytes, roll) {
 
 /** What the page computes of a run before it draws. */
 function use(run) {
-  numbersOf(run.facts);
+  run.numbers = numbersOf(run.facts);
   optionsOf(run.facts);
   const store = new VoxelStore(run), mesher = new VoxelMesher(store, run.facts.bounds), out = [0, 0, 0, 0];
+  warnings(run);
   for (const step of [run.steps - 1, -1, run.steps >> 1]) {
     store.seek(step);
     for (let r = 0; step >= 0 && r < run.robots; ++r) poseAt(run, step, r, 0.4, out);
@@ -187,8 +193,8 @@ await refused("%", /base64/);
 await refused(BASE64(deflateSync(Buffer.alloc(0))), /too early/);
 await refused(BASE64(deflateSync(Buffer.from([255, 255, 255, 255, 1]))), /too early/);
 for (const facts of ["", "null", "[]", "{", "[".repeat(1e6)]) await refused(textOf(facts, []), /facts/);
-for (const [name, value] of [["robots", { length: 1e9 }], ["steps", null], ["robots", []], ["resolution", 0], ["options", {}], ["phases", ["a"]], ["bounds", [[1, 2, 3]]]])
-  await refused(textOf({ ...one, [name]: value }, counts(0, 0, 0, 0, 0)), /robots|steps|resolution|options|phases|bounds|seconds/);
+for (const [name, value] of [["robots", { length: 1e9 }], ["steps", null], ["robots", []], ["resolution", 0], ["options", {}], ["phases", ["a"]], ["bounds", [[1, 2, 3]]], ["measured", {}], ["measured", { ...one.measured, robots: [] }], ["measured", { ...one.measured, unseen: null }]])
+  await refused(textOf({ ...one, [name]: value }, counts(0, 0, 0, 0, 0)), /robots|steps|resolution|options|phases|bounds|seconds|measured/);
 await refused(textOf(one, []), /too early/);
 await refused(textOf(one, counts(huge)), /too early/);
 await refused(textOf(one, counts(1, 2048, 0, 0, 0)), /place of a chunk is 2048/);

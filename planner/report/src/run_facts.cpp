@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,8 @@ namespace frontlux::report::detail {
 namespace {
 
 using nlohmann::json;
+
+constexpr std::size_t kMostWarnings = 100;  // a page shows them all
 
 json numbers_of(const planner::Pose& pose) {
   return {pose.position.x(), pose.position.y(), pose.position.z(), pose.yaw};
@@ -74,16 +77,33 @@ json number_in(const json& object, const char* name) {
   return number.is_number() ? number : json();
 }
 
+json numbers_in(const json& object, std::initializer_list<const char*> names) {
+  json numbers = json::object();
+  for (const char* name : names) numbers[name] = number_in(object, name);
+  return numbers;
+}
+
 // What run.json says besides the recording; null if there is none of this recording.
 json measured_of(const std::string& run_json, const planner::Recording& recording) {
   if (run_json.empty() || !misfit(run_json, recording).empty()) return nullptr;
   const json all = json::parse(run_json, nullptr, false);
-  json measured = {{"idle", json::array()}, {"held_back", json::array()}};
-  for (const char* name : {"clearance_min_m", "separation_min_m"}) measured[name] = number_in(all, name);
+  json measured = numbers_in(all, {"clearance_min_m", "separation_min_m", "contacts_in_free"});
+  measured["unseen"] = numbers_in(member(all, "unseen"), {"in_view", "narrow", "hidden"});
+  measured["map"] = numbers_in(member(all, "map"), {"false_free", "false_occupied", "surface_found"});
+  measured["warnings"] = json::array();
+  if (const json& warnings = member(all, "warnings"); warnings.is_array())
+    for (const json& warning : warnings)
+      if (warning.is_string() && measured["warnings"].size() < kMostWarnings)
+        measured["warnings"].push_back(warning);
   for (const planner::RobotDescription& description : recording.head.robots) {
-    const json& robot = member(member(all, "by_robot"), unicode_of(description.robot.name));
-    measured["idle"].push_back(number_in(robot, "idle_s"));
-    measured["held_back"].push_back(number_in(robot, "held_back"));
+    const std::string name = unicode_of(description.robot.name);
+    const json& robot = member(member(all, "by_robot"), name);
+    json numbers = numbers_in(robot, {"idle_s", "held_back"});
+    numbers.update(numbers_in(member(member(all, "unseen_why"), name),
+                              {"narrow_by_m", "in_view_then", "without_min_height"}));
+    const json& goal = member(robot, "goal");
+    numbers["goal"] = goal.is_string() ? goal : json("");
+    measured["robots"].push_back(std::move(numbers));
   }
   return measured;
 }

@@ -1,12 +1,12 @@
 import { MILESTONES, differences, isWhole, meanTo, meanOf, sameWorld, seedGroups, seedsOf } from "./comparison.js";
 import { el, table } from "./dom.js";
-import { ENDS, clearanceOf, teamName } from "./facts_view.js";
+import { ENDS, clearanceOf, contactsText, narrowText, teamName } from "./facts_view.js";
 import { centimetres, clockTime, cubicMetres, metres, percent, seconds, stepOfCoverage, whole } from "./run_numbers.js";
 
 const sum = (list) => list.reduce((a, b) => a + b, 0);
 const known = (number, text) => (Number.isFinite(number) ? text(number) : "–");
 
-/** What makes the runs unlike, then tables: a row for each run, one for each group of seeds, and planning and safety. */
+/** What makes the runs unlike, then tables: a row for each run, one for each group of seeds, and what else is known of each run. */
 export function comparison(runs) {
   const groups = seedGroups(runs);
   return [
@@ -14,6 +14,7 @@ export function comparison(runs) {
     runTable(runs),
     ...(groups.length > 0 ? [groupTable(runs, groups)] : []),
     planningAndSafety(runs),
+    ...(runs.some(({ facts }) => facts.measured) ? [unseenAndMap(runs)] : []),
   ];
 }
 
@@ -81,6 +82,14 @@ function groupTable(runs, groups) {
 function planningAndSafety(runs) {
   return table("Planning and safety", ["run", "planning, 99 % within", "max", "latency charged", "idle", "clearance", "between robots", "contacts", "held back"], runs.map(({ name, numbers: { result } }) => [
     name, seconds(result.planningUsual), seconds(result.planningMost), known(result.latency, seconds), known(sum(result.idle), clockTime), known(result.clearance, clearanceOf),
-    known(result.separation, centimetres), whole(result.contacts), result.bumpers ? known(sum(result.heldBack), (times) => `${whole(times)} times`) : "no bumpers",
+    known(result.separation, centimetres), contactsText(result), result.bumpers ? known(sum(result.heldBack), (times) => `${whole(times)} times`) : "no bumpers",
   ]));
+}
+
+function unseenAndMap(runs) {
+  return table("Unseen places and the map", ["run", "unseen: narrow", "hidden", "in view", "openings too narrow", "surface found", "false free", "false occupied"], runs.map(({ name, facts, numbers: { result } }) => {
+    const { unseen, map, narrowBy, inViewThen } = result;
+    const openings = facts.robots.flatMap((robot, r) => (narrowBy[r] > 0 ? [`${robot.name} ${narrowText(narrowBy[r], inViewThen[r])}`] : []));
+    return [name, ...[unseen.narrow, unseen.hidden, unseen.inView].map((part) => known(part, percent)), openings.join("; ") || "–", ...[map.surfaceFound, map.falseFree, map.falseOccupied].map((part) => known(part, percent))];
+  }));
 }

@@ -40,12 +40,17 @@ function headline(run) {
   return `${facts.robots.length > 1 ? "The team" : "The robot"} mapped ${percent(result.coverage)} of the observable space${box} in ${effort}. It ended because ${ending(facts)}.`;
 }
 
-/** What a reader must know before trusting the numbers. */
+/** Who would see what only smaller robots see. */
+const smallerRobots = (facts) => (facts.robots.every((robot) => robot.plane) ? "smaller robots, or those that fly," : "smaller robots");
+
+/** What a reader must know before trusting the numbers. run.json has it with the reasons. */
 export function warnings({ facts, numbers }) {
-  const { coverage, latency, planningUsual } = numbers.result, list = [];
-  if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
-  if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
-  if (planningUsual > latency) list.push(`planning was too slow for this run's clock: 99 % of the plannings took up to ${seconds(planningUsual)}, and ${seconds(latency)} are charged for each. On that machine robots would get their trajectories later than shown here; explore with a greater --latency`);
+  const { coverage, latency, planningUsual } = numbers.result, list = [...(facts.measured?.warnings ?? [])];
+  if (list.length === 0) {
+    if (facts.end === "cut_off") list.push("a robot was cut off: it could not leave its place, and there was more to see");
+    if (NORMAL_ENDS.includes(facts.end) && coverage < ENOUGH) list.push(`the exploration ended by itself, but only ${percent(coverage)} of the observable space was mapped`);
+    if (planningUsual > latency) list.push(`planning was too slow for this run's clock: 99 % of the plannings took up to ${seconds(planningUsual)}, and ${seconds(latency)} are charged for each. On that machine robots would get their trajectories later than shown here; explore with a greater --latency`);
+  }
   if (facts.end === null) list.push("the recording has no end: the run was killed, or it goes on");
   if (facts.truncated) list.push("the last step of the recording is incomplete and is not shown");
   return list;
@@ -95,12 +100,22 @@ function bumpers({ bumpers, heldBack }) {
   return Number.isFinite(times) ? `robots held back ${times === 1 ? "once" : `${whole(times)} times`}` : "";
 }
 
+/** How many, and at how many of them the map had all of the body's place as free. */
+export function contactsText({ contacts, contactsInFree }) {
+  return `${whole(contacts)}${contacts > 0 && Number.isFinite(contactsInFree) ? `, ${whole(contactsInFree)} with surfaces in free voxels` : ""}`;
+}
+
+const anyKnown = (numbers) => Object.values(numbers).some(Number.isFinite);
+
+/** By how much openings are too narrow for a robot, and how much is behind them. */
+export const narrowText = (by, behind) => `by ${centimetres(by)}, ${percent(behind)} behind them`;
+
 /** Greater ones are not told apart by the simulator. */
 export const clearanceOf = (length) => (length < 1 ? centimetres(length) : "1 m or more");
 
 /** Everything else about a run: team, options, the paper's numbers. */
 export function details(run, written) {
-  const { facts, numbers } = run, { result } = numbers;
+  const { facts, numbers } = run, { result } = numbers, { unseen, map } = result;
   const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(0)}°`;
   const sensor = (robot) => {
     const rays = robot.columns * robot.rows > 0 ? `, ${robot.columns} × ${robot.rows} rays` : "";
@@ -113,7 +128,9 @@ export function details(run, written) {
       ["World", facts.world], ["Seed", optionsOf(facts).find(([name]) => name === "seed")?.[1] ?? "not recorded"], ["Voxels", `${facts.resolution} m`],
       ["Observable", facts.observable > 0 ? `${whole(facts.observable)} voxels` : "unknown"],
       ["Coverage", `${percent(result.coverage)} of the observable space, ${percent(result.coverageBox)} of the box`],
+      ...(anyKnown(unseen) ? [["Unseen", `${percent(unseen.narrow)} of the observable space where only ${smallerRobots(facts)} see it, ${percent(unseen.hidden)} hidden from everywhere, ${percent(unseen.inView)} that the robots could have seen`]] : []),
       ["Explored volume", cubicMetres(result.volume)],
+      ...(anyKnown(map) ? [["Accuracy of the map", `${percent(map.surfaceFound)} of the surface voxels are occupied, ${percent(map.falseFree)} of the free voxels hold a surface, ${percent(map.falseOccupied)} of the occupied ones are in free space`]] : []),
       ["Robots", numbers.motion ? "in motion: each plans for itself while it moves" : "in lock-step: all plan, then all move"],
       ["Steps", numbers.motion ? `${whole(result.steps)}, with a planning in ${whole(result.plannings)}` : `${whole(result.steps)}, after a scan at the start`], ["Reason for the end", ending(facts)],
       ["Planning", `${seconds(result.planningTotal)} in total; for each ${numbers.motion ? "planning" : "step"}: mean ${seconds(result.planningMean)}, 99 % within ${seconds(result.planningUsual)}, max ${seconds(result.planningMost)}`],
@@ -122,7 +139,7 @@ export function details(run, written) {
         ...(Number.isFinite(result.clearance) ? [["Clearance", `${clearanceOf(result.clearance)}, the least between a body and a surface`]] : []),
         ...(Number.isFinite(result.separation) ? [["Between robots", `${centimetres(result.separation)}, the least between the boxes around two bodies`]] : []),
       ] : []),
-      ["Contacts", [whole(result.contacts), bumpers(result)].filter(Boolean).join("; ")],
+      ["Contacts", [contactsText(result), bumpers(result)].filter(Boolean).join("; ")],
       ["Rays cast for planning", whole(result.rays)], ["Report written by", `frontlux ${written}`],
     ]),
     milestones(numbers),
@@ -132,8 +149,11 @@ export function details(run, written) {
       ["sensor", ...facts.robots.map(sensor)],
       ["path length", ...result.lengths.map(metres)],
       ...(facts.measured ? [["idle", ...result.idle.map(clockTime)], ["held back", ...result.heldBack.map((times) => (Number.isFinite(times) ? `${whole(times)} times` : "unknown"))]] : []),
+      ...(anyKnown(result.inViewThen) ? [["openings too narrow", ...result.narrowBy.map((by, r) => (by > 0 ? narrowText(by, result.inViewThen[r]) : "a smaller body does not help"))]] : []),
+      ...(result.withoutMinHeight.some((part) => part > 0) ? [["in view without minimum height", ...result.withoutMinHeight.map((part) => percent(part))]] : []),
       ["fraction of the known space", ...result.fractions.map((fraction) => percent(fraction))],
     ]),
+    ...(result.goals.some((goal) => goal !== "") ? [table("The last goals", [], facts.robots.map(({ name }, r) => [name, result.goals[r] || "unknown"]))] : []),
   ];
   const paper = PAPER[Object.keys(PAPER).find((name) => facts.world.toLowerCase().startsWith(name))];
   if (paper) parts.push(comparedWithPaper(facts, numbers, paper));
@@ -193,7 +213,10 @@ const WORDS = [
   ["Explored volume", "The volume of all voxels that are known to be free or occupied, within the bounds of the map."],
   ["Step", "In lock-step: all robots plan, then move; the map grows at every viewpoint of their paths; step 0 is a scan at the start. In motion: one robot plans; its path and its scans since the planning before, and those of the others, belong to the step."],
   ["Idle", "How long a robot rested without turning, in seconds of the run's clock."],
-  ["Contacts", "How often a body touched a surface. A robot with a bumper is held back before it touches one; that is counted as held back."],
+  ["Contacts", "How often a body touched a surface. A robot with a bumper is held back before it touches one; that is counted as held back. If the map had every voxel of the box around the body as free, the contact is with a surface in free voxels."],
+  ["Unseen", "Why the rest of the observable space was not mapped, by the true world, as estimated parts of all of it. Narrow: only robots that are smaller, or that fly, see it. Hidden: it is in no robot's field of view from anywhere. In view: a robot fits where it would have seen it."],
+  ["Openings too narrow", "By how much the body of a robot would have to be smaller, in metres, to see at least half of what is narrow, and which part of the observable space comes into view then. Each robot is judged alone, so their parts overlap."],
+  ["Accuracy of the map", "By the true world. Surface found: the part of the observable surface voxels that are occupied. False free: the part of the free voxels that hold a surface; rays that graze a surface free some of its voxels. False occupied: the part of the occupied voxels that are in free space and touch no surface."],
   ["Tour", "In motion: the places from which a robot means to look next, in order. It is dashed from the robot to its stops, the first nine with numbers. Each planning makes the tours of all robots anew."],
   ["Gain", "How many frontiers a path is expected to have in view (expected), and how many the scans of the robot made known (gained)."],
   ["Unassigned", "Frontiers that are assigned to no robot in this step."],

@@ -8,6 +8,10 @@ const FACTS = {
   name: "", written_by: "", world: "", resolution: 0, bounds: [[0]], observable: 0, bounding: 0, options: "", truncated: true,
   phases: [""], robots: [ROBOT], steps: [STEP],
 };
+const MEASURED = { // null without a run.json
+  clearance_min_m: 0, separation_min_m: 0, contacts_in_free: 0, warnings: [""], unseen: { in_view: 0, narrow: 0, hidden: 0 }, map: { false_free: 0, false_occupied: 0, surface_found: 0 },
+  robots: [{ idle_s: 0, held_back: 0, narrow_by_m: 0, in_view_then: 0, without_min_height: 0, goal: "" }],
+};
 
 function check(value, example, name) {
   if (Array.isArray(example)) {
@@ -34,6 +38,10 @@ export function readFacts(text) {
   check(facts, FACTS, "facts");
   if (!(facts.resolution > 0)) throw damaged(`facts.resolution is ${facts.resolution}`);
   if (facts.end !== null) check(facts.end, "", "facts.end");
+  if (facts.measured !== null) {
+    check(facts.measured, MEASURED, "facts.measured");
+    checkLength(facts.measured.robots, facts.robots.length, "what was measured of the robots");
+  }
   checkLength(facts.bounds, 2, "facts.bounds");
   for (const corner of facts.bounds) checkLength(corner, 3, "a corner of facts.bounds");
   if (facts.robots.length === 0 || facts.steps.length === 0) throw damaged("there are no robots or no steps");

@@ -41,6 +41,7 @@ export function numbersOf(facts) {
   numbers.travelled = numbers.length.map(runningSum);
   numbers.teamTravelled = facts.steps.map((_, s) => sum(numbers.travelled.map((list) => list[s])));
   const { measured } = facts, known = (number) => number ?? NaN, { latency, bumper } = recordedOptions(facts) ?? {};
+  const ofRobots = (name) => facts.robots.map((_, r) => known(measured?.robots[r][name]));
   const last = steps - 1, planning = numbers.planning.filter((_, s) => facts.steps[s].number > 0 && isPlanned(facts.steps[s]));
   numbers.result = {
     steps: facts.steps.filter((step) => step.number > 0).length,
@@ -61,8 +62,15 @@ export function numbersOf(facts) {
     contacts: sum(numbers.contacts),
     clearance: known(measured?.clearance_min_m),
     separation: known(measured?.separation_min_m),
-    idle: facts.robots.map((_, r) => known(measured?.idle[r])),
-    heldBack: facts.robots.map((_, r) => known(measured?.held_back[r])),
+    contactsInFree: known(measured?.contacts_in_free),
+    unseen: { inView: known(measured?.unseen.in_view), narrow: known(measured?.unseen.narrow), hidden: known(measured?.unseen.hidden) },
+    map: { falseFree: known(measured?.map.false_free), falseOccupied: known(measured?.map.false_occupied), surfaceFound: known(measured?.map.surface_found) },
+    idle: ofRobots("idle_s"),
+    heldBack: ofRobots("held_back"),
+    narrowBy: ofRobots("narrow_by_m"), // and the part that is in view of a robot that is smaller by so much
+    inViewThen: ofRobots("in_view_then"),
+    withoutMinHeight: ofRobots("without_min_height"),
+    goals: facts.robots.map((_, r) => measured?.robots[r].goal ?? ""),
     rays: sum(numbers.rays),
     robots,
   };

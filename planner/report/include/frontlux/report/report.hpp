@@ -13,7 +13,7 @@ struct ReportedRun {
   std::string name;                               ///< for people; any text
   const planner::Recording* recording = nullptr;  ///< not null; lives as long as the report is being made
   /// The run.json of `frontlux explore`, for what the recording does not hold: times at rest, clearances,
-  /// what bumpers did. Left out if it is empty or a `misfit`.
+  /// what bumpers did, why places stayed unseen, how right the map is. Left out if it is empty or a `misfit`.
   std::string run_json = {};
 };
 
