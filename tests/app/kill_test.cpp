@@ -183,6 +183,39 @@ class KilledCommand : public ExploreMotion {
     EXPECT_GE(moment.kills, std::ssize(threads) * kills / 2);
   }
 
+  // A run whose disk is full, and full again when it goes on, comes to the same end once there is room.
+  // @param explore  the words, without the folder
+  // @param files    of the run: the disk has room for two thirds of each
+  void expect_survives_full_disks(const std::vector<std::string>& explore,
+                                  const std::vector<std::string>& files) const {
+    const auto begin = [&](const char* folder) {
+      return joined(explore, {"--report", "off", "-o", path(folder)});
+    };
+    const std::vector<std::string> go_on = {"explore", "--report", "off", "--resume", path("run")};
+    const std::string recording = path("run/run.frontlux");
+    expect_done(begin("whole"));
+    for (const std::string& file : files) {
+      SCOPED_TRACE(file);
+      constexpr std::uintmax_t kBlock = 512;  // [bytes]
+      const std::string limit =
+          "ulimit -f " + std::to_string(fs::file_size(path("whole/" + file)) * 2 / 3 / kBlock) + ";";
+      const auto expect_full = [&](const std::vector<std::string>& words) {
+        const Answer full = frontlux(words, limit);
+        EXPECT_EQ(full.code, 2) << full.err;
+        expect_parts(full.err,
+                     {": cannot be written: ", "frontlux explore --resume " + path("run") + " continues"});
+      };
+      fs::remove_all(path("run"));
+      expect_full(begin("run"));
+      const std::string kept = content_of(recording);
+      EXPECT_GE(planner::read_recording(recording).steps.size(), 1U);
+      expect_full(go_on);
+      EXPECT_TRUE(content_of(recording).starts_with(kept));
+      expect_done(go_on);
+      expect_same_runs("whole", "run");
+    }
+  }
+
   // The commands that write one file, where there is an earlier one.
   // @param kills  of each command at random moments, beside those while it writes
   void expect_files_survive(int kills) const {
@@ -244,6 +277,13 @@ class KilledCommand : public ExploreMotion {
 TEST_F(KilledCommand, LeavesARunThatGoesOn) { expect_runs_survive(5); }
 TEST_F(KilledCommand, LeavesARunInMotionThatGoesOn) {
   expect_motions_survive(joined({"explore"}, quick("4")), 3);
+}
+TEST_F(KilledCommand, GoesOnAfterAFullDisk) {
+  expect_survives_full_disks({"explore", "room", "--lockstep", "--max-steps", kSteps}, {"run.frontlux"});
+}
+TEST_F(KilledCommand, GoesOnInMotionAfterAFullDisk) {
+  expect_survives_full_disks(joined({"explore"}, quick("4")), {"run.frontlux", "motion.csv"});
+  expect_same_motions("whole", "run");
 }
 TEST_F(KilledCommand, LeavesEarlierFilesIntact) { expect_files_survive(2); }
 TEST_F(KilledCommand, LeavesNoPartOfAFileWhenItIsStopped) {

@@ -5,7 +5,7 @@
 #include "recording/record_bytes.hpp"
 #include "recording/recording_format.hpp"
 #include "setup/explore_options.hpp"
-#include "support/folder_test.hpp"
+#include "support/input_test.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/io/point_cloud.hpp>
@@ -94,7 +94,8 @@ template <const char* kEnding>
 bool read_mesh(const std::string& bytes) {
   return read_as(kEnding, bytes, [](const fs::path& file) { static_cast<void>(sim::read_mesh_world(file)); });
 }
-constexpr char kPly[] = ".ply", kObj[] = ".obj", kStl[] = ".stl", kDae[] = ".dae", kGltf[] = ".gltf";
+constexpr char kPly[] = ".ply", kObj[] = ".obj", kStl[] = ".stl", kDae[] = ".dae", kGltf[] = ".gltf",
+               kGlb[] = ".glb", kPcd[] = ".pcd";
 
 sim::TriangleMesh tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
@@ -141,8 +142,33 @@ std::vector<std::string> gltf_seeds() {
           R"("data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})"};
 }
 
-bool read_pcd(const std::string& bytes) {
-  return read_as(".pcd", bytes, [](const fs::path& file) { static_cast<void>(io::read_point_cloud(file)); });
+// Its header, then chunks: the scene, and the buffer that has no URI then.
+std::vector<std::string> glb_seeds() {
+  using test::bytes_of;
+  const auto chunk = [&](const char* type, const std::string& bytes) {
+    return bytes_of(static_cast<std::uint32_t>(bytes.size())) + std::string(type, 4) + bytes;
+  };
+  std::string json = gltf_seeds().front();
+  json.replace(json.find(",\"uri\""), std::string::npos, "}]}");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string corners;
+  for (const float number : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F}) corners += bytes_of(number);
+  const std::string chunks = chunk("JSON", json) + chunk("BIN\0", corners);
+  return {"glTF" + bytes_of(2U) + bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks};
+}
+
+template <const char* kEnding>
+bool read_cloud(const std::string& bytes) {
+  return read_as(kEnding, bytes, [](const fs::path& file) { static_cast<void>(io::read_point_cloud(file)); });
+}
+
+std::vector<std::string> ply_cloud_seeds() {
+  const std::string vertices =
+      "element vertex 2\nproperty float x\nproperty uchar red\nproperty double z\nproperty short y\n";
+  return {"ply\nformat ascii 1.0\ncomment a scan\n" + vertices + "end_header\n1.5 9 nan -2\n0 9 -7e2 1\n",
+          "ply\nformat binary_little_endian 1.0\n" + vertices + "end_header\n" + std::string(30, '\1'),
+          "ply\nformat binary_big_endian 1.0\nelement tag 1\nproperty list uchar short names\n" + vertices +
+              "end_header\n" + std::string("\1\0\7", 3) + std::string(30, '\2')};
 }
 
 std::vector<std::string> pcd_seeds() {
@@ -326,7 +352,8 @@ const std::vector<Format>& formats() {
   static const std::vector<Format> all = {
       {"map", read_map, map_seeds},
       {"ply", read_mesh<kPly>, ply_seeds},
-      {"pcd", read_pcd, pcd_seeds},
+      {"pcd", read_cloud<kPcd>, pcd_seeds},
+      {"ply_cloud", read_cloud<kPly>, ply_cloud_seeds},
       {"graph", read_graph, graph_seeds},
       {"poses", read_poses, pose_seeds},
       {"robot", read_robot, robot_seeds},
@@ -339,6 +366,7 @@ const std::vector<Format>& formats() {
       {"stl", read_mesh<kStl>, stl_seeds, false},
       {"dae", read_mesh<kDae>, dae_seeds, false},
       {"gltf", read_mesh<kGltf>, gltf_seeds, false},
+      {"glb", read_mesh<kGlb>, glb_seeds, false},
   };
   return all;
 }

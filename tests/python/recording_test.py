@@ -69,6 +69,34 @@ class WholeNumbers(unittest.TestCase):
                 _recording._Bytes(outside).keys(1)
 
 
+    def test_stops_are_those_of_a_plain_loop(self):
+        random = np.random.default_rng(4)
+
+        def number():
+            if random.random() < 0.1:  # with bytes that it does not need
+                return b"\x80" * int(random.integers(10)) + b"\0"
+            return whole(int(random.integers(2**63)) >> int(random.integers(63)))
+
+        stops = [(random.bytes(32), number(), number()) for _ in range(300)]
+        data = b"".join(map(b"".join, stops))
+        value = lambda digits: sum((digit & 0x7F) << 7 * i for i, digit in enumerate(digits))
+        poses = b"".join(struct.pack("<4d", *struct.unpack("<4d", pose)) for pose, *_ in stops)
+        seen = [[value(numbers) for numbers in stop[1:]] for stop in stops]
+        for part in (1, 7, 299, 300, 1000):
+            with mock.patch.object(_recording, "_PART", part):
+                read = _recording._Bytes(data + b"\5")
+                found = read.stops(300)
+                self.assertEqual((found[0].tobytes(), found[1].tolist()), (poses, seen))
+                self.assertEqual((found[0].shape, read.count()), ((300, 4), 5))
+                for size in (len(data) - 1, len(data) - len(stops[-1][2]) - 20, 31):
+                    with self.assertRaisesRegex(ValueError, "too early"):
+                        _recording._Bytes(data[:size]).stops(300)
+        for bad, what in ((b"\x80" * 10 + b"\0", "more than 64 bits"), (whole(2**63), "too large")):
+            with self.assertRaisesRegex(ValueError, what):
+                _recording._Bytes(data + bytes(32) + b"\1" + bad).stops(301)
+        self.assertEqual([part.shape for part in _recording._Bytes(b"").stops(0)], [(0, 4), (0, 2)])
+
+
 class Recordings(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -1,8 +1,10 @@
 """Recordings of explorations (run.frontlux) as arrays. Needs nothing but numpy."""
 import json
+import re
 import struct
 import zlib
 from dataclasses import dataclass
+from math import prod
 from os import fspath
 from typing import Any, Dict, List, Optional
 
@@ -15,9 +17,15 @@ _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no reassigned fron
 _MOST_BYTES = 1 << 30  # of a record
 _MOST_RATIO = 1032  # zlib compresses to no less than that part, and a few bytes more
 _MOST_ROBOTS = 1000
+_MOST_OPTIONS = 1 << 24  # [bytes]
+# Steps of one robot, beside one for each byte of the file, since each takes time, however short it is. A part of a list
+# takes as long as so many; in recordings of runs it has more than 40 bytes of the file.
+_MOST_STEPS, _STEPS_OF_PART = 10_000, 8
 _TAGS = (b"head", b"step", b"end ")
 _PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
-_POSE = struct.Struct("<4d")
+_DIGITS = 10  # of a whole number, at most
+_POSE_BYTES, _KEY_BYTES = 32, 3  # of a key: at least
+_SEEN = re.compile(rb"(?:[\x80-\xff]{0,9}[\0-\x7f]){2}")  # from a stop of a tour: two whole numbers
 _CUBE = 16  # [voxels]
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "contacts")
@@ -102,6 +110,7 @@ class _Bytes:
 
     def __init__(self, data):
         self.data, self.bytes, self.at = data, np.frombuffer(data, np.uint8), 0
+        self.parts = 0  # of lists, that have been read
 
     def take(self, size):
         if size > len(self.data) - self.at:
@@ -111,20 +120,24 @@ class _Bytes:
 
     def counts(self, how_many, dtype=np.int64, make=lambda part: part):
         """(how_many,) of a type, of what is made of each part"""
-        numbers = np.empty(how_many, dtype)
-        for begin in range(0, how_many, _PART):
-            part = numbers[begin:begin + _PART]
-            part[:] = make(self._part(len(part)))
+        numbers, done = np.empty(how_many, dtype), 0
+        while done < how_many:
+            part = make(self._part(min(how_many - done, _PART)))
+            numbers[done:done + len(part)] = part
+            done += len(part)
         return numbers
 
-    def _part(self, size):
-        """(size,) int64"""
-        begin = self.bytes[self.at:self.at + 10 * size]
-        ends = np.flatnonzero(begin < 0x80)[:size]
+    def _part(self, most):
+        """int64, at least one number and at most so many: those that end in so many bytes and some more"""
+        self.parts += 1
+        begin = self.bytes[self.at:self.at + most + _DIGITS - 1]
+        if len(begin) >= most and begin[:most].max() < 0x80:
+            return self.take(most).astype(np.int64)
+        ends = np.flatnonzero(begin < 0x80)[:most]
         begins = np.concatenate(([0], ends + 1))[:-1]
-        if (ends - begins).max(initial=0) > 9 or len(ends) < size <= len(begin) // 10:
+        if (ends - begins).max(initial=0) >= _DIGITS or len(ends) == 0 and len(begin) >= _DIGITS:
             raise ValueError("a whole number has more than 64 bits")
-        if len(ends) < size:
+        if len(ends) == 0:
             raise ValueError("a record ends too early")
         digits = self.take(int(ends[-1]) + 1).astype(np.int64) & 0x7F
         shifts = 7 * (np.arange(len(digits)) - np.repeat(begins, ends - begins + 1))
@@ -140,6 +153,8 @@ class _Bytes:
             self.at += 1
             value, shift = value | (byte & 0x7F) << shift, shift + 7
             if byte < 0x80:
+                if value >> 63:
+                    raise ValueError("a whole number is too large")
                 return value
         raise ValueError("a whole number has more than 64 bits")
 
@@ -151,10 +166,13 @@ class _Bytes:
         return size
 
     def doubles(self, *shape):
-        return self.take(8 * int(np.prod(shape))).view("<f8").astype(np.float64).reshape(shape)
+        return self.take(8 * prod(shape)).view("<f8").astype(np.float64).reshape(shape)
 
-    def text(self):
-        return self.take(self.length()).tobytes().decode("utf-8", "replace")
+    def text(self, most=_MOST_BYTES):
+        size = self.length()
+        if size > most:
+            raise ValueError(f"a text has {size} bytes, but at most {most} are read")
+        return self.take(size).tobytes().decode("utf-8", "replace")
 
     def keys(self, how_many):
         """(how_many, 3) uint16, from differences: all x, then y, then z"""
@@ -169,7 +187,7 @@ class _Bytes:
             return keys
 
         keys = np.empty((how_many, 3), np.uint16)
-        for axis in keys.T:
+        for axis in keys.T if how_many else ():
             last = 0
             axis[:] = self.counts(how_many, np.uint16, places)
         return keys
@@ -186,9 +204,22 @@ class _Bytes:
     def stops(self, how_many):
         """Of a tour: (how_many, 4) float64, poses; (how_many, 2) int64, clusters and frontiers in view."""
         poses, seen = np.empty((how_many, 4)), np.empty((how_many, 2), np.int64)
-        for i in range(how_many):
-            poses[i] = _POSE.unpack(self.take(_POSE.size))
-            seen[i] = self.count(), self.count()
+        for begin in range(0, how_many, _PART):
+            part = slice(begin, min(begin + _PART, how_many))
+            self.parts += 1
+            begins, at = np.empty(part.stop - begin, np.int64), self.at
+            for i in range(len(begins)):
+                begins[i] = at
+                numbers = _SEEN.match(self.data, at + _POSE_BYTES)
+                if numbers is None:
+                    raise ValueError("a tour ends too early, or a whole number in it has more than 64 bits")
+                at = numbers.end()
+            begins -= self.at
+            stops = self.take(at - self.at)
+            is_pose = np.zeros(len(stops), bool)
+            is_pose[begins[:, None] + np.arange(_POSE_BYTES)] = True
+            poses[part] = stops[is_pose].view("<f8").reshape(-1, 4)
+            seen[part] = _Bytes(stops[~is_pose].tobytes()).counts(2 * len(begins)).reshape(-1, 2)
         return poses, seen
 
 
@@ -200,7 +231,7 @@ def _read_robot(record):
     motion = record.count() % len(_MOTIONS)  # and the body's shape
     record.doubles(3), record.count(), record.doubles(2), record.count()
     record.doubles(2 if record.count() else 0)
-    record.count(), record.counts(6 * record.length()), record.doubles(3)
+    record.count(), record.counts(6 * record.length(6)), record.doubles(3)
     record.doubles(2 if _MOTIONS[motion] == "ground" else 0)  # its highest step and its steepest slope
     record.count(), record.doubles(3)  # its field of view
     record.doubles(3), record.count()  # its limits
@@ -212,20 +243,20 @@ def _read_head(record):
     head = {"world": record.text(), "resolution": float(record.doubles(1)[0]),
             "bounds": record.counts(6).reshape(2, 3).astype(np.uint16), "observable": record.count()}
     record.count()
-    head["options"] = json.loads(record.text())
+    head["options"] = json.loads(record.text(_MOST_OPTIONS))
     if not isinstance(head["options"], dict):
         raise ValueError("has options that are no object")
     team = record.length()
     if team > _MOST_ROBOTS:
         raise ValueError(f"has {team} robots, but at most {_MOST_ROBOTS} are read")
     head["robots"] = [_read_robot(record) for _ in range(team)]
-    starts = []
-    for _ in range(record.length()):
-        starts.append(record.doubles(4))
-        record.keys(record.length())
-    head["starts"] = np.array(starts).reshape(-1, 4)
-    if len(starts) != len(head["robots"]):
+    if record.length() != team:
         raise ValueError("has not one start for each robot")
+    starts = []
+    for _ in range(team):
+        starts.append(record.doubles(4))
+        record.keys(record.length(_KEY_BYTES))
+    head["starts"] = np.array(starts).reshape(-1, 4)
     return head
 
 
@@ -235,36 +266,49 @@ def _read_step(record, number, head, run, version):
         raise ValueError(f"step {number} has another number")
     step["time"] = record.doubles(1)[0]
     step["seconds"] = record.doubles(6)
-    known = record.counts(2 * record.length()).reshape(-1, 2)
-    step["known"], step["known_in_bounds"] = known.T
+    team = len(head["robots"])
+
+    def check_team():
+        if record.length() != team:
+            raise ValueError(f"step {number} has not as many robots as the team")
+
+    def add(name, *rows):
+        if len(rows[0]):
+            run[name].append((number, robot, *rows))
+
+    check_team()
+    step["known"], step["known_in_bounds"] = record.counts(2 * team).reshape(-1, 2).T
+    check_team()
     robots = []
-    team = record.length()
-    if not team == len(known) == len(head["robots"]):
-        raise ValueError(f"step {number} has not as many robots as the team")
     for robot in range(team):
-        of_robot = dict(zip(_ROBOT_COUNTS, record.counts(len(_ROBOT_COUNTS))))
+        of_robot = {name: record.count() for name in _ROBOT_COUNTS}
         of_robot["length"] = record.doubles(1)[0]
-        record.counts(2)  # outcome of the path search, state of the goal
-        record.doubles(4 if record.count() else 0)
-        record.counts(3), record.text(), record.doubles(4), record.counts(4)  # the goal
-        poses = record.doubles(record.length(), 4)[:of_robot["travelled"]]
-        changed = record.length()
+        record.count(), record.count()  # outcome of the path search, state of the goal
+        record.take(_POSE_BYTES if record.count() else 0)
+        for _ in range(3):  # the goal
+            record.count()
+        record.take(record.length()), record.take(4 * 8)
+        for _ in range(4):
+            record.count()
+        add("poses", record.doubles(record.length(_POSE_BYTES), 4)[:of_robot["travelled"]])
+        changed = record.length(_KEY_BYTES + 1)
         keys, states = record.keys(changed), record.states(changed)
         if changed and ((keys < head["bounds"][0]) | (keys > head["bounds"][1])).any():
             raise ValueError(f"step {number} changes a voxel outside the bounds")
-        run["poses"].append((number, robot, poses))
-        run["changes"].append((number, robot, keys, states // 3, states % 3))
-        record.keys(record.length()), record.keys(record.length())  # still unknown; blocked
-        cells = record.length()
+        add("changes", keys, states // 3, states % 3)
+        for _ in ("still unknown", "blocked"):
+            record.keys(record.length(_KEY_BYTES))
+        cells = record.length(_KEY_BYTES + 5 * 8 + 1)
         record.keys(cells), record.doubles(5, cells), record.counts(cells)  # the image
-        poses, seen = record.stops(record.length(_POSE.size) if version > 3 else 0)
-        run["tours"].append((number, robot, poses, *seen.T))
+        if version > 3:
+            poses, seen = record.stops(record.length(_POSE_BYTES + 2))
+            add("tours", poses, *seen.T)
         if version > 4:
-            run["trajectories"].append((number, robot, record.doubles(record.length(), 4)))
-            run["reassigned"].append((number, robot, record.keys(record.length())))
+            add("trajectories", record.doubles(record.length(_POSE_BYTES), 4))
+            add("reassigned", record.keys(record.length(_KEY_BYTES)))
         robots.append(of_robot)
     for name in (*_ROBOT_COUNTS, "length"):
-        step[name] = np.array([of_robot[name] for of_robot in robots])
+        step[name] = np.array([of_robot[name] for of_robot in robots], np.float64 if name == "length" else np.int64)
     run["steps"].append(step)
 
 
@@ -313,12 +357,13 @@ def _records(data, title):
 
 
 def _columns(rows, *shapes):
-    """Lists of (step, robot, array...) as one array each: step, robot, and the arrays behind each other."""
+    """Lists of (step, robot, array...) as one array each: step, robot, and the arrays behind each other. Empties the list."""
     sizes = [len(row[2]) for row in rows]
-    columns = [np.repeat(np.array([row[i] for row in rows], np.int64), sizes) for i in (0, 1)]
-    for i, (shape, dtype) in enumerate(shapes, 2):
-        columns.append(np.concatenate([np.empty((0, *shape), dtype), *(row[i] for row in rows)]).astype(dtype))
-    return columns
+    numbers = [np.array([row[i] for row in rows], np.int64) for i in (0, 1)]
+    columns = [np.concatenate([np.empty((0, *shape), dtype), *(row[i] for row in rows)])
+               for i, (shape, dtype) in enumerate(shapes, 2)]
+    rows.clear()  # before more memory is taken
+    return [np.repeat(number, sizes) for number in numbers] + columns
 
 
 def read_recording(file):
@@ -327,11 +372,12 @@ def read_recording(file):
     file: str or os.PathLike. Returns a Recording. RuntimeError naming the file if it is damaged or none of ours, OSError
     if it cannot be opened.
     """
-    head, end, truncated = None, None, False
+    head, end, truncated, robot_steps = None, None, False, 0
     run = {"steps": [], "poses": [], "changes": [], "tours": [], "trajectories": [], "reassigned": []}
     with open(file, "rb") as opened:
         try:
-            parts = _records(opened.read(), _TITLE)
+            data = opened.read()
+            parts = _records(data, _TITLE)
             version = next(parts)
             for part in parts:
                 if part is None:
@@ -344,6 +390,9 @@ def read_recording(file):
                     head = _read_head(record)
                 elif tag == b"step":
                     _read_step(record, len(run["steps"]), head, run, version)
+                    robot_steps += len(head["robots"]) + _STEPS_OF_PART * record.parts
+                    if robot_steps > _MOST_STEPS + len(data):
+                        raise ValueError("holds more steps and lists than so few bytes can")
                 elif tag == b"end ":
                     end = record.text()
                 if record.at != len(record.bytes):
