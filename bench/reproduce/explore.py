@@ -130,6 +130,15 @@ def with_world(task, file):
     return {**task, "world": str(file)}
 
 
+def planning_halves(file):
+    """By events.csv, the 99th percentiles of the planning times in the first and in the second half of all plannings. None if there
+    are fewer than two. Raises ValueError."""
+    with open(file, encoding="utf-8", newline="") as stream:
+        seconds = [float(row["planning_s"]) for row in csv.DictReader(stream)]
+    middle = len(seconds) // 2
+    return [sorted(half)[math.ceil(0.99 * len(half)) - 1] for half in (seconds[:middle], seconds[middle:])] if middle else None
+
+
 def explore(command, program, task, world, threads=1, folder=None):
     """Runs a task: what came of it, either "facts", "gains" and "curve", or why it failed, "failure"; "measured"
     depends on the machine, nothing else does. The world's file is given apart, or empty. Files go to a new folder in
@@ -180,8 +189,10 @@ def run_in(folder, program, task, threads):
         curve, gains = read_steps(run / "steps.csv")
         if (run / "motion.csv").exists():
             facts["worst_of_limits"] = worst_of_limits(run / "motion.csv", facts["task"]["robots"])
-        return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve,
-                "measured": {key: facts.get(key) for key in MEASURED}}
+        measured = {key: facts.get(key) for key in MEASURED}
+        if (run / "events.csv").exists():
+            measured["planning_p99_halves_s"] = planning_halves(run / "events.csv")
+        return {"facts": {key: facts.get(key) for key in FACTS}, "gains": gains, "curve": curve, "measured": measured}
     except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, csv.Error) as error:
         return {"failure": f"what it left cannot be read: {error}", "measured": {}}
 

@@ -4,7 +4,7 @@ import math
 from statistics import fmean
 
 import paper
-from claims import at_the_end, end_of, seconds_mapped, to_a_level
+from comparisons import at_the_end, end_of, seconds_mapped, to_a_level
 from markdown import counted
 from palette import PALETTE, UAV, UGV
 from svg_chart import MARGIN, WIDTH, Drawing, svg
@@ -171,7 +171,7 @@ def ratios(results, first="tour"):
         for other in others:
             mapped = to_a_level(results, [task], first, other, seconds_mapped).found
             if mapped:
-                rows.append((task, other, mapped, at_the_end(results, [task], first, other, end_of).found))
+                rows.append((task, other, mapped, at_the_end(results, [task], first, other, end_of)))
     drawing = Drawing()
     drawing.text(MARGIN, 40, title, "title")
     drawing.text(MARGIN, 61, "By pairs with the same seed, with 95 % intervals; left of 1 tours are earlier. Full: median of "

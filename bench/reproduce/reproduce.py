@@ -121,14 +121,15 @@ def world_file(name, options):
 
 
 def commit_of(command):
-    """Of the sources that a program lies in the build of, if it is ours; a word more if they have changed since."""
+    """The last one that changed the sources in whose build a program lies; a word more if they have changed since."""
     def git(*arguments):
         return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=True).stdout.strip()
-    if not Path(shutil.which(command) or command).resolve().is_relative_to(ROOT):
+    if not (ROOT / ".git").exists() or not Path(shutil.which(command) or command).resolve().is_relative_to(ROOT):
         return ""
+    sources = ("--", "engine", "planner", "cmake", "CMakeLists.txt")
     try:
-        changed = git("status", "--porcelain", "--", "engine", "planner", "cmake", "CMakeLists.txt")
-        return f" of commit {git('rev-parse', '--short=10', 'HEAD')}" + (" with changes" if changed else "")
+        changed = git("status", "--porcelain", *sources)
+        return f" of commit {git('log', '-1', '--abbrev=10', '--format=%h', *sources)}" + (" with changes" if changed else "")
     except (OSError, subprocess.SubprocessError):
         return ""
 

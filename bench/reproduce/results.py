@@ -67,7 +67,8 @@ def object_(value):
 EVERY_RUN = members(
     format=lambda value: count(value) and value == FORMAT, task=object_, version=text,
     measured=members(program=absent_or(text), date=absent_or(text), **dict.fromkeys(
-        ("wall_s", "planning_mean_s", "planning_p99_s", "planning_max_s"), absent_or(number))))
+        ("wall_s", "planning_mean_s", "planning_p99_s", "planning_max_s"), absent_or(number)),
+        planning_p99_halves_s=absent_or(lambda value: some(number)(value) and len(value) == 2)))
 FAILED_RUN = members(failure=text)
 FINISHED_RUN = members(
     facts=members(
@@ -169,12 +170,22 @@ class Result:
     def __getitem__(self, column):
         return self.row[column]
 
+    def after(self, others):
+        """With how these attempts at it crashed or hung."""
+        failures = joined(self["failed_before"], *(text for r in others for text in (r["failed_before"], r["failure"])))
+        return Result({**self.row, "failed_before": failures}, self.curve, self.complete)
+
     def why_incomplete(self):
         """A robot that was cut off from what is left to see is no failure once the world is mapped."""
         end = self["end"]
         if end not in BY_ITSELF:
             return f"{end} at {100 * self.coverage:.1f} %"
         return f"ended at {100 * self.coverage:.1f} % ({end})" if self.coverage < self.complete else None
+
+    @property
+    def ended_early(self):
+        """By its own rule, before the world counted as mapped."""
+        return self["end"] in BY_ITSELF and self.coverage < self.complete
 
     @property
     def crashed(self):
@@ -209,6 +220,12 @@ class Result:
     def metres_mapped(self):
         """Of all robots, until the world counts as mapped; infinite if it never did."""
         metres = self["m_mapped"]
+        return math.inf if metres is None else metres
+
+    @property
+    def uavs_metres_mapped(self):
+        """Until the world counts as mapped; infinite if it never did."""
+        metres = self["m_uav_mapped"]
         return math.inf if metres is None else metres
 
     def metres(self, kind=None):
@@ -259,7 +276,8 @@ class Results:
             # Which program is faster its decisions do not say.
             usable = [results[p] for p in (self.programs[:1] if run.timed else self.programs) if p in results]
             if usable:
-                self.all[run] = next((r for r in usable if not r.crashed), usable[0])
+                used = next((r for r in usable if not r.crashed), usable[0])
+                self.all[run] = used.after(r for r in usable if r is not used)
             self.of_others += bool(results) and not {*results} & {*self.programs}
 
     def read_file(self, run, file):

@@ -16,6 +16,7 @@ GAINS = ("gain_tangent", "gain_predicted", "gained")  # of the UAVs
 MAP = ("false_free", "false_occupied", "surface_found")
 UNSEEN = ("narrow", "hidden", "in_view")
 PLANNING = ("planning_mean_s", "planning_p99_s", "planning_max_s")
+PLANNING_HALVES = ("planning_p99_first_half_s", "planning_p99_second_half_s")
 WHO = ("task", "method", "seed")
 
 COUNT, TEXT, NUMBER, PART = "count", "text", "number", "part"
@@ -23,7 +24,7 @@ COLUMNS = {
     "task": TEXT, "method": TEXT, "seed": COUNT, "timed": COUNT,
     "failure": TEXT,  # why it has left no numbers
     **{f"s_to_{level}": NUMBER for level in LEVELS},
-    **{f"m_{kind}": NUMBER for kind in KINDS}, "m_mapped": NUMBER,
+    **{f"m_{kind}": NUMBER for kind in KINDS}, "m_mapped": NUMBER, "m_uav_mapped": NUMBER,
     **{f"revisited_{kind}": PART for kind in KINDS},
     **{f"first_{kind}": PART for kind in KINDS},
     "steps": COUNT, "steps_to_90": COUNT,
@@ -31,7 +32,7 @@ COLUMNS = {
     "contacts": COUNT, "contacts_in_free": COUNT, "held_back": COUNT, "clearance_min_m": NUMBER, "separation_min_m": NUMBER,
     "worst_of_limits": NUMBER,
     **dict.fromkeys(MAP, PART), **dict.fromkeys(UNSEEN, PART), **dict.fromkeys(GAINS, NUMBER),
-    **dict.fromkeys(PLANNING, NUMBER), "wall_s": NUMBER, "machine": TEXT,  # the latter of timed runs
+    "wall_s": NUMBER, **dict.fromkeys(PLANNING + PLANNING_HALVES, NUMBER), "machine": TEXT,  # but the first of timed runs
     "failed_before": TEXT,  # why earlier attempts at it by this program crashed or hung
     "version": TEXT, "program": TEXT, "date": TEXT,
     "declared": TEXT,  # digests: of what the run is, and of all of its outcome that does not depend on the machine
@@ -77,7 +78,7 @@ def numbers_of(content, complete):
         **{column: content["gains"].get("uav", {}).get(column) for column in GAINS},
         **{f"s_to_{level}": facts["time_s"].get(level) for level in LEVELS},
         **{f"m_{kind}": last["length_m"].get(kind) for kind in KINDS},
-        "m_mapped": mapped and total(mapped["length_m"]),
+        "m_mapped": mapped and total(mapped["length_m"]), "m_uav_mapped": mapped and mapped["length_m"].get("uav"),
         **{f"revisited_{kind}": revisited(facts.get("by_robot"), kind) for kind in KINDS},
         **{f"first_{kind}": last["first"].get(kind) for kind in KINDS},
         "steps": len(curve) - 1, "steps_to_90": first_with(curve, 0.9)[0]}
@@ -87,8 +88,9 @@ def row_of(run, content, complete):
     """Of a run's file. As read_row() gives it of a table: what is rounded there is rounded here. Raises ValueError."""
     measured = content["measured"]
     numbers = numbers_of(content, complete) if "facts" in content else {"failure": content["failure"]}
-    row = {**numbers, **run._asdict(), **{column: measured.get(column) for column in (*PLANNING, "wall_s", "failed_before", "date")},
-           "machine": measured.get("machine") if run.timed else None,
+    measures = ("wall_s", "failed_before", "date", *((*PLANNING, "machine") if run.timed else ()))
+    halves = dict(zip(PLANNING_HALVES, measured.get("planning_p99_halves_s") or ())) if run.timed else {}
+    row = {**numbers, **run._asdict(), **halves, **{column: measured.get(column) for column in measures},
            "version": content["version"], "program": measured.get("program") or "unknown",
            "declared": declaration(content["task"], complete), "outcome": digest(same_everywhere(content))}
     return read_row({column: written(row.get(column), kind) for column, kind in COLUMNS.items()})

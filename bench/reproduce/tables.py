@@ -3,10 +3,11 @@
 from statistics import fmean
 
 import paper
-from claims import NOT_MEASURED, at_the_end, end_of, seconds_mapped, to_a_level
+from comparisons import as_times, at_the_end, end_of, seconds_mapped, to_a_level
 from intervals import FEWEST, difference, mean, median_difference
 from markdown import NOTHING, counted, interval, percent, plain, table, value
-from rows import GAINS, LEVELS, MAP, PLANNING, UNSEEN
+from rows import GAINS, LEVELS, MAP, PLANNING, PLANNING_HALVES, UNSEEN
+from verdicts import NOT_MEASURED
 
 
 def means(runs, measure, digits=0, unit="", scale=1.0):
@@ -66,11 +67,16 @@ def rows_of(results, tasks, cells):
 
 
 def times_table(results, tasks):
+    """With intervals at the level at which the task's world counts as mapped."""
+    def cells(task):
+        judged = results.experiments.level(task)
+        return lambda runs, done: [
+            str(len(runs)), str(len(runs) - len(done)),
+            *(level(done, lambda r, k=k: r.seconds(k), mean_interval if k == judged else means) for k in LEVELS[:-1]),
+            mean_interval(done, end_of)]
+
     return table(["task", "method", "runs", "failed", "50 % [s]", "90 %", "95 %", "99 %", "end"],
-                 rows_of(results, tasks, lambda runs, done: [
-                     str(len(runs)), str(len(runs) - len(done)),
-                     *(level(done, lambda r, k=k: r.seconds(k), mean_interval if k == "99" else means)
-                       for k in LEVELS[:-1]), mean_interval(done, end_of)]), texts=2)
+                 [row for task in tasks for row in rows_of(results, [task], cells(task))], texts=2)
 
 
 def safety_table(results, tasks):
@@ -103,13 +109,17 @@ def pairs_table(results, first="tour"):
                 rows.append([
                     plain(results.experiments.task_title(task)), results.experiments.title(other), str(len(pairs)),
                     failed_of(results, [task], first, other),
-                    *(interval(to_a_level(results, [task], first, other, measure).found, 2, unit="×") for measure in
+                    *(as_times(to_a_level(results, [task], first, other, measure).found) for measure in
                       (seconds_mapped, lambda r: r.metres_mapped)),
                     interval(median_difference(pairs, seconds_mapped), sign=True),
-                    interval(at_the_end(results, [task], first, other, end_of).found, 2, unit="×")])
+                    interval(at_the_end(results, [task], first, other, end_of), 2, unit="×")])
     return table(["task", f"{results.experiments.title(first)} by", "pairs", "failed", "time until mapped",
                   "metres until mapped", "difference until mapped [s]", "time to the end"],
                  rows, texts=2)
+
+
+def ended_pairs(results, tasks, method, other):
+    return [pair for task in tasks for pair in results.pairs(task, method, other) if not any(r.crashed for r in pair)]
 
 
 def compared_tasks(results, method, other):
@@ -123,14 +133,15 @@ def variants_table(results, kind, base):
     for method in results.experiments.methods_of(kind, base):
         tasks = compared_tasks(results, method, base)
         if tasks:
-            contacts = sum(total(with_numbers(results.of(t, method)), "contacts") for t in tasks)
+            pairs = ended_pairs(results, tasks, method, base)
+            contacts = " / ".join(str(total(runs, "contacts")) for runs in zip(*pairs))
             rows.append([results.experiments.title(method), str(sum(len(results.pairs(t, method, base)) for t in tasks)),
                          failed_of(results, tasks, method, base),
-                         *(interval(to_a_level(results, tasks, method, base, measure).found, 2, unit="×") for measure in
+                         *(as_times(to_a_level(results, tasks, method, base, measure).found) for measure in
                            (lambda r: r.until("90"), seconds_mapped, lambda r: r.metres_mapped)),
-                         interval(at_the_end(results, tasks, method, base, end_of).found, 2, unit="×"), str(contacts)])
-    return table(["changed", "pairs", "failed", "time to 90 %", "time until mapped", "metres until mapped",
-                  "time to the end", "contacts"], rows, none=f"No world has {FEWEST} pairs yet.")
+                         interval(at_the_end(results, tasks, method, base, end_of), 2, unit="×"), contacts])
+    return table(["changed", "pairs", "failed: with / without", "time to 90 %", "time until mapped", "metres until mapped",
+                  "time to the end", "contacts: with / without"], rows, none=f"No world has {FEWEST} pairs yet.")
 
 
 def maps_table(results, kind, base):
@@ -155,12 +166,13 @@ def bumpers_table(results):
     for task in results.tasks():
         for method in results.methods(task, "bumpers"):
             without = results.experiments.methods[method]["against"]
-            pairs = [pair for pair in results.pairs(task, method, without) if not any(r.crashed for r in pair)]
-            if pairs:
+            if pairs := ended_pairs(results, [task], method, without):
                 runs, bare = zip(*pairs)
                 rows.append([plain(results.experiments.task_title(task)), results.experiments.title(without),
-                             str(len(pairs)), str(total(runs, "held_back")), str(total(bare, "contacts"))])
-    return table(["task", "method", "pairs", "with bumpers, times held back", "without, contacts"], rows, texts=2)
+                             str(len(pairs)), str(total(runs, "held_back")), str(total(bare, "contacts")),
+                             as_times(to_a_level(results, [task], method, without, seconds_mapped).found)])
+    return table(["task", "method", "pairs", "with bumpers, times held back", "without, contacts",
+                  "time until mapped, with by without"], rows, texts=2)
 
 
 def lines_table(lines):
@@ -180,13 +192,14 @@ def steps_table(results):
             runs, done = results.of(world, method), results.done(world, method)
             rows.append([
                 world, results.experiments.title(method), str(len(runs)), str(len(runs) - len(done)),
+                str(sum(r["end"] == "cut_off" for r in runs)),
                 parts(with_numbers(runs), lambda r: r.coverage), touched(with_numbers(runs)),
                 f"{percent(paper.COVERAGE[world])} in {paper.STEPS[world]}" if method == "steps" else NOTHING,
                 mean_interval(done, lambda r: r["steps"]), level(done, lambda r: r["steps_to_90"], mean_interval),
                 means(done, lambda r: r.metres("uav")), parts(done, lambda r: r["revisited_uav"]),
                 means(done, lambda r: r.share("uav"), 0, " %", 100),
                 means(done, lambda r: r.efficiency("uav"), 1)])
-    return table(["world", "", "runs", "failed", "mapped, by all runs", "runs with a contact", "paper, mapped in steps", "steps",
+    return table(["world", "", "runs", "failed", "ended cut off", "mapped, by all runs", "runs with a contact", "paper, mapped in steps", "steps",
                   "steps to 90 %", "UAV's metres", "of them revisited", "UAV's share", "% per 100 m of the UAV"], rows, texts=2)
 
 
@@ -212,15 +225,14 @@ def planning_table(results):
         if run.timed and not result.crashed:
             task = results.experiments.task_file(run)
             lockstep = task.get("lockstep")
-            printed = paper.UAV_PLANNING[run.task] + paper.UGV_PLANNING[run.task]
             rows.append([run.task, results.experiments.title(run.method) + (", lock-step" if lockstep else ""),
-                         *(value(result[column], 3, " s") for column in PLANNING),
+                         *(value(result[column], 3, " s") for column in (*PLANNING, *PLANNING_HALVES)),
                          NOTHING if lockstep else f"{task['latency_s']} s",
-                         f"{printed:.2f} s" if lockstep else NOTHING, plain(result["machine"] or NOTHING)])
+                         f"{paper.UAV_PLANNING[run.task] + paper.UGV_PLANNING[run.task]:.2f} s" if lockstep else NOTHING, plain(result["machine"] or NOTHING)])
     if not rows:
         return ("Not measured: they are published from runs alone on an idle machine (`./dev reproduce --timed`), and "
                 "there are none yet.\nIn all other tables the clock charges a fixed latency, which no load changes.\n")
-    return table(["task", "method", "mean", "99 %", "longest", "charged", "paper, UAV and UGV", "processor"], rows, texts=2)
+    return table(["task", "method", "mean", "99 %", "longest", "99 %, first half", "second half", "charged", "paper, UAV and UGV", "processor"], rows, texts=2)
 
 
 def published_list(experiments):

@@ -47,6 +47,7 @@ def made_up(task, seconds=None, coverage=0.999, uav_part=0.75, speeds=(0.5, 1.0)
            "map": {"false_free": 0.02, "false_occupied": 0.0, "surface_found": 0.9},
            "path_length_m": {r: seconds * speed[r] for r in robots},
            "planning_mean_s": 0.02, "planning_p99_s": 0.1, "planning_max_s": 0.2,
+           "planning_p99_halves_s": [0.08, 0.1],
            "phases_s": {"frontiers": 1.0, "caster": 1.0, "goals": 1.0, "paths": 1.0, "optimization": 1.0, "moving": 1.0},
            "wall_s": 36.0, "memory_mb": 300.0, "machine": "A|B <cpu>", "instructions": "avx2", "threads": 1, **facts}
     return run, rows

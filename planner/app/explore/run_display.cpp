@@ -120,13 +120,15 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
     why.pop_back();
     why = in_red(why, STDOUT_FILENO) + '\n';
   }
+  const std::string openings = unseen ? narrow_openings(*unseen, setup_.head.robots) : "";
   std::string out =
       row("run", run_.folder.string()) + row("world", setup_.head.world) + why +
       row("steps", std::to_string(sums.steps)) +
       row("mapped", percent(sums.observable) + " of the observable space, " + percent(sums.bounding) +
                         " of the world's box") +
       (unseen ? row("unseen", percent(unseen->narrow) + " where only " + others_than(setup_.head.robots) +
-                                  " see it, " + percent(unseen->hidden) + " hidden from everywhere, " +
+                                  " see it" + (openings.empty() ? "" : " (" + openings + ")") + ", " +
+                                  percent(unseen->hidden) + " hidden from everywhere, " +
                                   percent(unseen->in_view) + " that they could have seen")
               : "") +
       row("map", percent(accuracy.surface_part()) + " of the surface voxels occupied, " +
@@ -138,7 +140,8 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
     out += row(setup_.head.robots[r].robot.name,
                "travelled " + fixed(robot.length, 1) + " m, idle " + fixed(robot.idle, 1) + " s, held back " +
                    std::to_string(robot.held_back) + " times" +
-                   (robot.failed ? ", failed after " + fixed(*robot.failed, 1) + " s" : ""));
+                   (robot.failed ? ", failed after " + fixed(*robot.failed, 1) + " s" : "") +
+                   (robot.goal.empty() ? "" : "; " + robot.goal));
   }
   out += row("contacts",
              std::to_string(numbers.contacts) +

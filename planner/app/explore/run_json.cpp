@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -36,6 +37,8 @@ std::string goal_searches(const planner::ExplorationOptions& exploration) {
   return names;
 }
 
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
 // The processor's name and the number of its threads, for people.
 std::string machine_name() {
   return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
@@ -47,6 +50,18 @@ double peak_memory_mb() {
   ::getrusage(RUSAGE_SELF, &usage);
   constexpr double kPerMegabyte = 1000.0 / 1.024;  // the kernel counts kibibytes
   return static_cast<double>(usage.ru_maxrss) / kPerMegabyte;
+}
+
+// What keeps each robot out, by its name.
+Json json_of_kept_out(const sim::Unseen& unseen, std::span<const planner::RobotDescription> robots) {
+  Json by_robot = Json::object();
+  for (std::size_t r = 0; r < unseen.robots.size(); ++r) {
+    const sim::KeptOut& kept = unseen.robots[r];
+    by_robot[robots[r].robot.name] = {{"narrow_by_m", or_null(kept.narrow_by)},
+                                      {"in_view_then", kept.in_view_then},
+                                      {"without_min_height", kept.without_min_height}};
+  }
+  return by_robot;
 }
 
 }  // namespace
@@ -79,7 +94,6 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
     phases[std::string(planner::name_of(static_cast<planner::Phase>(phase)))] = sums.seconds[phase];
   const double edge = setup.head.resolution;
   const auto volume = static_cast<double>(numbers.mapped.back().bounding) * edge * edge * edge;
-  const auto or_null = [](const std::optional<double>& number) { return number ? Json(*number) : Json(); };
   const Json json = {
       {"version", FRONTLUX_VERSION},
       {"world", setup.head.world},
@@ -106,6 +120,7 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
       {"unseen",
        unseen ? Json{{"in_view", unseen->in_view}, {"narrow", unseen->narrow}, {"hidden", unseen->hidden}}
               : Json()},
+      {"unseen_why", unseen ? json_of_kept_out(*unseen, setup.head.robots) : Json()},
       {"map",
        {{"false_free", accuracy.false_free_part()},
         {"false_occupied", accuracy.false_occupied_part()},

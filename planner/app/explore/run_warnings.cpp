@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kDone = 0.95;  // of the observable space, at an end that its user has not asked for
 
-constexpr double kWorthAHint = 0.01;          // of the observable space
 constexpr std::size_t kEnoughPlannings = 20;  // to judge the latency by
 
 std::string late_planning(double planning, double latency) {
@@ -25,19 +24,33 @@ std::string late_planning(double planning, double latency) {
 }
 
 // Why the rest was not seen, by the true world, as far as it is much.
-std::string why_unseen(const sim::Unseen& unseen, const ExploreSetup& setup) {
+std::string why_unseen(const sim::Unseen& unseen) {
   std::string text;
-  if (unseen.in_view >= kWorthAHint)
+  if (unseen.in_view >= sim::kMuchUnseen)
     text += "; " + percent(unseen.in_view) +
             " could have been seen from places where they fit, but they did not get there through what they "
             "knew to be free, or would have seen too little there (--epsilon)";
-  if (unseen.hidden >= kWorthAHint)
+  if (unseen.hidden >= sim::kMuchUnseen)
     text += "; " + percent(unseen.hidden) +
             " are hidden from everywhere, or out of the reach of their sensors (range_m, vertical_deg)";
-  if (unseen.narrow >= kWorthAHint)
-    text += "; " + percent(unseen.narrow) + " are where only " + others_than(setup.head.robots) +
-            " see them: if doors are too narrow, voxels finer than " + rounded(setup.head.resolution) +
-            " m (--resolution) help, but not against steps, slopes or a sensor that does not reach";
+  return text;
+}
+
+// That only other robots would see much of the rest, and what keeps these out.
+std::string why_narrow(const sim::Unseen& unseen, const ExploreSetup& setup) {
+  const std::string openings = narrow_openings(unseen, setup.head.robots);
+  std::string text = percent(unseen.narrow) + " of the observable space are where only " +
+                     others_than(setup.head.robots) + " see them: ";
+  text +=
+      openings.empty()
+          ? "no robot alone would see half of them with a smaller body; margins (margin_m), steps, slopes or "
+            "the height of a sensor may keep them out"
+          : openings + ", in voxels of " + rounded(setup.head.resolution) +
+                " m; finer ones (--resolution) leave wider openings";
+  for (std::size_t r = 0; r < unseen.robots.size(); ++r)
+    if (const double part = unseen.robots[r].without_min_height; part >= sim::kMuchUnseen)
+      text += "; " + percent(part) + " would be in view of " + setup.head.robots[r].robot.name +
+              " without its minimum height (min_height_m)";
   return text;
 }
 
@@ -68,6 +81,15 @@ std::string others_than(std::span<const planner::RobotDescription> robots) {
   return all_drive ? "smaller robots, or those that fly," : "smaller robots";
 }
 
+std::string narrow_openings(const sim::Unseen& unseen, std::span<const planner::RobotDescription> robots) {
+  std::string text;
+  for (std::size_t r = 0; r < unseen.robots.size(); ++r)
+    if (const auto& [by, part, low] = unseen.robots[r]; by)
+      text += (text.empty() ? "" : ", ") + percent(part) + " behind openings that are " + rounded(*by) +
+              " m too narrow for " + robots[r].robot.name;
+  return text;
+}
+
 bool ends_badly(const RunSums& sums, const RunEnd& end) {
   const auto is = [&](planner::ExplorationEnd reason) { return end.word == planner::name_of(reason); };
   return is(planner::ExplorationEnd::kCutOff) ||
@@ -85,9 +107,11 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
     warnings.push_back("the run has ended with " + percent(sums.observable) +
                        " of the observable space mapped" +
                        (all_failed(numbers) ? ": all robots have failed"
-                        : unseen            ? why_unseen(*unseen, setup)
+                        : unseen            ? why_unseen(*unseen)
                                             : "") +
                        why_they_rest(setup, numbers) + (all_failed(numbers) ? "" : by_stray_returns(setup)));
+  if (unseen && unseen->narrow >= sim::kMuchUnseen && !all_failed(numbers))
+    warnings.push_back(why_narrow(*unseen, setup));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
     if (const auto& failed = numbers.robots[r].failed)
       warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +

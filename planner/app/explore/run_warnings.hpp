@@ -19,9 +19,13 @@ namespace frontlux::app {
 /// Who might see what a team cannot get to see.
 [[nodiscard]] std::string others_than(std::span<const planner::RobotDescription> robots);
 
+/// For which robots openings are too narrow, by how much, and how much is behind; "" if for none.
+[[nodiscard]] std::string narrow_openings(const sim::Unseen& unseen,
+                                          std::span<const planner::RobotDescription> robots);
+
 /// What a reader of a run's numbers must know first: that a robot was cut off, that the run ended by itself
-/// far from done, that a robot failed, or that plannings took longer than the clock charges robots in motion
-/// for them.
+/// far from done, that much is where only other robots see it, that a robot failed, or that plannings took
+/// longer than the clock charges robots in motion for them.
 /// @param end     none: its user has stopped it
 /// @param unseen  why the rest was not seen, if that is known
 [[nodiscard]] std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& sums,

@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -19,9 +22,12 @@ namespace frontlux::sim {
 namespace {
 
 using Keys = std::vector<VoxelKey>;
+using Targets = std::map<VoxelKey, std::uint64_t>;  // to be seen, and how often each was drawn
 
 constexpr std::uint64_t kSample = 4000;  // voxels
 constexpr double kSpacing = 0.3;         // [m] of the cells that robots look from
+constexpr int kStepsPerMetre = 20;       // by which bodies are made smaller
+constexpr double kAnyHeight = -1e6;      // [m] as a minimum height
 
 // What has to be free around robots at their starts.
 std::set<VoxelKey> room_at_starts(const Lattice& lattice, std::span<const planner::Robot> robots,
@@ -62,8 +68,8 @@ VoxelGrid map_of(const GroundTruth& truth, const std::set<VoxelKey>& starts) {
 
 // Some of the observable voxels that a map does not know, from all over the world.
 struct Sample {
-  std::map<VoxelKey, std::uint64_t> targets;  // to be seen, and how often each was drawn
-  double each = 0.0;                          // part of the observable voxels that one stands for
+  Targets targets;
+  double each = 0.0;  // part of the observable voxels that one stands for
 };
 
 // A surface is seen when the free voxel before it is: between centres a flat floor hides itself.
@@ -116,8 +122,88 @@ planner::Robot small(planner::Robot robot, double resolution) {
   travel.motion = planner::Motion::kSpace;
   travel.extents = Eigen::Vector3d::Constant(resolution / 2);
   travel.margin = travel.node_edge = 0.0;
-  travel.min_height = -1e6;
+  travel.min_height = kAnyHeight;
   return robot;
+}
+
+double width_of(const planner::TravelOptions& travel) {
+  const double sides = std::max(travel.extents.x(), travel.extents.y());
+  return travel.drives() ? sides : std::max({sides, travel.extents.z(), travel.node_edge});
+}
+
+// A robot with a smaller body [m], of which a hundredth is left at least.
+planner::Robot smaller(planner::Robot robot, double by) {
+  planner::TravelOptions& travel = robot.travel;
+  travel.shape = travel.planned_shape();  // whose height may differ from its width
+  const double height = travel.extents.z();
+  travel.extents = (travel.extents.array() - by).max(travel.extents.array() / 100);
+  if (travel.drives()) {
+    travel.extents.z() = height;
+    if (travel.ground_extents)
+      travel.ground_extents = travel.ground_extents->cwiseMin(travel.extents.head<2>());
+  } else {
+    travel.min_height -= (height - travel.extents.z()) / 2;  // its lower face gets as low as before
+    if (travel.node_edge > 0.0) travel.node_edge = std::max(travel.node_edge - by, travel.extents.maxCoeff());
+  }
+  return robot;
+}
+
+// What robots see of the true world.
+class Sights {
+ public:
+  // @param truth, grid  live as long as this; `grid` is the map of the true world
+  Sights(const GroundTruth& truth, const VoxelGrid& grid)
+      : truth_(truth),
+        grid_(grid),
+        caster_(make_ray_caster(grid)),
+        edge_(std::max(1, static_cast<int>(std::lround(kSpacing / truth.lattice().resolution())))) {}
+
+  // Those of the targets that a robot sees from where it gets to.
+  [[nodiscard]] Targets seen(const planner::Robot& robot, const planner::Pose& start,
+                             const Targets& targets) const {
+    const auto here = truth_.lattice().key(start.position);
+    if (!here) return {};
+    planner::TravelCorridor corridor(robot.travel, truth_.lattice(), truth_.bounds());
+    corridor.update({grid_, {}}, *here);
+    const Keys cells = one_of_each_cube(corridor.cells(), edge_);
+    Keys keys;
+    for (const auto& [key, drawn] : targets) keys.push_back(key);
+    Targets seen;
+    for (const std::uint32_t i :
+         planner::find_visible_frontiers(*caster_, grid_, keys, {cells, robot.view}).frontiers)
+      seen.insert(*targets.find(keys[i]));
+    return seen;
+  }
+
+ private:
+  const GroundTruth& truth_;
+  const VoxelGrid& grid_;
+  std::unique_ptr<RayCaster> caster_;
+  int edge_;
+};
+
+// @param part_seen  of the observable voxels, by a robot, of the narrow ones
+KeptOut what_keeps_out(const planner::Robot& robot, double narrow,
+                       const std::function<double(const planner::Robot&)>& part_seen) {
+  KeptOut kept;
+  if (robot.travel.motion == planner::Motion::kSpace) {
+    planner::Robot low = robot;
+    low.travel.min_height = kAnyHeight;
+    kept.without_min_height = part_seen(low);
+  }
+  // The largest first: often not even that will do.
+  const int most = static_cast<int>(std::ceil(width_of(robot.travel) * kStepsPerMetre)) - 1;
+  for (int low = 1, high = most, steps = most; low <= high; steps = std::midpoint(low, high)) {
+    const double by = static_cast<double>(steps) / kStepsPerMetre, part = part_seen(smaller(robot, by));
+    if (part < narrow / 2) {
+      low = steps + 1;
+      continue;
+    }
+    high = steps - 1;
+    kept.narrow_by = by;
+    kept.in_view_then = part;
+  }
+  return kept;
 }
 
 }  // namespace
@@ -131,32 +217,34 @@ Unseen explain_unseen(const GroundTruth& truth, const VoxelGrid& map, std::span<
   const VoxelGrid grid = map_of(truth, room_at_starts(truth.lattice(), robots, starts));
   Sample sample = sample_of_unseen(truth, map);
   if (sample.targets.empty()) return {};
-  const auto caster = make_ray_caster(grid);
-  const int edge = std::max(1, static_cast<int>(std::lround(kSpacing / resolution)));
-  const auto left = [&] {
+  const Sights sights(truth, grid);
+  const auto part_of = [&](const Targets& targets) {
     std::uint64_t all = 0;
-    for (const auto& [key, drawn] : sample.targets) all += drawn;
+    for (const auto& [key, drawn] : targets) all += drawn;
     return static_cast<double>(all) * sample.each;
   };
-  // Takes out what a robot sees.
-  const auto look = [&](const planner::Robot& robot, const planner::Pose& start) {
-    const auto here = truth.lattice().key(start.position);
-    if (!here) return;
-    planner::TravelCorridor corridor(robot.travel, truth.lattice(), truth.bounds());
-    corridor.update({grid, {}}, *here);
-    const Keys cells = one_of_each_cube(corridor.cells(), edge);
-    Keys targets;
-    for (const auto& [key, drawn] : sample.targets) targets.push_back(key);
-    for (const std::uint32_t i :
-         planner::find_visible_frontiers(*caster, grid, targets, {cells, robot.view}).frontiers)
-      sample.targets.erase(targets[i]);
+  // Takes out what the team sees.
+  const auto look = [&](const auto& as) {
+    Targets all;
+    for (std::size_t r = 0; r < robots.size(); ++r) {
+      const Targets seen = sights.seen(as(robots[r]), starts[r], sample.targets);
+      for (const auto& [key, drawn] : seen) sample.targets.erase(key);
+      all.insert(seen.begin(), seen.end());
+    }
+    return all;
   };
-  const double all = left();
-  for (std::size_t r = 0; r < robots.size(); ++r) look(robots[r], starts[r]);
-  const double without_in_view = left();
-  for (std::size_t r = 0; r < robots.size(); ++r) look(small(robots[r], resolution), starts[r]);
-  const double hidden = left();
-  return {all - without_in_view, without_in_view - hidden, hidden};
+  const double all = part_of(sample.targets);
+  look([](const planner::Robot& robot) { return robot; });
+  const double without_in_view = part_of(sample.targets);
+  const Targets narrow = look([&](const planner::Robot& robot) { return small(robot, resolution); });
+  const double hidden = part_of(sample.targets);
+  Unseen unseen{all - without_in_view, without_in_view - hidden, hidden, {}};
+  if (unseen.narrow < kMuchUnseen) return unseen;
+  for (std::size_t r = 0; r < robots.size(); ++r)
+    unseen.robots.push_back(what_keeps_out(robots[r], unseen.narrow, [&](const planner::Robot& robot) {
+      return part_of(sights.seen(robot, starts[r], narrow));
+    }));
+  return unseen;
 }
 
 }  // namespace frontlux::sim

@@ -1,0 +1,98 @@
+// `frontlux explore` where a part of the world is behind an opening that is too narrow: who is told by how
+// much.
+
+#include "app/explore_command.hpp"
+#include "sim/mesh/box_mesh.hpp"
+
+#include <frontlux/sim/mesh_file.hpp>
+
+namespace frontlux::test {
+namespace {
+
+using Eigen::Vector3f;
+using nlohmann::json;
+
+std::string percents(const json& part) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << 100.0 * part.get<double>() << " %";
+  return text.str();
+}
+
+class ExploreUnseen : public ExploreCommand {
+ protected:
+  // A cube in space, in a room of 5 x 4 x 2.2 m beside another one, with 0.6 m between the ends of the thick
+  // wall that divides them: on voxels of 0.2 m the opening is at y from 2 to 2.6 m, three voxels wide.
+  [[nodiscard]] Answer explore(const std::string& output, const std::string& edge, bool into_closet,
+                               const std::vector<std::string>& more = {}) const {
+    const float end = into_closet ? 6.0F : 6.4F;
+    sim::World world;
+    sim::test::add_box(world.mesh, {Vector3f(0.0F, 0.0F, 0.0F), Vector3f(end, 4.0F, 2.2F)});
+    sim::test::add_box(world.mesh,
+                       {Vector3f(5.0F, 0.0F, 0.0F), Vector3f(into_closet ? end : 5.6F, 2.0F, 2.2F)});
+    sim::test::add_box(world.mesh, {Vector3f(5.0F, 2.6F, 0.0F), Vector3f(5.6F, 4.0F, 2.2F)});
+    sim::write_ply(path("rooms.ply"), world.mesh);
+    write("cube.json",
+          R"({"name": "cube", "motion": "space", "margin_m": 0, "body": {"kind": "box", "size_m": [)" + edge +
+              ", " + edge + ", " + edge + R"(]}, "limits": {"speed_m_s": 2},
+      "sensor": {"kind": "camera", "horizontal_deg": 90, "vertical_deg": 90, "range_m": 8, "columns": 64,
+                 "rows": 64, "rate_hz": 8}})");
+    return run(joined({path("rooms.ply"), "--start", "1.5,2,1.1", "--ground", "off", "--resolution", "0.2",
+                       "--team", "", "--robot", path("cube.json"), "--report", "off", "-o", path(output)},
+                      more));
+  }
+};
+
+TEST_F(ExploreUnseen, TellsByHowMuchARobotIsTooLarge) {
+  const Answer answer = explore("run", "0.9", true);
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const json run = json_in("run"), cube = run.at("unseen_why").at("cube");
+  EXPECT_EQ(run.at("unseen_why").size(), 1U);
+  EXPECT_EQ(cube.at("narrow_by_m"), 0.3) << "0.9 m in three voxels of 0.2 m";
+  const double narrow = run.at("unseen").at("narrow"), then = cube.at("in_view_then");
+  EXPECT_GT(then, 0.9 * narrow) << "all of the other room";
+  EXPECT_LE(then, narrow);
+  EXPECT_EQ(cube.at("without_min_height"), 0.0);
+  EXPECT_GT(run.at("coverage_observable"), 0.95);
+  EXPECT_GT(narrow, 0.01);
+  const std::string openings = percents(then) + " behind openings that are 0.3 m too narrow for cube";
+  const std::string seen_by =
+      percents(narrow) + " of the observable space are where only smaller robots see them: ";
+  expect_parts(answer.out, {"\nunseen       " + percents(narrow) + " where only smaller robots see it (" +
+                            openings + "), "});
+  expect_parts(answer.err,
+               {"warning: " + seen_by + openings + ", in voxels of 0.2 m; finer ones (--resolution) "});
+  expect_parts(run.at("warnings").at(0), {seen_by});
+  EXPECT_EQ(answer.err.find("the run has ended with"), std::string::npos) << "so much is mapped";
+}
+
+TEST_F(ExploreUnseen, TellsItBesideThatMuchIsLeft) {
+  const Answer answer = explore("run", "0.9", false);
+  const json run = json_in("run");
+  EXPECT_LT(run.at("coverage_observable"), 0.95);
+  expect_parts(run.at("warnings").at(0), {"the run has ended with ", "; cube: no goal: "});
+  expect_parts(run.at("warnings").at(1), {" behind openings that are 0.3 m too narrow for cube"});
+  // A finished run says what each robot was about last.
+  const std::string goal = run.at("by_robot").at("cube").at("goal");
+  EXPECT_TRUE(goal.starts_with("no goal: ")) << goal;
+  expect_parts(answer.out, {"\ncube         travelled ", " times; " + goal + "\n"});
+}
+
+TEST_F(ExploreUnseen, TellsNothingOfRobotsThatFit) {
+  const Answer answer = explore("run", "0.5", true);
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const json run = json_in("run");
+  EXPECT_EQ(run.at("end"), "nothing_to_do");
+  EXPECT_LT(run.at("unseen").at("narrow"), 0.01);
+  EXPECT_EQ(run.at("unseen_why"), json::object());
+  expect_parts(answer.out, {" where only smaller robots see it, "});
+  EXPECT_EQ(answer.err.find("smaller robots"), std::string::npos) << answer.err;
+}
+
+TEST_F(ExploreUnseen, IsNotAskedOfARunThatHasNotEndedByItself) {
+  ASSERT_EQ(explore("run", "0.9", false, {"--stop-time", "0.5"}).code, 0);
+  EXPECT_EQ(json_in("run").at("end"), "time_limit");
+  EXPECT_EQ(json_in("run").at("unseen_why"), nullptr);
+}
+
+}  // namespace
+}  // namespace frontlux::test
