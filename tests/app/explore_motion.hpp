@@ -55,6 +55,15 @@ class ExploreMotion : public ExploreCommand {
     for (const std::string& run : {a, b}) expect_planning_times(run);
   }
 
+  /// Of a run without bumpers in the folder "run", in which no body has touched a surface.
+  [[nodiscard]] Table motions_without_contact(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--bumper", "off", "--report", "off", "--force", "-o", path("run")});
+    const Answer answer = run(words);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    EXPECT_NE(answer.out.find("contacts     0"), std::string::npos) << answer.out;
+    return Table(path("run/motion.csv"));
+  }
+
   /// Adds a box to an OBJ file, or a ramp whose top has another height at its low x.
   static void add_prism(std::ostream& obj, int& vertices, const Eigen::Vector3d& low,
                         const Eigen::Vector3d& high, double top_at_low_x) {
