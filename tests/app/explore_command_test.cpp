@@ -211,12 +211,17 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   for (const char* seconds : {"-1", "nan", "61"})
     expect_refused(with({"--scan-delay", seconds}), {"--scan-delay"});
   for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})
-    expect_refused(with({"--fail", word}), {"--fail", "NAME=SECONDS"});
-  expect_refused(with({"--fail", "car=3"}), {"--fail: 'car=3'", "not in the team", "ugv, uav"});
-  expect_refused(with({"--fail", "uav=3,uav=4"}), {"--fail: 'uav=3,uav=4' names uav twice"});
+    for (const std::string option : {"--fail", "--join"})
+      expect_refused(with({option, word}), {option, "NAME=SECONDS"});
+  for (const std::string option : {"--fail", "--join"}) {
+    expect_refused(with({option, "car=3"}), {option + ": 'car=3'", "not in the team", "ugv, uav"});
+    expect_refused(with({option, "uav=3,uav=4"}), {option + ": 'uav=3,uav=4' names uav twice"});
+    expect_refused(with({option, "uav=3", "--lockstep"}), {option + " is not for --lockstep"});
+  }
+  expect_refused(with({"--fail", "uav=3", "--join", "ugv=3,uav=3"}),
+                 {"--join: 'ugv=3,uav=3': uav fails at that time"});
   expect_refused(with({"--pose", "uav=1,1,1,0", "--pose", "uav=2,1,1,0"}),
                  {"--pose: 'uav=2,1,1,0' places uav, which another --pose does already"});
-  expect_refused(with({"--fail", "uav=3", "--lockstep"}), {"--fail is not for --lockstep"});
   expect_refused(with({"--drift", "0.1", "--lockstep"}), {"--drift is not for --lockstep"});
   expect_refused(with({"--tracking-error", "0.1", "--lockstep"}), {"--tracking-error is not for --lockstep"});
   expect_refused(with({"--scan-loss", "0.1", "--lockstep"}), {"--scan-loss is not for --lockstep"});

@@ -434,6 +434,27 @@ class InMotion(unittest.TestCase):
         self.assertEqual(scans, [])
         self.assertIsNotNone(exploration.end)
 
+    def test_a_robot_joins_the_others(self):
+        exploration, scans = in_motion(2), []
+        def sense(robot, pose, now):
+            scans.append((robot, now))
+            return room().measure(exploration.robots[robot], pose)
+        waits = exploration.at(1, 0.0)["pose"]
+        exploration.lose(1, waits, 0.0)
+        planner.run(exploration, sense, until=2.0)
+        self.assertEqual({robot for robot, _ in scans}, {0})
+        exploration.join(1, waits, 2.1)
+        self.assertEqual(exploration.lost, [])
+        with self.assertRaisesRegex(ValueError, "robot 1 takes part already"):
+            exploration.join(1, waits, 2.1)
+        plans = []
+        scans.clear()
+        planner.run(exploration, sense, until=7.0, planned=plans.append)
+        self.assertEqual(scans, sorted(scans, key=lambda scan: scan[1]))
+        self.assertEqual([now for robot, now in scans if robot == 1][:2], [2.25, 2.5])
+        self.assertEqual([plan.reason for plan in plans if plan.robot == 1][0], "start")
+        self.assertGreater(np.linalg.norm((exploration.at(1, 7.0)["pose"] - waits)[:3]), 0.3)
+
     def test_a_ground_robot(self):
         lidar = frontlux.FieldOfView.spinning(0.9, 5.0)
         robot = planner.Robot("cart", "plane", (0.5, 0.5, 0.5), lidar, 240, 24, 4.0, sensor_height=0.5)

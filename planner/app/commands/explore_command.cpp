@@ -162,6 +162,9 @@ void add_explore_command(CLI::App& app) {
               kProbability);
   command.add("--fail", options.failures, "NAME=SECONDS",
               "A robot fails after this time, and stays where it is; more with commas between");
+  command.add("--join", options.joins, "NAME=SECONDS",
+              "A robot takes part from this time on only, and stays at its start until then; or again, "
+              "after --fail");
   const auto method = add_method_options(command, options);
   add_world_options(command, options.source, "auto; built-in worlds: off");
   command.allow_only(resume, {"--world", "--threads", "--max-steps", "--report", "--quiet", "--json"});

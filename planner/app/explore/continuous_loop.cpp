@@ -92,7 +92,7 @@ ExplorationStep ContinuousLoop::plan_or_finish(const ExplorationStep* recorded) 
         note_end();
         return std::move(planned->step);
       }
-    if (lose_robots()) note_end();
+    if (note_attendance()) note_end();
     if (end_) return exploration_.finish(time_);
     move_and_sense();
     if (auto limit = limit_reached(setup_, numbers_.mapped.back())) {
@@ -102,20 +102,34 @@ ExplorationStep ContinuousLoop::plan_or_finish(const ExplorationStep* recorded) 
   }
 }
 
+// While a robot is to come nobody else ends a run by having nothing to do.
 void ContinuousLoop::note_end() {
-  if (const auto end = exploration_.end())
+  const auto is_to_come = [this](const Attendance& robot) { return robot.joins && *robot.joins > time_; };
+  const auto end = exploration_.end();
+  if (end &&
+      (end == planner::ExplorationEnd::kStepLimit || std::ranges::none_of(setup_.attendance, is_to_come)))
     end_ = {std::string(planner::name_of(*end)),
             planner::describe(*end, exploration_.options(), "plannings")};
 }
 
-// Those whose time has come. Where they are they stay.
-bool ContinuousLoop::lose_robots() {
+// Robots that take no part stay where they are.
+// @return whether any has begun or ceased to take part
+bool ContinuousLoop::note_attendance() {
   bool any = false;
   for (std::size_t r = 0; r < numbers_.robots.size(); ++r) {
-    if (!setup_.failures[r] || *setup_.failures[r] > time_ || numbers_.robots[r].failed) continue;
-    exploration_.lose(r, robots_.believed(r), time_);
-    robots_.fail(r);
-    numbers_.robots[r].failed = time_;
+    RobotNumbers& robot = numbers_.robots[r];
+    const Attendance& attendance = setup_.attendance[r];
+    const bool takes_part = attendance.at(time_);
+    if (takes_part == robot.takes_part) continue;
+    if (takes_part) {
+      exploration_.join(r, {robots_.believed(r), {}}, time_);
+      robot.joined = time_;
+    } else {
+      exploration_.lose(r, robots_.believed(r), time_);
+      if (attendance.fails && *attendance.fails <= time_) robot.failed = time_;
+    }
+    robots_.set_active(r, takes_part);
+    robot.takes_part = takes_part;
     any = true;
   }
   return any;
@@ -131,8 +145,9 @@ double ContinuousLoop::next_moment() const {
   at_latest(time_ + exploration_.options().period / 4);  // robots plan when a period is over
   if (const auto arrival = scans_.next_arrival()) at_latest(*arrival);
   if (setup_.stop_time) at_latest(*setup_.stop_time);
-  for (const std::optional<double>& failure : setup_.failures)
-    if (failure) at_latest(*failure);
+  for (const Attendance& robot : setup_.attendance)
+    for (const std::optional<double>& time : {robot.fails, robot.joins})
+      if (time) at_latest(*time);
   return moment;
 }
 
@@ -149,7 +164,7 @@ void ContinuousLoop::move_and_sense() {
   note_motion(stopped);
   judge_contacts();
   for (const auto& robot : stopped) exploration_.stopped(robot.robot, robot.pose, time_, robot.blocked);
-  if (sensed && !numbers_.robots[sensed->robot].failed) scans_.send(std::move(*sensed));
+  if (sensed && numbers_.robots[sensed->robot].takes_part) scans_.send(std::move(*sensed));
   Mapped mapped = numbers_.mapped.back();
   for (const auto& [taken, robot, pose, scan] : scans_.arrived(time_))
     count(exploration_.insert(robot, pose, scan), mapped);

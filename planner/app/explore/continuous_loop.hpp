@@ -33,7 +33,7 @@ class ContinuousLoop final : public RunLoop {
   planner::ExplorationStep go_on(const planner::ExplorationStep* recorded);
   planner::ExplorationStep plan_or_finish(const planner::ExplorationStep* recorded);
   void note_end();
-  bool lose_robots();
+  bool note_attendance();
   [[nodiscard]] double next_moment() const;
   void move_and_sense();
   void count(const MapChange& change, Mapped& mapped);

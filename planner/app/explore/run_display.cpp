@@ -141,6 +141,7 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
                "travelled " + fixed(robot.length, 1) + " m, idle " + fixed(robot.idle, 1) + " s, held back " +
                    std::to_string(robot.held_back) + " times" +
                    (robot.failed ? ", failed after " + fixed(*robot.failed, 1) + " s" : "") +
+                   (robot.joined ? ", joined after " + fixed(*robot.joined, 1) + " s" : "") +
                    (robot.goal.empty() ? "" : "; " + robot.goal));
   }
   out += row("contacts",

@@ -88,6 +88,7 @@ std::string write_run_json(const ExploreRun& run, const ExploreOptions& options,
                     {"held_back", robot.held_back},
                     {"goal", robot.goal}};
     if (robot.failed) robots[name]["failed_s"] = *robot.failed;
+    if (robot.joined) robots[name]["joined_s"] = *robot.joined;
     held_back += robot.held_back;
   }
   for (std::size_t phase = 0; phase < planner::kPhases; ++phase)

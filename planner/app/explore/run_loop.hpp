@@ -32,7 +32,9 @@ struct RobotNumbers {
   double revisited = 0.0;             ///< the part of that, 0 to 1, which led to where it had been
   double idle = 0.0;                  ///< [s] at rest without turning
   std::uint64_t held_back = 0;        ///< times that its bumper stopped it
+  bool takes_part = true;             ///< now
   std::optional<double> failed = {};  ///< [s] when it did
+  std::optional<double> joined = {};  ///< [s] the others: later than they began, or again
   std::string goal = {};              ///< why it had the goal that it was given last, or none
 };
 

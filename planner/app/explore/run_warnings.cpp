@@ -55,14 +55,15 @@ std::string why_narrow(const sim::Unseen& unseen, const ExploreSetup& setup) {
 }
 
 bool all_failed(const RunNumbers& numbers) {
-  return std::ranges::all_of(numbers.robots, [](const auto& robot) { return robot.failed.has_value(); });
+  return std::ranges::all_of(numbers.robots,
+                             [](const auto& robot) { return robot.failed && !robot.takes_part; });
 }
 
 // What each robot that is still there had last.
 std::string why_they_rest(const ExploreSetup& setup, const RunNumbers& numbers) {
   std::string text;
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
-    if (!numbers.robots[r].failed && !numbers.robots[r].goal.empty())
+    if (numbers.robots[r].takes_part && !numbers.robots[r].goal.empty())
       text += "; " + setup.head.robots[r].robot.name + ": " + numbers.robots[r].goal;
   return text;
 }
@@ -114,8 +115,10 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
     warnings.push_back(why_narrow(*unseen, setup));
   for (std::size_t r = 0; r < numbers.robots.size(); ++r)
     if (const auto& failed = numbers.robots[r].failed)
-      warnings.push_back("the robot '" + setup.head.robots[r].robot.name + "' failed after " +
-                         rounded(*failed) + " s, as --fail says");
+      warnings.push_back(
+          "the robot '" + setup.head.robots[r].robot.name + "' failed after " + rounded(*failed) +
+          " s, as --fail says" +
+          (numbers.robots[r].takes_part ? ", and joined the others again, as --join says" : ""));
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
   if (!setup.lockstep && planning > latency && sums.planning.size() >= kEnoughPlannings)
     warnings.push_back(late_planning(planning, latency));

@@ -64,6 +64,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("scan_delay", options.message_errors.delay, kScanDelays);
   visit("scan_loss", options.message_errors.loss, kProbability);
   visit("fail", options.failures);
+  visit("join", options.joins);
 }
 
 // A file's name is bytes, and JSON is Unicode: what is not plain in a URI is written as %41.
@@ -90,7 +91,7 @@ Json json_of(const Value& value) {
     return value;
 }
 Json json_of(const StartPose& start) { return start.word; }
-Json json_of(const RobotFailures& failures) { return failures.each.empty() ? Json() : Json(failures.word); }
+Json json_of(const RobotTimes& times) { return times.each.empty() ? Json() : Json(times.word); }
 Json json_of(const Eigen::Vector3f& point) {
   return {as_written(point.x()), as_written(point.y()), as_written(point.z())};
 }
@@ -175,19 +176,20 @@ void read(std::string_view word, StartPose& start) {
   start.robot = word.substr(0, equals);
 }
 
-void read(std::string_view word, RobotFailures& failures) {
-  failures = {std::string(word), {}};
+void read(std::string_view word, RobotTimes& times) {
+  times = {std::string(word), {}};
   for (std::string_view rest = word;; rest.remove_prefix(rest.find(',') + 1)) {
     const std::string_view part = rest.substr(0, rest.find(','));
     const std::size_t equals = part.find('=');
-    RobotFailures::Failure& failure =
-        failures.each.emplace_back(RobotFailures::Failure{std::string(part.substr(0, equals)), 0.0});
+    RobotTimes::Time& time =
+        times.each.emplace_back(RobotTimes::Time{std::string(part.substr(0, equals)), 0.0});
     try {
       if (equals == std::string_view::npos || equals == 0) throw BadInput("");
-      read(part.substr(equals + 1), failure.time, kFromZero);
+      read(part.substr(equals + 1), time.seconds, kFromZero);
     } catch (const BadInput&) {
-      throw BadInput(quote(word) +
-                     " does not say who fails; give NAME=SECONDS, as in uav2=120, with commas between");
+      throw BadInput(
+          quote(word) +
+          " does not name robots and times; give NAME=SECONDS, as in uav2=120, with commas between");
     }
     if (rest.find(',') == std::string_view::npos) return;
   }
@@ -207,7 +209,8 @@ std::vector<std::string_view> errors_in_motion(const ExploreOptions& options) {
                                     {tracking > 0.0, "tracking-error"},
                                     {delay > 0.0, "scan-delay"},
                                     {loss > 0.0, "scan-loss"},
-                                    {!options.failures.each.empty(), "fail"}})
+                                    {!options.failures.each.empty(), "fail"},
+                                    {!options.joins.each.empty(), "join"}})
     if (given) names.emplace_back(name);
   return names;
 }

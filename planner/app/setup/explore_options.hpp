@@ -33,17 +33,17 @@ struct StartPose {
 /// @throws BadInput
 void read(std::string_view word, StartPose& start);
 
-/// Robots that fail, and when.
-struct RobotFailures {
-  struct Failure {
+/// When something happens to robots.
+struct RobotTimes {
+  struct Time {
     std::string robot;
-    double time;  ///< [s]
+    double seconds;
   };
   std::string word;  ///< as the user gives it: NAME=SECONDS[,NAME=SECONDS]...
-  std::vector<Failure> each;
+  std::vector<Time> each;
 };
 /// @throws BadInput
-void read(std::string_view word, RobotFailures& failures);
+void read(std::string_view word, RobotTimes& times);
 
 /// Where a file was when a run began; empty: not known. Recorded byte for byte, whatever the name.
 struct AbsolutePath {
@@ -81,7 +81,7 @@ struct ExploreOptions {
   sim::RangeErrors errors;
   sim::PoseErrors pose_errors;
   sim::MessageErrors message_errors;
-  RobotFailures failures;
+  RobotTimes failures, joins;
 };
 
 /// Whether robots go on tours, the default in motion.

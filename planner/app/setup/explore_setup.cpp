@@ -7,15 +7,11 @@
 #include <frontlux/sim/start_pose.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <map>
-#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace frontlux::app {
@@ -23,65 +19,12 @@ namespace {
 
 using planner::GoalSearch, planner::Method, planner::Motion, planner::Pose, planner::RobotDescription;
 
-constexpr std::size_t kMaxRobots = io::kMostRobots;
-
-// Robots of the same name get numbers, but none that makes the name of another one.
-void number_equal_names(std::span<RobotDescription> robots) {
-  std::map<std::string, int> total, number;
-  for (const RobotDescription& robot : robots) ++total[robot.robot.name];
-  std::set<std::string> taken;
-  for (const auto& [name, count] : total) taken.insert(name);
-  for (RobotDescription& robot : robots) {
-    const std::string name = robot.robot.name;
-    if (total[name] == 1) continue;
-    do {
-      const std::string digits = std::to_string(++number[name]);
-      robot.robot.name = name.substr(0, io::kLongestRobotName - digits.size()) + digits;
-    } while (!taken.insert(robot.robot.name).second);
-  }
-}
-
-// Those on the ground come first, since they choose first.
-std::vector<RobotDescription> gather_robots(const ExploreOptions& options, Method method) {
-  std::vector<RobotDescription> robots;
-  try {
-    robots = team_of(options.team, method);
-  } catch (const BadInput& error) {
-    throw BadInput(std::string("--team: ") + error.what());
-  }
-  // Robots in motion keep apart in time; in lock-step and on paper, by flying above those on the ground.
-  if (!options.lockstep && method == Method::kDefault)
-    for (RobotDescription& robot : robots)
-      robot.robot = planner::in_motion(std::move(robot.robot), options.source.resolution);
-  for (const io::TaskRobot& robot : options.robots) robots.push_back(robot.description);
-  for (const std::string& file : options.robot_files) robots.push_back(io::read_robot(file));
-  if (robots.empty()) throw BadInput("--team: there is no robot; give one here or with --robot");
-  if (robots.size() > kMaxRobots)
-    throw BadInput("--team: " + std::to_string(robots.size()) + " robots are too many; give at most " +
-                   std::to_string(kMaxRobots));
-  std::stable_partition(robots.begin(), robots.end(),
-                        [](const RobotDescription& robot) { return robot.robot.travel.drives(); });
-  number_equal_names(robots);
-  return robots;
-}
-
 // Where the robots are to start, and who says so, in messages. A task's robots come first among those that
 // move as they do, as in `gather_robots`.
 struct GivenStarts {
   std::vector<std::optional<Pose>> poses;
   std::vector<std::string> givers;
 };
-// @param giver  for messages
-std::size_t robot_named(const std::string& name, const std::string& giver,
-                        std::span<const RobotDescription> robots) {
-  const auto robot = std::find_if(robots.begin(), robots.end(),
-                                  [&](const RobotDescription& r) { return r.robot.name == name; });
-  if (robot != robots.end()) return static_cast<std::size_t>(robot - robots.begin());
-  std::string names;
-  for (const RobotDescription& r : robots) names.append(names.empty() ? "" : ", ").append(r.robot.name);
-  throw BadInput(giver + " is for a robot that is not in the team; its robots are " + names);
-}
-
 // Where else options may come from, for the end of a message.
 std::string or_in_task(const ExploreOptions& options) {
   return options.task.empty() ? "" : " (some options are those of the task " + options.task + ")";
@@ -105,19 +48,6 @@ void check_errors_in_motion(const ExploreOptions& options) {
           ": of 1 nothing is ever measured, so that the run would go on for long or for ever; give "
           "less, or --stop-time or --max-steps as well" +
           or_in_task(options));
-}
-
-// When each robot fails [s].
-std::vector<std::optional<double>> failures_of(const ExploreOptions& options,
-                                               std::span<const RobotDescription> robots) {
-  std::vector<std::optional<double>> times(robots.size());
-  const std::string giver = "--fail: " + quote(options.failures.word);
-  for (const auto& [name, time] : options.failures.each) {
-    auto& of_robot = times[robot_named(name, giver, robots)];
-    if (of_robot) throw BadInput(giver + " names " + name + " twice");
-    of_robot = time;
-  }
-  return times;
 }
 
 GivenStarts given_starts(const ExploreOptions& options, std::span<const RobotDescription> robots) {
@@ -337,28 +267,6 @@ std::optional<Eigen::Vector3f> start_in(const SourcedWorld& sourced, const World
 
 }  // namespace
 
-std::vector<RobotDescription> team_of(const std::string& word, Method method) {
-  std::vector<RobotDescription> robots;
-  if (word.empty()) return robots;
-  for (std::string_view rest = word;; rest.remove_prefix(rest.find('+') + 1)) {
-    const std::string_view part = rest.substr(0, rest.find('+'));
-    std::size_t count = 1;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), count);
-    const std::string_view name = part.substr(static_cast<std::size_t>(end - part.data()));
-    const bool too_many = error == std::errc::result_out_of_range || count > kMaxRobots;
-    if ((!too_many && error != std::errc{} && end != part.data()) || count < 1 ||
-        (name != "uav" && name != "ugv"))
-      throw BadInput(
-          quote(word) +
-          " is not a team; give uav, ugv, or several with + between them, as in uav+ugv or 2uav+ugv");
-    if (too_many || robots.size() + count > kMaxRobots)
-      throw BadInput(quote(word) + " is more than " + std::to_string(kMaxRobots) + " robots; give fewer");
-    for (std::size_t i = 0; i < count; ++i)
-      robots.push_back(name == "uav" ? planner::uav_description(method) : planner::ugv_description());
-    if (rest.find('+') == std::string_view::npos) return robots;
-  }
-}
-
 ExploreSetup make_setup(const ExploreOptions& options,
                         const std::optional<std::vector<RobotDescription>>& robots) {
   ExploreSetup setup;
@@ -371,10 +279,10 @@ ExploreSetup make_setup(const ExploreOptions& options,
   setup.stop_coverage = options.stop_coverage;
   setup.stop_time = options.stop_time;
   work_on(options.task.empty() ? options.source.world : options.task, "give a coarser --resolution", [&] {
-    setup.head.robots = robots ? *robots : gather_robots(options, options.mode);
+    setup.head.robots = robots ? *robots : gather_robots(options);
     setup.exploration = exploration_options(options, setup.head.robots);
     check_errors_in_motion(options);
-    setup.failures = failures_of(options, setup.head.robots);
+    setup.attendance = attendance_of(options, setup.head.robots);
     const GivenStarts given = given_starts(options, setup.head.robots);
     const WorldSource source = source_of(options, given);
     setup.given_starts = given.poses;

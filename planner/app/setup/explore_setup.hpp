@@ -1,6 +1,7 @@
 #pragma once
 
 #include "setup/explore_options.hpp"
+#include "setup/team.hpp"
 #include "world_source.hpp"
 
 #include <frontlux/io/robot_file.hpp>
@@ -27,7 +28,7 @@ struct ExploreSetup {
   sim::RangeErrors errors;
   sim::PoseErrors pose_errors;
   sim::MessageErrors message_errors;
-  std::vector<std::optional<double>> failures;  // [s] of each robot
+  std::vector<Attendance> attendance;  // of each robot
   bool lockstep = false;
   sim::AtContact at_contact = sim::AtContact::kStay;
   std::optional<double> stop_coverage;  // 0 to 1, of the observable voxels
@@ -39,10 +40,6 @@ struct ExploreSetup {
       given_start;  // [m] in the world's frame before the ground is aligned; so are
   std::vector<std::optional<planner::Pose>> given_starts;  // those of the robots that are not looked for
 };
-
-/// The robots of a word like "2uav+ugv", two aerial robots and a ground robot; none if it is empty.
-/// @throws BadInput
-[[nodiscard]] std::vector<planner::RobotDescription> team_of(const std::string& word, planner::Method method);
 
 /// Makes or reads the world, puts the robots at their starts, and checks all options.
 /// @param robots  of a resumed run; nothing: those that the options name

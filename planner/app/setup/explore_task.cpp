@@ -20,11 +20,12 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::GoalSearch, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 28> kFurther = {
-    "start",        "ground",    "scale",    "up",     "goal",         "planner",       "renderer",
-    "samples",      "assign",    "optimize", "caster", "lambda",       "advance",       "epsilon",
-    "min-distance", "max-steps", "bumper",   "noise",  "dropout",      "drift",         "fix-every",
-    "scan-delay",   "scan-loss", "fail",     "stray",  "sensor-model", "tours-without", "tracking-error"};
+constexpr std::array<std::string_view, 29> kFurther = {
+    "start",         "ground",    "scale",    "up",     "goal",    "planner",      "renderer",
+    "samples",       "assign",    "optimize", "caster", "lambda",  "advance",      "epsilon",
+    "min-distance",  "max-steps", "bumper",   "noise",  "dropout", "drift",        "fix-every",
+    "scan-delay",    "scan-loss", "fail",     "join",   "stray",   "sensor-model", "tours-without",
+    "tracking-error"};
 
 void set_method(const TaskMethod& method, ExploreOptions& options) {
   options.mode = method.goal ? Method::kDefault : Method::kPaper;
@@ -136,6 +137,7 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add_number("scan-delay", options.message_errors.delay, other.message_errors.delay);
   add_number("scan-loss", options.message_errors.loss, other.message_errors.loss);
   if (!options.failures.each.empty()) words.emplace_back("fail", options.failures.word);
+  if (!options.joins.each.empty()) words.emplace_back("join", options.joins.word);
   return words;
 }
 

@@ -13,7 +13,7 @@ def run(exploration, sense, until=math.inf, planned=None):
     exploration: ContinuousExploration that has begun; it may plan after each scan, and where scans are rare every quarter of its
     `period`. sense(robot, pose, time): called for each scan with the robot's number,
     the pose of its sensor, float64 (4,), and the time [s]; returns (directions, ranges) as `insert` takes them, or None for no
-    scan. Robots that are lost take none. until: [s] of the clock. planned(plan): called with each Plan. Exceptions of both end the
+    scan. Robots that are lost take none until they join again. until: [s] of the clock. planned(plan): called with each Plan. Exceptions of both end the
     run. Returns the time [s] of the last scan or, between scans, moment to plan; `exploration.time` if there was none.
 
     Scans are due at multiples of their periods since the exploration's begin, so that some runs one after the other are the same
@@ -26,13 +26,17 @@ def run(exploration, sense, until=math.inf, planned=None):
         raise ValueError("the exploration has not begun: call begin first")
     rates = [robot.rate for robot in exploration.robots]
     taken = _TAKEN.setdefault(exploration, [0] * len(rates))
-    for robot, rate in enumerate(rates):
+
+    def next_scan(robot):
+        rate = rates[robot]
         taken[robot] = max(taken[robot], math.floor((now - begin) * rate) - 1)  # rounding may have added one
         while begin + taken[robot] / rate < now:
             taken[robot] += 1
+        return begin + taken[robot] / rate
+
     while exploration.end is None:
         lost = exploration.lost
-        due = {robot: begin + taken[robot] / rate for robot, rate in enumerate(rates) if robot not in lost}
+        due = {robot: next_scan(robot) for robot in range(len(rates)) if robot not in lost}
         earliest = min(due.values(), default=now)
         to_plan = now + exploration.period / 4
         moment = to_plan if to_plan < earliest - 1e-9 else earliest

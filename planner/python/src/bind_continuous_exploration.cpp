@@ -4,6 +4,7 @@
 #include "team.hpp"
 
 #include <frontlux/planner/continuous_exploration.hpp>
+#include <frontlux/planner/exploration_start.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -129,6 +130,14 @@ void lose(const Self& self, std::size_t robot, const py::object& pose, double ti
   at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
     state.exploration.lose(robot, rests, time);
     state.lost.insert(robot);
+  });
+}
+
+void join(const Self& self, std::size_t robot, const py::object& pose, double time, double free_radius) {
+  at_rest(self, robot, pose, time, [&](Continuous& state, const planner::Pose& rests) {
+    const planner::Robot& travels = state.team.options.team[robot].robot;
+    state.exploration.join(robot, start_at(state.team.lattice(), travels, rests, free_radius), time);
+    state.lost.erase(robot);
   });
 }
 
@@ -262,7 +271,13 @@ that. It plans anew from there.)")
       .def("lose", &lose, py::arg("robot"), py::arg("pose"), py::arg("time"),
            "A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a "
            "pose, "
-           "where the others keep apart from it, and what it was to see becomes theirs.")
+           "where the others keep apart from it, and what it was to see becomes theirs, unless it joins them "
+           "again.")
+      .def(
+          "join", &join, py::arg("robot"), py::arg("pose"), py::arg("time"), py::arg("free_radius") = 0.0,
+          R"(A robot that was lost takes part again, from where it rests. What has blocked its path before is forgotten.
+
+One that comes later is in the team from the begin on, and lost before the first planning. free_radius: as that of `begin`.)")
       .def(
           "finish",
           [](const Self& self, double time) {
@@ -299,7 +314,7 @@ that. It plans anew from there.)")
       .def_property_readonly("lost", property([](const Continuous& state) {
                                return std::vector<std::size_t>(state.lost.begin(), state.lost.end());
                              }),
-                             "Numbers of the robots that were lost, sorted: list of int.")
+                             "Numbers of the robots that take no part now, sorted: list of int.")
       .def_property_readonly("begin_time", property([](const Continuous& state) {
                                return state.begun ? std::optional(state.begin_time) : std::nullopt;
                              }),

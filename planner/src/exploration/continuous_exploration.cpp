@@ -158,6 +158,21 @@ void ContinuousExploration::lose(std::size_t robot, const Pose& pose, double tim
   if (state_->team.tours) state_->team.tours->lose(robot);
 }
 
+void ContinuousExploration::join(std::size_t robot, const ExplorationStart& start, double time) {
+  State& state = *state_;
+  if (robot < state.members.size() && !state.members[robot].is_lost())
+    refuse("robot " + std::to_string(robot) + " takes part already");
+  displaced(robot, start.pose, time);
+  State::Member& member = state.members[robot];
+  State::Member joined{.motion = std::move(member.motion)};
+  joined.held_back_from = std::move(member.held_back_from);
+  joined.sensed = std::move(member.sensed);
+  member = std::move(joined);
+  state.team.join(robot, start);
+  const VoxelGrid map = state.team.mapping.grid();
+  state.note_scan(robot, state.team.mapping.mark_free(state.team.free_at_start(robot, start, map)));
+}
+
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {
   State& state = *state_;
   if (!state.team.selection) refuse("a planning before its beginning");

@@ -58,6 +58,22 @@ ExplorationStep ExplorationState::new_step() const {
   return step;
 }
 
+// No sensor sees the floor on which its robot stands.
+TravelOptions ExplorationState::travel_from(const ExplorationStart& start, TravelOptions travel) const {
+  if (options.tours) travel.node_edge = 0.0;  // paths of tours lead wherever the body fits
+  if (!travel.drives() || start.known_free.empty()) return travel;
+  KeyBox known = bounds_of(start.known_free);
+  if (const auto at = lattice().key(start.pose.position)) known.min.z = known.max.z = at->z;
+  travel.without_ground.push_back(known);
+  return travel;
+}
+
+std::optional<TravelCorridor> ExplorationState::voxel_corridor(TravelOptions travel) const {
+  if (travel.node_edge == 0.0) return std::nullopt;
+  travel.node_edge = 0.0;
+  return TravelCorridor(travel, lattice(), mapping.bounds());
+}
+
 // If it throws, it may be called again.
 void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   std::vector<TeamMember> team = options.team;
@@ -65,18 +81,8 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   poses.clear();
   for (std::size_t r = 0; r < size(); ++r) {
     TravelOptions& travel = team[r].robot.travel;
-    if (options.tours) travel.node_edge = 0.0;  // paths of tours lead wherever the body fits
-    // No sensor sees the floor on which its robot stands.
-    if (travel.drives() && !starts[r].known_free.empty()) {
-      KeyBox known = bounds_of(starts[r].known_free);
-      if (const auto start = lattice().key(starts[r].pose.position)) known.min.z = known.max.z = start->z;
-      travel.without_ground.push_back(known);
-    }
-    voxel_corridors.emplace_back();
-    if (travel.node_edge == 0.0) continue;
-    TravelOptions by_voxels = travel;
-    by_voxels.node_edge = 0.0;
-    voxel_corridors.back().emplace(by_voxels, lattice(), mapping.bounds());
+    travel = travel_from(starts[r], std::move(travel));
+    voxel_corridors.push_back(voxel_corridor(travel));
   }
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   std::vector<Robot> robots;
@@ -91,6 +97,16 @@ void ExplorationState::start_from(std::span<const ExplorationStart> starts) {
   trails.resize(size());
   ahead.resize(size());
   retreated_to.resize(size());
+}
+
+void ExplorationState::join(std::size_t robot, const ExplorationStart& start) {
+  const TravelOptions travel = travel_from(start, selection->team()[robot].robot.travel);
+  selection->join(robot, travel);
+  voxel_corridors[robot] = voxel_corridor(travel);
+  if (tours) tours->join(robot, start.pose, keys_in(travel_map(), Occupancy::kFree));
+  poses[robot] = start.pose;
+  ahead[robot].reset();
+  retreated_to[robot].clear();
 }
 
 ExplorationState::Keys ExplorationState::free_at_start(std::size_t robot, const ExplorationStart& start,

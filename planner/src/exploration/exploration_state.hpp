@@ -65,6 +65,8 @@ struct ExplorationState {
 
   // The stages, in their order.
   void start_from(std::span<const ExplorationStart> starts);
+  /// A robot that was lost takes part again. Notes nothing of what is known to be free there.
+  void join(std::size_t robot, const ExplorationStart& start);
   /// What a robot takes for free at its start. A map that is given knows better, but for its body.
   [[nodiscard]] Keys free_at_start(std::size_t robot, const ExplorationStart& start,
                                    const VoxelGrid& given) const;
@@ -121,6 +123,8 @@ struct ExplorationState {
   [[nodiscard]] MapChange change() const { return {travel_map(), changed}; }
 
  private:
+  [[nodiscard]] TravelOptions travel_from(const ExplorationStart& start, TravelOptions travel) const;
+  [[nodiscard]] std::optional<TravelCorridor> voxel_corridor(TravelOptions travel) const;
   [[nodiscard]] CorridorExtent extent_of_tours(std::size_t robot) const;
   bool find_path_to_stop(std::size_t robot, const VoxelKey& cell, ExplorationStep& step);
   [[nodiscard]] Goal first_stop(std::size_t robot) const;

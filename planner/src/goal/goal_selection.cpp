@@ -41,19 +41,21 @@ void set_no_goal(Goal& goal, CorridorState corridor) {
 
 }  // namespace
 
+GoalSelection::State::Member GoalSelection::State::new_member(std::size_t robot) const {
+  const TeamMember& member = team[robot];
+  try {
+    check(member);
+    return {TravelCorridor(member.robot.travel, lattice, bounds),
+            ViewQualityImage(lattice, member.robot.view, rendering_of(member, robot))};
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("robot '" + member.robot.name + "': " + error.what());
+  }
+}
+
 GoalSelection::GoalSelection(std::vector<TeamMember> team, const Lattice& lattice, const KeyBox& bounds,
                              bool assign)
     : state_(std::make_unique<State>(State{std::move(team), lattice, bounds, assign})) {
-  for (std::size_t r = 0; r < state_->team.size(); ++r) {
-    const TeamMember& member = state_->team[r];
-    try {
-      check(member);
-      state_->members.push_back({TravelCorridor(member.robot.travel, lattice, bounds),
-                                 ViewQualityImage(lattice, member.robot.view, rendering_of(member, r))});
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("robot '" + member.robot.name + "': " + error.what());
-    }
-  }
+  for (std::size_t r = 0; r < state_->team.size(); ++r) state_->members.push_back(state_->new_member(r));
 }
 GoalSelection::~GoalSelection() = default;
 GoalSelection::GoalSelection(GoalSelection&&) noexcept = default;
@@ -112,6 +114,11 @@ void GoalSelection::block(std::size_t robot, std::span<const VoxelKey> cells) {
 }
 
 void GoalSelection::lose(std::size_t robot) { state_->lose(robot); }
+
+void GoalSelection::join(std::size_t robot, const TravelOptions& travel) {
+  state_->team[robot].robot.travel = travel;
+  state_->members[robot] = state_->new_member(robot);
+}
 
 void GoalSelection::keep_out_of(std::size_t robot, std::vector<KeyBox> boxes) {
   state_->members[robot].corridor.keep_out_of(std::move(boxes));

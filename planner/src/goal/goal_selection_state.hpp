@@ -55,6 +55,8 @@ struct GoalSelection::State {
   void update_corridor(std::size_t robot, const VoxelGrid& grid, const Pose& pose,
                        CorridorExtent extent = CorridorExtent::kAllCells);
   void lose(std::size_t robot);
+  /// As it is before its first step.
+  [[nodiscard]] Member new_member(std::size_t robot) const;
   void begin_step(std::optional<std::size_t> choosing);
   void assign(Step& step, const Keys& frontiers);
   void decide(Step& step);

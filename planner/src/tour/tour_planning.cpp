@@ -49,17 +49,20 @@ double greatest_range(std::span<const Robot> robots) {
 TourPlanning::TourPlanning(std::vector<Robot> robots, std::span<const Pose> starts, const Lattice& lattice,
                            const KeyBox& bounds, const Options& options)
     : lattice_(lattice),
+      bounds_(bounds),
       options_(options),
+      graph_edge_(voxels(kGraphEdge * greatest_range(robots), lattice)),
       zone_edge_(voxels(kZoneEdge * greatest_range(robots), lattice)),
       clusters_(bounds, voxels(kClusterEdge * greatest_range(robots), lattice), least_frontiers(lattice)) {
-  const int graph_edge = voxels(kGraphEdge * greatest_range(robots), lattice);
-  for (std::size_t r = 0; r < robots.size(); ++r) {
-    Robot& robot = robots[r];
-    TravelGraph graph(lattice, cells_of(robot, starts[r], lattice, bounds), graph_edge,
-                      voxels(kSpacing * robot.view.max_range, lattice));
-    ViewRegion region(robot.view, lattice.resolution());
-    members_.push_back({std::move(robot), std::move(region), {lattice, std::move(graph), options.measured}});
-  }
+  for (std::size_t r = 0; r < robots.size(); ++r)
+    members_.push_back(new_member(std::move(robots[r]), starts[r]));
+}
+
+TourPlanning::Member TourPlanning::new_member(Robot robot, const Pose& start) const {
+  TravelGraph graph(lattice_, cells_of(robot, start, lattice_, bounds_), graph_edge_,
+                    voxels(kSpacing * robot.view.max_range, lattice_));
+  ViewRegion region(robot.view, lattice_.resolution());
+  return {std::move(robot), std::move(region), {lattice_, std::move(graph), options_.measured}};
 }
 
 void TourPlanning::note_changed_voxels(std::span<const VoxelKey> changed) {
@@ -81,6 +84,12 @@ void TourPlanning::lose(std::size_t robot) {
   member.going_for.clear();
   member.frontiers.clear();
   member.first_view.clear();
+}
+
+// A graph without cells grows where voxels have changed.
+void TourPlanning::join(std::size_t robot, const Pose& pose, std::span<const VoxelKey> known_free) {
+  members_[robot] = new_member(members_[robot].robot, pose);
+  note_changed_voxels(robot, known_free);
 }
 
 double TourPlanning::first_distance(std::size_t robot) const {

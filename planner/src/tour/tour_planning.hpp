@@ -62,6 +62,8 @@ class TourPlanning {
 
   /// A robot takes no more part: what it was to look at is left to the others.
   void lose(std::size_t robot);
+  /// A robot that was lost takes part from a pose. @param known_free  voxels of the map
+  void join(std::size_t robot, const Pose& pose, std::span<const VoxelKey> known_free);
 
   /// The robot may get to places that were closed to it, though the map is the same.
   void look_again(std::size_t robot) { members_[robot].sights.look_again(); }
@@ -132,6 +134,7 @@ class TourPlanning {
     std::vector<VoxelKey> first_view = {};
   };
 
+  [[nodiscard]] Member new_member(Robot robot, const Pose& start) const;
   [[nodiscard]] double own_distance_to(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] bool reaches(const Query& query, const VoxelKey& cell) const;
   [[nodiscard]] std::vector<KeyBox> take_changes(Member& member) const;
@@ -183,8 +186,9 @@ class TourPlanning {
                                   const ClusterViewpoint& viewpoint, double distance) const;
 
   Lattice lattice_;
+  KeyBox bounds_;
   Options options_;
-  int zone_edge_;  // [voxels]
+  int graph_edge_, zone_edge_;  // [voxels]
   FrontierClusters clusters_;
   Left left_;
   // [frontiers] What is worth a stop by what is known; it counts from when nobody sees a cluster of the usual

@@ -257,18 +257,21 @@ TEST(MovingRobots, RefuseWhatCannotBe) {
   EXPECT_REFUSED(Moving(room, {blind}, {{{1, 1, 1}}}));
 }
 
-TEST(MovingRobots, ThatHaveFailedStay) {
+TEST(MovingRobots, StayWhileTheyAreNotActive) {
   const BoxRoom room;
   Moving scene(room, {small(planner::uav_description(), 5.0)}, {{Vector3d(2, 2, 1.5), 0.0}}, AtContact::kGoOn,
                {}, 1, {0.2, 2.0});
   const auto where = [&](std::size_t, double time) { return at({2, 2 + 0.5 * time, 1.5}); };
   scene.go_on(1.9, where);
   const Pose rests = scene.robots.believed(0);
-  scene.robots.fail(0);
+  scene.robots.set_active(0, false);
   const double length = scene.record().length;
   scene.go_on(5.0, where);
   EXPECT_EQ(scene.record().length, length);
   EXPECT_EQ(scene.robots.believed(0).position, rests.position);
+  scene.robots.set_active(0, true);
+  scene.go_on(5.5, where);
+  EXPECT_GT(scene.record().length, length + 1.0);
 }
 
 }  // namespace

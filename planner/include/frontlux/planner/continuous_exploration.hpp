@@ -14,7 +14,7 @@ namespace frontlux::planner {
 
 /// Why a robot plans.
 enum class PlanReason : std::uint8_t {
-  kStart,     ///< it has no trajectory yet
+  kStart,     ///< it has no trajectory yet, or has joined the others again
   kArrival,   ///< it has looked from its goal, or its trajectory is about to end and it has nothing to see
               ///< there
   kGoalSeen,  ///< most of what it was going for is mapped
@@ -104,8 +104,15 @@ class FRONTLUX_EXPORT ContinuousExploration {
   void displaced(std::size_t robot, const Pose& pose, double time);
 
   /// A robot takes no more part, since it has failed or nobody hears of it any more. It rests at a pose,
-  /// where the others keep apart from it, and what it was to see becomes theirs. It does not come back.
+  /// where the others keep apart from it, and what it was to see becomes theirs, unless it joins them again.
   void lose(std::size_t robot, const Pose& pose, double time);
+
+  /// A robot that was lost takes part again, from where it rests, and gets its share of what is left to see.
+  /// What has blocked its path before is forgotten. A robot that comes later is in the team from the begin
+  /// on, and lost before the first planning; until it joins, `end` does not wait for it.
+  /// @param start  what is known to be free there is left out where the map has it
+  /// @throws std::invalid_argument as `stopped`, or if the robot was not lost
+  void join(std::size_t robot, const ExplorationStart& start, double time);
 
   /// Plans for a robot that has a reason to; nothing if none has. Who has waited for four periods comes
   /// first, then a robot on whose path something is, or that was stopped, then who has waited for two

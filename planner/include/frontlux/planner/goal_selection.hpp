@@ -197,6 +197,9 @@ class FRONTLUX_EXPORT GoalSelection {
 
   /// A robot that will not choose again has no goal any more. @pre robot < team().size()
   void lose(std::size_t robot);
+  /// It chooses again, and travels like this; what was closed to it is open. @pre robot < team().size()
+  /// @throws std::invalid_argument as the constructor
+  void join(std::size_t robot, const TravelOptions& travel);
 
   /// At the next step these boxes of cells are impassable for a robot: see `TravelCorridor::keep_out_of`.
   /// @pre robot < team().size()

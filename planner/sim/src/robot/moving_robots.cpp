@@ -219,7 +219,7 @@ void MovingRobots::move_until(double until, const Where& where, std::vector<Stop
   for (std::int64_t i = 1; i <= ticks; ++i) {
     const double time = begin + (until - begin) * static_cast<double>(i) / static_cast<double>(ticks);
     for (std::size_t r = 0; r < robots_.size(); ++r)
-      if (progress_[r].halted || progress_[r].failed)
+      if (progress_[r].halted || !progress_[r].active)
         records_[r].idle += time - time_;
       else
         move(r, where(r, time), time, stopped);

@@ -95,8 +95,8 @@ class MovingRobots {
   /// The same to the time of the next scan, and takes it.
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
-  /// A robot moves no more, whatever `where` says. @pre it is one of them
-  void fail(std::size_t robot) { progress_[robot].failed = true; }
+  /// Whether a robot follows `where`, as all do at first, or stays where it is. @pre it is one of them
+  void set_active(std::size_t robot, bool active) { progress_[robot].active = active; }
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
   /// Where a robot believes to be. @pre it is one of them
@@ -114,7 +114,7 @@ class MovingRobots {
     double fixed_at = 0.0;  // [s] when it has learnt of that
     std::uint64_t scans = 0;
     Eigen::Vector3d phases = Eigen::Vector3d::Zero();  // [rad] of its swaying
-    bool touching = false, halted = false, failed = false;
+    bool touching = false, halted = false, active = true;
     PathRevisits path;
   };
 
