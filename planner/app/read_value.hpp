@@ -25,6 +25,7 @@ struct Range {
 inline constexpr Range<double> kAnyNumber{}, kAboveZero{std::numeric_limits<double>::denorm_min()},
     kFromZero{0.0}, kProbability{0.0, 1.0};
 inline constexpr Range<double> kRangeNoise{0.0, 10.0};  ///< [m]
+inline constexpr Range<double> kNoiseGrowth{0.0, 1.0};  ///< [1/m]
 inline constexpr Range<double> kVoxelEdges{1e-3, 1e3};  ///< [m]
 inline constexpr Range<std::uint64_t> kSeeds{};
 

@@ -208,6 +208,8 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
   for (const char* option : {"--tracking-error", "--noise"})
     for (const char* metres : {"-0.1", "10.1", "nan"})
       expect_refused(with({option, metres}), {option, "from 0 to 10"});
+  for (const char* growth : {"-0.1", "1.1", "nan"})
+    expect_refused(with({"--noise-growth", growth}), {"--noise-growth"});
   for (const char* seconds : {"-1", "nan", "61"})
     expect_refused(with({"--scan-delay", seconds}), {"--scan-delay"});
   for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})

@@ -36,9 +36,9 @@ TEST_F(ExploreMotion, ScansArriveAfterTheirDelay) {
 // Each of them makes another run of the same one, and no two the same.
 TEST_F(ExploreMotion, ItsOptionsHaveAnEffect) {
   const std::vector<std::vector<std::string>> of_tours = {
-      {"--noise", "0.05"},          {"--dropout", "0.3"},        {"--stray", "0.002"},
-      {"--drift", "0.05"},          {"--tracking-error", "0.1"}, {"--optimize", "off"},
-      {"--tours-without", "tours"}, {"--world-seed", "2"}};
+      {"--noise", "0.05"},   {"--noise-growth", "0.01"},   {"--dropout", "0.3"},
+      {"--stray", "0.002"},  {"--drift", "0.05"},          {"--tracking-error", "0.1"},
+      {"--optimize", "off"}, {"--tours-without", "tours"}, {"--world-seed", "2"}};
   const std::vector<std::vector<std::string>> of_goals = {{"--lambda", "1"},
                                                           {"--advance", "20"},
                                                           {"--min-distance", "2"},

@@ -126,7 +126,8 @@ TEST_F(TaskCommand, PublishesEveryOption) {
       "--bumper",       "off",    "--noise",          "0.01",    "--dropout",      "0.1",
       "--drift",        "0.01",   "--fix-every",      "5",       "--scan-delay",   "0.2",
       "--scan-loss",    "0.1",    "--fail",           "uav=500", "--sensor-model", "cautious",
-      "--stray",        "0.001",  "--tracking-error", "0.05",    "--join",         "uav=600"};
+      "--stray",        "0.001",  "--tracking-error", "0.05",    "--join",         "uav=600",
+      "--noise-growth", "0.001"};
   const std::vector<std::string> of_world = {
       "--mode", "paper", "--goal",  "nearest",   "--ground",    "0", "--scale", "0.9",
       "--up",   "z",     "--start", "1.5,1.5,1", "--max-steps", "2", "--team",  "uav"};
@@ -157,7 +158,7 @@ TEST_F(TaskCommand, PublishesEveryOption) {
                 tours.at("options").contains(name))
         << name;
   }
-  EXPECT_EQ(known, 29);
+  EXPECT_EQ(known, 30);
 }
 
 TEST_F(TaskCommand, ExploresABoxOfAWorld) {

@@ -15,7 +15,7 @@ from unittest import mock
 import numpy as np
 
 import frontlux
-from frontlux import _recording
+from frontlux import _record_bytes
 
 
 def explore(folder, *options):
@@ -43,30 +43,30 @@ class WholeNumbers(unittest.TestCase):
         numbers = [0, 0x7F, 0x80, 2**63 - 1] + [int(random.integers(2**63)) >> int(random.integers(63)) for _ in range(200)]
         data = b"".join(map(whole, numbers))
         for part in (1, 2, 7, 203, 204, 1000):
-            with mock.patch.object(_recording, "_PART", part):
-                read = _recording._Bytes(data + b"\5")
+            with mock.patch.object(_record_bytes, "_PART", part):
+                read = _record_bytes.RecordBytes(data + b"\5")
                 self.assertEqual(read.counts(len(numbers)).tolist(), numbers)
                 self.assertEqual(read.count(), 5)
                 self.assertEqual(read.counts(0).tolist(), [])
                 with self.assertRaisesRegex(ValueError, "ends too early"):
-                    _recording._Bytes(data[:-1] + b"\x80").counts(len(numbers))
+                    _record_bytes.RecordBytes(data[:-1] + b"\x80").counts(len(numbers))
 
     def test_too_large_ones_are_refused(self):
         for data, what in ((whole(2**63), "too large"), (whole(2**64 - 1), "too large"), (b"\x80" * 11, "more than 64 bits"),
                            (b"\x80" * 9, "ends too early"), (b"\xff" * 10 + b"\1", "more than 64 bits")):
             with self.subTest(data=data), self.assertRaisesRegex(ValueError, what):
-                _recording._Bytes(data).counts(1)
+                _record_bytes.RecordBytes(data).counts(1)
 
     def test_keys_are_sums_of_differences_across_parts(self):
         keys = np.random.default_rng(2).integers(0x10000, size=(50, 3))
         steps = np.diff(keys, axis=0, prepend=0).T
         data = b"".join(whole(2 * int(step) if step >= 0 else -2 * int(step) - 1) for step in steps.ravel())
         for part in (1, 7, 50, 1000):
-            with mock.patch.object(_recording, "_PART", part):
-                np.testing.assert_array_equal(_recording._Bytes(data).keys(50), keys)
+            with mock.patch.object(_record_bytes, "_PART", part):
+                np.testing.assert_array_equal(_record_bytes.RecordBytes(data).keys(50), keys)
         for outside in (b"\1\0\0", whole(2 * 0x10000) + b"\0\0"):
             with self.assertRaisesRegex(ValueError, "outside the key range"):
-                _recording._Bytes(outside).keys(1)
+                _record_bytes.RecordBytes(outside).keys(1)
 
 
     def test_stops_are_those_of_a_plain_loop(self):
@@ -83,18 +83,18 @@ class WholeNumbers(unittest.TestCase):
         poses = b"".join(struct.pack("<4d", *struct.unpack("<4d", pose)) for pose, *_ in stops)
         seen = [[value(numbers) for numbers in stop[1:]] for stop in stops]
         for part in (1, 7, 299, 300, 1000):
-            with mock.patch.object(_recording, "_PART", part):
-                read = _recording._Bytes(data + b"\5")
+            with mock.patch.object(_record_bytes, "_PART", part):
+                read = _record_bytes.RecordBytes(data + b"\5")
                 found = read.stops(300)
                 self.assertEqual((found[0].tobytes(), found[1].tolist()), (poses, seen))
                 self.assertEqual((found[0].shape, read.count()), ((300, 4), 5))
                 for size in (len(data) - 1, len(data) - len(stops[-1][2]) - 20, 31):
                     with self.assertRaisesRegex(ValueError, "too early"):
-                        _recording._Bytes(data[:size]).stops(300)
+                        _record_bytes.RecordBytes(data[:size]).stops(300)
         for bad, what in ((b"\x80" * 10 + b"\0", "more than 64 bits"), (whole(2**63), "too large")):
             with self.assertRaisesRegex(ValueError, what):
-                _recording._Bytes(data + bytes(32) + b"\1" + bad).stops(301)
-        self.assertEqual([part.shape for part in _recording._Bytes(b"").stops(0)], [(0, 4), (0, 2)])
+                _record_bytes.RecordBytes(data + bytes(32) + b"\1" + bad).stops(301)
+        self.assertEqual([part.shape for part in _record_bytes.RecordBytes(b"").stops(0)], [(0, 4), (0, 2)])
 
 
 class Recordings(unittest.TestCase):

@@ -1,20 +1,18 @@
 """Recordings of explorations (run.frontlux) as arrays. Needs nothing but numpy."""
 import json
-import re
 import struct
 import zlib
 from dataclasses import dataclass
-from math import prod
 from os import fspath
 from typing import Any, Dict, List, Optional
 
 import numpy as np
 
 from ._engine import VoxelGrid
+from ._record_bytes import KEY_BYTES, MOST_BYTES, POSE_BYTES, RecordBytes
 
 _TITLE = b"frontlux recording, format "
 _FORMATS = (3, 4, 5)  # 3 has no tours, 4 no trajectories and no reassigned frontiers
-_MOST_BYTES = 1 << 30  # of a record
 _MOST_RATIO = 1032  # zlib compresses to no less than that part, and a few bytes more
 _MOST_ROBOTS = 1000
 _MOST_OPTIONS = 1 << 24  # [bytes]
@@ -22,10 +20,6 @@ _MOST_OPTIONS = 1 << 24  # [bytes]
 # takes as long as so many; in recordings of runs it has more than 40 bytes of the file.
 _MOST_STEPS, _STEPS_OF_PART = 10_000, 8
 _TAGS = (b"head", b"step", b"end ")
-_PART = 1 << 16  # whole numbers at once: what a few bytes are packed from may be many
-_DIGITS = 10  # of a whole number, at most
-_POSE_BYTES, _KEY_BYTES = 32, 3  # of a key: at least
-_SEEN = re.compile(rb"(?:[\x80-\xff]{0,9}[\0-\x7f]){2}")  # from a stop of a tour: two whole numbers
 _CUBE = 16  # [voxels]
 
 _STEP_COUNTS = ("number", "frontiers", "unassigned", "abandoned", "rays", "contacts")
@@ -105,124 +99,6 @@ class Recording:
         return grid
 
 
-class _Bytes:
-    """A record: whole numbers of 7 bits a byte, lowest first; doubles; texts."""
-
-    def __init__(self, data):
-        self.data, self.bytes, self.at = data, np.frombuffer(data, np.uint8), 0
-        self.parts = 0  # of lists, that have been read
-
-    def take(self, size):
-        if size > len(self.data) - self.at:
-            raise ValueError("a record ends too early")
-        self.at += size
-        return self.bytes[self.at - size:self.at]
-
-    def counts(self, how_many, dtype=np.int64, make=lambda part: part):
-        """(how_many,) of a type, of what is made of each part"""
-        numbers, done = np.empty(how_many, dtype), 0
-        while done < how_many:
-            part = make(self._part(min(how_many - done, _PART)))
-            numbers[done:done + len(part)] = part
-            done += len(part)
-        return numbers
-
-    def _part(self, most):
-        """int64, at least one number and at most so many: those that end in so many bytes and some more"""
-        self.parts += 1
-        begin = self.bytes[self.at:self.at + most + _DIGITS - 1]
-        if len(begin) >= most and begin[:most].max() < 0x80:
-            return self.take(most).astype(np.int64)
-        ends = np.flatnonzero(begin < 0x80)[:most]
-        begins = np.concatenate(([0], ends + 1))[:-1]
-        if (ends - begins).max(initial=0) >= _DIGITS or len(ends) == 0 and len(begin) >= _DIGITS:
-            raise ValueError("a whole number has more than 64 bits")
-        if len(ends) == 0:
-            raise ValueError("a record ends too early")
-        digits = self.take(int(ends[-1]) + 1).astype(np.int64) & 0x7F
-        shifts = 7 * (np.arange(len(digits)) - np.repeat(begins, ends - begins + 1))
-        numbers = np.add.reduceat(digits << shifts, begins)
-        if numbers.min() < 0 or (digits[shifts == 63] > 0).any():
-            raise ValueError("a whole number is too large")
-        return numbers
-
-    def count(self):
-        value = shift = 0
-        while shift < 64:
-            byte = self.data[self.at]
-            self.at += 1
-            value, shift = value | (byte & 0x7F) << shift, shift + 7
-            if byte < 0x80:
-                if value >> 63:
-                    raise ValueError("a whole number is too large")
-                return value
-        raise ValueError("a whole number has more than 64 bits")
-
-    def length(self, element=1):
-        """Of a list, each of whose elements has so many bytes at least."""
-        size = self.count()
-        if size > (len(self.data) - self.at) // element:
-            raise ValueError("a list is longer than what is there")
-        return size
-
-    def doubles(self, *shape):
-        return self.take(8 * prod(shape)).view("<f8").astype(np.float64).reshape(shape)
-
-    def text(self, most=_MOST_BYTES):
-        size = self.length()
-        if size > most:
-            raise ValueError(f"a text has {size} bytes, but at most {most} are read")
-        return self.take(size).tobytes().decode("utf-8", "replace")
-
-    def keys(self, how_many):
-        """(how_many, 3) uint16, from differences: all x, then y, then z"""
-        last = 0
-
-        def places(zigzag):
-            nonlocal last
-            keys = last + np.cumsum((zigzag >> 1) ^ -(zigzag & 1))
-            if keys.min() < 0 or keys.max() > 0xFFFF:
-                raise ValueError("a voxel lies outside the key range")
-            last = keys[-1]
-            return keys
-
-        keys = np.empty((how_many, 3), np.uint16)
-        for axis in keys.T if how_many else ():
-            last = 0
-            axis[:] = self.counts(how_many, np.uint16, places)
-        return keys
-
-    def states(self, how_many):
-        """(how_many,) uint8, each of what a voxel was and became"""
-        def known(states):
-            if states.max() > 8:
-                raise ValueError("a voxel changes to no state")
-            return states
-
-        return self.counts(how_many, np.uint8, known)
-
-    def stops(self, how_many):
-        """Of a tour: (how_many, 4) float64, poses; (how_many, 2) int64, clusters and frontiers in view."""
-        poses, seen = np.empty((how_many, 4)), np.empty((how_many, 2), np.int64)
-        for begin in range(0, how_many, _PART):
-            part = slice(begin, min(begin + _PART, how_many))
-            self.parts += 1
-            begins, at = np.empty(part.stop - begin, np.int64), self.at
-            for i in range(len(begins)):
-                begins[i] = at
-                numbers = _SEEN.match(self.data, at + _POSE_BYTES)
-                if numbers is None:
-                    raise ValueError("a tour ends too early, or a whole number in it has more than 64 bits")
-                at = numbers.end()
-            begins -= self.at
-            stops = self.take(at - self.at)
-            is_pose = np.zeros(len(stops), bool)
-            is_pose[begins[:, None] + np.arange(_POSE_BYTES)] = True
-            poses[part] = stops[is_pose].view("<f8").reshape(-1, 4)
-            seen[part] = _Bytes(stops[~is_pose].tobytes()).counts(2 * len(begins)).reshape(-1, 2)
-        return poses, seen
-
-
 _MOTIONS = "plane", "space", "ground"
 
 
@@ -255,7 +131,7 @@ def _read_head(record):
     starts = []
     for _ in range(team):
         starts.append(record.doubles(4))
-        record.keys(record.length(_KEY_BYTES))
+        record.keys(record.length(KEY_BYTES))
     head["starts"] = np.array(starts).reshape(-1, 4)
     return head
 
@@ -284,28 +160,28 @@ def _read_step(record, number, head, run, version):
         of_robot = {name: record.count() for name in _ROBOT_COUNTS}
         of_robot["length"] = record.doubles(1)[0]
         record.count(), record.count()  # outcome of the path search, state of the goal
-        record.take(_POSE_BYTES if record.count() else 0)
+        record.take(POSE_BYTES if record.count() else 0)
         for _ in range(3):  # the goal
             record.count()
         record.take(record.length()), record.take(4 * 8)
         for _ in range(4):
             record.count()
-        add("poses", record.doubles(record.length(_POSE_BYTES), 4)[:of_robot["travelled"]])
-        changed = record.length(_KEY_BYTES + 1)
+        add("poses", record.doubles(record.length(POSE_BYTES), 4)[:of_robot["travelled"]])
+        changed = record.length(KEY_BYTES + 1)
         keys, states = record.keys(changed), record.states(changed)
         if changed and ((keys < head["bounds"][0]) | (keys > head["bounds"][1])).any():
             raise ValueError(f"step {number} changes a voxel outside the bounds")
         add("changes", keys, states // 3, states % 3)
         for _ in ("still unknown", "blocked"):
-            record.keys(record.length(_KEY_BYTES))
-        cells = record.length(_KEY_BYTES + 5 * 8 + 1)
+            record.keys(record.length(KEY_BYTES))
+        cells = record.length(KEY_BYTES + 5 * 8 + 1)
         record.keys(cells), record.doubles(5, cells), record.counts(cells)  # the image
         if version > 3:
-            poses, seen = record.stops(record.length(_POSE_BYTES + 2))
+            poses, seen = record.stops(record.length(POSE_BYTES + 2))
             add("tours", poses, *seen.T)
         if version > 4:
-            add("trajectories", record.doubles(record.length(_POSE_BYTES), 4))
-            add("reassigned", record.keys(record.length(_KEY_BYTES)))
+            add("trajectories", record.doubles(record.length(POSE_BYTES), 4))
+            add("reassigned", record.keys(record.length(KEY_BYTES)))
         robots.append(of_robot)
     for name in (*_ROBOT_COUNTS, "length"):
         step[name] = np.array([of_robot[name] for of_robot in robots], np.float64 if name == "length" else np.int64)
@@ -340,7 +216,7 @@ def _records(data, title):
                 yield None
                 return
             raise ValueError(f"is damaged at byte {at}")
-        if plain > min(_MOST_BYTES, _MOST_RATIO * (packed + 1)):
+        if plain > min(MOST_BYTES, _MOST_RATIO * (packed + 1)):
             raise ValueError(f"is damaged at byte {at}: a record announces {plain} bytes, more than it can hold")
         end = begin + packed + 4
         payload = data[begin:end - 4]
@@ -383,7 +259,7 @@ def read_recording(file):
                 if part is None:
                     truncated = end is None
                     break
-                tag, record = part[0], _Bytes(part[1])
+                tag, record = part[0], RecordBytes(part[1])
                 if (head is None) != (tag == b"head"):
                     raise ValueError("has no head, or two")
                 if tag == b"head":

@@ -157,7 +157,8 @@ void print_summary(const Options& options, const SourcedWorld& sourced, const Gr
 void run(Options& options) {
   const Stopwatch watch;
   WorldSource& source = options.source;
-  const bool errs = options.errors.sigma > 0.0 || options.errors.dropout > 0.0 || options.errors.stray > 0.0;
+  const auto& [sigma, dropout, stray, growth] = options.errors;
+  const bool errs = sigma > 0.0 || dropout > 0.0 || stray > 0.0 || growth > 0.0;
   if (options.seed && !errs && !is_built_in_world(source.world))
     throw BadInput("--seed: " + source.world +
                    " is not a built-in world, and sensors make no errors; leave the option out");
@@ -220,6 +221,8 @@ void add_scan_command(CLI::App& app) {
       "--robot", options->scanners, "both|ugv|uav|FILE",
       "Sensors of the ugv (lidar, 6 m), the uav (depth camera, 10 m), or a robot's .json file [both]");
   command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
+  command.add("--noise-growth", options->errors.growth, "PART",
+              "By how many metres that grows with the square of the range in metres", kNoiseGrowth);
   command.add("--dropout", options->errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--stray", options->errors.stray, "P",

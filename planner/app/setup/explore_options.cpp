@@ -56,6 +56,7 @@ void for_each_member(Options& options, const Visit& visit) {
   visit("stop_time", options.stop_time, kFromZero);
   visit("resolution", options.source.resolution, kVoxelEdges);
   visit("noise", options.errors.sigma, kRangeNoise);
+  visit("noise_growth", options.errors.growth, kNoiseGrowth);
   visit("dropout", options.errors.dropout, kProbability);
   visit("stray", options.errors.stray, kProbability);
   visit("drift", options.pose_errors.drift, kProbability);

@@ -20,12 +20,12 @@ namespace fs = std::filesystem;
 using io::TaskMethod, planner::GoalSearch, planner::Method;
 
 // The options of the command that a task may hold; its own members stand for the others.
-constexpr std::array<std::string_view, 29> kFurther = {
-    "start",         "ground",    "scale",    "up",     "goal",    "planner",      "renderer",
-    "samples",       "assign",    "optimize", "caster", "lambda",  "advance",      "epsilon",
-    "min-distance",  "max-steps", "bumper",   "noise",  "dropout", "drift",        "fix-every",
-    "scan-delay",    "scan-loss", "fail",     "join",   "stray",   "sensor-model", "tours-without",
-    "tracking-error"};
+constexpr std::array<std::string_view, 30> kFurther = {
+    "start",        "ground",  "scale",        "up",           "goal",          "planner",
+    "renderer",     "samples", "assign",       "optimize",     "caster",        "lambda",
+    "advance",      "epsilon", "min-distance", "max-steps",    "bumper",        "noise",
+    "noise-growth", "dropout", "drift",        "fix-every",    "scan-delay",    "scan-loss",
+    "fail",         "join",    "stray",        "sensor-model", "tours-without", "tracking-error"};
 
 void set_method(const TaskMethod& method, ExploreOptions& options) {
   options.mode = method.goal ? Method::kDefault : Method::kPaper;
@@ -129,6 +129,7 @@ std::vector<std::pair<std::string, std::string>> further_options(const ExploreOp
   add_choice("tours-without", options.tours_without, other.tours_without);
   add_choice("bumper", options.bumper, other.bumper);
   add_number("noise", options.errors.sigma, other.errors.sigma);
+  add_number("noise-growth", options.errors.growth, other.errors.growth);
   add_number("dropout", options.errors.dropout, other.errors.dropout);
   add_number("stray", options.errors.stray, other.errors.stray);
   add_number("drift", options.pose_errors.drift, other.pose_errors.drift);

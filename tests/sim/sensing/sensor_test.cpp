@@ -167,6 +167,29 @@ TEST(Sensor, NoiseIsNormal) {
   }
 }
 
+// The same numbers are drawn, for a deviation that is another one at each range.
+TEST(Sensor, NoiseGrowsWithTheSquareOfTheRange) {
+  const Surface surface = room();
+  constexpr double kSigma = 0.01, kGrowth = 0.002;
+  const auto exact = sense(surface, lidar(), kPose, 7), unit = sense(surface, lidar({kSigma}), kPose, 8),
+             noisy = sense(surface, lidar({.sigma = kSigma, .growth = kGrowth}), kPose, 8),
+             grown = sense(surface, lidar({.growth = kGrowth}), kPose, 8);
+  double nearest = 6.0, farthest = 0.0;
+  for (std::size_t i = 0; i < exact.ranges.size(); ++i) {
+    const auto range = static_cast<double>(exact.ranges[i]);
+    if (!(range < 5.0)) continue;
+    nearest = std::min(nearest, range);
+    farthest = std::max(farthest, range);
+    const double drawn = (static_cast<double>(unit.ranges[i]) - range) / kSigma;  // to 1e-4
+    const double grows = kGrowth * range * range;
+    ASSERT_NEAR(static_cast<double>(noisy.ranges[i]), range + (kSigma + grows) * drawn, 1e-5);
+    ASSERT_NEAR(static_cast<double>(grown.ranges[i]), range + grows * drawn, 1e-5);
+  }
+  EXPECT_GT(farthest, 1.5 * nearest);
+  for (const double growth : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_REFUSED(lidar({.growth = growth}));
+}
+
 TEST(Sensor, NoisyRangesStayWithinZeroAndMaxRange) {
   const Surface surface = room();
   const auto scan = sense(surface, lidar({50.0, 0.0}), kPose, 3), exact = sense(surface, lidar(), kPose, 3);

@@ -30,9 +30,10 @@ Sensor::Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_
     : field_of_view_(field_of_view),
       errors_(errors),
       directions_(sensor_directions(field_of_view, columns, rows)) {
-  if (!(errors.sigma >= 0.0 && std::isfinite(errors.sigma)))
-    throw std::invalid_argument("sensor: sigma is " + std::to_string(errors.sigma) +
-                                " m, but has to be 0 or more");
+  for (const auto& [name, value] : {std::pair("sigma", errors.sigma), {"growth", errors.growth}})
+    if (!(value >= 0.0 && std::isfinite(value)))
+      throw std::invalid_argument(std::string("sensor: ") + name + " is " + std::to_string(value) +
+                                  ", but has to be 0 or more");
   for (const auto& [name, value] : {std::pair("dropout", errors.dropout), {"stray", errors.stray}})
     if (!(value >= 0.0 && value <= 1.0))
       throw std::invalid_argument(std::string("sensor: ") + name + " is " + std::to_string(value) +
@@ -69,8 +70,9 @@ planner::Scan sense(const Surface& surface, const Sensor& sensor, const planner:
     const double range = hits[i].range;
     if (errors.stray > 0.0 && open_unit(random) < errors.stray)
       return open_unit(random) * std::min(range, max_range);
-    if (errors.sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
-    return std::clamp(range + errors.sigma * normal(random), 0.0, max_range);
+    const double sigma = errors.sigma + errors.growth * range * range;
+    if (sigma == 0.0 || hits[i].triangle == Surface::kNone) return range;
+    return std::clamp(range + sigma * normal(random), 0.0, max_range);
   };
   constexpr std::size_t kChunk = 1024;
   for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {

@@ -20,6 +20,8 @@ struct RangeErrors {
   double sigma = 0.0;    ///< [m] standard deviation of the Gaussian noise on a range
   double dropout = 0.0;  ///< probability that a ray gives no measurement
   double stray = 0.0;    ///< probability that a ray returns from nowhere, as from dust: before any surface
+  /// [1/m] What sigma grows by with the square of the range, as of depth cameras.
+  double growth = 0.0;
 };
 
 /// A range sensor: its field of view, the rays that fill it, and its errors.
@@ -27,7 +29,8 @@ class Sensor {
  public:
   /// Rays: `sensor_directions`.
   /// @throws std::invalid_argument naming the value, if the field of view does not pass its `check`, there
-  /// are no rays or more than 2^26, sigma is negative or not finite, or dropout or stray is not a probability
+  /// are no rays or more than 2^26, sigma or growth is negative or not finite, or dropout or stray is not a
+  /// probability
   Sensor(const FieldOfView& field_of_view, std::size_t columns, std::size_t rows, RangeErrors errors = {});
 
   [[nodiscard]] const FieldOfView& field_of_view() const { return field_of_view_; }
