@@ -112,7 +112,8 @@ void SceneQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vect
       return;
     }
   }
-  end_ray(grid_, ray, start, direction, unknown_, blocker, hit);
+  const RayEnd end = end_of(grid_, ray, start, direction, unknown_, blocker);
+  make_hit(grid_, ray, start, direction, end, hit);
 }
 
 void SceneQuery::cast(std::span<const Ray> rays, std::span<Hit> hits) const {

@@ -228,6 +228,16 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   void do_cast(std::span<const Ray> rays, std::span<Hit> hits, UnknownPolicy unknown) const override {
     answer(rays, hits, unknown, [](const auto& by, auto... batch) { return by.cast(batch...); });
   }
+  [[nodiscard]] std::optional<RayStop> do_cast_end(const Ray& ray, UnknownPolicy unknown,
+                                                   Eigen::Vector3f& end) const override {
+    const auto now = snapshot();
+    const auto* whole = now->tables(unknown).whole();
+    if (whole == nullptr) return std::nullopt;
+    const auto found = detail::TableQuery(now->grid(), *whole, unknown, packets_).end_alone(ray);
+    if (!found) return std::nullopt;
+    end = lattice().center(found->key);
+    return found->stop;
+  }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {
     const auto now = snapshot();

@@ -39,9 +39,10 @@ OctreeRayCaster& OctreeRayCaster::operator=(OctreeRayCaster&&) noexcept = defaul
 bool OctreeRayCaster::castRay(const octomap::point3d& origin, const octomap::point3d& direction,
                               octomap::point3d& end, bool ignoreUnknownCells, double maxRange) const {
   const Ray ray{detail::from_octomap(origin), detail::from_octomap(direction), maxRange};
-  const Hit hit = snapshot_->caster->cast(ray, policy(ignoreUnknownCells));
-  if (hit.stop != RayStop::kInvalid) end = detail::to_octomap(hit.end);
-  return hit.occupied();
+  Eigen::Vector3f center;
+  const RayStop stop = snapshot_->caster->cast(ray, policy(ignoreUnknownCells), center);
+  if (stop != RayStop::kInvalid) end = detail::to_octomap(center);
+  return stop == RayStop::kOccupied;
 }
 
 void OctreeRayCaster::castRays(std::span<const Ray> rays, std::span<Hit> hits,

@@ -1,6 +1,7 @@
 #include "packet/single_walk.hpp"
 
 #include "packet/packet_walk.hpp"
+#include "walk/walk.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,13 @@ std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t st
   return (((index | ~axis) + steps) & axis) | (index & ~axis);
 }
 
+// A ray in an open voxel of a table.
+struct TableRay {
+  Crossings<double> line;
+  std::uint32_t index;  // of that voxel in the table, flipped so that every step adds
+  std::uint32_t flip;   // the bits of all axes along which it descends
+};
+
 // In castRay's own times.
 std::uint32_t walk_exactly(const OpenVoxels& table, const TableRay& ray, double length) {
   std::array<double, 3> t = ray.line.t_max;
@@ -36,22 +44,8 @@ std::uint32_t walk_exactly(const OpenVoxels& table, const TableRay& ray, double 
   }
 }
 
-}  // namespace
-
-std::optional<TableRay> enter(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
-  const auto key = lattice.key(ray.origin);
-  if (!key || !table.contains(*key)) return std::nullopt;
-  const OpenVoxels::Layout& layout = table.layout();
-  const std::uint32_t index = layout.index(*key);
-  const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
-  if (!table.open(index) || !is_unit(direction)) return std::nullopt;
-  TableRay r{*key, direction, crossings_of(lattice, ray.origin, *key, direction), 0, 0};
-  for (std::size_t a = 0; a < 3; ++a) r.flip |= r.line.step[a] < 0 ? layout.bits[a] : 0U;
-  r.index = index ^ r.flip;
-  return r;
-}
-
-std::uint32_t walk_alone(const OpenVoxels& table, const TableRay& ray, double length) {
+// @return what `LoneWalk::stopped_at` is
+std::uint32_t walk(const OpenVoxels& table, const TableRay& ray, double length) {
   const OpenVoxels::Layout& layout = table.layout();
   const std::array<double, 3>& between = ray.line.t_delta;
   const double units = kEndOfTime / length;
@@ -109,6 +103,21 @@ std::uint32_t walk_alone(const OpenVoxels& table, const TableRay& ray, double le
     }
     if (std::min(std::min(t[0], t[1]), t[2]) > kEndOfTime) return kWentThrough;
   }
+}
+
+}  // namespace
+
+LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
+  const auto start = lattice.key(ray.origin);
+  if (!start || !table.contains(*start)) return {kNeverStarted, {}, {}};
+  const OpenVoxels::Layout& layout = table.layout();
+  const std::uint32_t index = layout.index(*start);
+  const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
+  if (!table.open(index) || !is_unit(direction)) return {kNeverStarted, {}, {}};
+  TableRay r{crossings_of(lattice, ray.origin, *start, direction), 0, 0};
+  for (std::size_t a = 0; a < 3; ++a) r.flip |= r.line.step[a] < 0 ? layout.bits[a] : 0U;
+  r.index = index ^ r.flip;
+  return {walk(table, r, walked_length(ray.max_range, lattice.resolution())), *start, direction};
 }
 
 }  // namespace frontlux::detail

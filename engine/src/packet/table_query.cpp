@@ -1,8 +1,6 @@
 #include "packet/table_query.hpp"
 
-#include "packet/single_walk.hpp"
 #include "walk/end_ray.hpp"
-#include "walk/walk.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +11,14 @@
 namespace frontlux::detail {
 std::size_t TableQuery::visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                                 std::span<std::uint16_t> left) const {
-  if (walk_ != nullptr) return walk_->segments(table_, ends_in_, segments, visible.data(), left.data());
+  if (walk_ != nullptr) {
+    // A segment may end in the border if this stops it as the unknown voxels there do.
+    const KeyBox& known = table_.bounds();
+    const KeyBox ends_in = unknown_ == UnknownPolicy::kBlock
+                               ? intersection(grown(known, 8), table_.window()).value_or(known)
+                               : known;
+    return walk_->segments(table_, ends_in, segments, visible.data(), left.data());
+  }
   std::iota(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(segments.size()), std::uint16_t{0});
   return segments.size();
 }
@@ -26,7 +31,8 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
   };
   constexpr std::size_t kWorthAPacket = 3;
   if (walk_ == nullptr || rays.size() < kWorthAPacket) {
-    for (std::size_t i = 0; i < rays.size(); ++i) leave_unless(cast_alone(rays[i], hits[i]), i);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      leave_unless(finish(rays[i], walk_alone(grid_.lattice(), table_, rays[i]), hits[i]), i);
     return left_size;
   }
   RayBatch batch;
@@ -49,44 +55,49 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
                  {entry[0], entry[1], entry[2]},
                  batch.distance[i]};
     } else if (stopped_at == kTooCloseToTell) {
-      leave_unless(cast_alone(rays[i], hits[i]), i);
+      leave_unless(finish(rays[i], walk_alone(grid_.lattice(), table_, rays[i]), hits[i]), i);
     } else if (stopped_at == kNeverStarted) {
       leave_unless(false, i);
     } else {
       const auto d = per_axis(batch.direction);
       const VoxelKey start = *grid_.lattice().key(rays[i].origin);
-      leave_unless(finish(rays[i], start, {d[0], d[1], d[2]}, stopped_at, hits[i]), i);
+      leave_unless(finish(rays[i], {stopped_at, start, {d[0], d[1], d[2]}}, hits[i]), i);
     }
   }
   return left_size;
 }
 
-bool TableQuery::cast_alone(const Ray& ray, Hit& hit) const {
-  const auto entered = enter(grid_.lattice(), table_, ray);
-  if (!entered) return false;
-  const double length = walked_length(ray.max_range, grid_.resolution());
-  return finish(ray, entered->key, entered->direction, walk_alone(table_, *entered, length), hit);
+std::optional<RayEnd> TableQuery::end_alone(const Ray& ray) const {
+  if (walk_ == nullptr) return std::nullopt;
+  return end_after(ray, walk_alone(grid_.lattice(), table_, ray));
 }
 
-// Not if the walk ended before the ray did, or went on out of the window.
-bool TableQuery::finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                        std::uint32_t stopped_at, Hit& hit) const {
+bool TableQuery::finish(const Ray& ray, const LoneWalk& walk, Hit& hit) const {
+  const auto end = end_after(ray, walk);
+  if (end) make_hit(grid_, ray, walk.start, walk.direction, *end, hit);
+  return end.has_value();
+}
+
+// None if the walk never started, ended before the ray did, or went on out of the window.
+std::optional<RayEnd> TableQuery::end_after(const Ray& ray, const LoneWalk& walk) const {
   const auto end = [&](const std::optional<VoxelKey>& blocker) {
-    end_ray(grid_, ray, start, direction, unknown_, blocker, hit);
-    return true;
+    return end_of(grid_, ray, walk.start, walk.direction, unknown_, blocker);
   };
-  if (stopped_at == kWentThrough)
-    return is_walked_whole(ray.max_range, grid_.resolution()) && end(std::nullopt);
-  const std::array<int, 3> cell = table_.layout().key(stopped_at);
+  if (walk.stopped_at == kNeverStarted) return std::nullopt;
+  if (walk.stopped_at == kWentThrough) {
+    if (!is_walked_whole(ray.max_range, grid_.resolution())) return std::nullopt;
+    return end(std::nullopt);
+  }
+  const std::array<int, 3> cell = table_.layout().key(walk.stopped_at);
   const VoxelKey key = as_key(cell);
   if (is_inside(cell)) return end(key);
   const bool in_key_range = as_array(key) == cell;
-  if (in_key_range && !table_.window().contains(key)) return false;
+  if (in_key_range && !table_.window().contains(key)) return std::nullopt;
   // The border stops every walk, but its voxels are unknown ones like others: under kPass they do not block.
   if (unknown_ == UnknownPolicy::kPass) return end(std::nullopt);
   if (in_key_range) return end(key);
-  hit = walk_ray(grid_, ray, unknown_);
-  return true;
+  const Hit hit = walk_ray(grid_, ray, unknown_);
+  return RayEnd{hit.stop, hit.key};
 }
 
 bool TableQuery::is_inside(const std::array<int, 3>& cell) const {

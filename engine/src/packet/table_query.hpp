@@ -2,6 +2,8 @@
 
 #include "packet/open_voxels.hpp"
 #include "packet/packet_walk.hpp"
+#include "packet/single_walk.hpp"
+#include "walk/walk.hpp"
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/ray.hpp>
@@ -10,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace frontlux::detail {
@@ -22,25 +25,21 @@ class TableQuery {
 
   TableQuery(const VoxelGrid& grid, const OpenVoxels& table, UnknownPolicy unknown,
              const PacketWalk& walk = packet_walk())
-      : grid_(grid),
-        table_(table),
-        walk_(table.empty() ? nullptr : &walk),
-        unknown_(unknown),
-        ends_in_(unknown == UnknownPolicy::kBlock
-                     ? intersection(grown(table.bounds(), 8), table.window()).value_or(table.bounds())
-                     : table.bounds()) {}
+      : grid_(grid), table_(table), walk_(table.empty() ? nullptr : &walk), unknown_(unknown) {}
 
   /// @param left  as many places as queries; gets the indices of those not answered
   /// @return how many they are
-  std::size_t cast(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint16_t> left) const;
-  std::size_t visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
-                      std::span<std::uint16_t> left) const;
+  [[nodiscard]] std::size_t cast(std::span<const Ray> rays, std::span<Hit> hits,
+                                 std::span<std::uint16_t> left) const;
+  [[nodiscard]] std::size_t visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
+                                    std::span<std::uint16_t> left) const;
+  /// Where a ray ends; none if it is not answered.
+  [[nodiscard]] std::optional<RayEnd> end_alone(const Ray& ray) const;
 
  private:
-  // Each sets `hit`, unless it returns false: then the ray is not answered.
-  [[nodiscard]] bool cast_alone(const Ray& ray, Hit& hit) const;
-  [[nodiscard]] bool finish(const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-                            std::uint32_t stopped_at, Hit& hit) const;
+  // Sets `hit`, unless it returns false: then the ray is not answered.
+  [[nodiscard]] bool finish(const Ray& ray, const LoneWalk& walk, Hit& hit) const;
+  [[nodiscard]] std::optional<RayEnd> end_after(const Ray& ray, const LoneWalk& walk) const;
   /// Whether a cell, by its key, is one that the table contains.
   [[nodiscard]] bool is_inside(const std::array<int, 3>& cell) const;
 
@@ -48,7 +47,6 @@ class TableQuery {
   const OpenVoxels& table_;
   const PacketWalk* walk_;  // null: no query is answered
   UnknownPolicy unknown_;
-  KeyBox ends_in_;  // a segment may end in the border if this stops it as the unknown voxels there do
 };
 
 }  // namespace frontlux::detail

@@ -5,24 +5,28 @@
 
 namespace frontlux::detail {
 
-void end_ray(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
-             UnknownPolicy unknown, const std::optional<VoxelKey>& blocker, Hit& hit) {
+RayEnd end_of(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+              UnknownPolicy unknown, const std::optional<VoxelKey>& blocker) {
   const Lattice& lattice = grid.lattice();
   const auto is_within = [&](double range) {
     return !out_of_range(ray.origin, lattice.center(*blocker), range);
   };
   const double sure = range_of_sure_paths(ray.max_range, ray.origin.cast<double>().lpNorm<1>());
-  if (blocker && (!(ray.max_range > 0.0) || is_within(sure))) {
-    const Occupancy state = blocker_state(grid, *blocker, unknown);
-    return make_hit(lattice, ray, start, direction, stop_in(state), state, *blocker, hit);
-  }
+  if (blocker && (!(ray.max_range > 0.0) || is_within(sure)))
+    return {stop_in(blocker_state(grid, *blocker, unknown)), *blocker};
   const bool is_close = blocker && is_within(ray.max_range);
-  const auto end = is_close ? std::nullopt : find_free_end(lattice, ray, start, direction);
-  if (!end) {
-    hit = walk_ray(grid, ray, unknown);
-    return;
-  }
-  make_hit(lattice, ray, start, direction, end->stop, grid.at(end->key), end->key, hit);
+  if (!is_close)
+    if (const auto end = find_free_end(lattice, ray, start, direction)) return *end;
+  const Hit hit = walk_ray(grid, ray, unknown);
+  return {hit.stop, hit.key};
+}
+
+void make_hit(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
+              const RayEnd& end, Hit& hit) {
+  const Occupancy state = end.stop == RayStop::kOccupied  ? Occupancy::kOccupied
+                          : end.stop == RayStop::kUnknown ? Occupancy::kUnknown
+                                                          : grid.at(end.key);
+  make_hit(grid.lattice(), ray, start, direction, end.stop, state, end.key, hit);
 }
 
 }  // namespace frontlux::detail

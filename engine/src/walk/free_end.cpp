@@ -9,8 +9,8 @@
 
 namespace frontlux::detail {
 
-std::optional<FreeEnd> find_free_end(const Lattice& lattice, const Ray& ray, const VoxelKey& key,
-                                     const Eigen::Vector3f& direction) {
+std::optional<RayEnd> find_free_end(const Lattice& lattice, const Ray& ray, const VoxelKey& key,
+                                    const Eigen::Vector3f& direction) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   // All times are in voxels.
   std::array<double, 3> position{};  // of the origin, from key 0
@@ -56,10 +56,10 @@ std::optional<FreeEnd> find_free_end(const Lattice& lattice, const Ray& ray, con
     for (std::size_t i = 0; i < 3; ++i)
       if (i != axis && t[i] - t[axis] <= error[i] + error[axis]) return std::nullopt;
     if (voxel[axis] == (step[axis] < 0 ? 0 : Lattice::kKeysPerAxis - 1))
-      return FreeEnd{RayStop::kLeftMap, as_key(voxel)};
+      return RayEnd{RayStop::kLeftMap, as_key(voxel)};
     voxel[axis] += step[axis];
     if (limited && out_of_range(ray.origin, lattice.center(as_key(voxel)), ray.max_range))
-      return FreeEnd{RayStop::kOutOfRange, as_key(voxel)};
+      return RayEnd{RayStop::kOutOfRange, as_key(voxel)};
     t[axis] = leaves(axis, voxel[axis]);
   }
   return std::nullopt;

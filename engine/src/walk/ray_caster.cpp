@@ -39,6 +39,16 @@ Hit RayCaster::cast(const Ray& ray, UnknownPolicy unknown) const {
   return hit;
 }
 
+RayStop RayCaster::cast(const Ray& ray, UnknownPolicy unknown, Eigen::Vector3f& end) const {
+  check(unknown);
+  const FloatingPointMode mode(FloatingPointMode::kToNearest);
+  if (const auto stop = do_cast_end(ray, unknown, end)) return *stop;
+  Hit hit;
+  do_cast({&ray, 1}, {&hit, 1}, unknown);
+  if (hit.stop != RayStop::kInvalid) end = hit.end;
+  return hit.stop;
+}
+
 void RayCaster::visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                         UnknownPolicy unknown) const {
   answer_all(segments.size(), visible.size(), "segments", unknown,

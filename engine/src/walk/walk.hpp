@@ -138,6 +138,12 @@ inline double time_surely_in_range(double max_range, double resolution, const Ei
   return time > 0.0 ? time : -std::numeric_limits<double>::infinity();
 }
 
+/// Why and in which voxel a ray ended: what castRay itself tells.
+struct RayEnd {
+  RayStop stop;
+  VoxelKey key;
+};
+
 /// Sets the hit of a ray that ended in a known voxel. One function for all casters, so that entry and
 /// distance are equal wherever the voxel is.
 /// @param direction as `normalized_as_octomap` returns it, not zero unless the ray ended where it began

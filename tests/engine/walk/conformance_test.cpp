@@ -146,8 +146,13 @@ void expect_casts_conform(const Subject& subject, std::span<const Ray> rays, Unk
         if (drop_in_hit != hit || !same_bits(vector_of(end), drop_in_end))
           fault +=
               "\n  the drop-in " + std::to_string(drop_in_hit) + " at " + words_of(vector_of(drop_in_end));
-        for (std::size_t c = 0; c < all.size(); ++c)
+        for (std::size_t c = 0; c < all.size(); ++c) {
           if (!same(walked, hits[c][i])) fault += "\n  " + all[c].first + " " + words_of(hits[c][i]);
+          Eigen::Vector3f own_end = vector_of(untouched);
+          if (all[c].second->cast(rays[i], unknown, own_end) != walked.stop ||
+              !same_bits(expected, point_of(own_end)))
+            fault += "\n  " + all[c].first + ", asked for the end alone, at " + words_of(own_end);
+        }
         fault += fault_of_entry(subject.casters.grid.lattice(), rays[i], walked);
         return fault.empty() ? fault : "\n  grid " + words_of(walked) + fault;
       },

@@ -119,6 +119,9 @@ TEST(RayCaster, RaysThatAreNoneAreAnsweredNotThrown) {
     for (const Eigen::Vector3f& point : bad)
       for (const UnknownPolicy unknown : kPolicies) {
         EXPECT_EQ(caster->cast({point, east, 10.0}, unknown).stop, RayStop::kInvalid);
+        Eigen::Vector3f untouched = here;
+        EXPECT_EQ(caster->cast({point, east, 10.0}, unknown, untouched), RayStop::kInvalid);
+        EXPECT_EQ(untouched, here);
         const Segment segments[] = {{point, here}, {here, point}, {point, point}};
         std::uint8_t visible[] = {9, 9, 9};
         caster->visible(segments, visible, unknown);
@@ -416,6 +419,8 @@ TEST(RayCaster, RefusesAPolicyThatThereIsNot) {
   VoxelGrid grid(0.3);
   for (const auto& caster : casters_of(grid)) {
     EXPECT_REFUSED(caster->cast(Ray{}, static_cast<UnknownPolicy>(2)));
+    Eigen::Vector3f end;
+    EXPECT_REFUSED(caster->cast(Ray{}, static_cast<UnknownPolicy>(2), end));
     EXPECT_REFUSED(caster->visible(std::span<const KeySegment>(), {}, static_cast<UnknownPolicy>(7)));
   }
 }
