@@ -212,9 +212,9 @@ TEST_F(ExploreCommand, RefusesWhatCannotBe) {
     expect_refused(with({"--noise-growth", growth}), {"--noise-growth"});
   for (const char* seconds : {"-1", "nan", "61"})
     expect_refused(with({"--scan-delay", seconds}), {"--scan-delay"});
-  for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x"})
+  for (const char* word : {"", "ugv", "ugv=", "=3", "ugv=-1", "ugv=1,", "ugv=1,uav", "ugv=x", "ugv=1e6"})
     for (const std::string option : {"--fail", "--join"})
-      expect_refused(with({option, word}), {option, "NAME=SECONDS"});
+      expect_refused(with({option, word}), {option, "NAME=SECONDS, 0 to 100000"});
   for (const std::string option : {"--fail", "--join"}) {
     expect_refused(with({option, "car=3"}), {option + ": 'car=3'", "not in the team", "ugv, uav"});
     expect_refused(with({option, "uav=3,uav=4"}), {option + ": 'uav=3,uav=4' names uav twice"});

@@ -283,6 +283,25 @@ TEST_F(ExploreMotion, RobotsComeLaterAndAgainAsAsked) {
   expect_same_motions("run", "parts");
 }
 
+// Robots that have nothing to do plan once a second.
+TEST_F(ExploreMotion, EndsAtItsLimitsWhileARobotIsToCome) {
+  write("near.json",
+        R"({"name": "near", "motion": "space", "box_m": [0.5, 0.5, 0.3], "sensor": {"kind": "camera",
+      "horizontal_deg": 90, "vertical_deg": 70, "range_m": 0.05, "columns": 16, "rows": 12}})");
+  const std::vector<std::string> words = {
+      "room",   "--team",   "",         "--robot", path("near.json"), "--robot", path("near.json"),
+      "--join", "near2=60", "--report", "off"};
+  ASSERT_EQ(run(joined(words, {"--max-steps", "4", "-o", path("few")})).code, 0);
+  EXPECT_EQ(json_in("few").at("end"), "step_limit");
+  EXPECT_EQ(json_in("few").at("steps"), 4);
+  const test::Answer answer = run(joined(words, {"--stop-time", "8", "-o", path("short")}));
+  EXPECT_EQ(json_in("short").at("end"), "time_limit");
+  EXPECT_NE(
+      answer.err.find("warning: the robot 'near2' had not joined the others by the end, as --join says"),
+      std::string::npos)
+      << answer.err;
+}
+
 TEST_F(ExploreMotion, GoesOnWhileARobotIsToCome) {
   ASSERT_EQ(run(joined(quick("run", "40"), {"--fail", "one=0.5", "--join", "two=20"})).code, 0);
   const nlohmann::json json = json_in("run");

@@ -18,11 +18,10 @@ namespace frontlux::detail {
 /// A direction as castRay normalises it (rule 3): in float, and not at all if it has no length or is not a
 /// number.
 inline Eigen::Vector3f normalized_as_octomap(Eigen::Vector3f d) {
-  const double length = std::sqrt(static_cast<double>(d.x() * d.x() + d.y() * d.y() + d.z() * d.z()));
-  if (length > 0) {
-    const auto divisor = static_cast<float>(length);
-    d = {d.x() / divisor, d.y() / divisor, d.z() / divisor};
-  }
+  // castRay takes the root in double and rounds it to float: the same, since a double has more than twice the
+  // digits.
+  const float length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  if (length > 0) d = {d.x() / length, d.y() / length, d.z() / length};
   return d;
 }
 

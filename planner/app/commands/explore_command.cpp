@@ -142,8 +142,8 @@ void add_explore_command(CLI::App& app) {
   command.add("--bumper", options.bumper,
               "A robot that would touch a surface stops; off: contacts are counted");
   command.add("--noise", options.errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
-  command.add("--noise-growth", options.errors.growth, "PART",
-              "By how many metres that grows with the square of the range in metres", kNoiseGrowth);
+  command.add("--noise-growth", options.errors.growth, "K",
+              "Further standard deviation of a range: this times its square [1/m]", kNoiseGrowth);
   command.add("--dropout", options.errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--stray", options.errors.stray, "P",

@@ -221,8 +221,8 @@ void add_scan_command(CLI::App& app) {
       "--robot", options->scanners, "both|ugv|uav|FILE",
       "Sensors of the ugv (lidar, 6 m), the uav (depth camera, 10 m), or a robot's .json file [both]");
   command.add("--noise", options->errors.sigma, "METRES", "Standard deviation of a range", kRangeNoise);
-  command.add("--noise-growth", options->errors.growth, "PART",
-              "By how many metres that grows with the square of the range in metres", kNoiseGrowth);
+  command.add("--noise-growth", options->errors.growth, "K",
+              "Further standard deviation of a range: this times its square [1/m]", kNoiseGrowth);
   command.add("--dropout", options->errors.dropout, "P", "Probability that a ray gives no measurement",
               kProbability);
   command.add("--stray", options->errors.stray, "P",

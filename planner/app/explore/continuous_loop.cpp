@@ -85,15 +85,16 @@ ExplorationStep ContinuousLoop::plan_or_finish(const ExplorationStep* recorded) 
       if (!waiting) waiting.emplace();
       if (waiting->seconds() > kLongestStop) throw Interrupted();
     }
+    if (note_attendance()) note_end();
+    if (end_) return exploration_.finish(time_);
     // All scans of one moment come before the plannings.
     if (robots_.next_time() > time_)
       if (auto planned = exploration_.plan(time_)) {
+        ++plannings_;
         note_plan(*planned, recorded != nullptr ? *recorded : planned->step);
         note_end();
         return std::move(planned->step);
       }
-    if (note_attendance()) note_end();
-    if (end_) return exploration_.finish(time_);
     move_and_sense();
     if (auto limit = limit_reached(setup_, numbers_.mapped.back())) {
       end_ = std::move(limit);
@@ -102,12 +103,15 @@ ExplorationStep ContinuousLoop::plan_or_finish(const ExplorationStep* recorded) 
   }
 }
 
-// While a robot is to come nobody else ends a run by having nothing to do.
+// While a robot is to come, the others do not end the run.
 void ContinuousLoop::note_end() {
+  auto end = exploration_.end();
   const auto is_to_come = [this](const Attendance& robot) { return robot.joins && *robot.joins > time_; };
-  const auto end = exploration_.end();
-  if (end &&
-      (end == planner::ExplorationEnd::kStepLimit || std::ranges::none_of(setup_.attendance, is_to_come)))
+  if (end && std::ranges::any_of(setup_.attendance, is_to_come)) {
+    end.reset();
+    if (plannings_ >= exploration_.options().max_steps) end = planner::ExplorationEnd::kStepLimit;
+  }
+  if (end)
     end_ = {std::string(planner::name_of(*end)),
             planner::describe(*end, exploration_.options(), "plannings")};
 }
@@ -122,13 +126,14 @@ bool ContinuousLoop::note_attendance() {
     const bool takes_part = attendance.at(time_);
     if (takes_part == robot.takes_part) continue;
     if (takes_part) {
+      robots_.set_active(r, true);
       exploration_.join(r, {robots_.believed(r), {}}, time_);
       robot.joined = time_;
     } else {
+      robots_.set_active(r, false);
       exploration_.lose(r, robots_.believed(r), time_);
       if (attendance.fails && *attendance.fails <= time_) robot.failed = time_;
     }
-    robots_.set_active(r, takes_part);
     robot.takes_part = takes_part;
     any = true;
   }

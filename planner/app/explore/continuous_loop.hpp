@@ -51,6 +51,7 @@ class ContinuousLoop final : public RunLoop {
   std::vector<std::size_t> judged_;  // contacts of each robot, by the map
   std::optional<RunEnd> end_;
   bool begun_ = false;
+  int plannings_ = 0;
   double time_ = 0.0;          // [s] until which robots have moved
   std::uint64_t samples_ = 0;  // of the motion
   MotionRows rows_;

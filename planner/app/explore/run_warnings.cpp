@@ -119,6 +119,10 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
           "the robot '" + setup.head.robots[r].robot.name + "' failed after " + rounded(*failed) +
           " s, as --fail says" +
           (numbers.robots[r].takes_part ? ", and joined the others again, as --join says" : ""));
+  for (std::size_t r = 0; r < numbers.robots.size(); ++r)
+    if (!numbers.robots[r].takes_part && !numbers.robots[r].failed)
+      warnings.push_back("the robot '" + setup.head.robots[r].robot.name +
+                         "' had not joined the others by the end, as --join says");
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
   if (!setup.lockstep && planning > latency && sums.planning.size() >= kEnoughPlannings)
     warnings.push_back(late_planning(planning, latency));

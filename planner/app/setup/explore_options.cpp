@@ -186,11 +186,11 @@ void read(std::string_view word, RobotTimes& times) {
         times.each.emplace_back(RobotTimes::Time{std::string(part.substr(0, equals)), 0.0});
     try {
       if (equals == std::string_view::npos || equals == 0) throw BadInput("");
-      read(part.substr(equals + 1), time.seconds, kFromZero);
+      read(part.substr(equals + 1), time.seconds, kRobotTimes);
     } catch (const BadInput&) {
-      throw BadInput(
-          quote(word) +
-          " does not name robots and times; give NAME=SECONDS, as in uav2=120, with commas between");
+      throw BadInput(quote(word) +
+                     " does not name robots and times; give NAME=SECONDS, 0 to 100000, as in uav2=120, with "
+                     "commas between");
     }
     if (rest.find(',') == std::string_view::npos) return;
   }

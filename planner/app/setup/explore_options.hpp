@@ -22,6 +22,7 @@ namespace frontlux::app {
 inline constexpr Range<double> kLatencies{kAboveZero.low, io::kMostLatency};          ///< [s]
 inline constexpr Range<double> kScanDelays{0.0, io::kMostLatency};                    ///< [s]
 inline constexpr Range<double> kTrackingErrors{0.0, sim::PoseErrors::kMostTracking};  ///< [m]
+inline constexpr Range<double> kRobotTimes{0.0, 1e5};                                 ///< [s]
 inline constexpr Range<int> kStepLimits{0}, kSampleCounts{1};
 
 /// Where one robot's sensor starts.

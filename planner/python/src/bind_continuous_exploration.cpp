@@ -275,9 +275,10 @@ that. It plans anew from there.)")
            "again.")
       .def(
           "join", &join, py::arg("robot"), py::arg("pose"), py::arg("time"), py::arg("free_radius") = 0.0,
-          R"(A robot that was lost takes part again, from where it rests. What has blocked its path before is forgotten.
+          R"(A robot that was lost takes part again, from where it rests. Cells that were closed by `stopped` are open to it.
 
-One that comes later is in the team from the begin on, and lost before the first planning. free_radius: as that of `begin`.)")
+One that comes later is in the team from the begin on, and lost before the first planning. `end` does not wait for it, nor does
+`run`; when it has joined, the exploration goes on. free_radius: as that of `begin`.)")
       .def(
           "finish",
           [](const Self& self, double time) {

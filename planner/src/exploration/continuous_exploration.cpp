@@ -168,9 +168,11 @@ void ContinuousExploration::join(std::size_t robot, const ExplorationStart& star
   joined.held_back_from = std::move(member.held_back_from);
   joined.sensed = std::move(member.sensed);
   member = std::move(joined);
-  state.team.join(robot, start);
-  const VoxelGrid map = state.team.mapping.grid();
-  state.note_scan(robot, state.team.mapping.mark_free(state.team.free_at_start(robot, start, map)));
+  const ExplorationStart rests{at(robot, time).pose, start.known_free};  // of a robot on a plane not at any z
+  state.team.join(robot, rests);
+  const std::vector<VoxelKey> free = state.team.free_at_start(robot, rests, state.team.mapping.grid());
+  state.note_scan(robot, state.team.mapping.mark_free(free));
+  state.team.conservative_map->forget(free);
 }
 
 std::optional<PlannedMotion> ContinuousExploration::plan(double time) {

@@ -103,7 +103,7 @@ void ExplorationState::join(std::size_t robot, const ExplorationStart& start) {
   const TravelOptions travel = travel_from(start, selection->team()[robot].robot.travel);
   selection->join(robot, travel);
   voxel_corridors[robot] = voxel_corridor(travel);
-  if (tours) tours->join(robot, start.pose, keys_in(travel_map(), Occupancy::kFree));
+  if (tours) tours->join(robot, start.pose);
   poses[robot] = start.pose;
   ahead[robot].reset();
   retreated_to[robot].clear();

@@ -26,6 +26,9 @@ class ConservativeMap {
     return hits_.insert(scan, mapping, change);
   }
 
+  /// As `HitPoints` has it; `grid` changes with the next `update`.
+  void forget(std::span<const VoxelKey> voxels) { hits_.forget(voxels); }
+
   /// Takes over changes of the map.
   /// @param changed       the voxels that may have changed in it since the last update
   /// @param under_robots  filled by robots' bodies: nothing else can be there, so that they are free until

@@ -116,6 +116,14 @@ int HitPoints::passing(const Scan& scan, const Directions& directions, const Eig
   return count;
 }
 
+void HitPoints::forget(std::span<const VoxelKey> voxels) {
+  for (const VoxelKey& voxel : voxels) {
+    if (is_solid(voxel)) changed_.push_back(voxel);
+    points_.erase(voxel);
+    if (const auto column = free_.find(column_of(voxel)); column != free_.end()) column->second.erase(voxel);
+  }
+}
+
 bool HitPoints::is_solid(const VoxelKey& voxel) const {
   const auto found = points_.find(voxel);
   return found != points_.end() && found->second.is_solid();

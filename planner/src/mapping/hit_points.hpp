@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -34,6 +35,9 @@ class HitPoints {
   /// @param change  of the map, which has taken in the scan before
   /// @return voxels that are solid from now on, though free in the map
   std::vector<VoxelKey> insert(const Scan& scan, const Mapping& mapping, const MapChange& change);
+
+  /// Nothing is in these voxels, whatever rays have ended there.
+  void forget(std::span<const VoxelKey> voxels);
 
   [[nodiscard]] bool is_solid(const VoxelKey& voxel) const;
 

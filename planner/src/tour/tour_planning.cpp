@@ -84,10 +84,8 @@ void TourPlanning::lose(std::size_t robot) {
   member.first_view.clear();
 }
 
-// A graph without cells grows where voxels have changed.
-void TourPlanning::join(std::size_t robot, const Pose& pose, std::span<const VoxelKey> known_free) {
+void TourPlanning::join(std::size_t robot, const Pose& pose) {
   members_[robot] = new_member(members_[robot].robot, pose);
-  note_changed_voxels(robot, known_free);
 }
 
 double TourPlanning::first_distance(std::size_t robot) const {

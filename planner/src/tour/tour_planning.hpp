@@ -62,8 +62,8 @@ class TourPlanning {
 
   /// A robot takes no more part: what it was to look at is left to the others.
   void lose(std::size_t robot);
-  /// A robot that was lost takes part from a pose. @param known_free  voxels of the map
-  void join(std::size_t robot, const Pose& pose, std::span<const VoxelKey> known_free);
+  /// A robot that was lost takes part from a pose.
+  void join(std::size_t robot, const Pose& pose);
 
   /// The robot may get to places that were closed to it, though the map is the same.
   void look_again(std::size_t robot) { members_[robot].sights.look_again(); }

@@ -82,7 +82,19 @@ TEST_P(JoinedRobotsBy, GetTheirShareAndKeepApart) {
   EXPECT_GT(least, 0.3);
 }
 
-// Carried to where nobody has looked, with what is free around it; it does not go back to where it was.
+// Rays end in all voxels of a robot that is not there yet: what they met has gone when it comes.
+void see_something_at(TeamInMotion& scene, const Pose& pose) {
+  const Lattice lattice = scene.grid().lattice();
+  Scan scan{pose.position.cast<float>() - Eigen::Vector3f(1.5F, 0, 0), 10.0, {}, {}};
+  for_each_key(test::voxels_at(small_uav().robot.travel, lattice, pose.position), [&](const VoxelKey& key) {
+    const Eigen::Vector3f ray = lattice.center(key) - scan.origin;
+    scan.directions.push_back(ray.normalized());
+    scan.ranges.push_back(ray.norm());
+  });
+  for (int i = 0; i < 3; ++i) scene.exploration().insert(0, pose, scan);
+}
+
+// Carried to where nobody has been, with what is free around it; it does not go back to where it was.
 TEST_P(JoinedRobotsBy, GoOnFromWhereverTheyAre) {
   TeamInMotion scene("maze", {small_uav(), small_uav()}, sim::AtContact::kGoOn, GetParam());
   ContinuousExploration& exploration = scene.exploration();
@@ -98,6 +110,7 @@ TEST_P(JoinedRobotsBy, GoOnFromWhereverTheyAre) {
     elsewhere.position.x() += lattice.resolution();
     ASSERT_TRUE(scene.team().truth.bounds().contains(lattice.key(elsewhere.position).value()));
   }
+  see_something_at(scene, elsewhere);
   exploration.join(1, {elsewhere, sim::start_bubble(scene.team().truth, small_uav().robot, elsewhere)},
                    scene.time());
   EXPECT_TRUE(test::same(exploration.at(1, scene.time()).pose, elsewhere));
@@ -114,7 +127,10 @@ TEST_P(JoinedRobotsBy, DriveFromTheirStart) {
   ContinuousExploration& exploration = scene.exploration();
   exploration.lose(0, scene.team().starts[0].pose, 0.0);
   EXPECT_EQ(exploration.end(), ExplorationEnd::kNothingToDo);
-  exploration.join(0, rests_at(scene, 0), 0.0);
+  ExplorationStart start = rests_at(scene, 0);
+  start.pose.position.z() += 0.2;  // in the next layer of voxels, by its localization
+  exploration.join(0, start, 0.0);
+  EXPECT_TRUE(test::same(exploration.at(0, 0.0).pose, scene.team().starts[0].pose));
   EXPECT_FALSE(exploration.end());
   scene.explore(6.0);
   EXPECT_GT(scene.robots().records()[0].length, 1.0);

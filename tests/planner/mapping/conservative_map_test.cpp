@@ -76,6 +76,25 @@ TEST(ConservativeMap, LosesWhatRaysPassThrough) {
 }
 
 // Though the map does not change.
+TEST(ConservativeMap, ForgetsWhatIsSaidToBeGone) {
+  Maps maps;
+  maps.scan(3.0F, 0.0F, 3);
+  maps.update();
+  static_cast<void>(maps.map.mark_free(Keys{maps.place}));
+  maps.changed = {maps.place};
+  maps.update();
+  EXPECT_EQ(maps.at(maps.place), Occupancy::kOccupied);
+  maps.conservative.forget(Keys{maps.place, maps.before});
+  EXPECT_EQ(maps.at(maps.place), Occupancy::kOccupied) << "until the next update";
+  maps.update();
+  EXPECT_EQ(maps.at(maps.place), Occupancy::kFree);
+  EXPECT_EQ(maps.told, Keys{maps.place});
+  maps.scan(kNothing, 0.0F, 1);  // passes where nothing is known to have been
+  maps.scan(3.0F, 0.0F, 2);
+  maps.update();
+  EXPECT_EQ(maps.at(maps.place), Occupancy::kOccupied) << "something is there again";
+}
+
 TEST(ConservativeMap, GetsWhatIsHitInFreeSpace) {
   Maps maps;
   maps.scan(kNothing, 0.0F, 10);

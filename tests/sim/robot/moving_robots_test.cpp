@@ -274,5 +274,21 @@ TEST(MovingRobots, StayWhileTheyAreNotActive) {
   EXPECT_GT(scene.record().length, length + 1.0);
 }
 
+// What it was about to learn of where it is it knows then: it does not move when it follows `where` again.
+TEST(MovingRobots, KnowWhereTheyAreWhileTheyAreNotActive) {
+  const BoxRoom room;
+  Moving scene(room, {small(planner::uav_description(), 5.0)}, {{Vector3d(2, 2, 1.5), 0.0}}, AtContact::kGoOn,
+               {}, 1, {0.3, 2.0});
+  scene.go_on(2.1, [&](std::size_t, double time) { return at({2, 2 + 0.5 * time, 1.5}); });
+  scene.robots.set_active(0, false);
+  const double length = scene.record().length;
+  const Vector3d rests = scene.robots.believed(0).position;
+  EXPECT_GT((rests - Vector3d(2, 2 + 0.5 * 2.0, 1.5)).norm(), 0.1);
+  scene.go_on(3.1, [&](std::size_t, double time) { return at({2, 2 + 0.5 * time, 1.5}); });
+  scene.robots.set_active(0, true);
+  scene.go_on(3.5, [&](std::size_t, double) { return at(rests); });
+  EXPECT_NEAR(scene.record().length, length, 1e-9);
+}
+
 }  // namespace
 }  // namespace frontlux::sim

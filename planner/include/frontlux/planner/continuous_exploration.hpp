@@ -108,9 +108,11 @@ class FRONTLUX_EXPORT ContinuousExploration {
   void lose(std::size_t robot, const Pose& pose, double time);
 
   /// A robot that was lost takes part again, from where it rests, and gets its share of what is left to see.
-  /// What has blocked its path before is forgotten. A robot that comes later is in the team from the begin
-  /// on, and lost before the first planning; until it joins, `end` does not wait for it.
-  /// @param start  what is known to be free there is left out where the map has it
+  /// Cells that were closed by `stopped` are open to it. A robot that comes later is in the team from the
+  /// begin on, and lost before the first planning. `end` does not wait for it; when it has joined, the
+  /// exploration goes on.
+  /// @param start  its pose, of a robot on a plane at the height of that; what is known to be free there, if
+  ///               the map does not know
   /// @throws std::invalid_argument as `stopped`, or if the robot was not lost
   void join(std::size_t robot, const ExplorationStart& start, double time);
 

@@ -128,6 +128,19 @@ Pose MovingRobots::swayed(std::size_t robot, const planner::MotionState& to, dou
   return pose;
 }
 
+// It does not get back to where it believed to be, and knows it.
+void MovingRobots::forget_known_error(Progress& progress) const {
+  if (progress.known_error.isZero(0.0)) return;
+  progress.believed.position =
+      progress.pose.position - pose_errors_.drift * progress.since_fix * progress.direction;
+  progress.known_error.setZero();
+}
+
+void MovingRobots::set_active(std::size_t robot, bool active) {
+  progress_[robot].active = active;
+  if (!active) forget_known_error(progress_[robot]);
+}
+
 // @param time  when it gets there
 void MovingRobots::move(std::size_t robot, const planner::MotionState& to, double time,
                         std::vector<Stopped>& stopped) {
@@ -154,11 +167,8 @@ void MovingRobots::move(std::size_t robot, const planner::MotionState& to, doubl
   if (contact && at_contact_ == AtContact::kStay) {
     now.since_fix -= step;
     Eigen::Vector3d ahead = believed.position - now.believed.position;
-    if (!now.known_error.isZero(0.0)) {  // it does not get back to where it believed to be, and knows it
-      now.believed.position = now.pose.position - pose_errors_.drift * now.since_fix * now.direction;
-      now.known_error.setZero();
-      ahead = motion;
-    }
+    if (!now.known_error.isZero(0.0)) ahead = motion;
+    forget_known_error(now);
     ++record.held_back;
     record.idle += seconds;
     now.halted = true;

@@ -95,8 +95,9 @@ class MovingRobots {
   /// The same to the time of the next scan, and takes it.
   Sensed advance(const Where& where, std::vector<Stopped>& stopped);
 
-  /// Whether a robot follows `where`, as all do at first, or stays where it is. @pre it is one of them
-  void set_active(std::size_t robot, bool active) { progress_[robot].active = active; }
+  /// Whether a robot follows `where`, as all do at first, or stays where it is: then it learns at once of
+  /// what it was about to learn of. @pre it is one of them
+  void set_active(std::size_t robot, bool active);
 
   [[nodiscard]] std::span<const MotionRecord> records() const { return records_; }
   /// Where a robot believes to be. @pre it is one of them
@@ -122,6 +123,7 @@ class MovingRobots {
   void move(std::size_t robot, const planner::MotionState& to, double time, std::vector<Stopped>& stopped);
   [[nodiscard]] Eigen::Vector3d error(std::size_t robot, double time) const;
   [[nodiscard]] planner::Pose swayed(std::size_t robot, const planner::MotionState& to, double time) const;
+  void forget_known_error(Progress& progress) const;
   void draw_direction(std::size_t robot);
   void draw_phases(std::size_t robot);
   void measure_clearance(std::size_t robot);
