@@ -233,10 +233,14 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
     const auto now = snapshot();
     const auto* whole = now->tables(unknown).whole();
     if (whole == nullptr) return std::nullopt;
-    const auto found = detail::TableQuery(now->grid(), *whole, unknown, packets_).end_alone(ray);
-    if (!found) return std::nullopt;
-    end = lattice().center(found->key);
-    return found->stop;
+    if (const auto found = detail::TableQuery(now->grid(), *whole, unknown, packets_).end_alone(ray)) {
+      end = lattice().center(found->key);
+      return found->stop;
+    }
+    Hit hit;  // not by `do_cast`, which would walk through the table once more
+    detail::SceneQuery(now->boxes().get(), unknown).cast({&ray, 1}, {&hit, 1});
+    if (hit.stop != RayStop::kInvalid) end = hit.end;
+    return hit.stop;
   }
   void do_visible(std::span<const Segment> segments, std::span<std::uint8_t> visible,
                   UnknownPolicy unknown) const override {

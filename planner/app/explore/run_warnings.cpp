@@ -113,16 +113,15 @@ std::vector<std::string> run_warnings(const ExploreSetup& setup, const RunSums& 
                        why_they_rest(setup, numbers) + (all_failed(numbers) ? "" : by_stray_returns(setup)));
   if (unseen && unseen->narrow >= sim::kMuchUnseen && !all_failed(numbers))
     warnings.push_back(why_narrow(*unseen, setup));
-  for (std::size_t r = 0; r < numbers.robots.size(); ++r)
-    if (const auto& failed = numbers.robots[r].failed)
-      warnings.push_back(
-          "the robot '" + setup.head.robots[r].robot.name + "' failed after " + rounded(*failed) +
-          " s, as --fail says" +
-          (numbers.robots[r].takes_part ? ", and joined the others again, as --join says" : ""));
-  for (std::size_t r = 0; r < numbers.robots.size(); ++r)
-    if (!numbers.robots[r].takes_part && !numbers.robots[r].failed)
-      warnings.push_back("the robot '" + setup.head.robots[r].robot.name +
-                         "' had not joined the others by the end, as --join says");
+  for (std::size_t r = 0; r < numbers.robots.size(); ++r) {
+    const RobotNumbers& robot = numbers.robots[r];
+    const std::string name = "the robot '" + setup.head.robots[r].robot.name + "'";
+    if (robot.failed)
+      warnings.push_back(name + " failed after " + rounded(*robot.failed) + " s, as --fail says" +
+                         (robot.takes_part ? ", and joined the others again, as --join says" : ""));
+    else if (!robot.takes_part)
+      warnings.push_back(name + " had not joined the others by the end, as --join says");
+  }
   const double planning = sums.planning_percentile(0.99), latency = setup.exploration.latency;
   if (!setup.lockstep && planning > latency && sums.planning.size() >= kEnoughPlannings)
     warnings.push_back(late_planning(planning, latency));
