@@ -17,13 +17,13 @@ void GraphDistances::update(const TravelCorridor& corridor, std::span<const KeyB
   graph_.update(corridor, changed);
   from_start_.clear();
   // What was not asked for since the update before will not be soon, either.
-  std::erase_if(near_, [&](const auto& entry) {
-    const Near& near = entry.second;
-    return !near.asked || std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
+  std::erase_if(near_, [](const auto& entry) { return !entry.second.asked; });
+  for (auto& [from, near] : near_) {
+    near.asked = false;
+    near.stale = std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
       return graph_.has_changed(distance.to);
     });
-  });
-  for (auto& [from, near] : near_) near.asked = false;
+  }
 }
 
 void GraphDistances::start_from(const std::optional<VoxelKey>& cell) {
@@ -37,14 +37,17 @@ void GraphDistances::measure_from(std::span<const VoxelKey> cells) {
   for (const VoxelKey& cell : cells) {
     const auto node = graph_.node(cell);
     if (!node) continue;
-    if (const auto known = near_.find(graph_.name_of(*node)); known != near_.end())
-      known->second.asked = true;
-    else
-      nodes.push_back(*node);
+    Near& near = near_[graph_.name_of(*node)];
+    near.asked = true;
+    if (near.stale) nodes.push_back(*node);
   }
   sort_once(nodes);
-  auto near = graph_.near_distances(nodes, measured_);
-  for (std::size_t i = 0; i < nodes.size(); ++i) near_[graph_.name_of(nodes[i])] = {std::move(near[i])};
+  std::vector<TravelGraph::Near> places;
+  for (const std::uint32_t node : nodes)
+    places.push_back({node, std::move(near_[graph_.name_of(node)].distances)});
+  graph_.measure(places, measured_);
+  for (auto& [from, distances] : places)
+    near_[graph_.name_of(from)] = {.distances = std::move(distances), .stale = false};
 }
 
 bool GraphDistances::reaches(const VoxelKey& cell) const {

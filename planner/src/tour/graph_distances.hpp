@@ -28,7 +28,8 @@ class GraphDistances {
   /// Where the robot will be; none if it is not in the map, or does not fit there.
   void start_from(const std::optional<VoxelKey>& cell);
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Finds the distances from some cells, until the next update. Those that it does not change are kept.
+  /// Finds the distances from some cells, until the next update. Of those found before only what it has
+  /// changed is found anew.
   void measure_from(std::span<const VoxelKey> cells);
 
   /// Whether the robot can get to a cell from its start.
@@ -59,6 +60,7 @@ class GraphDistances {
   struct Near {
     std::vector<TravelGraph::Distance> distances;
     bool asked = true;  // for, since the last update
+    bool stale = true;  // that update has changed what they depend on
   };
   std::map<TravelGraph::Name, Near> near_;  // from other nodes
 };

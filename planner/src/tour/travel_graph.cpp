@@ -1,12 +1,12 @@
 #include "tour/travel_graph.hpp"
 
 #include "mapping/sort_once.hpp"
+#include "tour/travel_graph_search.hpp"
 
 #include <frontlux/parallel.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <iterator>
 #include <limits>
 #include <unordered_set>
@@ -246,12 +246,14 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
     for_each_as_near_as_two(i, [&](std::size_t cube) { edges[cube] = 1; });
   }
   changed_ = std::move(reads);
+  changed_cubes_.clear();
   const std::vector<std::size_t> linked = set_places(links), connected = set_places(edges);
   if (connected.empty()) return;
   for_each_index(linked.size(), [&](std::size_t i) { link(linked[i]); });
   for_each_index(connected.size(), [&](std::size_t i) {
     if (connect(connected[i])) changed_[connected[i]] = 1;
   });
+  changed_cubes_ = set_places(changed_);
   number_nodes();
 }
 
@@ -260,92 +262,13 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   return first_[cube_of(cell)] + part_[cell] - 1u;
 }
 
-// Dijkstra's algorithm, but nodes about as far as each other are taken in any order, and once more when they
-// turn out to be nearer. Searches from several nodes after each other pay for what they reach only.
-class TravelGraph::Search {
- public:
-  explicit Search(const TravelGraph& graph)
-      : graph_(graph), lengths_(graph.size(), TourProblem::kNever), marks_(graph.size() / 64 + 1) {}
+std::vector<double> TravelGraph::distances(std::uint32_t from) const { return Search(*this).distances(from); }
 
-  // Ends when the distances of so many nodes are known. Those of other nodes are `kNever` afterwards.
-  void run(std::uint32_t from, std::size_t count) {
-    for (const std::uint32_t node : reached_) lengths_[node] = TourProblem::kNever;
-    reached_.assign(1, from);
-    lengths_[from] = 0.0;
-    open_.resize(std::max<std::size_t>(open_.size(), 1));
-    open_[0].emplace_back(0.0, from);
-    std::size_t known = 0, now = 0, end = 1;  // bands
-    for (; now < end && known < count; ++now) {
-      for (std::size_t i = 0; i < open_[now].size(); ++i) {
-        const auto [so_far, node] = open_[now][i];
-        if (so_far > lengths_[node]) continue;
-        for (std::size_t e = graph_.begin_[node]; e < graph_.begin_[node + 1]; ++e) {
-          const auto& [to, length] = graph_.edges_[e];
-          const double through = so_far + static_cast<double>(length);
-          if (through >= lengths_[to]) continue;
-          if (lengths_[to] == TourProblem::kNever) reached_.push_back(to);
-          lengths_[to] = through;
-          const std::size_t next = band(through);
-          end = std::max(end, next + 1);
-          if (end > open_.size()) open_.resize(end);
-          open_[next].emplace_back(through, to);
-        }
-      }
-      for (const auto& [so_far, node] : open_[now]) known += so_far > lengths_[node] ? 0 : 1;
-      open_[now].clear();
-    }
-    for (std::size_t later = now; later < end; ++later) open_[later].clear();
-    std::erase_if(reached_, [&](std::uint32_t node) {
-      if (band(lengths_[node]) < now) return false;
-      lengths_[node] = TourProblem::kNever;
-      return true;
-    });
-  }
-
-  // [m] to each node
-  std::vector<double> take_lengths() { return std::move(lengths_); }
-
-  [[nodiscard]] std::vector<Distance> near() {
-    for (const std::uint32_t node : reached_) marks_[node / 64] |= std::uint64_t{1} << (node % 64);
-    std::vector<Distance> near;
-    near.reserve(reached_.size());
-    for (std::size_t i = 0; i < marks_.size(); ++i)
-      for (std::uint64_t rest = std::exchange(marks_[i], 0); rest != 0; rest &= rest - 1) {
-        const std::size_t node = 64 * i + static_cast<std::size_t>(std::countr_zero(rest));
-        near.push_back({graph_.names_[node], lengths_[node]});
-      }
-    return near;
-  }
-
- private:
-  [[nodiscard]] std::size_t band(double length) const { return static_cast<std::size_t>(length / width_); }
-
-  const TravelGraph& graph_;
-  // [m] of nodes about as far as each other
-  const double width_ = graph_.edge_ * graph_.lattice_.resolution() / 2;
-  std::vector<double> lengths_;
-  std::vector<std::uint32_t> reached_;
-  std::vector<std::uint64_t> marks_;  // a bit for each node: sorts them
-  std::vector<std::vector<std::pair<double, std::uint32_t>>> open_;
-};
-
-std::vector<double> TravelGraph::distances(std::uint32_t from) const {
-  Search search(*this);
-  search.run(from, std::numeric_limits<std::size_t>::max());
-  return search.take_lengths();
-}
-
-std::vector<std::vector<TravelGraph::Distance>> TravelGraph::near_distances(
-    std::span<const std::uint32_t> from, std::size_t count) const {
-  std::vector<std::vector<Distance>> near(from.size());
-  for_each_range(from.size(), [&](std::size_t begin, std::size_t end) {
+void TravelGraph::measure(std::span<Near> places, std::size_t count) const {
+  for_each_range(places.size(), [&](std::size_t begin, std::size_t end) {
     Search search(*this);
-    for (std::size_t i = begin; i < end; ++i) {
-      search.run(from[i], count);
-      near[i] = search.near();
-    }
+    for (Near& place : places.subspan(begin, end - begin)) search.measure(place, count);
   });
-  return near;
 }
 
 std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& lengths,

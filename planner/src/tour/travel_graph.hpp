@@ -55,11 +55,17 @@ class TravelGraph {
     double length;  ///< [m]
     auto operator<=>(const Distance&) const = default;
   };
-  /// From each of some nodes, of `distances` those to the nearest nodes, sorted by name. Whatever has changed
+  /// A node, and of `distances` from it those to the nearest nodes, sorted by name. Whatever has changed
   /// elsewhere, they are the same as long as none of these nodes `has_changed`.
-  /// @param count  how many are enough; there may be somewhat more
-  [[nodiscard]] std::vector<std::vector<Distance>> near_distances(std::span<const std::uint32_t> from,
-                                                                  std::size_t count) const;
+  struct Near {
+    std::uint32_t from;
+    std::vector<Distance> distances;
+  };
+  /// Finds the distances of some nodes.
+  /// @param places  with the distances before the last update, found for the same `count`, or with none: of
+  ///                those before only what has changed is found anew
+  /// @param count   how many are enough; there may be somewhat more
+  void measure(std::span<Near> places, std::size_t count) const;
   /// Whether the last update has changed the node's cells or its edges.
   [[nodiscard]] bool has_changed(Name name) const { return changed_[name >> kPartBits] != 0; }
 
@@ -125,8 +131,9 @@ class TravelGraph {
   BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
   std::vector<std::uint8_t> changed_;  // cubes whose cells or edges the last update has changed
-  std::vector<Name> names_;            // of the nodes, in this order
-  std::vector<std::size_t> begin_;     // of each node's edges
+  std::vector<std::size_t> changed_cubes_;
+  std::vector<Name> names_;         // of the nodes, in this order
+  std::vector<std::size_t> begin_;  // of each node's edges
   struct Edge {
     std::uint32_t to;
     float length;  // [m]

@@ -5,6 +5,8 @@
 #include "support/voxel_keys.hpp"
 #include "tour/graph_distances.hpp"
 
+#include <array>
+
 namespace frontlux::planner::detail {
 namespace {
 
@@ -112,8 +114,10 @@ TEST(TravelGraph, MeasuresTheNearestNodesOnly) {
     const auto count = static_cast<std::size_t>(1 + random.below(60));
     const std::vector<double> all = graph.distances(from);
     // From others before, so that nothing is left of their search.
-    const auto others = std::vector<std::uint32_t>{0, static_cast<std::uint32_t>(all.size() - 1), from};
-    const auto near = graph.near_distances(others, count).back();
+    std::vector<TravelGraph::Near> places{
+        {0, {}}, {static_cast<std::uint32_t>(all.size() - 1), {}}, {from, {}}};
+    graph.measure(places, count);
+    const auto& near = places.back().distances;
     const auto number = [&](TravelGraph::Name name) {
       std::uint32_t node = 0;
       while (graph.name_of(node) != name) ++node;
@@ -148,16 +152,16 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
   corridor.update({grid}, robot);
   TravelGraph kept(grid.lattice(), kBounds, 5, 2);
   kept.update(corridor, {{kBounds}});
-  std::size_t same = 0, others = 0;  // ways before and after a change
+  std::size_t same = 0, others = 0, gone = 0;  // ways before and after a change
   for (int round = 0; round < 40; ++round) {
-    std::vector<std::uint32_t> nodes;
+    std::vector<TravelGraph::Near> before;
     std::vector<TravelGraph::Name> names;
     for (std::uint32_t node = 0; node < kept.size(); node += 3) {
-      nodes.push_back(node);
+      before.push_back({node, {}});
       names.push_back(kept.name_of(node));
     }
-    constexpr std::size_t kCount = 12;
-    const auto before = kept.near_distances(nodes, kCount);
+    const std::size_t count = std::array{12, 40, 10'000}.at(static_cast<std::size_t>(round % 3));
+    kept.measure(before, count);
     Keys changed;
     std::vector<KeyBox> boxes;
     for (int i = 0; i < 1 + random.below(4); ++i) {
@@ -176,23 +180,30 @@ TEST(TravelGraph, EqualsANewOneAfterChanges) {
     anew.update(corridor, {{kBounds}});
     expect_same(kept, anew);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto has_changed = [&](const TravelGraph::Distance& distance) {
-        return kept.has_changed(distance.to);
-      };
-      if (std::ranges::any_of(before[i], has_changed)) {
-        ++others;
-        continue;
-      }
-      ++same;
       std::uint32_t node = 0;
       while (node < anew.size() && anew.name_of(node) != names[i]) ++node;
-      ASSERT_LT(node, anew.size());
-      EXPECT_EQ(anew.near_distances({&node, 1}, kCount).front(), before[i]);
+      const bool has_changed = std::ranges::any_of(
+          before[i].distances,
+          [&](const TravelGraph::Distance& distance) { return kept.has_changed(distance.to); });
+      if (node == anew.size()) {
+        EXPECT_TRUE(has_changed);
+        ++gone;
+        continue;
+      }
+      TravelGraph::Near expected{node, {}}, mended{node, before[i].distances};
+      anew.measure({&expected, 1}, count);
+      kept.measure({&mended, 1}, count);
+      EXPECT_EQ(mended.distances, expected.distances);
+      if (!has_changed) {
+        EXPECT_EQ(before[i].distances, expected.distances);
+      }
+      ++(before[i].distances == expected.distances ? same : others);
     }
     if (testing::Test::HasFailure()) return;
   }
   EXPECT_GT(same, 50U);
-  EXPECT_GT(others, 50U);
+  EXPECT_GT(others, 500U);
+  EXPECT_GT(gone, 5U);
 }
 
 TEST(GraphDistances, OfAllPairsAreThoseOfEachPair) {
