@@ -81,14 +81,13 @@ std::optional<VoxelKey> before_face(const ViewpointQuery& query, const VoxelKey&
   return before;
 }
 
-// Ends segments, from one of them on, before the frontiers' faces, and drops those to frontiers that turn
-// none.
-void end_before_faces(const ViewpointQuery& query, std::size_t first, std::vector<KeySegment>& segments) {
-  std::size_t kept = first;
-  for (std::size_t s = first; s < segments.size(); ++s)
-    if (const auto end = before_face(query, segments[s].from, segments[s].to))
-      segments[kept++] = {segments[s].from, *end};
-  segments.resize(kept);
+// Ends segments before the frontiers' faces.
+// @return how many are left, to frontiers that turn a face
+std::size_t end_before_faces(const ViewpointQuery& query, std::span<KeySegment> segments) {
+  std::size_t count = 0;
+  for (const auto& [from, to] : segments)
+    if (const auto end = before_face(query, from, to)) segments[count++] = {from, *end};
+  return count;
 }
 
 // Some voxels, of which cell after cell asks which are in its region.
@@ -102,23 +101,23 @@ class VoxelsInRegion {
     }
   }
 
-  // Adds a segment from a cell to each of the voxels in its region.
-  void add_segments(const VoxelKey& cell, std::vector<KeySegment>& segments) const {
-    if (!in_table(cell)) {
-      for (const VoxelKey& key : voxels_)
-        if (region_.contains(cell, key)) segments.push_back({cell, key});
-      return;
-    }
-    // The table knows all of the offsets, and without a branch the loop takes a third of the time.
-    std::size_t count = segments.size();
-    segments.resize(count + voxels_.size());
+  // Writes segments from a cell to those of the voxels that are in its region.
+  // @param segments  there is a place for each voxel
+  // @return how many
+  std::size_t find(const VoxelKey& cell, std::span<KeySegment> segments) const {
+    std::size_t count = 0;
+    const auto add = [&](std::size_t voxel, bool is_in) {  // without a branch
+      segments[count] = {cell, voxels_[voxel]};
+      count += is_in ? 1 : 0;
+    };
     const std::int16_t* const heights = region_.heights();
     const std::int32_t own = region_.entry(cell.x, cell.y);
-    for (std::size_t i = 0; i < voxels_.size(); ++i) {
-      segments[count] = {cell, voxels_[i]};
-      count += std::abs(voxels_[i].z - cell.z) <= heights[entries_[i] - own] ? 1 : 0;
-    }
-    segments.resize(count);
+    if (in_table(cell))
+      for (std::size_t i = 0; i < voxels_.size(); ++i)
+        add(i, std::abs(voxels_[i].z - cell.z) <= heights[entries_[i] - own]);
+    else
+      for (std::size_t i = 0; i < voxels_.size(); ++i) add(i, region_.contains(cell, voxels_[i]));
+    return count;
   }
 
  private:
@@ -141,15 +140,16 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
   std::vector<ClusterViewpoint> viewpoints(cells.size());
   const VoxelsInRegion in_region(query.region, targets);
   for_each_chunk(cells.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
-    std::vector<KeySegment> segments;
-    segments.reserve((last - first) * targets.size());
+    std::vector<KeySegment> segments((last - first) * targets.size());
     std::vector<std::size_t> begin{0};
     for (std::size_t c = first; c < last; ++c) {
-      in_region.add_segments(cells[c], segments);
-      if (aim == Aim::kFace) end_before_faces(query, begin.back(), segments);
-      begin.push_back(segments.size());
+      const auto rest = std::span(segments).subspan(begin.back());
+      std::size_t count = in_region.find(cells[c], rest);
+      if (aim == Aim::kFace) count = end_before_faces(query, rest.first(count));
+      begin.push_back(begin.back() + count);
     }
-    const std::vector<std::uint8_t> visible = visible_segments(query.caster, segments);
+    const std::vector<std::uint8_t> visible =
+        visible_segments(query.caster, std::span(segments).first(begin.back()));
     std::vector<Eigen::Vector3d> offsets;  // to what a cell sees
     for (std::size_t c = first; c < last; ++c) {
       const Eigen::Vector3d from = query.grid.lattice().exact_center(cells[c]);
@@ -158,8 +158,9 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
         if (visible[s] != 0) offsets.push_back(query.grid.lattice().exact_center(segments[s].to) - from);
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (const Eigen::Vector3d& offset : offsets) sum += offset;
-      ClusterViewpoint& viewpoint = viewpoints[c] = {cells[c], yaw_along(sum), 0, aim};
+      ClusterViewpoint& viewpoint = viewpoints[c] = {.cell = cells[c], .aim = aim};
       if (offsets.empty()) continue;
+      viewpoint.yaw = yaw_along(sum);
       const TurnedView view(query.view, viewpoint.yaw);
       for (const Eigen::Vector3d& offset : offsets)
         if (view.contains(offset)) ++viewpoint.seen;
