@@ -268,7 +268,9 @@ std::vector<ClusterViewpoint> viewpoints_anywhere(const ViewpointQuery& query, c
                                                   Aim aim,
                                                   const std::function<bool(const VoxelKey&)>& reaches) {
   std::vector<VoxelKey> cells = query.graph.spread_cells(grown(cluster.box, query.region.reach()));
-  std::erase_if(cells, [&](const VoxelKey& cell) { return !reaches(cell); });
+  std::erase_if(cells, [&](const VoxelKey& cell) {
+    return !query.region.may_contain_voxel({cell, cell}, cluster.box) || !reaches(cell);
+  });
   return best_viewpoints(query, cluster, cells, kSmallSample, aim);
 }
 
