@@ -60,6 +60,9 @@ ExplorationStep ContinuousExploration::begin(std::span<const ExplorationStart> s
   std::vector<Pose> poses;
   for (const ExplorationStart& start : starts) poses.push_back(start.pose);
   check_finite(poses);
+  if (!std::ranges::all_of(
+          poses, [&](const Pose& pose) { return state.team.lattice().key(pose.position).has_value(); }))
+    refuse("a start outside the map's key range");
   state.team.start_from(starts);
   for (std::size_t r = 0; r < starts.size(); ++r) {
     State::Member member{.motion = {Trajectory(starts[r].pose, time)}};

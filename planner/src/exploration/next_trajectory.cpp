@@ -193,6 +193,11 @@ void ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
   const detail::PhaseClock clock(step, Phase::kPaths);
   Member& member = members[robot];
   const bool apart = keeps_apart(robot, trajectory);
+  const bool retreats = member.activity == Activity::kRetreats;
+  const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
+  // Another one may make room: it tries the retreat again.
+  const bool tries_again = !apart && retreats && std::ranges::any_of(members, moves);
+  if (tries_again) team.retreated_to[robot].pop_back();
   if (!apart) member.goal_frontiers.clear();  // it does not get there
   if (apart || brakes_instead(robot, start, trajectory)) {
     member.needed = voxels_needed(robot, trajectory, member.floor);
@@ -201,14 +206,9 @@ void ContinuousExploration::State::take_up(std::size_t robot, double start, Traj
     return;
   }
   trajectory = member.motion.last();  // which keeps apart
-  const bool goes_on = trajectory.end() > start;
-  const bool retreated =
-      std::exchange(member.activity, goes_on ? Activity::kMoves : Activity::kRests) == Activity::kRetreats;
-  const auto moves = [&](const Member& other) { return other.motion.last().end() > start; };
-  if (goes_on || !retreated || std::ranges::none_of(members, moves)) return;
-  // Another one may make room: it tries the retreat again.
-  team.retreated_to[robot].pop_back();
-  member.activity = Activity::kTriesAgain;
+  member.activity = trajectory.end() > start ? Activity::kMoves
+                    : tries_again            ? Activity::kTriesAgain
+                                             : Activity::kRests;
 }
 
 // Of a robot whose path is neither free nor can be left: it brakes, also on the path of another one, which

@@ -42,8 +42,13 @@ std::vector<Candidate> list_candidates(const GoalQuery& query, const ViewQuality
 }
 
 // A window of azimuths holds all that some yaw shows; at the edges of one yaw's view less height is in view.
-RenderedCell in_true_view(const GoalQuery& query, RenderedCell rated) {
-  const std::vector<std::uint8_t> visible = query.visible_targets(rated.cell, rated.yaw);
+// Nothing is gained where that shows no target that has to be in view.
+RenderedCell in_true_view(const GoalQuery& query, RenderedCell rated, const VoxelKey* containing) {
+  std::vector<std::uint8_t> visible = query.visible_targets(rated.cell, rated.yaw);
+  if (containing != nullptr) {
+    const auto place = std::ranges::find(query.targets, *containing) - query.targets.begin();
+    if (visible.at(static_cast<std::size_t>(place)) == 0) visible.clear();
+  }
   rated.hits = static_cast<std::uint32_t>(std::count(visible.begin(), visible.end(), std::uint8_t{1}));
   rated.gain = rated.hits;
   rated.quality = query.quality(rated.distance, rated.gain);
@@ -51,7 +56,8 @@ RenderedCell in_true_view(const GoalQuery& query, RenderedCell rated) {
 }
 
 // The best by what it truly sees at its yaw. Candidates that were worse before cannot be better by that.
-std::optional<RenderedCell> best_of(const GoalQuery& query, std::span<const Candidate> candidates) {
+std::optional<RenderedCell> best_of(const GoalQuery& query, std::span<const Candidate> candidates,
+                                    const VoxelKey* containing) {
   std::vector<RenderedCell> cells;
   for (const auto& [rated, most, undecided] : candidates)
     if (rated.gain > 0.0) cells.push_back(rated);
@@ -64,7 +70,7 @@ std::optional<RenderedCell> best_of(const GoalQuery& query, std::span<const Cand
   std::optional<RenderedCell> best;
   for (auto end = cells.end(); end != cells.begin(); --end) {
     if (best && !is_better(cells.front(), *best)) break;
-    const RenderedCell counted = in_true_view(query, cells.front());
+    const RenderedCell counted = in_true_view(query, cells.front(), containing);
     if (counted.gain > 0.0 && (!best || is_better(counted, *best))) best = counted;
     std::pop_heap(cells.begin(), end, [&](const auto& a, const auto& b) { return is_better(b, a); });
   }
@@ -119,7 +125,7 @@ std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityI
   std::vector<Candidate> candidates = list_candidates(query, image, containing);
   const bool exact = std::none_of(candidates.begin(), candidates.end(),
                                   [](const Candidate& candidate) { return candidate.undecided; });
-  if (exact || query.options.refined == 0) return best_of(query, candidates);
+  if (exact || query.options.refined == 0) return best_of(query, candidates, containing);
   std::optional<RenderedCell> best;
   std::vector<VoxelKey> cells;
   auto begin = candidates.begin();
@@ -133,7 +139,7 @@ std::optional<RenderedCell> best_cell(const GoalQuery& query, const ViewQualityI
     cells.clear();
     for (auto candidate = begin; candidate != end; ++candidate) cells.push_back(candidate->rated.cell);
     const auto image_of_all = render_cells(query, cells, all_targets(query));
-    const auto found = best_of(query, list_candidates(query, image_of_all, containing));
+    const auto found = best_of(query, list_candidates(query, image_of_all, containing), containing);
     if (found && (!best || better(query, *found, *best))) best = found;
     begin = end;
   }

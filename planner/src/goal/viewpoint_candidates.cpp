@@ -189,7 +189,7 @@ PossibleGoals possible_goals(const GoalQuery& query, std::span<const VoxelKey> c
   PossibleGoals possible;
   possible.counted = best_cell(query, image);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (bounds.quality[i] <= 0.0) continue;
+    if (bounds.gain[i] <= 0.0) continue;
     if (possible.counted) {
       RenderedCell at_best = *possible.counted;  // with its key, too: cells of the same quality stay in
       at_best.gain = bounds.gain[i];

@@ -59,6 +59,8 @@ void ClusterSights::find_reached(const Query& query, Sight& sight) {
   sight.viewpoints.clear();
   std::ranges::copy_if(sight.found, std::back_inserter(sight.viewpoints),
                        [&](const ClusterViewpoint& viewpoint) { return query.reaches(viewpoint.cell); });
+  // A trial all over the graph has added its own behind those that could not be reached then.
+  sort_by_seen(sight.viewpoints);
   if (!sight.viewpoints.empty()) {
     sight.stale = false;
     sight.in_vain = sight.pause = 0;

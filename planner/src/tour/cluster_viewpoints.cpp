@@ -90,7 +90,7 @@ std::size_t end_before_faces(const ViewpointQuery& query, std::span<KeySegment> 
   return count;
 }
 
-// Some voxels, of which cell after cell asks which are in its region.
+// Some voxels, at least one, of which cell after cell asks which are in its region.
 class VoxelsInRegion {
  public:
   VoxelsInRegion(const ViewRegion& region, std::span<const VoxelKey> voxels)
@@ -169,10 +169,6 @@ std::vector<ClusterViewpoint> look_from(const ViewpointQuery& query, std::span<c
   return viewpoints;
 }
 
-void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints) {
-  std::ranges::stable_sort(viewpoints, [](const auto& a, const auto& b) { return a.seen > b.seen; });
-}
-
 // Of some cells, compared by a sample of so many of the cluster's frontiers.
 std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const FrontierCluster& cluster,
                                               std::span<const VoxelKey> cells, std::size_t sample, Aim aim) {
@@ -198,6 +194,10 @@ std::vector<ClusterViewpoint> best_viewpoints(const ViewpointQuery& query, const
 }
 
 }  // namespace
+
+void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints) {
+  std::ranges::stable_sort(viewpoints, [](const auto& a, const auto& b) { return a.seen > b.seen; });
+}
 
 NumberTable parts_seen(const ViewpointQuery& query, std::span<const ClusterViewpoint> viewpoints,
                        std::span<const FrontierCluster* const> clusters) {

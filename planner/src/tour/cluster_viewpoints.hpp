@@ -37,6 +37,9 @@ struct ClusterViewpoint {
   Aim aim = Aim::kMiddle;
 };
 
+/// The best first; others stay in their order.
+void sort_by_seen(std::vector<ClusterViewpoint>& viewpoints);
+
 /// What a robot's viewpoints depend on.
 struct ViewpointQuery {
   const RayCaster& caster;

@@ -20,9 +20,10 @@ void GraphDistances::update(const TravelCorridor& corridor, std::span<const KeyB
   std::erase_if(near_, [](const auto& entry) { return !entry.second.asked; });
   for (auto& [from, near] : near_) {
     near.asked = false;
-    near.stale = std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
-      return graph_.has_changed(distance.to);
-    });
+    near.stale =
+        near.stale || std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
+          return graph_.has_changed(distance.to);
+        });
   }
 }
 

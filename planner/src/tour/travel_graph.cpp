@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -167,6 +166,7 @@ void TravelGraph::for_each_touching(Name name, const Visit& visit) const {
 // long as it is.
 // @return whether an edge is another one than before
 bool TravelGraph::connect(std::size_t index) {
+  constexpr float kShortest = 1e-3F;  // [m] of parts with the same centre; a path has no edges of no length
   Cube& cube = cubes_[index];
   const std::vector<Cube::Edge> before = std::exchange(cube.edges, {});
   std::vector<Name> touching, near;
@@ -179,7 +179,8 @@ bool TravelGraph::connect(std::size_t index) {
     sort_once(near);
     for (const Name to : near)
       if (to != name)
-        cube.edges.push_back({part, to, static_cast<float>((center_of(to) - center_of(name)).norm())});
+        cube.edges.push_back(
+            {part, to, std::max(kShortest, static_cast<float>((center_of(to) - center_of(name)).norm()))});
   }
   return cube.edges != before;
 }
@@ -246,14 +247,12 @@ void TravelGraph::update(const TravelCorridor& corridor, std::span<const KeyBox>
     for_each_as_near_as_two(i, [&](std::size_t cube) { edges[cube] = 1; });
   }
   changed_ = std::move(reads);
-  changed_cubes_.clear();
   const std::vector<std::size_t> linked = set_places(links), connected = set_places(edges);
   if (connected.empty()) return;
   for_each_index(linked.size(), [&](std::size_t i) { link(linked[i]); });
   for_each_index(connected.size(), [&](std::size_t i) {
     if (connect(connected[i])) changed_[connected[i]] = 1;
   });
-  changed_cubes_ = set_places(changed_);
   number_nodes();
 }
 
@@ -262,7 +261,9 @@ std::optional<std::uint32_t> TravelGraph::node(const VoxelKey& cell) const {
   return first_[cube_of(cell)] + part_[cell] - 1u;
 }
 
-std::vector<double> TravelGraph::distances(std::uint32_t from) const { return Search(*this).distances(from); }
+std::vector<double> TravelGraph::distances(std::uint32_t from) const {
+  return Search(*this).take_distances(from);
+}
 
 void TravelGraph::measure(std::span<Near> places, std::size_t count) const {
   for_each_range(places.size(), [&](std::size_t begin, std::size_t end) {
@@ -277,10 +278,8 @@ std::vector<std::uint32_t> TravelGraph::path_back(const std::vector<double>& len
   for (;;) {
     const std::uint32_t node = nodes.back();
     std::uint32_t before = node;
-    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e)
-      if (lengths[edges_[e].to] + static_cast<double>(edges_[e].length) == lengths[node] &&
-          lengths[edges_[e].to] < lengths[node])
-        before = edges_[e].to;
+    for (const Edge& edge : edges_of(node))
+      if (lengths[edge.to] + static_cast<double>(edge.length) == lengths[node]) before = edge.to;
     if (before == node) return nodes;
     nodes.push_back(before);
   }
@@ -305,7 +304,7 @@ std::vector<std::uint32_t> TravelGraph::around_path(const std::vector<double>& l
   std::vector<std::uint32_t> nodes;
   for (const std::uint32_t node : path_back(lengths, to)) {
     nodes.push_back(node);
-    for (std::size_t e = begin_[node]; e < begin_[node + 1]; ++e) nodes.push_back(edges_[e].to);
+    for (const Edge& edge : edges_of(node)) nodes.push_back(edge.to);
   }
   sort_once(nodes);
   return nodes;

@@ -131,14 +131,16 @@ class TravelGraph {
   BoxArray<std::uint16_t> part_;      // of each cell in its cube, from 1 on; 0 where the robot does not fit
   std::optional<KeyBox> extent_;
   std::vector<std::uint8_t> changed_;  // cubes whose cells or edges the last update has changed
-  std::vector<std::size_t> changed_cubes_;
-  std::vector<Name> names_;         // of the nodes, in this order
-  std::vector<std::size_t> begin_;  // of each node's edges
+  std::vector<Name> names_;            // of the nodes, in this order
+  std::vector<std::size_t> begin_;     // of each node's edges
   struct Edge {
     std::uint32_t to;
     float length;  // [m]
   };
   std::vector<Edge> edges_;
+  [[nodiscard]] std::span<const Edge> edges_of(std::uint32_t node) const {
+    return std::span(edges_).subspan(begin_[node], begin_[node + 1] - begin_[node]);
+  }
 };
 
 }  // namespace frontlux::planner::detail

@@ -22,7 +22,7 @@ void TravelGraph::Search::clear() {
   reached_.clear();
 }
 
-// A path to a node, shorter than those before.
+// A path to a node, shorter than those before or as long: from there the search goes on.
 void TravelGraph::Search::set(std::uint32_t node, double length) {
   if (lengths_[node] == TourProblem::kNever) reached_.push_back(node);
   lengths_[node] = length;
@@ -39,7 +39,7 @@ std::size_t TravelGraph::Search::settle(std::size_t count, std::size_t bands) {
     for (std::size_t i = 0; i < open_[now].size(); ++i) {
       const auto [so_far, node] = open_[now][i];
       if (so_far > lengths_[node]) continue;
-      for (const auto& [to, length] : edges(node))
+      for (const auto& [to, length] : graph_.edges_of(node))
         if (const double through = so_far + static_cast<double>(length); through < lengths_[to])
           set(to, through);
     }
@@ -65,9 +65,9 @@ void TravelGraph::Search::run(std::uint32_t from, std::size_t count) {
   keep(settle(count, kAll));
 }
 
-std::vector<double> TravelGraph::Search::distances(std::uint32_t from) {
+std::vector<double> TravelGraph::Search::take_distances(std::uint32_t from) {
   run(from, kAll);
-  return lengths_;
+  return std::move(lengths_);
 }
 
 // What was reached before the last update, of nodes that are still there.
@@ -84,24 +84,23 @@ void TravelGraph::Search::load(std::span<const Distance> before) {
 // Whether a node is as far as by way of one next to it.
 bool TravelGraph::Search::is_backed(std::uint32_t node) const {
   const double own = lengths_[node];
-  return std::ranges::any_of(edges(node), [&](const Edge& edge) {
-    return lengths_[edge.to] < own && lengths_[edge.to] + static_cast<double>(edge.length) == own;
+  return std::ranges::any_of(graph_.edges_of(node), [&](const Edge& edge) {
+    return lengths_[edge.to] + static_cast<double>(edge.length) == own;
   });
 }
 
-// Forgets the lengths of nodes to which the paths as long as that lead no longer. Notes these and all whose
+// Forgets the lengths of nodes to which no path as long as that leads any more. Notes these and all whose
 // edges have changed.
 void TravelGraph::Search::drop_lost(std::uint32_t from) {
   suspects_.clear();
-  for (const std::size_t cube : graph_.changed_cubes_)
-    for (std::uint32_t part = 0; part < graph_.cubes_[cube].centers.size(); ++part)
-      suspects_.push_back(graph_.first_[cube] + part);
+  for (const std::uint32_t node : reached_)
+    if (graph_.has_changed(graph_.names_[node])) suspects_.push_back(node);
   for (std::size_t i = 0; i < suspects_.size(); ++i) {
     const std::uint32_t node = suspects_[i];
     const double before = lengths_[node];
     if (node == from || before == TourProblem::kNever || is_backed(node)) continue;
     lengths_[node] = TourProblem::kNever;
-    for (const auto& [to, length] : edges(node))
+    for (const auto& [to, length] : graph_.edges_of(node))
       if (lengths_[to] == before + static_cast<double>(length)) suspects_.push_back(to);
   }
   std::erase_if(reached_, [&](std::uint32_t node) { return lengths_[node] == TourProblem::kNever; });
@@ -113,11 +112,12 @@ bool TravelGraph::Search::mend(const Near& place, std::size_t count) {
   if (place.distances.empty()) return false;
   load(place.distances);
   drop_lost(place.from);
+  // Also those that are as far as before: there may be new nodes next to them.
   for (const std::uint32_t node : suspects_) {
     double nearest = lengths_[node];
-    for (const auto& [to, length] : edges(node))
+    for (const auto& [to, length] : graph_.edges_of(node))
       nearest = std::min(nearest, lengths_[to] + static_cast<double>(length));
-    if (nearest < lengths_[node]) set(node, nearest);
+    if (nearest != TourProblem::kNever) set(node, nearest);
   }
   // If there were no more, none are left out.
   std::size_t bands = kAll;

@@ -16,17 +16,13 @@ class TravelGraph::Search {
  public:
   explicit Search(const TravelGraph& graph);
 
-  /// [m] from a node to each.
-  [[nodiscard]] std::vector<double> distances(std::uint32_t from);
+  /// [m] from a node to each. The last thing to ask of it.
+  [[nodiscard]] std::vector<double> take_distances(std::uint32_t from);
   /// As `TravelGraph::measure`.
   void measure(Near& place, std::size_t count);
 
  private:
   [[nodiscard]] std::size_t band(double length) const { return static_cast<std::size_t>(length / width_); }
-  [[nodiscard]] auto edges(std::uint32_t node) const {
-    return std::span(graph_.edges_)
-        .subspan(graph_.begin_[node], graph_.begin_[node + 1] - graph_.begin_[node]);
-  }
   void clear();
   void set(std::uint32_t node, double length);
   std::size_t settle(std::size_t count, std::size_t bands);

@@ -368,13 +368,16 @@ TEST(ContinuousExploration, RefusesWrongUse) {
   lost.pose.yaw = nan;
   EXPECT_REFUSED(exploration.begin({&lost, 1}, 0.0));
   EXPECT_REFUSED(exploration.begin(team.starts, nan));
+  lost.pose = {{1e9, 0.0, 0.0}, 0.0};
+  refuses([&] { exploration.begin({&lost, 1}, 0.0); }, "outside the map's key range");
   // Nothing of that has begun it.
   exploration.begin(team.starts, 0.0);
   refuses([&] { exploration.begin(team.starts, 0.0); }, "has begun already");
   refuses([&] { exploration.insert(1, pose, scan); }, "no robot 1");
   refuses([&] { static_cast<void>(exploration.at(1, 0.0)); }, "no robot 1");
-  EXPECT_REFUSED(exploration.insert(0, lost.pose, scan));
-  EXPECT_REFUSED(exploration.stopped(0, lost.pose, 0.0, {}));
+  const Pose nowhere{lost.pose.position, nan};
+  EXPECT_REFUSED(exploration.insert(0, nowhere, scan));
+  EXPECT_REFUSED(exploration.stopped(0, nowhere, 0.0, {}));
   const Pose far{{1e5, 0.0, 0.0}, 0.0};
   refuses([&] { exploration.stopped(0, far, 0.0, {}); }, "outside the map's key range");
   refuses([&] { exploration.displaced(0, far, 0.0); }, "outside the map's key range");

@@ -5,7 +5,9 @@
 #include "support/test.hpp"
 #include "support/voxel_keys.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <functional>
 
 namespace frontlux::planner::detail {
 namespace {
@@ -177,6 +179,43 @@ TEST(ClusterSights, FindsWhatTheRobotGetsToLater) {
     EXPECT_LE(looks, another ? 9 : 1) << faces;
     EXPECT_TRUE(look()) << "they stay";
   }
+}
+
+// A way opens to the usual places, near the cluster, when the robot has found others far away: they see more.
+TEST(ClusterSights, AreTheBestFirstWhereverTheyWereFound) {
+  const KeyBox bounds{at(0, 0, 0), at(60, 40, 12)};
+  VoxelGrid grid(kResolution);
+  test::fill(grid, bounds, Occupancy::kFree);
+  FrontierCluster wall = cluster_of(1, at(0, 5, 4));
+  wall.box = {at(0, 5, 4), at(0, 35, 8)};
+  wall.keys.clear();
+  for_each_key(wall.box, [&](const VoxelKey& key) { wall.keys.push_back(key); });
+  test::fill(grid, wall.box, Occupancy::kUnknown);
+  TravelCorridor corridor(flying_cube(), Lattice(kResolution), bounds);
+  std::vector<VoxelKey> blocked;  // between the robot and the usual places
+  for_each_key({at(11, 0, 0), at(35, 40, 12)}, [&](const VoxelKey& key) { blocked.push_back(key); });
+  corridor.block(blocked);
+  corridor.update({grid}, at(45, 20, 6));
+  TravelGraph graph(Lattice(kResolution), bounds, 5, 2);
+  graph.update(corridor, {{bounds}});
+  const FieldOfView view{FieldOfView::Shape::kPyramid, 1.2, 1.0, 10.0};
+  const ViewRegion region(view, kResolution);
+  const auto caster = make_grid_ray_caster(grid);
+  bool opens = false;
+  const std::function<bool(const VoxelKey&)> reaches = [&](const VoxelKey& cell) {
+    return opens ? corridor.fits(cell) : corridor.contains(cell);
+  };
+  ClusterSights sights;
+  const auto look = [&] {
+    sights.update({{*caster, grid, graph, view, region, 10.0}, {&wall, 1}, {}, reaches, reaches});
+    return sights.viewpoints(wall.id);
+  };
+  const std::size_t far = look().front().seen;
+  opens = true;
+  const auto viewpoints = look();
+  EXPECT_TRUE(std::ranges::is_sorted(viewpoints, std::greater{}, &ClusterViewpoint::seen));
+  EXPECT_EQ(viewpoints.front().seen, far);
+  EXPECT_LT(viewpoints.back().seen, far) << "of a usual place";
 }
 
 TEST(ClusterSights, TellWhatTheRobotWouldSee) {

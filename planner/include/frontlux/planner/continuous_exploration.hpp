@@ -76,8 +76,8 @@ class FRONTLUX_EXPORT ContinuousExploration {
   /// All robots rest at their starts. Returns step 0, with what is known to be free there.
   /// @param time  [s] on a clock of the user's choice, as all times here, within 10^10 s of its zero: seconds
   ///              since 1970 will do, their millionths will not
-  /// @throws std::invalid_argument unless there is one finite start for each robot, for such a time, or if it
-  ///         has begun
+  /// @throws std::invalid_argument unless there is one start for each robot, in the map's key range, for such
+  ///         a time, or if it has begun
   ExplorationStep begin(std::span<const ExplorationStart> starts, double time);
 
   /// A scan that a robot took with its sensor at a pose. Returns what it changed in the map. Rays that end on

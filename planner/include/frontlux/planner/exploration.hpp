@@ -91,7 +91,7 @@ struct VoxelChange {
 
 /// A place to which a robot's tour leads.
 struct PlannedStop {
-  Pose pose;                  ///< of its sensor
+  Pose pose;                  ///< of its sensor; beyond its next stops the middle of the voxel
   std::size_t clusters = 0;   ///< of frontiers that it looks at from there
   std::size_t frontiers = 0;  ///< of them in view, about
 };

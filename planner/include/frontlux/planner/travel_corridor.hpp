@@ -190,7 +190,8 @@ class FRONTLUX_EXPORT TravelCorridor {
               CorridorExtent extent = CorridorExtent::kAllCells);
 
   /// Searches a path to one cell, wherever it is. Until the next update `path_to` returns it.
-  /// @param through  cells that it may lead through, as far as they are passable
+  /// @param through  cells that it may lead through, as far as they are passable; to a cell whose `distance`
+  ///                 is known it leads through any
   /// @return whether there is one
   bool find_path(const VoxelKey& cell, const std::function<bool(const VoxelKey&)>& through);
 
