@@ -273,6 +273,8 @@ TEST_F(TaskFile, SaysWhatIsWrongAndWhatToDo) {
        "robots[0].limits.acceleration_m_s2 is 0"},
       {with(R"("yaw_rate_deg_s": 90)", R"("yaw_rate_deg_s": "90")"),
        "robots[0].limits.yaw_rate_deg_s is '90'"},
+      {with(R"("yaw_rate_deg_s": 90)", R"("yaw_rate_deg_s": 0.05)"),  // slower than a trajectory may be
+       "robots[0].limits.yaw_rate_deg_s is 0.05; give a number from 0.1"},
       {with(R"("per_axis": true)", R"("per_axis": "yes")"),
        "robots[0].limits.per_axis is 'yes'; give true or"},
       {with(R"("per_axis": true)", R"("jerk": 3)"), "the member 'robots[0].limits.jerk' is not known"},

@@ -19,7 +19,7 @@ using planner::BodyShape, planner::Motion, planner::MotionLimits, planner::Robot
 using Shape = FieldOfView::Shape;
 
 constexpr Range kHeights{0.0, 100.0}, kMargins{0.0, 100.0}, kSensorRanges{0.01, 1000.0}, kAngles{0.1, 179.0};
-constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.01, 36000.0}, kRates{0.01, 10000.0};
+constexpr Range kSpeeds{0.001, 1000.0}, kYawRates{0.1, 36000.0}, kRates{0.01, 10000.0};
 constexpr Range kSteps{0.001, 10.0}, kSlopes{0.0, 80.0};
 constexpr double kCameraRate = 15.0;  // [1/s]; that of others is RobotDescription's
 

@@ -380,7 +380,7 @@ TEST(GroundTruth, RefusesWhatMakesNoSense) {
   };
   const Eigen::Vector3d start(0.5, 0.5, 0.5);
   EXPECT_NO_THROW(GroundTruth(world, 0.3, start));
-  refuses(world, 0.3, {1.01, 1.5, 1.5}, "lies in a wall: triangle ");
+  refuses(world, 0.3, {1.01, 1.5, 1.5}, "the start (1.01, 1.5, 1.5) m lies in a wall: triangle ");
   refuses(world, 0.3, {9.5, 1.5, 1.5}, "outside of the world's bounds");
   refuses(world, 0.3, {std::nan(""), 1.5, 1.5}, "outside");
   refuses(world, 0.001, start, "162000000000 voxels");

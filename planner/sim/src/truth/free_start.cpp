@@ -10,7 +10,7 @@
 namespace frontlux::sim {
 
 Eigen::Vector3d free_start(const World& world, double resolution, bool faces_away) {
-  if (!world.start) throw std::runtime_error(world.name + ": no start is known; give one in free space");
+  if (!world.start) throw std::runtime_error(world.name + ": no start is known; give one in free space, x,y,z in metres");
   const Eigen::Vector3d& start = *world.start;
   const auto refuse = [&](const std::string& why) {
     std::ostringstream text;

@@ -23,6 +23,12 @@ template <class... Parts>
   throw std::invalid_argument(text.str());
 }
 
+std::string text_of(const Eigen::Vector3d& point) {
+  std::ostringstream text;
+  text << point.x() << ", " << point.y() << ", " << point.z();
+  return text.str();
+}
+
 Eigen::Vector3<std::int64_t> vector(const VoxelKey& key) { return {key.x, key.y, key.z}; }
 
 double margin_at(double resolution) { return std::min(GroundTruth::kMargin, resolution / 4); }
@@ -72,7 +78,7 @@ std::size_t triangle_in(const TriangleMesh& mesh, const Eigen::AlignedBox3d& ins
 
 KeyBox voxels_within(const Eigen::AlignedBox3d& bounds, const Lattice& lattice) {
   if (!bounds.min().allFinite() || !bounds.max().allFinite() || !(bounds.sizes().minCoeff() > 0.0))
-    refuse("the bounds, from (", bounds.min().transpose(), ") to (", bounds.max().transpose(),
+    refuse("the bounds, from (", text_of(bounds.min()), ") to (", text_of(bounds.max()),
            ") m, have no volume or are not finite");
   constexpr double kSliver = 1e-6;
   std::array<int, 3> low{}, high{};
@@ -102,8 +108,8 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
   check_size();
   const auto first = lattice_.key(start);
   if (!first || !bounds_.contains(*first))
-    refuse("the start (", start.transpose(), ") m lies outside of the world's bounds, (",
-           world.bounds.min().transpose(), ") to (", world.bounds.max().transpose(), ") m");
+    refuse("the start (", text_of(start), ") m lies outside of the world's bounds, (",
+           text_of(world.bounds.min()), ") to (", text_of(world.bounds.max()), ") m");
 
   const KeyBox inside = std::exchange(bounds_, with_voxels_behind(bounds_, world, lattice_));
   check_size();
@@ -112,7 +118,7 @@ GroundTruth::GroundTruth(const World& world, double resolution, const Eigen::Vec
   paint(world.mesh, frame, cells_);
   if (holds_surface(*first)) {
     const auto cell = (vector(*first) - vector(bounds_.min)).eval();
-    refuse("the start (", start.transpose(), ") m lies in a wall: triangle ",
+    refuse("the start (", text_of(start), ") m lies in a wall: triangle ",
            triangle_in(world.mesh, frame.box(cell, cell, -frame.margin)), " passes through its voxel of ",
            lattice_.resolution(), " m; start elsewhere, or use smaller voxels");
   }
