@@ -69,7 +69,8 @@ FRONTLUX_EXPORT void write_octree(const Octree& tree, const std::filesystem::pat
 ///
 /// OctoMap's change detection reports the keys that updates and scan insertions changed, but not what
 /// `setOccupancyThres`, `clear`, `deleteNode`, `setNodeValue`, a file read into the tree or direct
-/// writes to nodes changed (docs/ray_contract.md). After any of those call `rebuild`.
+/// writes to nodes changed (docs/ray_contract.md), nor what was changed while it was switched off. After any
+/// of those call `rebuild`.
 class FRONTLUX_EXPORT OctreeMirror {
  public:
   /// @param tree  watched by reference: must outlive the mirror. For `update` to be incremental, call
@@ -78,6 +79,8 @@ class FRONTLUX_EXPORT OctreeMirror {
   /// The same for a tree with colours.
   explicit OctreeMirror(const octomap::ColorOcTree& tree);
   explicit OctreeMirror(const Octree& tree);  ///< shares the tree
+  explicit OctreeMirror(const octomap::OcTree&& tree) = delete;
+  explicit OctreeMirror(const octomap::ColorOcTree&& tree) = delete;
   ~OctreeMirror();
   OctreeMirror(OctreeMirror&&) noexcept;
   OctreeMirror& operator=(OctreeMirror&&) noexcept;
@@ -110,6 +113,8 @@ class FRONTLUX_EXPORT OctreeMirror {
     const octomap::ColorOcTree& tree);
 /// The same for what `read_octree` returns, which the caster shares.
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_octomap_ray_caster(const Octree& tree);
+std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::OcTree&& tree) = delete;
+std::unique_ptr<RayCaster> make_octomap_ray_caster(const octomap::ColorOcTree&& tree) = delete;
 
 /// A drop-in for `tree.castRay(...)`: the same signature, the same results bit for bit, many times faster.
 ///
@@ -128,6 +133,8 @@ class FRONTLUX_EXPORT OctreeRayCaster {
   /// The same for a tree with colours.
   explicit OctreeRayCaster(const octomap::ColorOcTree& tree);
   explicit OctreeRayCaster(const Octree& tree);  ///< shares the tree
+  explicit OctreeRayCaster(const octomap::OcTree&& tree) = delete;
+  explicit OctreeRayCaster(const octomap::ColorOcTree&& tree) = delete;
   ~OctreeRayCaster();
   OctreeRayCaster(OctreeRayCaster&&) noexcept;
   OctreeRayCaster& operator=(OctreeRayCaster&&) noexcept;

@@ -122,13 +122,14 @@ inline constexpr std::uint64_t kManyRays = std::numeric_limits<std::uint64_t>::m
 /// The fast caster. It keeps two things beside the grid: a table of open voxels, through which packets of
 /// rays walk, and Embree's BVH of boxes. Rays that nothing stops within 400 voxels, segments between voxels
 /// further apart than 1000, segments between points if there are many, and whatever lies outside the table
-/// go to the BVH, which is made by the first query that needs it. Where rounding could change an answer,
-/// castRay's own arithmetic decides. The grid is walked by segments between points as long as few are asked
-/// for between two updates, and by rays in sectors where few start of a map too wide for one table.
+/// go to the BVH. That is made, or follows an update, by the query with which they are 16,384 since then; the
+/// ones before walk through the grid, and so do rays in sectors where few start of a map too wide for one
+/// table. Where rounding could change an answer, castRay's own arithmetic decides. A batch takes up to 100 kB
+/// of a thread's stack.
 /// @param expected_rays  about how many rays will be cast before most of the map changes; too few to pay for
 ///                       building: `make_grid_ray_caster(grid)`
 /// @throws std::runtime_error if `FRONTLUX_ISA` in the environment is none of its values (machine.hpp), and
-///         by the first query that needs the BVH if Embree cannot make its device
+///         by the query that needs the BVH if Embree cannot make its device
 [[nodiscard]] FRONTLUX_EXPORT std::unique_ptr<RayCaster> make_ray_caster(
     const VoxelGrid& grid, std::uint64_t expected_rays = kManyRays);
 

@@ -28,8 +28,8 @@ using detail::MapTables;
 
 /// The blockers of a map in Embree's scenes, made when they are first needed.
 class BoxesOnDemand {
-  // To follow a scan with the boxes of a map of 0.1 to 0.3 m takes as long as to walk so many segments or
-  // more.
+  // To make them, or to follow a scan with those of a map of 0.1 to 0.3 m, takes as long as to walk so many
+  // queries through the grid or more.
   static constexpr std::uint64_t kWorthBoxes = 1U << 14U;
 
  public:
@@ -110,11 +110,13 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
       : SnapshotRayCaster(std::make_shared<const FastSnapshot>(grid)) {}
 
  private:
+  static constexpr std::size_t kWalks = 32;  // through the grid, by one thread
   static constexpr std::size_t kBatch = std::min(detail::BoxScene::kMaxBatch, detail::TableQuery::kMaxBatch);
 
   using Numbers = std::vector<std::size_t>;  // of queries
 
-  // Tables answer what they can. The rest goes to the scene. `ask` calls the one or the other.
+  // Tables answer what they can. The rest goes to the scene, or walks through the grid as long as that is
+  // little. `ask` calls the tables or the scene.
   template <class Query, class Answer, class Ask>
   void answer(std::span<const Query> queries, std::span<Answer> answers, UnknownPolicy unknown,
               const Ask& ask) const {
@@ -124,6 +126,13 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
         whole ? ask_whole(detail::TableQuery(now->grid(), *whole, unknown, packets_), queries, answers, ask)
               : ask_sectors(*now, queries, answers, unknown, ask);
     if (rest.empty()) return;
+    if (!now->boxes().are_worth_it(rest.size())) {
+      for_each_chunk(rest.size(), kWalks, [&](std::size_t begin, std::size_t end) {
+        for (const std::size_t i : std::span(rest).subspan(begin, end - begin))
+          answers[i] = walk(now->grid(), queries[i], unknown);
+      });
+      return;
+    }
     const detail::SceneQuery scene(now->boxes().get(), unknown);
     for_each_chunk(rest.size(), kBatch, [&](std::size_t begin, std::size_t end) {
       ask_some(std::span(rest).subspan(begin, end - begin), queries, answers,
@@ -238,7 +247,10 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
       return found->stop;
     }
     Hit hit;  // not by `do_cast`, which would walk through the table once more
-    detail::SceneQuery(now->boxes().get(), unknown).cast({&ray, 1}, {&hit, 1});
+    if (now->boxes().are_worth_it(1))
+      detail::SceneQuery(now->boxes().get(), unknown).cast({&ray, 1}, {&hit, 1});
+    else
+      hit = walk(now->grid(), ray, unknown);
     if (hit.stop != RayStop::kInvalid) end = hit.end;
     return hit.stop;
   }
@@ -246,7 +258,7 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
                   UnknownPolicy unknown) const override {
     const auto now = snapshot();
     if (!now->boxes().are_worth_it(segments.size())) {
-      for_each_chunk(segments.size(), kBatch, [&](std::size_t begin, std::size_t end) {
+      for_each_chunk(segments.size(), kWalks, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) visible[i] = walk(now->grid(), segments[i], unknown);
       });
       return;

@@ -1,5 +1,6 @@
 #include "octomap/octomap_adapter.hpp"
 
+#include <frontlux/file.hpp>
 #include <frontlux/live_map.hpp>
 
 #include <stdexcept>
@@ -35,6 +36,14 @@ struct LiveMap::State {
         told(mirror.grid()),
         caster(make_ray_caster(mirror.grid())) {}
 
+  // Before the mirror is another one than the caster's.
+  void check_resolution() const {
+    const double now = std::visit([](const auto& t) { return t->getResolution(); }, tree);
+    if (now != caster->lattice().resolution())
+      throw std::invalid_argument("a map of resolution " + decimals_of(caster->lattice().resolution()) +
+                                  " m cannot follow a tree of " + decimals_of(now) + " m");
+  }
+
   MapChange take_in() {
     watched(tree);
     caster->update(mirror.grid());
@@ -58,11 +67,13 @@ LiveMap::LiveMap(LiveMap&&) noexcept = default;
 LiveMap& LiveMap::operator=(LiveMap&&) noexcept = default;
 
 MapChange LiveMap::update() {
+  state_->check_resolution();
   state_->mirror.update();
   return state_->take_in();
 }
 
 MapChange LiveMap::rebuild() {
+  state_->check_resolution();
   state_->mirror.rebuild();
   return state_->take_in();
 }

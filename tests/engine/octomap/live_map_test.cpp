@@ -98,6 +98,8 @@ TEST(LiveMap, TellsOfAChangeAfterAnUpdateThatFailed) {
   tree.updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), false);
   tree.setResolution(0.2);
   EXPECT_THROW(map.update(), std::invalid_argument);
+  EXPECT_THROW(map.rebuild(), std::invalid_argument);
+  EXPECT_TRUE(map.caster().grid() == map.grid());
   tree.setResolution(0.1);
   EXPECT_EQ(map.update().keys.size(), 1U);
   EXPECT_TRUE(map.update().keys.empty());

@@ -167,6 +167,12 @@ TEST(OctreeMirror, RebuildsWhereChangeDetectionCannotBeTrusted) {
   EXPECT_TRUE(mirror.grid() == make_voxel_grid(tree));
 }
 
+// A temporary tree would be gone by the first refresh.
+static_assert(std::is_constructible_v<OctreeRayCaster, const octomap::OcTree&>);
+static_assert(!std::is_constructible_v<OctreeRayCaster, octomap::OcTree>);
+static_assert(!std::is_constructible_v<OctreeRayCaster, octomap::ColorOcTree>);
+static_assert(!std::is_constructible_v<OctreeMirror, octomap::OcTree>);
+
 TEST(OctreeRayCaster, RefreshTakesANewSnapshot) {
   octomap::OcTree tree(0.1);
   tree.updateNode(octomap::point3d(1.05F, 0.05F, 0.05F), true);
