@@ -141,7 +141,7 @@ voxels: entered per ray. hits: visible, or stopped by an occupied voxel. times c
 threads, of passes that follow each other. agrees: with castRay bit for bit, or between voxel keys with the integer rule,
 from which castRay itself differs by rounding. pays off: number of rays after which building and casting together is
 faster than castRay. The lines of the maps have build times and memory, from the octree to the caster, the grid's time
-included; of fast without Embree's scene, which the first rays that need it build.
+included; of fast without Embree's scene, which is built once many rays have needed it.
 )";
   timed.print_cautions(std::cout);
 }
