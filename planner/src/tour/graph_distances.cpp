@@ -20,6 +20,8 @@ void GraphDistances::update(const TravelCorridor& corridor, std::span<const KeyB
   std::erase_if(near_, [](const auto& entry) { return !entry.second.asked; });
   for (auto& [from, near] : near_) {
     near.asked = false;
+    // What was asked for in vain, since something threw, knows nothing of the changes before these.
+    if (near.stale) near.distances.clear();
     near.stale =
         near.stale || std::ranges::any_of(near.distances, [&](const TravelGraph::Distance& distance) {
           return graph_.has_changed(distance.to);
