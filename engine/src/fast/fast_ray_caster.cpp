@@ -239,13 +239,14 @@ class FastRayCaster final : public detail::SnapshotRayCaster<FastSnapshot> {
   }
   [[nodiscard]] std::optional<RayStop> do_cast_end(const Ray& ray, UnknownPolicy unknown,
                                                    Eigen::Vector3f& end) const override {
+    const auto stop = with_snapshot([&](const FastSnapshot& now) -> std::optional<RayStop> {
+      const auto* whole = now.tables(unknown).whole();
+      if (whole == nullptr) return std::nullopt;
+      return detail::TableQuery(now.grid(), *whole, unknown, packets_).end_alone(ray, end);
+    });
+    if (stop) return stop;
     const auto now = snapshot();
-    const auto* whole = now->tables(unknown).whole();
-    if (whole == nullptr) return std::nullopt;
-    if (const auto found = detail::TableQuery(now->grid(), *whole, unknown, packets_).end_alone(ray)) {
-      end = lattice().center(found->key);
-      return found->stop;
-    }
+    if (now->tables(unknown).whole() == nullptr) return std::nullopt;
     Hit hit;  // not by `do_cast`, which would walk through the table once more
     if (now->boxes().are_worth_it(1))
       detail::SceneQuery(now->boxes().get(), unknown).cast({&ray, 1}, {&hit, 1});

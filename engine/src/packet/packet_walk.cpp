@@ -57,11 +57,11 @@ constexpr int kVectorBytes = 4;
 
 constexpr PacketWalk kWalks[] = {
 #ifdef FRONTLUX_X86_SETS
-    {InstructionSet::kAvx512, &avx512::segments, &avx512::rays},
-    {InstructionSet::kAvx2, &avx2::segments, &avx2::rays},
+    {InstructionSet::kAvx512, &avx512::segments, &avx512::rays, &walk_alone_by_avx2},
+    {InstructionSet::kAvx2, &avx2::segments, &avx2::rays, &walk_alone_by_avx2},
 #endif
-    {InstructionSet::kVector, &vector::segments, &vector::rays},
-    {InstructionSet::kNone, &single::segments, &single::rays}};
+    {InstructionSet::kVector, &vector::segments, &vector::rays, &walk_alone},
+    {InstructionSet::kNone, &single::segments, &single::rays, &walk_alone}};
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include "isa/instruction_set.hpp"
 #include "packet/open_voxels.hpp"
+#include "packet/single_walk.hpp"
 
 #include <frontlux/key_box.hpp>
 #include <frontlux/lattice.hpp>
@@ -104,6 +105,9 @@ struct PacketWalk {
   /// Walks at most `kMaxLines` rays until a voxel stops them or they have gone `walked_length`, and tells
   /// where those end that nothing stops in their range.
   void (*rays)(const Lattice& lattice, const OpenVoxels& table, std::span<const Ray> rays, RayBatch& batch);
+
+  /// Walks one of them. Wider registers than those of AVX2 are of no use to it.
+  LoneWalk (*alone)(const Lattice& lattice, const OpenVoxels& table, const Ray& ray);
 };
 
 /// Those that may run, the widest first.

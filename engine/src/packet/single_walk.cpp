@@ -1,10 +1,12 @@
 #include "packet/single_walk.hpp"
 
+#include "isa/targets.hpp"
 #include "packet/packet_walk.hpp"
 #include "walk/walk.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace frontlux::detail {
@@ -23,101 +25,100 @@ std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t st
   return (((index | ~axis) + steps) & axis) | (index & ~axis);
 }
 
-// A ray in an open voxel of a table.
-struct TableRay {
-  Crossings<double> line;
-  std::uint32_t index;  // of that voxel in the table, flipped so that every step adds
-  std::uint32_t flip;   // the bits of all axes along which it descends
+// When a ray crosses into the next voxel along each axis for the first time, and the time between two such
+// crossings. They come from the direction as it is given, since castRay's own, of length 1 in float, is known
+// later.
+struct Times {
+  PerAxis first, between;
 };
+// Those are off by 2^-24, two of them together by 32 at the end of time. All are cut off to whole numbers, and
+// so is what each step adds: after n steps along an axis the difference of two is off by n + 1 more.
+constexpr int kRounding = 40;
 
-// In castRay's own times.
-std::uint32_t walk_exactly(const OpenVoxels& table, const TableRay& ray, double length) {
-  std::array<double, 3> t = ray.line.t_max;
-  std::uint32_t index = ray.index;
+// Along castRay's own times.
+// @return what `LoneWalk::stopped_at` is
+std::uint32_t walk_exactly(const OpenVoxels& table, Crossings<double> line, std::uint32_t index,
+                           std::uint32_t flip, double length) {
+  std::array<double, 3>& t = line.t_max;
   while (true) {
     // Ties go to z before y before x (rule 5).
     const std::size_t across = t[0] < t[1] ? 0 : 1, axis = t[across] < t[2] ? across : 2;
     if (t[axis] > length) return kWentThrough;
-    t[axis] += ray.line.t_delta[axis];
+    t[axis] += line.t_delta[axis];
     index = advanced(index, table.layout().bits[axis], 1);
-    if (!table.open(index ^ ray.flip)) return index ^ ray.flip;
+    if (!table.open(index ^ flip)) return index ^ flip;
   }
 }
 
-// @return what `LoneWalk::stopped_at` is
-std::uint32_t walk(const OpenVoxels& table, const TableRay& ray, double length) {
-  const OpenVoxels::Layout& layout = table.layout();
-  const std::array<double, 3>& between = ray.line.t_delta;
-  const double units = kEndOfTime / length;
-  // Times are cut off to whole numbers, and so is what each step adds: after n steps along an axis the
-  // difference of two is off by up to n + 1.
-  const int too_close = static_cast<int>(length / std::min(std::min(between[0], between[1]), between[2])) + 4;
-  PerAxis t{kNever, kNever, kNever, kNever}, d{}, others{};
+#ifdef FRONTLUX_X86_SETS
+FRONTLUX_BEGIN_AVX2
+namespace avx2 {
+
+// As below, for all axes at once.
+inline Times times_of(const Lattice& lattice, const Ray& ray, const VoxelKey& start,
+                      const Eigen::Vector3f& direction, double units) {
+  const auto all = [](const Eigen::Vector3f& v) { return _mm_setr_ps(v.x(), v.y(), v.z(), 0.0F); };
+  const __m128i key = _mm_setr_epi32(start.x, start.y, start.z, 0);
+  const __m256d cell = _mm256_cvtepi32_pd(_mm_sub_epi32(key, _mm_set1_epi32(Lattice::kOrigin)));
+  const __m256d resolution = _mm256_set1_pd(lattice.resolution()), half = _mm256_set1_pd(0.5);
+  const __m256d origin = _mm256_cvtps_pd(all(ray.origin)), d = _mm256_cvtps_pd(all(ray.direction));
+  const __m256d sign = _mm256_and_pd(d, _mm256_set1_pd(-0.0));
+  const __m256d border = _mm256_add_pd(_mm256_mul_pd(_mm256_add_pd(cell, half), resolution),
+                                       _mm256_xor_pd(_mm256_mul_pd(resolution, half), sign));
+  const __m256d ahead = _mm256_xor_pd(_mm256_sub_pd(border, origin), sign);
+  const __m256d per_metre =
+      _mm256_mul_pd(_mm256_set1_pd(units), _mm256_div_pd(_mm256_set1_pd(1.0), _mm256_xor_pd(d, sign)));
+  // What is not a number becomes the second of two.
+  const __m256d first = _mm256_max_pd(
+      _mm256_min_pd(_mm256_mul_pd(ahead, per_metre), _mm256_set1_pd(kNever)), _mm256_set1_pd(-1.0));
+  const __m256d between =
+      _mm256_min_pd(_mm256_mul_pd(resolution, per_metre), _mm256_set1_pd(kEndOfTime + 1.0));
+  const __m128 stands_still = _mm_cmpeq_ps(all(direction), _mm_setzero_ps());
+  const __m128i t = _mm_blendv_epi8(_mm256_cvttpd_epi32(first), _mm_set1_epi32(kNever),
+                                    _mm_castps_si128(stands_still));
+  return {std::bit_cast<PerAxis>(t), std::bit_cast<PerAxis>(_mm256_cvttpd_epi32(between))};
+}
+
+#include "packet/single_walk_body.inl"
+
+}  // namespace avx2
+FRONTLUX_END_TARGET
+#endif
+
+namespace plain {
+
+// @param units  of time in which a ray in its given direction goes a metre
+inline Times times_of(const Lattice& lattice, const Ray& ray, const VoxelKey& start,
+                      const Eigen::Vector3f& direction, double units) {
+  const std::array<std::uint16_t, 3> key{start.x, start.y, start.z};
+  const double resolution = lattice.resolution(), half = resolution * 0.5;
+  Times times{{kNever, kNever, kNever, kNever}, {}};
   for (std::size_t a = 0; a < 3; ++a) {
-    if (ray.line.t_max[a] < 0.0) return walk_exactly(table, ray, length);  // by rounding, on a face
-    t[a] = static_cast<std::int32_t>(std::min<double>(ray.line.t_max[a] * units, kNever));
-    d[a] = static_cast<std::int32_t>(std::min<double>(between[a] * units, kEndOfTime + 1));
-    others[a] = static_cast<std::int32_t>(~layout.bits[a]);
+    const auto axis = static_cast<int>(a);
+    const double o = static_cast<double>(ray.origin[axis]), d = static_cast<double>(ray.direction[axis]);
+    const double middle = lattice.center(key[a]);
+    const double ahead = d < 0.0 ? o - (middle - half) : middle + half - o;
+    const double per_metre = units * (1.0 / std::fabs(d));
+    const double first = ahead * per_metre, between = resolution * per_metre;
+    if (direction[axis] != 0.0F)
+      times.first[a] = static_cast<std::int32_t>(std::clamp(first, -1.0, double{kNever}));
+    times.between[a] = static_cast<std::int32_t>(std::min(between, kEndOfTime + 1.0));
   }
-  others[3] = ~(others[0] & others[1] & others[2]);
-  std::uint32_t index = ray.index;
-  while (true) {
-    if (const std::uint32_t radius = table.radius(index ^ ray.flip); radius > 1) {
-      const auto leaves = [&](std::size_t a) {
-        const auto steps = static_cast<int>(4 * radius - 1 - (index >> kLowBit[a] & 3U));
-        return t[a] + steps * static_cast<std::int64_t>(d[a]);
-      };
-      const std::int64_t end = std::min(std::min(leaves(0), leaves(1)), leaves(2));
-      if (end > kEndOfTime) return kWentThrough;
-      const int until = static_cast<int>(end) - 4 * too_close;
-      int closest = kNever;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const int steps = t[a] > until ? 0 : (until - t[a]) / d[a] + 1;
-        if (steps > 0) closest = std::min(closest, (until - t[a]) % d[a]);
-        t[a] += steps * d[a];
-        closest = std::min(closest, t[a] - until);
-        const auto count = static_cast<std::uint32_t>(steps);
-        index =
-            advanced(index, layout.bits[a], (count & 7U) << kLowBit[a] | (count >> 3U) << layout.shift(a));
-      }
-      if (closest < too_close) return walk_exactly(table, ray, length);
-    }
-    // No branch depends on which axis is next. `along` is the index, with the bits of all other axes set.
-    PerAxis along = static_cast<std::int32_t>(index) | others;
-    PerAxis surely_over = t + too_close;
-    for (int step = 0; step < 4; ++step) {
-      const PerAxis one = __builtin_shufflevector(t, t, 1, 2, 0, 3),
-                    other = __builtin_shufflevector(t, t, 2, 0, 1, 3);
-      const PerAxis first = (one > surely_over) & (other > surely_over), ahead = d & first;
-      t += ahead;
-      surely_over += ahead;
-      along = (along - first) | others;
-      PerAxis all = along & __builtin_shufflevector(along, along, 2, 3, 0, 1);
-      all &= __builtin_shufflevector(all, all, 1, 0, 3, 2);
-      const auto next = static_cast<std::uint32_t>(all[0]);
-      if (next == index) return walk_exactly(table, ray, length);  // none was surely first
-      index = next;
-      if (table.open(index ^ ray.flip)) continue;
-      const PerAxis entered = (t - d) & first;  // when, on the axis that it was
-      return (entered[0] | entered[1] | entered[2]) > kEndOfTime ? kWentThrough : index ^ ray.flip;
-    }
-    if (std::min(std::min(t[0], t[1]), t[2]) > kEndOfTime) return kWentThrough;
-  }
+  return times;
 }
 
+#include "packet/single_walk_body.inl"
+
+}  // namespace plain
 }  // namespace
 
+#ifdef FRONTLUX_X86_SETS
+LoneWalk walk_alone_by_avx2(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
+  return avx2::walk_alone(lattice, table, ray);
+}
+#endif
 LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& ray) {
-  const auto start = lattice.key(ray.origin);
-  if (!start || !table.contains(*start)) return {kNeverStarted, {}, {}};
-  const OpenVoxels::Layout& layout = table.layout();
-  const std::uint32_t index = layout.index(*start);
-  const Eigen::Vector3f direction = normalized_as_octomap(ray.direction);
-  if (!table.open(index) || !is_unit(direction)) return {kNeverStarted, {}, {}};
-  TableRay r{crossings_of(lattice, ray.origin, *start, direction), 0, 0};
-  for (std::size_t a = 0; a < 3; ++a) r.flip |= r.line.step[a] < 0 ? layout.bits[a] : 0U;
-  r.index = index ^ r.flip;
-  return {walk(table, r, walked_length(ray.max_range, lattice.resolution())), *start, direction};
+  return plain::walk_alone(lattice, table, ray);
 }
 
 }  // namespace frontlux::detail

@@ -30,9 +30,15 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
     if (!answered) left[left_size++] = static_cast<std::uint16_t>(i);
   };
   constexpr std::size_t kWorthAPacket = 3;
-  if (walk_ == nullptr || rays.size() < kWorthAPacket) {
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      leave_unless(finish(rays[i], walk_alone(grid_.lattice(), table_, rays[i]), hits[i]), i);
+  if (walk_ == nullptr) {
+    for (std::size_t i = 0; i < rays.size(); ++i) leave_unless(false, i);
+    return left_size;
+  }
+  const auto finish_alone = [&](std::size_t i) {
+    leave_unless(finish(rays[i], walk_->alone(grid_.lattice(), table_, rays[i]), hits[i]), i);
+  };
+  if (rays.size() < kWorthAPacket) {
+    for (std::size_t i = 0; i < rays.size(); ++i) finish_alone(i);
     return left_size;
   }
   RayBatch batch;
@@ -55,7 +61,7 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
                  {entry[0], entry[1], entry[2]},
                  batch.distance[i]};
     } else if (stopped_at == kTooCloseToTell) {
-      leave_unless(finish(rays[i], walk_alone(grid_.lattice(), table_, rays[i]), hits[i]), i);
+      finish_alone(i);
     } else if (stopped_at == kNeverStarted) {
       leave_unless(false, i);
     } else {
@@ -67,9 +73,25 @@ std::size_t TableQuery::cast(std::span<const Ray> rays, std::span<Hit> hits,
   return left_size;
 }
 
-std::optional<RayEnd> TableQuery::end_alone(const Ray& ray) const {
+std::optional<RayStop> TableQuery::end_alone(const Ray& ray, Eigen::Vector3f& end) const {
   if (walk_ == nullptr) return std::nullopt;
-  return end_after(ray, walk_alone(grid_.lattice(), table_, ray));
+  const Lattice& lattice = grid_.lattice();
+  const LoneWalk walk = walk_->alone(lattice, table_, ray);
+  // Most rays, without what takes longer than they: a key is written in parts and read as a whole.
+  if (unknown_ == UnknownPolicy::kPass && walk.stopped_at < kFirstWalkEnd) {
+    const std::array<int, 3> cell = table_.layout().key(walk.stopped_at);
+    if (is_inside(cell)) {
+      const Eigen::Vector3f center = lattice.center(as_key(cell));
+      if (is_surely_in_range(ray, center)) {
+        end = center;
+        return RayStop::kOccupied;
+      }
+    }
+  }
+  const auto found = end_after(ray, walk);
+  if (!found) return std::nullopt;
+  end = lattice.center(found->key);
+  return found->stop;
 }
 
 bool TableQuery::finish(const Ray& ray, const LoneWalk& walk, Hit& hit) const {

@@ -33,8 +33,9 @@ class TableQuery {
                                  std::span<std::uint16_t> left) const;
   [[nodiscard]] std::size_t visible(std::span<const KeySegment> segments, std::span<std::uint8_t> visible,
                                     std::span<std::uint16_t> left) const;
-  /// Where a ray ends; none if it is not answered.
-  [[nodiscard]] std::optional<RayEnd> end_alone(const Ray& ray) const;
+  /// Why a ray ends; none if it is not answered.
+  /// @param end  gets the centre of the voxel in which it does [m]
+  [[nodiscard]] std::optional<RayStop> end_alone(const Ray& ray, Eigen::Vector3f& end) const;
 
  private:
   // Sets `hit`, unless it returns false: then the ray is not answered.

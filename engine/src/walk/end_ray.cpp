@@ -8,13 +8,9 @@ namespace frontlux::detail {
 RayEnd end_of(const VoxelGrid& grid, const Ray& ray, const VoxelKey& start, const Eigen::Vector3f& direction,
               UnknownPolicy unknown, const std::optional<VoxelKey>& blocker) {
   const Lattice& lattice = grid.lattice();
-  const auto is_within = [&](double range) {
-    return !out_of_range(ray.origin, lattice.center(*blocker), range);
-  };
-  const double sure = range_of_sure_paths(ray.max_range, ray.origin.cast<double>().lpNorm<1>());
-  if (blocker && (!(ray.max_range > 0.0) || is_within(sure)))
+  if (blocker && is_surely_in_range(ray, lattice.center(*blocker)))
     return {stop_in(blocker_state(grid, *blocker, unknown)), *blocker};
-  const bool is_close = blocker && is_within(ray.max_range);
+  const bool is_close = blocker && !out_of_range(ray.origin, lattice.center(*blocker), ray.max_range);
   if (!is_close)
     if (const auto end = find_free_end(lattice, ray, start, direction)) return *end;
   const Hit hit = walk_ray(grid, ray, unknown);

@@ -23,6 +23,11 @@ class SnapshotRayCaster : public RayCaster {
       : RayCaster(first->grid().lattice()), latest_(first) {}
 
   [[nodiscard]] std::shared_ptr<const Snapshot> snapshot() const { return latest_.get(); }
+  /// What `use` makes of it; `update` waits meanwhile.
+  template <class Use>
+  [[nodiscard]] auto with_snapshot(const Use& use) const {
+    return latest_.with(use);
+  }
 
  private:
   template <class Path>

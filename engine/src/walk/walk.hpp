@@ -15,12 +15,17 @@
 /// castRay's traversal (ray contract, rules 3 to 7), voxel by voxel.
 namespace frontlux::detail {
 
+/// The length by which castRay divides a direction.
+inline float length_as_octomap(const Eigen::Vector3f& d) {
+  // castRay takes the root in double and rounds it to float: the same, since a double has more than twice the
+  // digits.
+  return std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+}
+
 /// A direction as castRay normalises it (rule 3): in float, and not at all if it has no length or is not a
 /// number.
 inline Eigen::Vector3f normalized_as_octomap(Eigen::Vector3f d) {
-  // castRay takes the root in double and rounds it to float: the same, since a double has more than twice the
-  // digits.
-  const float length = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+  const float length = length_as_octomap(d);
   if (length > 0) d = {d.x() / length, d.y() / length, d.z() / length};
   return d;
 }
@@ -124,6 +129,13 @@ inline bool out_of_range(const Eigen::Vector3f& origin, const Eigen::Vector3f& e
 inline double range_of_sure_paths(double max_range, double origin_sum) {
   constexpr double kRounding = 0x1p-21;
   return std::max(0.0, max_range * (1.0 - kRounding) - kRounding * origin_sum);
+}
+
+/// Whether the centre of a voxel, and those of all voxels on a ray's path to it, are surely in its range.
+inline bool is_surely_in_range(const Ray& ray, const Eigen::Vector3f& center) {
+  if (!(ray.max_range > 0.0)) return true;
+  const double sure = range_of_sure_paths(ray.max_range, ray.origin.cast<double>().lpNorm<1>());
+  return !out_of_range(ray.origin, center, sure);
 }
 
 /// No voxel that a ray enters before this time is out of range: a voxel's centre is less than 0.87 of its
