@@ -25,23 +25,37 @@ struct Cells {
   }
 };
 
-// Whether each of a brick's 2 x 2 x 2 cells holds a closed voxel, x first.
-unsigned closed_cells(const std::uint64_t* brick) {
-  unsigned closed = 0;
+// Whether each of a brick's 2 x 2 x 2 cells holds a closed voxel: a row of two cells in the low bits of each
+// byte, y first.
+std::uint32_t closed_cells(const std::uint64_t* brick) {
+  std::uint32_t closed = 0;
   for (unsigned z = 0; z < 2; ++z) {
     const std::uint64_t layers = ~(brick[4 * z] & brick[4 * z + 1] & brick[4 * z + 2] & brick[4 * z + 3]);
     constexpr std::uint64_t kCell = 0x0F0F'0F0F;
     for (unsigned y = 0; y < 2; ++y)
       for (unsigned x = 0; x < 2; ++x)
-        closed |= (layers & kCell << (4 * x + 32 * y)) != 0 ? 1U << (x + 2 * y + 4 * z) : 0U;
+        closed |= (layers & kCell << (4 * x + 32 * y)) != 0 ? 1U << (x + 8 * y + 16 * z) : 0U;
   }
   return closed;
+}
+
+// The same of a brick whose radii are known: they are 0.
+std::uint32_t closed_cells(std::uint32_t radii) {
+  const std::uint32_t open = (radii | radii >> 1 | radii >> 2 | radii >> 3) & 0x1111'1111U;
+  return ~(open | open >> 3) & 0x0303'0303U;
+}
+
+// Layers for a thread to go through at a time: to wake up another one takes longer than some thousand of the
+// words, or bricks, in a layer.
+std::size_t layers_at_a_time(std::size_t in_layer) {
+  constexpr std::size_t kWorthAThread = 8192;
+  return std::max<std::size_t>(kWorthAThread / std::max<std::size_t>(in_layer, 1), 1);
 }
 
 // Adds to a set all neighbours, over faces, edges and corners, of what it holds.
 void grow(Cells& cells, Cells& scratch) {
   const std::size_t width = cells.row_words, layer = width * cells.rows;
-  for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(cells.layers, layers_at_a_time(layer), [&](std::size_t begin, std::size_t end) {
     for (std::size_t z = begin; z < end; ++z) {
       for (std::size_t y = 0; y < cells.rows; ++y) {  // along x
         const std::uint64_t* in = cells.row(y, z);
@@ -58,7 +72,7 @@ void grow(Cells& cells, Cells& scratch) {
         out[i] = in[i] | (i >= width ? in[i - width] : 0) | (i + width < layer ? in[i + width] : 0);
     }
   });
-  for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(cells.layers, layers_at_a_time(layer), [&](std::size_t begin, std::size_t end) {
     for (std::size_t z = begin; z < end; ++z) {
       const std::uint64_t *in = cells.row(0, z), *below = cells.row(0, z > 0 ? z - 1 : z),
                           *above = cells.row(0, z + 1 < cells.layers ? z + 1 : z);
@@ -76,7 +90,7 @@ struct Counts {
   // Counts the cells that a set lacks.
   void add_others(const Cells& cells) {
     const std::size_t layer = cells.row_words * cells.rows;
-    for_each_chunk(cells.layers, 1, [&](std::size_t begin, std::size_t end) {
+    for_each_chunk(cells.layers, layers_at_a_time(layer), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin * layer; i < end * layer; ++i) {
         std::uint64_t carry = ~cells.words[i];
         for (Cells& bit : bits) carry &= std::exchange(bit.words[i], bit.words[i] ^ carry);
@@ -109,43 +123,67 @@ BrickBox grown(BrickBox box, const std::array<std::size_t, 3>& bricks) {
 void measure_open_radii(const std::uint64_t* words, const std::array<std::size_t, 3>& bricks,
                         const BrickBox& changed, std::span<std::uint32_t> radii) {
   const BrickBox measured = grown(changed, bricks), needed = grown(measured, bricks);
-  const auto number = [&](std::size_t x, std::size_t y, std::size_t z) {
-    return (z * bricks[1] + y) * bricks[0] + x;
-  };
-  const auto for_each_brick = [](const BrickBox& box, const auto& visit) {
-    for_each_chunk(box.end[2] - box.begin[2], 1, [&](std::size_t begin, std::size_t end) {
+  // Calls `visit(brick, x, y, z)` for runs of bricks along x whose cells share the words of their rows.
+  constexpr std::size_t kRun = 32;
+  const auto for_each_run = [&](const BrickBox& box, const auto& visit) {
+    const std::size_t layer = (box.end[0] - box.begin[0]) * (box.end[1] - box.begin[1]);
+    const std::size_t layers = layers_at_a_time(layer);
+    for_each_chunk(box.end[2] - box.begin[2], layers, [&](std::size_t begin, std::size_t end) {
       for (std::size_t z = box.begin[2] + begin; z < box.begin[2] + end; ++z)
         for (std::size_t y = box.begin[1]; y < box.end[1]; ++y)
-          for (std::size_t x = box.begin[0]; x < box.end[0]; ++x) visit(x, y, z);
+          for (std::size_t x = box.begin[0], next = x; x < box.end[0]; x = next) {
+            next = std::min(x + kRun - (x - needed.begin[0]) % kRun, box.end[0]);
+            visit(x, next, y, z);
+          }
     });
   };
   const std::array<std::size_t, 3>& low = needed.begin;
   Cells closed(2 * (needed.end[0] - low[0]), 2 * (needed.end[1] - low[1]), 2 * (needed.end[2] - low[2]));
   Counts radius{{closed, closed, closed, closed}};
   Cells scratch = closed;
-  // Of a brick's four rows of two cells, the word that holds one; they are the bits from `shift` on.
-  const auto row_of = [&](Cells& cells, std::size_t x, std::size_t y, std::size_t z,
-                          std::size_t i) -> std::uint64_t& {
-    return cells.row(2 * (y - low[1]) + i % 2, 2 * (z - low[2]) + i / 2)[(x - low[0]) / 32];
+  // The words of four rows that hold the cells of a run; those of brick x are the two bits from `shift` on.
+  const auto words_of = [&](Cells& cells, std::size_t x, std::size_t y, std::size_t z) {
+    std::array<std::uint64_t*, 4> rows;
+    for (std::size_t i = 0; i < 4; ++i)
+      rows[i] = cells.row(2 * (y - low[1]) + i % 2, 2 * (z - low[2]) + i / 2) + (x - low[0]) / kRun;
+    return rows;
   };
-  const auto shift = [&](std::size_t x) { return 2 * ((x - low[0]) % 32); };
-  for_each_brick(needed, [&](std::size_t x, std::size_t y, std::size_t z) {
-    const std::uint64_t cells = closed_cells(words + 8 * number(x, y, z));
-    for (std::size_t i = 0; i < 4; ++i) row_of(closed, x, y, z, i) |= (cells >> (2 * i) & 3U) << shift(x);
+  const auto shift = [&](std::size_t x) { return 2 * ((x - low[0]) % kRun); };
+  const auto is_within = [](std::size_t at, const BrickBox& box, std::size_t axis) {
+    return at >= box.begin[axis] && at < box.end[axis];
+  };
+  for_each_run(needed, [&](std::size_t begin, std::size_t end, std::size_t y, std::size_t z) {
+    const bool may_have_changed = is_within(y, changed, 1) && is_within(z, changed, 2);
+    std::array<std::uint64_t, 4> rows{};
+    for (std::size_t x = begin; x < end; ++x) {
+      const std::size_t brick = (z * bricks[1] + y) * bricks[0] + x;
+      const std::uint64_t cells = may_have_changed && is_within(x, changed, 0)
+                                      ? closed_cells(words + 8 * brick)
+                                      : closed_cells(radii[brick]);
+      for (std::size_t i = 0; i < 4; ++i) rows[i] |= (cells >> (8 * i) & 3U) << shift(x);
+    }
+    const auto out = words_of(closed, begin, y, z);
+    for (std::size_t i = 0; i < 4; ++i) *out[i] = rows[i];
   });
   for (int grows = 0; grows < kMaxRadius; ++grows) {
     if (grows > 0) grow(closed, scratch);
     radius.add_others(closed);
   }
-  for_each_brick(measured, [&](std::size_t x, std::size_t y, std::size_t z) {
-    std::uint32_t all = 0;
+  for_each_run(measured, [&](std::size_t begin, std::size_t end, std::size_t y, std::size_t z) {
+    std::array<std::array<std::uint64_t, 4>, 4> rows;
     for (std::size_t bit = 0; bit < 4; ++bit) {
-      std::uint64_t cells = 0;
-      for (std::size_t i = 0; i < 4; ++i)
-        cells |= (row_of(radius.bits[bit], x, y, z, i) >> shift(x) & 3U) << (2 * i);
-      all |= kSpread[cells] << bit;
+      const auto in = words_of(radius.bits[bit], begin, y, z);
+      for (std::size_t i = 0; i < 4; ++i) rows[bit][i] = *in[i];
     }
-    radii[number(x, y, z)] = all;
+    for (std::size_t x = begin; x < end; ++x) {
+      std::uint32_t all = 0;
+      for (std::size_t bit = 0; bit < 4; ++bit) {
+        std::uint64_t cells = 0;
+        for (std::size_t i = 0; i < 4; ++i) cells |= (rows[bit][i] >> shift(x) & 3U) << (2 * i);
+        all |= kSpread[cells] << bit;
+      }
+      radii[(z * bricks[1] + y) * bricks[0] + x] = all;
+    }
   });
 }
 

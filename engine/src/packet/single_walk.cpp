@@ -31,8 +31,8 @@ std::uint32_t advanced(std::uint32_t index, std::uint32_t axis, std::uint32_t st
 struct Times {
   PerAxis first, between;
 };
-// Those are off by 2^-24, two of them together by 32 at the end of time. All are cut off to whole numbers, and
-// so is what each step adds: after n steps along an axis the difference of two is off by n + 1 more.
+// Those are off by 2^-24, two of them together by 32 at the end of time. All are cut off to whole numbers,
+// and so is what each step adds: after n steps along an axis the difference of two is off by n + 1 more.
 constexpr int kRounding = 40;
 
 // Along castRay's own times.
@@ -69,13 +69,13 @@ inline Times times_of(const Lattice& lattice, const Ray& ray, const VoxelKey& st
   const __m256d per_metre =
       _mm256_mul_pd(_mm256_set1_pd(units), _mm256_div_pd(_mm256_set1_pd(1.0), _mm256_xor_pd(d, sign)));
   // What is not a number becomes the second of two.
-  const __m256d first = _mm256_max_pd(
-      _mm256_min_pd(_mm256_mul_pd(ahead, per_metre), _mm256_set1_pd(kNever)), _mm256_set1_pd(-1.0));
+  const __m256d first = _mm256_max_pd(_mm256_min_pd(_mm256_mul_pd(ahead, per_metre), _mm256_set1_pd(kNever)),
+                                      _mm256_set1_pd(-1.0));
   const __m256d between =
       _mm256_min_pd(_mm256_mul_pd(resolution, per_metre), _mm256_set1_pd(kEndOfTime + 1.0));
   const __m128 stands_still = _mm_cmpeq_ps(all(direction), _mm_setzero_ps());
-  const __m128i t = _mm_blendv_epi8(_mm256_cvttpd_epi32(first), _mm_set1_epi32(kNever),
-                                    _mm_castps_si128(stands_still));
+  const __m128i t =
+      _mm_blendv_epi8(_mm256_cvttpd_epi32(first), _mm_set1_epi32(kNever), _mm_castps_si128(stands_still));
   return {std::bit_cast<PerAxis>(t), std::bit_cast<PerAxis>(_mm256_cvttpd_epi32(between))};
 }
 
