@@ -22,6 +22,17 @@ namespace frontlux::app {
 namespace {
 
 constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 31;
+// Of a mesh of up to 100 kB, and in proportion of larger ones: a few bytes may stand for any space.
+constexpr std::uint64_t kMostOfSmallMesh = std::uint64_t{1} << 29, kSmallMesh = 100'000;
+
+std::uint64_t most_voxels(const WorldSource& source, WorldKind kind) {
+  if (source.box || kind != WorldKind::kMesh) return kMostVoxels;
+  std::error_code gone;
+  const std::uintmax_t bytes = std::filesystem::file_size(source.world, gone);
+  if (gone) return kMostOfSmallMesh;
+  return std::clamp(bytes, std::uintmax_t{kSmallMesh}, std::uintmax_t{4 * kSmallMesh}) *
+         (kMostOfSmallMesh / kSmallMesh);
+}
 
 WorldKind kind_of(const std::string& name) {
   if (is_built_in_world(name)) return WorldKind::kBuiltIn;
@@ -79,8 +90,10 @@ double count_voxels(const WorldSource& source, const Eigen::AlignedBox3d& bounds
       : kind == WorldKind::kMesh
           ? "give a larger --resolution, or --scale (0.001 if the file is in millimetres)"
           : "give a larger --resolution";
-  if (voxels > static_cast<double>(kMostVoxels))
-    throw BadInput(what + ", too many: a map holds at most " + std::to_string(kMostVoxels) + "; " + advice);
+  if (const std::uint64_t most = most_voxels(source, kind); voxels > static_cast<double>(most))
+    throw BadInput(what + ", too many: a map holds at most " + std::to_string(most) +
+                   (most < kMostVoxels ? " of a file so small" : "") + "; " + advice +
+                   (most < kMostVoxels ? ", or say in a task what is to be explored (box_m)" : ""));
   const auto bytes = static_cast<std::uint64_t>(voxels), available = available_memory();  // a byte each
   if (bytes > available)
     throw BadInput(what + ", which take " + bytes_text(bytes) + " of memory and more where " +
@@ -153,9 +166,13 @@ SourcedWorld make_world(const WorldSource& source) {
     } else {
       sourced.world = sim::read_mesh_world(source.world, {source.scale.value_or(1.0), source.up});
     }
-    if (source.box)
+    if (source.box) {
       sourced.world.bounds = *source.box;
-    else if (sourced.kind != WorldKind::kMap)
+      const double all = sim::surface_area(sourced.world.mesh);
+      if (all > 0.0)
+        sourced.out_of_bounds =
+            std::clamp(1.0 - sim::surface_area(sourced.world.mesh, *source.box) / all, 0.0, 1.0);
+    } else if (sourced.kind != WorldKind::kMap)
       count(sourced.world.bounds);
     const auto& own = sourced.world.start;
     if (source.start)

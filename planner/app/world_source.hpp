@@ -46,6 +46,8 @@ struct SourcedWorld {
   std::uint64_t seed = 0;     ///< of a built-in world
   double ground_shift = 0.0;  ///< [m] along z, already applied to everything in `world`
   double voxels = 0.0;        ///< that its bounds hold
+  /// Part of its surface's area that lies outside the box that it is to be explored in, 0 to 1.
+  double out_of_bounds = 0.0;
 };
 
 /// Adds the options that fill a source, but for the world itself and the seed, to a command.

@@ -149,8 +149,9 @@ TEST_F(WorldCommand, RefusesATooLargeMapByItsBounds) {
 
 TEST_F(WorldCommand, RefusesAbsurdSizesAndWarnsOfLargeOnes) {
   box("mm.ply", 1000.F);  // somebody's millimetres: 4 x 5 x 6 km
-  expect_refused({path("mm.ply"), "-o", path("out.ply")},
-                 {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 2147483648", "--scale"});
+  expect_refused(
+      {path("mm.ply"), "-o", path("out.ply")},
+      {"4000 x 5000 x 6000 m", "e+12 voxels", "at most 536800000 of a file so small", "--scale", "box_m"});
   EXPECT_FALSE(std::filesystem::exists(path("out.ply")));
   expect_answer({path("mm.ply"), "--scale", "0.001"}, {"4 x 5 x 6 m"});
   const test::Answer large = run({path("mm.ply"), "--scale", "0.05"});  // 200 x 250 x 300 m

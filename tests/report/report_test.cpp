@@ -71,7 +71,8 @@ TEST_F(ReportTest, TakesFromRunJsonWhatTheRecordingLacks) {
   recording.end = "low_gain";
   recording.head.robots[1].robot.name = "fly\xff";
   const std::string ugv = recording.head.robots[0].robot.name, fly = "fly\xef\xbf\xbd";
-  const nlohmann::json unseen = {{"in_view", 0.25}, {"narrow", 0.125}, {"hidden", 0}};
+  const nlohmann::json unseen = {
+      {"in_view", 0.25}, {"narrow", 0.125}, {"hidden", 0}, {"surface_out_of_bounds", 0.5}};
   const nlohmann::json map = {{"false_free", 0.5}, {"false_occupied", 0.0625}, {"surface_found", 1}};
   const nlohmann::json why = {{"narrow_by_m", 0.15}, {"in_view_then", 0.1}, {"without_min_height", 0.05}};
   const nlohmann::json whole = {

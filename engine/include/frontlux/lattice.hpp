@@ -25,10 +25,12 @@ class FRONTLUX_EXPORT Lattice {
 
   /// Edge of a voxel [m].
   [[nodiscard]] double resolution() const { return resolution_; }
+  /// 1 / resolution, as OctoMap rounds it: by this it multiplies coordinates.
+  [[nodiscard]] double voxels_per_metre() const { return voxels_per_metre_; }
 
   /// Key along one axis of a coordinate [m]; none outside the key range or if it is not finite.
   [[nodiscard]] std::optional<std::uint16_t> key(double coordinate) const {
-    const double cells = factor_ * coordinate;
+    const double cells = voxels_per_metre_ * coordinate;
     if (!(cells >= -kOrigin && cells < kKeysPerAxis - kOrigin)) return std::nullopt;
     // Down, from where a conversion cuts off: std::floor is a call where SSE4.1 may be missing.
     const int toward_0 = static_cast<int>(cells), down = cells < toward_0 ? 1 : 0;
@@ -63,7 +65,7 @@ class FRONTLUX_EXPORT Lattice {
 
  private:
   double resolution_;
-  double factor_;
+  double voxels_per_metre_;
 };
 
 }  // namespace frontlux

@@ -4,7 +4,7 @@
 // Those that it cannot tell for sure, or not in a few steps, stay as they are, and so do those of a range so
 // short that a voxel before its end is before their origin.
 inline void find_free_ends(const Lattice& lattice, RayBatch& batch) {
-  const double resolution = lattice.resolution(), factor = 1.0 / resolution;
+  const double resolution = lattice.resolution(), factor = lattice.voxels_per_metre();
   alignas(64) PerLine<std::uint32_t> number;
   std::size_t size = 0;
   for (std::size_t i = 0; i < batch.size; ++i) {

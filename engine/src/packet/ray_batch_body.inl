@@ -43,7 +43,7 @@ inline void normalize(RayBatch& batch, PerLine<std::uint32_t>& fitness) {
 // crossings_of and Lattice::key, and where the ray is in the table.
 inline void start(const Lattice& lattice, const OpenVoxels& table, const RayBatch& batch, PacketLines& lines,
                   PerLine<std::uint32_t>& fitness) {
-  const double resolution = lattice.resolution(), factor = 1.0 / resolution;
+  const double resolution = lattice.resolution(), factor = lattice.voxels_per_metre();
   alignas(64) PerLine<double> units;  // of time in a metre
   for (std::size_t i = 0; i < batch.size; ++i) {
     units[i] = kEndOfTime / walked_length(batch.max_range[i], resolution);

@@ -55,13 +55,12 @@ FRONTLUX_BEGIN_AVX2
 namespace avx2 {
 
 // As below, for all axes at once.
-inline Times times_of(const Lattice& lattice, const Ray& ray, const VoxelKey& start,
-                      const Eigen::Vector3f& direction, double units) {
+inline Times times_of(const Lattice& lattice, const Ray& ray, const Eigen::Vector3f& direction,
+                      double units) {
   const auto all = [](const Eigen::Vector3f& v) { return _mm_setr_ps(v.x(), v.y(), v.z(), 0.0F); };
-  const __m128i key = _mm_setr_epi32(start.x, start.y, start.z, 0);
-  const __m256d cell = _mm256_cvtepi32_pd(_mm_sub_epi32(key, _mm_set1_epi32(Lattice::kOrigin)));
   const __m256d resolution = _mm256_set1_pd(lattice.resolution()), half = _mm256_set1_pd(0.5);
   const __m256d origin = _mm256_cvtps_pd(all(ray.origin)), d = _mm256_cvtps_pd(all(ray.direction));
+  const __m256d cell = _mm256_floor_pd(_mm256_mul_pd(origin, _mm256_set1_pd(lattice.voxels_per_metre())));
   const __m256d sign = _mm256_and_pd(d, _mm256_set1_pd(-0.0));
   const __m256d border = _mm256_add_pd(_mm256_mul_pd(_mm256_add_pd(cell, half), resolution),
                                        _mm256_xor_pd(_mm256_mul_pd(resolution, half), sign));
@@ -87,16 +86,17 @@ FRONTLUX_END_TARGET
 
 namespace plain {
 
-// @param units  of time in which a ray in its given direction goes a metre
-inline Times times_of(const Lattice& lattice, const Ray& ray, const VoxelKey& start,
-                      const Eigen::Vector3f& direction, double units) {
-  const std::array<std::uint16_t, 3> key{start.x, start.y, start.z};
+// @param ray        starts in the key range
+// @param direction  as `normalized_as_octomap` returns it
+// @param units      of time in which the ray, in its given direction, goes a metre
+inline Times times_of(const Lattice& lattice, const Ray& ray, const Eigen::Vector3f& direction,
+                      double units) {
   const double resolution = lattice.resolution(), half = resolution * 0.5;
   Times times{{kNever, kNever, kNever, kNever}, {}};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<int>(a);
     const double o = static_cast<double>(ray.origin[axis]), d = static_cast<double>(ray.direction[axis]);
-    const double middle = lattice.center(key[a]);
+    const double middle = lattice.center(*lattice.key(o));
     const double ahead = d < 0.0 ? o - (middle - half) : middle + half - o;
     const double per_metre = units * (1.0 / std::fabs(d));
     const double first = ahead * per_metre, between = resolution * per_metre;

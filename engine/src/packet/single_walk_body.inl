@@ -66,11 +66,11 @@ LoneWalk walk_alone(const Lattice& lattice, const OpenVoxels& table, const Ray& 
   for (std::size_t a = 0; a < 3; ++a)
     flip |= ray.direction[static_cast<int>(a)] < 0.0F ? layout.bits[a] : 0U;
   index ^= flip;
-  const Times times = times_of(lattice, ray, *start, direction,
+  const Times times = times_of(lattice, ray, direction,
                                kEndOfTime / length * static_cast<double>(length_as_octomap(ray.direction)));
   // By rounding, a ray that starts on a face may have crossed it before.
   const bool is_clear = (times.first[0] | times.first[1] | times.first[2]) >= 0;
-  const int too_close = static_cast<int>(length / resolution) + kRounding;
+  const int too_close = static_cast<int>(length * lattice.voxels_per_metre()) + kRounding;
   std::uint32_t end = is_clear ? walk(table, times, index, flip, too_close) : kTooCloseToTell;
   if (end == kTooCloseToTell)
     end = walk_exactly(table, crossings_of(lattice, ray.origin, *start, direction), index, flip, length);

@@ -18,8 +18,8 @@ double inverse_of(double resolution) {
 
 }  // namespace
 
-Lattice::Lattice(double resolution) : resolution_(resolution), factor_(inverse_of(resolution)) {
-  if (!(std::isfinite(resolution) && resolution > 0. && std::isfinite(factor_)))
+Lattice::Lattice(double resolution) : resolution_(resolution), voxels_per_metre_(inverse_of(resolution)) {
+  if (!(std::isfinite(resolution) && resolution > 0. && std::isfinite(voxels_per_metre_)))
     throw std::invalid_argument("resolution must be a positive, finite length in metres, got " +
                                 decimals_of(resolution));
 }

@@ -23,13 +23,13 @@ std::optional<RayEnd> find_free_end(const Lattice& lattice, const Ray& ray, cons
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const auto d = static_cast<double>(direction[axis]);
-    position[i] = static_cast<double>(ray.origin[axis]) / lattice.resolution() + Lattice::kOrigin;
+    position[i] = static_cast<double>(ray.origin[axis]) * lattice.voxels_per_metre() + Lattice::kOrigin;
     step[i] = d > 0.0 ? 1 : d < 0.0 ? -1 : 0;
     between[i] = step[i] == 0 ? 0.0 : 1.0 / d;
     last = std::min(last, leaves(i, step[i] > 0 ? Lattice::kKeysPerAxis - 1 : 0));
   }
   const bool limited = ray.max_range > 0.0;
-  if (limited) last = std::min(last, ray.max_range / lattice.resolution());
+  if (limited) last = std::min(last, ray.max_range * lattice.voxels_per_metre());
 
   // The path is entered a voxel before its end, where no centre is out of range: it is at most 0.87 away, and
   // the rounding of the direction's length and of centres makes at most 0.09. All faces of that voxel have to

@@ -131,6 +131,10 @@ void RunDisplay::print_summary(const RunResult& result, const std::optional<RunE
                                   percent(unseen->hidden) + " hidden from everywhere, " +
                                   percent(unseen->in_view) + " that they could have seen")
               : "") +
+      (setup_.sourced.out_of_bounds >= sim::kMuchUnseen
+           ? row("out of bounds", percent(setup_.sourced.out_of_bounds) +
+                                      " of the world's surface: it lies outside box_m, and is not explored")
+           : "") +
       row("map", percent(accuracy.surface_part()) + " of the surface voxels occupied, " +
                      percent(accuracy.false_free_part()) + " of the free ones hold a surface, " +
                      percent(accuracy.false_occupied_part()) + " of the occupied ones are in free space") +

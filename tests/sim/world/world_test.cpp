@@ -27,6 +27,20 @@ TEST(World, VolumeAndAreaOfATetrahedron) {
   }
 }
 
+TEST(World, AreaOfATetrahedronWithinABox) {
+  const TriangleMesh mesh = make_tetrahedron(0);
+  const auto area = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    return surface_area(mesh, Eigen::AlignedBox3d(low, high));
+  };
+  EXPECT_NEAR(area({-1, -1, -1}, {4, 4, 4}), surface_area(mesh), 1e-12);
+  EXPECT_NEAR(area({0, 0, 0}, {1, 2, 3}), surface_area(mesh), 1e-12) << "faces of the box belong to it";
+  EXPECT_EQ(area({5, 5, 5}, {6, 6, 6}), 0.0);
+  EXPECT_EQ(area({0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}), 0.0) << "inside";
+  EXPECT_EQ(surface_area(mesh, Eigen::AlignedBox3d()), 0.0) << "an empty box";
+  // Below z = 1.5 three quarters of each side that rises to the apex are left, and all of the floor.
+  EXPECT_NEAR(area({-1, -1, -1}, {4, 4, 1.5}), 1.0 + 0.75 * (1.5 + 3.0 + 3.5), 1e-12);
+}
+
 TEST(World, OpenOrMixedSurfacesHaveNoVolume) {
   TriangleMesh open = make_tetrahedron(0);
   open.triangles.pop_back();

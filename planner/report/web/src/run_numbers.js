@@ -63,7 +63,7 @@ export function numbersOf(facts) {
     clearance: known(measured?.clearance_min_m),
     separation: known(measured?.separation_min_m),
     contactsInFree: known(measured?.contacts_in_free),
-    unseen: { inView: known(measured?.unseen.in_view), narrow: known(measured?.unseen.narrow), hidden: known(measured?.unseen.hidden) },
+    unseen: { inView: known(measured?.unseen.in_view), narrow: known(measured?.unseen.narrow), hidden: known(measured?.unseen.hidden), outOfBounds: known(measured?.unseen.surface_out_of_bounds) },
     map: { falseFree: known(measured?.map.false_free), falseOccupied: known(measured?.map.false_occupied), surfaceFound: known(measured?.map.surface_found) },
     idle: ofRobots("idle_s"),
     heldBack: ofRobots("held_back"),

@@ -28,6 +28,20 @@ bool is_closed(const TriangleMesh& mesh) {
   return forward == backward;
 }
 
+using Polygon = std::vector<Eigen::Vector3d>;
+
+// What of a convex polygon lies on one side of a plane across an axis, and on it.
+// @param side  1: where coordinates are less than the plane's, -1: where they are greater
+void cut(const Polygon& polygon, int axis, double side, double plane, Polygon& kept) {
+  kept.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector3d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+    const double before = side * (plane - from[axis]), after = side * (plane - to[axis]);
+    if (before >= 0.0) kept.push_back(from);
+    if (before * after < 0.0) kept.push_back(from + before / (before - after) * (to - from));
+  }
+}
+
 }  // namespace
 
 std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, std::size_t triangle) {
@@ -63,6 +77,23 @@ double surface_area(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto [a, b, c] = corners_of(mesh, i);
     twice += (b - a).cross(c - a).norm();
+  }
+  return twice / 2.0;
+}
+
+double surface_area(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box) {
+  double twice = 0.0;
+  Polygon polygon, kept;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto corners = corners_of(mesh, i);
+    polygon.assign(corners.begin(), corners.end());
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        cut(polygon, axis, side, side < 0.0 ? box.min()[axis] : box.max()[axis], kept);
+        polygon.swap(kept);
+      }
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+      twice += (polygon[k - 1] - polygon[0]).cross(polygon[k] - polygon[0]).norm();
   }
   return twice / 2.0;
 }

@@ -31,6 +31,9 @@ void check(const TriangleMesh& mesh);
 /// Total area of all triangles [m^2].
 [[nodiscard]] double surface_area(const TriangleMesh& mesh);
 
+/// Total area of what of the triangles lies in a box [m^2], its faces included.
+[[nodiscard]] double surface_area(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box);
+
 /// Volume [m^3] of the solids whose surface the mesh is. Negative if the triangles face inwards, as in a mesh
 /// of a room without its walls' thickness; solids that overlap count twice.
 /// @return nothing if the surface is not closed and wound one way: some edge lacks its counterpart
