@@ -89,9 +89,15 @@ class Session {
     ViewQualityOptions in_space;
     in_space.sampling = ViewQualityOptions::Sampling::kBuckets;
     in_space.azimuth_bins = kAzimuthBins;
-    add_in_space(scene, "", "/samples:64", by_casters(subject, {kGrid, kEmbree, kFast}, in_space));
-    add_in_space(scene, "_all", "",
-                 {all_frontiers(subject, kFast, kAzimuthBins), all_frontiers(subject, kExact, kAzimuthBins)});
+    add_in_space(scene, scene.aerial_viewpoints, "", "/samples:64",
+                 by_casters(subject, {kGrid, kEmbree, kFast}, in_space));
+    const std::vector<Rendering> fast_and_exact = {all_frontiers(subject, kFast, kAzimuthBins),
+                                                   all_frontiers(subject, kExact, kAzimuthBins)};
+    add_in_space(scene, scene.aerial_viewpoints, "_all", "", fast_and_exact);
+    // As a planner asks for candidates around one place, and for its goals all over the map.
+    constexpr std::size_t kFew = 32, kScattered = 256;
+    add_in_space(scene, around_the_middle(scene.aerial_viewpoints, kFew), "_few", "", fast_and_exact);
+    add_in_space(scene, thinned(scene.aerial_viewpoints, kScattered), "_scattered", "", fast_and_exact);
   }
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
@@ -134,9 +140,10 @@ class Session {
     }
   }
 
-  // The aerial robot's viewpoints, from scratch and after one scan. A pass of the latter takes the scan into
+  // Viewpoints of the aerial robot, from scratch and after one scan. A pass of the latter takes the scan into
   // the map and out again.
-  void add_in_space(const PlannerScene& scene, const std::string& suffix, const std::string& detail,
+  void add_in_space(const PlannerScene& scene, const std::vector<VoxelKey>& viewpoints,
+                    const std::string& suffix, const std::string& detail,
                     const std::vector<Rendering>& renderings) {
     std::optional<ViewQualityImage> truth, scanned_truth;
     for (const Rendering& rendering : renderings) {
@@ -144,9 +151,10 @@ class Session {
       std::shared_ptr<RayCaster> after = make_grid_ray_caster(scene.scanned);
       if (rendering.name == kFast || rendering.name == kExact) after = make_ray_caster(scene.scanned);
       if (rendering.name == kEmbree) after = make_embree_ray_caster(scene.scanned);
-      const auto render = [&scene, rendering](const RayCaster& rays, const std::vector<VoxelKey>& frontiers) {
+      const auto render = [&scene, viewpoints, rendering](const RayCaster& rays,
+                                                          const std::vector<VoxelKey>& frontiers) {
         ViewQualityImage image(scene.subject.grid.lattice(), scene.aerial.view, rendering.options);
-        image.render(rays, scene.aerial_viewpoints, frontiers);
+        image.render(rays, viewpoints, frontiers);
         return image;
       };
       const auto render_anew = [&scene, rendering, render] {
@@ -156,12 +164,11 @@ class Session {
       if (!truth) truth = image;
       if (!scanned_truth) scanned_truth = render(*after, scene.scanned_frontiers);
       const auto updated = std::make_shared<ViewQualityImage>(image);
-      const auto take_in = [&scene, after, updated] {
-        return updated->update(*after, scene.aerial_viewpoints, scene.scanned_frontiers,
-                               {scene.scanned, scene.changed});
+      const auto take_in = [&scene, viewpoints, after, updated] {
+        return updated->update(*after, viewpoints, scene.scanned_frontiers, {scene.scanned, scene.changed});
       };
-      const auto take_out = [&scene, rendering, updated] {
-        return updated->update(*rendering.caster, scene.aerial_viewpoints, scene.frontiers,
+      const auto take_out = [&scene, viewpoints, rendering, updated] {
+        return updated->update(*rendering.caster, viewpoints, scene.frontiers,
                                {scene.subject.grid, scene.changed});
       };
       const auto again = static_cast<double>(take_in());

@@ -123,6 +123,18 @@ std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t cou
   return some;
 }
 
+std::vector<VoxelKey> around_the_middle(std::vector<VoxelKey> keys, std::size_t count) {
+  if (keys.size() <= count) return keys;
+  const VoxelKey middle = keys[keys.size() / 2];
+  const auto distance_sq = [&](const VoxelKey& key) {
+    const int x = key.x - middle.x, y = key.y - middle.y, z = key.z - middle.z;
+    return x * x + y * y + z * z;
+  };
+  std::ranges::stable_sort(keys, {}, distance_sq);
+  keys.resize(count);
+  return keys;
+}
+
 std::size_t differing(const ViewQualityImage& a, const ViewQualityImage& b) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < a.size(); ++i)

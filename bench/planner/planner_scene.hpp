@@ -53,6 +53,9 @@ inline constexpr int kAzimuthBins = 36;
 /// At most `count` of these keys, evenly chosen.
 [[nodiscard]] std::vector<VoxelKey> thinned(const std::vector<VoxelKey>& keys, std::size_t count);
 
+/// The `count` of these keys that are nearest to one in the middle of them.
+[[nodiscard]] std::vector<VoxelKey> around_the_middle(std::vector<VoxelKey> keys, std::size_t count);
+
 /// The sum of one number over all viewpoints.
 template <class Number>
 [[nodiscard]] double total(const ViewQualityImage& image, Number ViewQuality::*number) {

@@ -2,9 +2,9 @@
 #include "commands/commands.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
-#include "spelling.hpp"
 #include "terminal.hpp"
 
+#include <frontlux/io/spelling.hpp>
 #include <frontlux/machine.hpp>
 
 #include <CLI/CLI.hpp>
@@ -36,7 +36,7 @@ int complain(const std::string& message, int code) {
 
 // " (did you mean --seed?)", if that can be told.
 std::string suggestion(const std::string& misspelt, const std::vector<std::string>& words) {
-  const auto meant = frontlux::app::meant_by(misspelt, words);
+  const auto meant = frontlux::io::meant_by(misspelt, words);
   return meant ? " (did you mean " + *meant + "?)" : "";
 }
 

@@ -2,10 +2,10 @@
 
 #include "bad_input.hpp"
 #include "map_file.hpp"
-#include "spelling.hpp"
 #include "terminal.hpp"
 #include "text.hpp"
 
+#include <frontlux/io/spelling.hpp>
 #include <frontlux/machine.hpp>
 #include <frontlux/sim/built_in_worlds.hpp>
 #include <frontlux/sim/ground.hpp>
@@ -49,7 +49,7 @@ WorldKind kind_of(const std::string& name) {
       words.emplace_back(world.name);
       names.append(names.empty() ? "" : ", ").append(world.name);
     }
-    const auto meant = meant_by(name, words);
+    const auto meant = io::meant_by(name, words);
     throw BadInput(quote(name) + " is neither a file nor a built-in world" +
                    (meant ? " (did you mean " + *meant + "?)" : "") + "; built-in worlds: " + names);
   }

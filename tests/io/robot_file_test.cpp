@@ -137,7 +137,8 @@ TEST_F(RobotFile, SaysWhatIsWrongAndWhatToDo) {
       {with("\"columns\": 16, \"rows\": 12", "\"columns\": 2048, \"rows\": 2048, \"rate_hz\": 100"),
        "sensor.columns and rows are 2048 and 2048: with a rate_hz of 100 they are 419430400 rays a second; "
        "give at most 67108864"},
-      {with("\"columns\"", "\"colums\""), "sensor.columns is missing"},
+      {with("\"columns\"", "\"colums\""),
+       "sensor.columns is missing, unless 'colums' is meant to be it; give a whole number"},
       {with("0.75", "0.75, \"margin_m\": -1"), "margin_m is -1; give a number from 0 to 100 m"},
       {with("0.75", "0.75, \"limits\": 3"), "limits is 3; give an object"},
       {with("0.75", "0.75, \"limits\": {\"speed_m_s\": 0}"),

@@ -1,10 +1,10 @@
 #include "commands/robot_option.hpp"
 
 #include "bad_input.hpp"
-#include "spelling.hpp"
 
 #include <frontlux/file.hpp>
 #include <frontlux/io/robot_file.hpp>
+#include <frontlux/io/spelling.hpp>
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ void read(std::string_view word, RobotWord& robot) {
   if (std::ranges::find(kOfThePaper, robot.word) != kOfThePaper.end() ||
       std::filesystem::is_regular_file(robot.word, ignored))
     return;
-  const auto meant = meant_by(word, kOfThePaper);
+  const auto meant = io::meant_by(word, kOfThePaper);
   throw BadInput(quote(word) + " is none of ugv, uav, and no file" +
                  (meant ? " (did you mean " + *meant + "?)" : ""));
 }

@@ -1,6 +1,7 @@
 #include "members.hpp"
 
 #include <frontlux/file.hpp>
+#include <frontlux/io/spelling.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -121,7 +122,12 @@ const json* Members::find(const std::string& name) {
 
 const json& Members::get(const std::string& name, const std::string& wanted) {
   if (const json* member = find(name)) return *member;
-  refuse(name, "is missing", "give " + wanted);
+  std::vector<std::string> others;
+  for (const auto& [other, value] : object_.items())
+    if (std::ranges::find(known_, other) == known_.end()) others.push_back(other);
+  const auto misspelt = meant_by(name, others);
+  refuse(name, misspelt ? "is missing, unless " + quote(*misspelt) + " is meant to be it" : "is missing",
+         "give " + wanted);
 }
 
 std::string Members::text(const std::string& name, const std::string& wanted) {
@@ -188,7 +194,9 @@ void Members::expect_no_more() const {
     if (std::ranges::find(known_, name) != known_.end()) continue;
     std::string all;
     for (const std::string& one : known_) all += (all.empty() ? "" : ", ") + one;
-    fail(file_, "the member " + quote(prefix_ + name) + " is not known", "known here: " + all);
+    const auto meant = meant_by(name, known_);
+    const std::string guess = meant ? " (did you mean " + *meant + "?)" : "";
+    fail(file_, "the member " + quote(prefix_ + name) + " is not known" + guess, "known here: " + all);
   }
 }
 

@@ -1,10 +1,10 @@
-#include "spelling.hpp"
+#include <frontlux/io/spelling.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
-namespace frontlux::app {
+namespace frontlux::io {
 namespace {
 
 // How many letters have to be replaced, added, left out or swapped with their neighbour.
@@ -37,4 +37,4 @@ std::optional<std::string> meant_by(std::string_view misspelt, std::span<const s
   return *std::ranges::find_if(words, begins);
 }
 
-}  // namespace frontlux::app
+}  // namespace frontlux::io
