@@ -9,8 +9,8 @@
 namespace frontlux {
 namespace {
 
-void check_angle(const char* name, double angle, bool used) {
-  if (used && !(angle > 0.0 && angle < std::numbers::pi))
+void check_angle(const char* name, double angle) {
+  if (!(angle > 0.0 && angle < std::numbers::pi))
     throw std::invalid_argument(std::string("field of view: ") + name + " angle is " + std::to_string(angle) +
                                 " rad, but has to lie between 0 and pi");
 }
@@ -18,8 +18,18 @@ void check_angle(const char* name, double angle, bool used) {
 }  // namespace
 
 void FieldOfView::check() const {
-  check_angle("horizontal", horizontal, !sees_all_around());
-  check_angle("vertical", vertical, shape != Shape::kCone);
+  switch (shape) {
+    case Shape::kSpinning:
+      check_angle("vertical", vertical);
+      break;
+    case Shape::kPyramid:
+      check_angle("horizontal", horizontal);
+      check_angle("vertical", vertical);
+      break;
+    case Shape::kCone:
+      check_angle("horizontal", horizontal);
+      break;
+  }
   if (!(max_range > 0.0 && std::isfinite(max_range)))
     throw std::invalid_argument("field of view: max_range is " + std::to_string(max_range) +
                                 " m, but has to be positive");
@@ -46,10 +56,16 @@ TurnedView::TurnedView(const FieldOfView& view, double yaw)
 bool TurnedView::contains(const Eigen::Vector3d& offset) const {
   const double squared = offset.squaredNorm();
   if (!(squared > 0.0 && squared <= squared_range_)) return false;
-  if (shape_ == FieldOfView::Shape::kSpinning)
-    return std::fabs(offset.z()) <= rise_ * std::hypot(offset.x(), offset.y());
-  const double forward = offset.x() * cosine_ + offset.y() * sine_;
-  if (shape_ == FieldOfView::Shape::kCone) return forward >= side_ * std::sqrt(squared);
+  const auto ahead = [&] { return offset.x() * cosine_ + offset.y() * sine_; };
+  switch (shape_) {
+    case FieldOfView::Shape::kSpinning:
+      return std::fabs(offset.z()) <= rise_ * std::hypot(offset.x(), offset.y());
+    case FieldOfView::Shape::kCone:
+      return ahead() >= side_ * std::sqrt(squared);
+    case FieldOfView::Shape::kPyramid:
+      break;
+  }
+  const double forward = ahead();
   const double left = offset.y() * cosine_ - offset.x() * sine_;
   return std::fabs(left) <= side_ * forward && std::fabs(offset.z()) <= rise_ * forward;
 }
@@ -64,6 +80,15 @@ bool FieldOfView::contains_at_some_yaw(const Eigen::Vector3d& offset) const {
   return std::fabs(offset.z()) <= slope() * std::hypot(offset.x(), offset.y());
 }
 
-double FieldOfView::slope() const { return std::tan((shape == Shape::kCone ? horizontal : vertical) / 2); }
+double FieldOfView::slope() const {
+  switch (shape) {
+    case Shape::kCone:
+      return std::tan(horizontal / 2);
+    case Shape::kSpinning:
+    case Shape::kPyramid:
+      break;
+  }
+  return std::tan(vertical / 2);
+}
 
 }  // namespace frontlux

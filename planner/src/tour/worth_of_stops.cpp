@@ -13,9 +13,9 @@ namespace {
 // the range.
 double most_to_ask(const FieldOfView& view, double resolution) {
   const double away = view.max_range / 2;
-  const auto across = [&](double angle) { return 2 * away * std::tan(angle / 2); };
-  const double width = view.sees_all_around() ? 2 * std::numbers::pi * away : across(view.horizontal);
-  const double height = across(view.shape == FieldOfView::Shape::kCone ? view.horizontal : view.vertical);
+  const double width =
+      view.sees_all_around() ? 2 * std::numbers::pi * away : 2 * away * std::tan(view.horizontal / 2);
+  const double height = 2 * away * view.slope();
   return std::max(1.0, width * height / (resolution * resolution) / 5);
 }
 
