@@ -94,8 +94,16 @@ BodyStencil::BodyStencil(const TravelOptions& options, double resolution) {
     low_[2] = std::min(0, detail::reached_from_below(options, resolution) - below);
     high_[2] = std::max(0, detail::voxels_over(options.extents.z(), resolution) - 1 - below);
   }
-  if (options.planned_shape() != BodyShape::kBox)
-    round_off({options.planned_shape() == BodyShape::kSphere, box.x() / 2 / resolution}, resolution);
+  switch (options.planned_shape()) {
+    case BodyShape::kBox:
+      break;
+    case BodyShape::kCylinder:
+      round_off({false, box.x() / 2 / resolution}, resolution);
+      break;
+    case BodyShape::kSphere:
+      round_off({true, box.x() / 2 / resolution}, resolution);
+      break;
+  }
 }
 
 void BodyStencil::round_off(const RoundBody& body, double resolution) {

@@ -22,15 +22,26 @@ class BodyVoxels {
 
   [[nodiscard]] bool contains(const VoxelKey& key) const {
     if (!box_.contains(key)) return false;
-    if (shape_ == planner::BodyShape::kBox) return true;
-    constexpr double kOnFace = 1e-6;  // [voxels] as in `voxels_of`
-    Eigen::Array3d off = (lattice_.exact_center(key) - at_).array().abs() - lattice_.resolution() / 2;
-    if (shape_ == planner::BodyShape::kCylinder) off.z() = 0.0;
-    const double distance = off.max(0.0).matrix().norm();
-    return distance == 0.0 || distance < radius_ - kOnFace * lattice_.resolution();
+    switch (shape_) {
+      case planner::BodyShape::kCylinder:
+        return within_radius(key, {1.0, 1.0, 0.0});
+      case planner::BodyShape::kSphere:
+        return within_radius(key, {1.0, 1.0, 1.0});
+      case planner::BodyShape::kBox:
+        break;
+    }
+    return true;
   }
 
  private:
+  // By the axes that count, 1, and do not, 0.
+  [[nodiscard]] bool within_radius(const VoxelKey& key, const Eigen::Array3d& axes) const {
+    constexpr double kOnFace = 1e-6;  // [voxels] as in `voxels_of`
+    const Eigen::Array3d off = (lattice_.exact_center(key) - at_).array().abs() - lattice_.resolution() / 2;
+    const double distance = (axes * off.max(0.0)).matrix().norm();
+    return distance == 0.0 || distance < radius_ - kOnFace * lattice_.resolution();
+  }
+
   Lattice lattice_;
   KeyBox box_;
   planner::BodyShape shape_;
